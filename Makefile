@@ -1,0 +1,61 @@
+# The developer's front door. `make help` lists what it opens.
+
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+READY  := $(VENV)/.ready
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint format bench accept examples lock clean
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+demo: $(READY) ## set up, then draw examples/telephone.aidl
+	@mkdir -p build
+	@$(BIN)/aidl compile examples/telephone.aidl -o build/telephone.svg --quiet
+	@echo "The drawing is in $(CURDIR)/build/telephone.svg; open it in a browser."
+
+test: $(READY) ## run all tests
+	$(BIN)/python -m pytest
+
+lint: $(READY) ## style, format, types and the direction of imports
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format: $(READY) ## put all Python code into its canonical form
+	$(BIN)/ruff check --fix-only --quiet .
+	$(BIN)/ruff format .
+
+bench: $(READY) ## measure the command and the stages
+	$(BIN)/python benchmarks/run.py
+
+accept: $(READY) ## take the present results as the new goldens
+	AIDL_ACCEPT=1 $(BIN)/python -m pytest tests/golden tests/spec
+	@git status --short tests 2>/dev/null || true
+
+examples: $(READY) ## draw every example into build/examples and the README's picture
+	@mkdir -p build/examples docs/images
+	@for file in examples/*.aidl; do \
+		$(BIN)/aidl compile $$file -o build/examples/$$(basename $$file .aidl).svg || exit 1; \
+	done
+	@cp build/examples/telephone.svg docs/images/telephone.svg
+
+lock: $(READY) ## renew requirements-dev.lock
+	$(BIN)/python -m pip install --quiet pip-tools
+	CUSTOM_COMPILE_COMMAND="make lock" $(BIN)/pip-compile --quiet --upgrade --extra dev --generate-hashes --allow-unsafe --strip-extras \
+		--no-emit-find-links --no-emit-index-url --output-file requirements-dev.lock pyproject.toml
+
+clean: ## remove what was built; the virtualenv stays
+	rm -rf build dist .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis
+
+# Done again only when the lock or the project file is newer than the last time.
+$(READY): requirements-dev.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "AIDL needs Python 3.11 or newer")'
+	@echo "Setting up $(VENV) …"
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.lock
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	@touch $@

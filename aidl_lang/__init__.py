@@ -1,0 +1,158 @@
+"""AIDL: write what the parts are and how they relate; a solver finds the coordinates.
+
+    import aidl_lang
+
+    model = aidl_lang.compile("solid plate { outline = rectangle(width: 80, height: 50) }")
+    print(model.status)
+    model.save("plate.svg")
+
+`check` finds what is wrong without solving, `format` prints the canonical form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aidl_lang.diagnostics import Diagnostic, Severity
+from aidl_lang.source import SourceFile, Span
+from aidl_lang.version import __version__
+
+if TYPE_CHECKING:
+    from aidl_lang.model import Knob
+    from aidl_lang.pipeline import Compiled, Settings
+    from aidl_lang.solved import Change, ConstraintReport, SolvedModel, SolvedStructure
+
+__all__ = [
+    "Diagnostic",
+    "Model",
+    "Severity",
+    "SourceFile",
+    "Span",
+    "__version__",
+    "check",
+    "compile",
+    "format",
+]
+
+
+class Model:
+    """A compiled program: its solved structures, how well each constraint holds, and its drawings."""
+
+    def __init__(self, compiled: Compiled) -> None:
+        self._compiled = compiled
+
+    @property
+    def ok(self) -> bool:
+        """Whether the program is right and every constraint and assertion holds."""
+        return self._compiled.ok
+
+    @property
+    def status(self) -> str:
+        """`solved`, `partial`, `failed`, or `wrong` when the program could not be built."""
+        return self._compiled.status
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        return self._compiled.diagnostics
+
+    @property
+    def params(self) -> tuple[Knob, ...]:
+        """The knobs of the program with their ranges and values."""
+        return self._compiled.knobs
+
+    @property
+    def solved(self) -> SolvedModel:
+        """The solved model in numbers. Raises ValueError when there is none."""
+        if self._compiled.model is None:
+            raise ValueError("the program is wrong, so nothing was solved; see `diagnostics`")
+        return self._compiled.model
+
+    @property
+    def constraints(self) -> tuple[ConstraintReport, ...]:
+        """Every constraint with its residual, in order of writing."""
+        return self.solved.constraints
+
+    @property
+    def changed(self) -> tuple[Change, ...]:
+        """Kept sizes that had to change."""
+        return self.solved.changed
+
+    @property
+    def timings(self) -> dict[str, float]:
+        """Seconds per stage."""
+        return self._compiled.timings
+
+    def __getitem__(self, path: str) -> SolvedStructure:
+        """A structure by its dotted path, with or without the root's name. Raises KeyError."""
+        root = self.solved.root
+        found = root.find(path) or root.find(f"{root.path}.{path}")
+        if found is None:
+            raise KeyError(path)
+        return found
+
+    def to_svg(self, show: frozenset[str] = frozenset()) -> str:
+        """The drawing as SVG; `show` adds explaining overlays (names, points, bbox, constraints, dof, plan)."""
+        return self._compiled.export(".svg", show).decode()
+
+    def to_json(self, *, timings: bool = False) -> str:
+        """The solved model as JSON (docs/json.md)."""
+        return self._compiled.export(".json", timings=timings).decode()
+
+    def save(self, path: str | Path) -> None:
+        """Write the drawing in the format of the file's suffix. Raises KeyError for an unknown one."""
+        path = Path(path)
+        path.write_bytes(self._compiled.export(path.suffix))
+
+    def _repr_svg_(self) -> str | None:
+        return self.to_svg() if self._compiled.model is not None else None
+
+    def __repr__(self) -> str:
+        problems = sum(d.is_error for d in self.diagnostics)
+        return f"<aidl_lang.Model {self.status}, {problems} error{'s' * (problems != 1)}>"
+
+
+def _source(text_or_path: str | Path) -> tuple[SourceFile, Path | None]:
+    if isinstance(text_or_path, Path):
+        return SourceFile(str(text_or_path), text_or_path.read_text("utf-8")), text_or_path.parent
+    return SourceFile("<text>", text_or_path), None
+
+
+def check(text: str | Path, settings: Settings | None = None) -> list[Diagnostic]:
+    """What is wrong with a program, without solving it. A `Path` is read, a string is the program itself."""
+    from aidl_lang import pipeline
+    from aidl_lang.world import DiskWorld
+
+    source, root = _source(text)
+    world = DiskWorld(root) if root is not None else None
+    return pipeline.check(source, world, settings or pipeline.Settings())
+
+
+def compile(
+    text_or_path: str | Path,
+    params: Mapping[str, str | float | bool] | None = None,
+    settings: Settings | None = None,
+) -> Model:
+    """Compile and solve a program. A `Path` is read, a string is the program itself.
+
+    `params` sets knobs by path, as `{"width": 200}`. Never raises for what a program says.
+    """
+    from aidl_lang import pipeline
+    from aidl_lang.world import DiskWorld
+
+    source, root = _source(text_or_path)
+    world = DiskWorld(root) if root is not None else None
+    return Model(pipeline.compile(source, world, params, settings or pipeline.Settings()))
+
+
+def format(text: str) -> str:
+    """The canonical form of a program. Raises ValueError when it does not parse."""
+    from aidl_lang.parser import parse
+    from aidl_lang.printer import format_module
+
+    parsed = parse(SourceFile("<text>", text))
+    errors = [d for d in parsed.diagnostics if d.is_error]
+    if errors:
+        raise ValueError(errors[0].message)
+    return format_module(parsed)

@@ -1,0 +1,8 @@
+"""`python -m aidl_lang` is `aidl`."""
+
+import sys
+
+from aidl_lang.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,249 @@
+"""Boxes: the extent of structures, geometry and lists of them in the frame of the structure that asks.
+
+A box contains a structure's own curves (tight, construction geometry aside) and its child structures' boxes,
+holes excepted. Its sides are spelled out only when the comparison they stand in is known, because a box that
+meets the box of one of its descendants there leaves that descendant out (paper, appendix B).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from aidl_lang import expression as ex
+from aidl_lang.expression import Expression, Unknown
+from aidl_lang.model import Geometry, Structure, chain, convert
+from aidl_lang.primitives import clockwise, defining, direction, number, sweep, view, xy
+from aidl_lang.values import Array, ListVal, Num, PointVal, length, members, point
+
+SIDES = ("left", "right", "top", "bottom")
+
+FIELDS = (
+    *SIDES,
+    "width",
+    "height",
+    "center",
+    "center_x",
+    "center_y",
+    "top_left",
+    "top_right",
+    "bottom_left",
+    "bottom_right",
+    "top_center",
+    "bottom_center",
+    "left_center",
+    "right_center",
+)
+
+Source = Geometry | Structure | PointVal
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """The common box of its sources, as `here` sees them."""
+
+    sources: tuple[Source, ...]
+    here: Structure
+
+    def side(self, name: str) -> Expression:
+        """left, right, top or bottom."""
+        return ex.lazy(_Side(self, name))
+
+    def field(self, name: str) -> Num | PointVal | None:
+        """One of `FIELDS`."""
+        match name:
+            case "left" | "right" | "top" | "bottom":
+                return length(self.side(name))
+            case "width":
+                return length(ex.sub(self.side("right"), self.side("left")))
+            case "height":
+                return length(ex.sub(self.side("top"), self.side("bottom")))
+            case "center_x":
+                return length(ex.half(ex.add(self.side("left"), self.side("right"))))
+            case "center_y":
+                return length(ex.half(ex.add(self.side("bottom"), self.side("top"))))
+            case "center":
+                return self._at("center", "center")
+            case _:
+                if name not in FIELDS:
+                    return None
+                a, b = name.split("_")
+                return self._at(a, b) if a in ("top", "bottom") else self._at(b, a)
+
+    def _at(self, vertical: str, horizontal: str) -> PointVal:
+        x = self.field("center_x" if horizontal == "center" else horizontal)
+        y = self.field("center_y" if vertical == "center" else vertical)
+        assert isinstance(x, Num) and isinstance(y, Num)
+        return point(x.expression, y.expression)
+
+
+@dataclass(eq=False)
+class _Side:
+    """A side of a box that is not yet spelled out."""
+
+    box: Box
+    name: str
+    _value: float | None = field(default=None)
+
+    @property
+    def value(self) -> float:
+        if self._value is None:
+            self._value = extent(self, frozenset()).value
+        return self._value
+
+    def unknowns(self) -> Iterator[Unknown]:
+        for source in self.box.sources:
+            yield from source_unknowns(source, self.box.here)
+
+
+def source_unknowns(source: object, here: Structure) -> Iterator[Unknown]:
+    """The unknowns that place a source: its own, and the frames between it and `here`."""
+    if isinstance(source, PointVal):
+        yield from ex.unknowns([source.x.expression, source.y.expression])
+    elif isinstance(source, Geometry):
+        yield from ex.unknowns(defining(source, here))
+    elif isinstance(source, Structure):
+        for structure in chain(source):
+            if structure is here:
+                break
+            frame = structure.frame
+            yield from ex.unknowns([frame.x, frame.y, frame.rotation])
+        yield from ex.unknowns(source.plan or ())
+        for geometry in source.own():
+            yield from ex.unknowns(defining(geometry, source))
+
+
+def spelled_out(*roots: Expression) -> tuple[Expression, ...]:
+    """The expressions of one comparison with every side of a box replaced by what it is there."""
+    order = list(ex.nodes(roots))
+    sides = [n.payload for n in order if isinstance(n.payload, _Side)]
+    if not sides:
+        return roots
+    used = {s for side in sides for s in side.box.sources if isinstance(s, Structure)}
+    replaced: dict[int, Expression] = {}
+    for node in order:
+        if isinstance(node.payload, _Side):
+            tops = [s for s in node.payload.box.sources if isinstance(s, Structure)]
+            ignored = frozenset(u for u in used for t in tops if u is not t and u.is_within(t))
+            replaced[id(node)] = extent(node.payload, ignored)
+        elif any(id(a) in replaced for a in node.args):
+            replaced[id(node)] = ex.apply(node.op, *[replaced.get(id(a), a) for a in node.args])
+    return tuple(replaced.get(id(root), root) for root in roots)
+
+
+def extent(side: _Side, ignored: frozenset[Structure]) -> Expression:
+    """A side as the extreme of everything in the box; 0 when there is nothing in it."""
+    here, name = side.box.here, side.name
+    candidates = [e for s in side.box.sources for e in _extremes(s, here, name, ignored)]
+    if not candidates:
+        return ex.ZERO
+    if len(candidates) == 1:
+        return candidates[0]
+    return ex.apply("maximum" if name in ("right", "top") else "minimum", *candidates)
+
+
+def _extremes(
+    source: Source, here: Structure, side: str, ignored: frozenset[Structure]
+) -> Iterator[Expression]:
+    if isinstance(source, PointVal):
+        yield xy(source)[side in ("top", "bottom")]
+    elif isinstance(source, Geometry):
+        if source.type == "point":
+            yield xy(view(source, here)["at"])[side in ("top", "bottom")]
+        elif source.construction and not source.is_compound:
+            yield from _curve(source, here, side)
+        else:
+            for primitive in source.primitives():
+                yield from _curve(primitive, here, side)
+    elif source not in ignored:
+        yield from _structure(source, here, side, ignored)
+
+
+def _structure(
+    source: Structure, here: Structure, side: str, ignored: frozenset[Structure]
+) -> Iterator[Expression]:
+    if source.plan:
+        left, bottom, width, height = source.plan
+        right, top = ex.add(left, width), ex.add(bottom, height)
+        for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
+            yield convert(*corner, source, here)[side in ("top", "bottom")]
+    for geometry in source.own():
+        for primitive in geometry.primitives():
+            yield from _curve(primitive, here, side)
+    for child in source.children:
+        if child.kind != "hole" and child not in ignored:
+            yield from _structure(child, here, side, ignored)
+
+
+def _curve(primitive: Geometry, here: Structure, side: str) -> Iterator[Expression]:
+    """Candidates for the extreme of one curve towards a side."""
+    core = view(primitive, here)
+    axis = side in ("top", "bottom")
+    positive = side in ("right", "top")
+    match primitive.type:
+        case "line":
+            yield xy(core["start"])[axis]
+            yield xy(core["end"])[axis]
+        case "circle":
+            yield ex.apply("add" if positive else "sub", xy(core["center"])[axis], number(core["radius"]))
+        case "arc":
+            yield _arc_extreme(core, clockwise(primitive, here), side)
+        case "ellipse":
+            yield _ellipse_extreme(core, axis, positive)
+        case "bezier":
+            controls = [xy(core[p])[axis] for p in ("p0", "p1", "p2", "p3")]
+            if positive:
+                yield ex.apply("cubic_max", *controls)
+            else:
+                opposite = [ex.apply("neg", c) for c in controls]
+                yield ex.apply("neg", ex.apply("cubic_max", *opposite))
+
+
+_TOWARDS = {"right": 0.0, "top": 90.0, "left": 180.0, "bottom": 270.0}
+
+
+def _arc_extreme(core: dict[str, object], is_clockwise: bool, side: str) -> Expression:
+    """The quadrant point if the arc passes through it, else the further end."""
+    axis, positive = side in ("top", "bottom"), side in ("right", "top")
+    center, start, end = core["center"], core["start"], core["end"]
+    first = end if is_clockwise else start
+    offset = ex.sub(ex.constant(_TOWARDS[side]), direction(center, first))  # type: ignore[arg-type]
+    reached = ex.apply("mod", offset, ex.constant(360.0))
+    passes = ex.sub(sweep(core, is_clockwise), reached)  # type: ignore[arg-type]
+    quadrant = ex.apply(
+        "add" if positive else "sub",
+        xy(center)[axis],  # type: ignore[arg-type]
+        number(core["radius"]),  # type: ignore[arg-type]
+    )
+    ends = ex.apply("maximum" if positive else "minimum", xy(start)[axis], xy(end)[axis])  # type: ignore[arg-type]
+    return ex.apply("select", passes, quadrant, ends)
+
+
+def _ellipse_extreme(core: dict[str, object], axis: bool, positive: bool) -> Expression:
+    """Centre plus or minus sqrt((rx cos)^2 + (ry sin)^2), the half-width of a turned ellipse."""
+    angle = number(core["angle"])  # type: ignore[arg-type]
+    along, across = (ex.sin, ex.cos) if axis else (ex.cos, ex.sin)
+    half_width = ex.apply(
+        "hypot",
+        ex.mul(number(core["rx"]), along(angle)),  # type: ignore[arg-type]
+        ex.mul(number(core["ry"]), across(angle)),  # type: ignore[arg-type]
+    )
+    return ex.apply("add" if positive else "sub", xy(core["center"])[axis], half_width)  # type: ignore[arg-type]
+
+
+def box_of(value: object, here: Structure) -> Box | None:
+    """The box of a value; None when it has none."""
+    if isinstance(value, Box):
+        return value
+    sources = tuple(_sources(value))
+    return Box(sources, here) if sources else None
+
+
+def _sources(value: object) -> Iterable[Source]:
+    if isinstance(value, Geometry | Structure | PointVal):
+        yield value
+    elif isinstance(value, Box):
+        yield from value.sources
+    elif isinstance(value, ListVal | Array):
+        for item in members(value) or ():
+            yield from _sources(item)

@@ -1,0 +1,73 @@
+"""What is built in: the names that the standard library itself stands on, and what they take.
+
+Everything that AIDL can say is written in AIDL in `stdlib/`; this table holds what it cannot: the functions
+of a number, the primitives, the marks of exactness, and measurements of the finished drawing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from aidl_lang.types import PARAMETER_TYPES, Signature
+
+_DECLARATIONS = """
+sin(angle: angle)
+cos(angle: angle)
+tan(angle: angle)
+asin(value: number)
+acos(value: number)
+atan(value: number)
+atan2(y, x)
+sqrt(value)
+abs(value)
+square(value)
+hypot(a, b)
+min(values: list)
+max(values: list)
+sum(values: list)
+floor(value)
+ceil(value)
+round(value)
+len(values: list)
+fixed(value)
+guess(value)
+written(value)
+nearest(value, candidates: list)
+point(x: length, y: length)
+point(at: point)
+line(start: point, end: point)
+line(start: point?, length: length, angle: angle)
+circle(center: point?, radius: length)
+circle(center: point?, diameter: length)
+arc(center: point, start: point, end: point, clockwise: bool?)
+arc(start: point, end: point, radius: length, large: bool?, clockwise: bool?)
+arc(center: point?, radius: length, start_angle: angle, end_angle: angle, clockwise: bool?)
+bezier(p0: point, p1: point, p2: point, p3: point)
+ellipse(center: point?, rx: length, ry: length, angle: turn?)
+area(of)
+perimeter(of)
+clearance(a, b)
+overlaps(a, b)
+"""
+
+
+def _signature(declaration: str) -> Signature:
+    """`name(parameter: type, optional: type?)`"""
+    name, _, inside = declaration.rstrip(")").partition("(")
+    parameters = []
+    for item in inside.split(", "):
+        word, _, kind = item.partition(": ")
+        parameters.append((word, PARAMETER_TYPES[kind.rstrip("?") or "any"], kind.endswith("?")))
+    return Signature(name, tuple(parameters))
+
+
+def _table() -> dict[str, tuple[Signature, ...]]:
+    table: dict[str, list[Signature]] = {}
+    for line in _DECLARATIONS.split("\n"):
+        if line:
+            signature = _signature(line)
+            table.setdefault(signature.name, []).append(signature)
+    return {name: tuple(signatures) for name, signatures in table.items()}
+
+
+SIGNATURES: Mapping[str, tuple[Signature, ...]] = _table()

@@ -1,0 +1,69 @@
+"""What is known of an expression before anything is built."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from aidl_lang import ast
+from aidl_lang.resolving.symbols import Symbol
+from aidl_lang.types import ANY, AnyType, ListType, Type
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Whose unknowns are read: the structure at the path `below`, seen from the structure `holder` that the
+    program text is in (or from the file).
+    """
+
+    holder: ast.Node
+    below: tuple[str, ...] = ()
+
+
+NOTHING_READ: frozenset[Place] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """
+    type   of the value
+    reads  the structures whose unknowns the value depends on; empty for constants, and where that is not known
+    of     the definition whose members it has (a list: its elements): structure, template, shape, or file
+    place  for a structure, where it stands
+    bare   the param or let whose number without a unit it is
+    """
+
+    type: Type = ANY
+    reads: frozenset[Place] = NOTHING_READ
+    of: ast.Node | None = None
+    place: Place | None = None
+    bare: Symbol | None = None
+
+    @property
+    def is_any(self) -> bool:
+        return isinstance(self.type, AnyType)
+
+    def reading(self, reads: frozenset[Place]) -> Fact:
+        return replace(self, reads=reads)
+
+    def listed(self, times: int = 1) -> Fact:
+        """A list of such values, or a list of lists."""
+        kind = self.type
+        for _ in range(times):
+            kind = ListType(kind)
+        return replace(self, type=kind, bare=None)
+
+    def element(self) -> Fact:
+        """A member of a list of such values."""
+        kind = self.type.element if isinstance(self.type, ListType) else ANY
+        return replace(self, type=kind)
+
+
+UNKNOWN = Fact()
+
+
+def joined(a: Fact, b: Fact) -> Fact:
+    """What is known of a value that is one of two."""
+    reads = a.reads | b.reads
+    if a.type == b.type and a.of is b.of:
+        return Fact(a.type, reads, a.of, a.place if a.place == b.place else None)
+    return Fact(ANY, reads)

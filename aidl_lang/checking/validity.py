@@ -1,0 +1,215 @@
+"""Validity of references (language reference: validity): who may read whose unknowns.
+
+Rule 1: geometry references only geometry and unknowns of its own structure. Arguments of templates may reach
+further, since the instantiating structure ties them by equalities; `mirror`, `copy` and `offset` may take an
+outline of an ancestor.
+Rule 2: a constraint references only the subtree of the structure that holds it.
+
+A breach becomes a `Violation`. Its diagnostic names the nearest common ancestor, where the relation can be stated,
+and mends the program: what reads too far becomes a first guess, and the ancestor gets the constraint.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from aidl_lang import ast
+from aidl_lang.checking.calls import arguments, parameter_of
+from aidl_lang.checking.facts import Fact, Place
+from aidl_lang.checking.infer import Inference, is_point
+from aidl_lang.checking.relocate import Site, member_path
+from aidl_lang.checking.violations import Target, Violation
+from aidl_lang.resolving.declare import DERIVING, PATTERNS
+from aidl_lang.types import AnyType, Binding, GeometryType, Given, StructureType, bind
+
+
+def check_validity(module: ast.Module, infer: Inference) -> list[Violation]:
+    """The breaches of both rules in one file."""
+    walker = _Walker(infer)
+    walker.block(module.statements, Site((module,), ()))
+    return walker.found
+
+
+class _Walker:
+    """Goes through the bodies of structures; what is defined to be called is judged where it is called."""
+
+    def __init__(self, infer: Inference) -> None:
+        self.infer = infer
+        self.found: list[Violation] = []
+
+    def block(self, statements: Sequence[ast.Statement], site: Site) -> None:
+        for statement in statements:
+            self._statement(statement, site.within(statement))
+
+    def _statement(self, node: ast.Statement, site: Site) -> None:
+        match node:
+            case ast.Structure():
+                if node.parameters is None:
+                    self._placement(node, site)
+                self.block(node.body.statements, site.inside(node))
+            case ast.Assign():
+                self._assign(node, site)
+                self._placement(node, site)
+            case ast.Var(name, value):
+                target = Target(
+                    value, (name.text,), is_point=is_point(self.infer.fact(value).type), is_size=False
+                )
+                self._geometry([target], value, site)
+            case ast.For(body=body):
+                self.block(body.statements, site)
+            case ast.If(then=then, otherwise=otherwise):
+                self.block(then.statements, site)
+                if otherwise is not None:
+                    self.block(otherwise.statements, site.otherwise(node))
+            case ast.Constrain(items):
+                if node.braces:
+                    self.block(items.statements, site)
+                else:
+                    self._constraint(node, items.statements[0], site)
+            case ast.ExpressionStatement() | ast.Prefer() | ast.Equation():
+                self._constraint(node, node, site)
+            case _:
+                pass
+
+    # --- Rule 1 --------------------------------------------------------------------------------
+
+    def _assign(self, node: ast.Assign, site: Site) -> None:
+        path = (member_path(node.name, node.indices),)
+        value = node.value
+        match value:
+            case ast.Point():
+                self._geometry(self._coordinates(value, path), value, site)
+            case ast.Call():
+                self._made(value, path, site)
+            case ast.Conditional(then=then, otherwise=otherwise):
+                for branch in (then, otherwise):
+                    if isinstance(branch, ast.Call):
+                        self._made(branch, None, site)
+            case ast.Comprehension(element=ast.Call() as element):
+                self._made(element, None, site)
+            case ast.List(items):
+                for item in items:
+                    if isinstance(item, ast.Call):
+                        self._made(item, None, site)
+            case _:
+                pass  # a name for an expression is judged where it is used
+
+    def _made(self, call: ast.Call, path: tuple[str, ...] | None, site: Site) -> None:
+        """The arguments of a constructor; of a template's, nothing is asked."""
+        fact = self.infer.fact(call)
+        name = self.infer.resolution.canonical.get(call.callee, call.callee.text)
+        if isinstance(fact.type, StructureType) or not self._makes_geometry(fact, name):
+            return
+        reach = (DERIVING | PATTERNS) if name in DERIVING | PATTERNS else None
+        for index, node in enumerate(arguments(self.infer, call)):
+            if isinstance(node, ast.Call) and self._makes_geometry(self.infer.fact(node), node.callee.text):
+                self._made(node, None, site)
+                continue
+            if reach is not None and self._may_derive(node, site):
+                continue
+            self._geometry(self._targets(call, index, node, path), node, site)
+
+    def _makes_geometry(self, fact: Fact, name: str) -> bool:
+        return isinstance(fact.type, GeometryType) or name in DERIVING | PATTERNS or is_point(fact.type)
+
+    def _may_derive(self, node: ast.Expression, site: Site) -> bool:
+        """Whether a copy may be made of this: something of an ancestor itself, or of a child."""
+        return all(
+            p.holder in site.homes and (not p.below or p.holder is site.home) for p in self._reads(node)
+        )
+
+    def _targets(
+        self, call: ast.Call, index: int, node: ast.Expression, path: tuple[str, ...] | None
+    ) -> list[Target]:
+        """The expressions in an argument that a guess may stand for, with the paths they are reached by."""
+        name = self._parameter(call, index)
+        if path is None or name is None or not self._is_field(call, name):
+            return [Target(node, None, is_point=self._is_point(node), is_size=True)]
+        if isinstance(node, ast.Point):
+            return self._coordinates(node, (*path, name))
+        if isinstance(node, ast.List) and node.items and self._is_point(node.items[0]):
+            items: list[Target] = []
+            for i, item in enumerate(node.items):
+                place = (*path, f"{name}[{i}]")
+                items += (
+                    self._coordinates(item, place)
+                    if isinstance(item, ast.Point)
+                    else [Target(item, place, True)]
+                )
+            return items
+        is_position = self._is_point(node)
+        return [Target(node, (*path, name), is_position, is_size=not is_position)]
+
+    def _coordinates(self, node: ast.Point, path: tuple[str, ...]) -> list[Target]:
+        """A point, or the one coordinate of it that reads too far, so that the other stays what it was."""
+        if self._reads(node.x) and self._reads(node.y):
+            return [Target(node, path, is_point=True)]
+        return [Target(node.x, (*path, "x")), Target(node.y, (*path, "y"))]
+
+    def _parameter(self, call: ast.Call, index: int) -> str | None:
+        """The parameter that the argument of that number goes to, if there is no doubt."""
+        nodes = arguments(self.infer, call)
+        names = [None] * (len(nodes) - len(call.arguments)) + [
+            a.name.text if a.name else None for a in call.arguments
+        ]
+        given = [Given(n, self.infer.fact(e).type) for n, e in zip(names, nodes, strict=True)]
+        outcomes = [bind(s, given) for s in self.infer.resolution.candidates.get(call, ())]
+        fits = sorted((o for o in outcomes if isinstance(o, Binding)), key=lambda b: b.cost)
+        return parameter_of(call, index, [f for f in fits if f.cost == fits[0].cost])
+
+    def _is_field(self, call: ast.Call, name: str) -> bool:
+        """Whether what a call makes can be asked for its parameter by name."""
+        from aidl_lang.checking.members import PRIMITIVE
+
+        fact = self.infer.fact(call)
+        if isinstance(fact.of, ast.ShapeDefinition):
+            return True
+        return isinstance(fact.type, GeometryType) and name in PRIMITIVE.get(fact.type.kind, ())
+
+    def _is_point(self, node: ast.Expression) -> bool:
+        kind = self.infer.fact(node).type
+        return is_point(kind) or isinstance(node, ast.List)
+
+    def _placement(self, node: ast.Structure | ast.Assign, site: Site) -> None:
+        """`at` and `rotated` belong to the structure that holds the one they place."""
+        if node.placement is None:
+            return
+        path = (member_path(node.name, node.indices), "origin")
+        if (at := node.placement.at) is not None:
+            targets = (
+                self._coordinates(at, path)
+                if isinstance(at, ast.Point)
+                else [Target(at, path, is_point=True)]
+            )
+            self._geometry(targets, at, site)
+        if (rotated := node.placement.rotated) is not None:
+            self._geometry([Target(rotated, None, is_size=True)], rotated, site)
+
+    def _geometry(self, targets: Sequence[Target], whole: ast.Expression, site: Site) -> None:
+        """Rule 1 for an expression that geometry is made with."""
+        own = Place(site.home)
+        for target in targets:
+            far = [p for p in self._reads(target.node) if p != own]
+            if far:
+                self.found.append(Violation(1, target, whole, tuple(far), site, self.infer))
+
+    def _reads(self, node: ast.Expression) -> list[Place]:
+        return _sorted(self.infer.fact(node).reads)
+
+    # --- Rule 2 --------------------------------------------------------------------------------
+
+    def _constraint(self, statement: ast.Statement, item: ast.Statement, site: Site) -> None:
+        expressions = [e for e in ast.children(item) if e in self.infer.facts]
+        reads = {p for e in expressions for p in self.infer.facts[e].reads}
+        if isinstance(item, ast.ExpressionStatement) and isinstance(
+            self.infer.fact(item.value).type, AnyType
+        ):
+            if isinstance(item.value, ast.Call) and item.value.callee.text in ("fillet", "chamfer"):
+                return
+        far = [p for p in _sorted(reads) if p.holder is not site.home]
+        if far and isinstance(item, ast.ExpressionStatement | ast.Prefer | ast.Equation):
+            self.found.append(Violation(2, Target(item, None), statement, tuple(far), site, self.infer))
+
+
+def _sorted(places: frozenset[Place] | set[Place]) -> list[Place]:
+    return sorted(places, key=lambda p: (p.holder.span.start, p.holder.span.end, p.below))

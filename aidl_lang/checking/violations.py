@@ -1,0 +1,201 @@
+"""Breaches of the rules of validity, and their mending."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from aidl_lang import ast
+from aidl_lang.checking.facts import Place
+from aidl_lang.checking.infer import Inference
+from aidl_lang.checking.relocate import Move, Site, insertion_after, removal
+from aidl_lang.checking.wording import shown
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
+
+
+@dataclass(frozen=True, eq=False)
+class Target:
+    """
+    node       the expression (or, of rule 2, the statement) that reads too far
+    path       how its structure reaches the number or point that it defines; None where nothing names it
+    is_point   it is a point; otherwise a number
+    is_size    a number that is kept as written unless it is marked as a guess
+    """
+
+    node: ast.Node
+    path: tuple[str, ...] | None
+    is_point: bool = False
+    is_size: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Violation:
+    """
+    rule    1 for geometry, 2 for a constraint
+    whole   the expression or statement that the target is part of
+    far     the places that are out of reach
+    """
+
+    rule: int
+    target: Target
+    whole: ast.Node
+    far: tuple[Place, ...]
+    site: Site
+    infer: Inference
+
+    @property
+    def nodes(self) -> tuple[ast.Node, ...]:
+        """The expressions whose written values the diagnostic wants to know."""
+        node = self.target.node
+        return (node,) if self.rule == 1 else tuple(c for c in ast.children(node) if c in self.infer.facts)
+
+    @property
+    def ancestor(self) -> ast.Node | None:
+        """The nearest structure that holds everything the expression reads; None when no text of it is here."""
+        holders = [p.holder for p in self.far]
+        if any(holder not in self.site.homes for holder in holders):
+            return None
+        return min(holders, key=self.site.homes.index)
+
+    def diagnostic(self, written: Mapping[ast.Node, tuple[float, float] | float]) -> Diagnostic:
+        """What to tell the author. `written` has the values of `nodes` at the first guesses, as far as known."""
+        home, culprit = _name(self.site.home), self._culprit()
+        owner = self._owner(culprit)
+        subject = f"geometry of {home}" if self.rule == 1 else f"a constraint of {home}"
+        ancestor = self.ancestor
+        relation = self._relation(ancestor) if ancestor is not None else None
+        fix = (
+            self._fix(relation, ancestor, written) if ancestor is not None and relation is not None else None
+        )
+        secondary: list[Label] = []
+        symbol = self.infer.resolution.uses.get(_root(culprit))
+        if symbol is not None and symbol.declarations:
+            secondary.append(Label(symbol.declarations[0].span, "declared here"))
+        return Diagnostic(
+            "E0401" if self.rule == 1 else "E0402",
+            f"{subject} cannot use `{shown(culprit)}`, which belongs to {owner}",
+            culprit.span,
+            label=f"outside {home}",
+            secondary=tuple(secondary),
+            hints=(self._hint(relation, ancestor, written),),
+            fix=fix,
+        )
+
+    # --- Words -----------------------------------------------------------------------------------
+
+    def _culprit(self) -> ast.Node:
+        """The name that leads too far, with all its members."""
+        far = set(self.far)
+        for node in ast.walk(self.target.node):
+            fact = self.infer.facts.get(node)
+            if isinstance(node, ast.Name | ast.Member | ast.Index) and fact is not None and fact.reads & far:
+                return node
+        return self.target.node
+
+    def _owner(self, culprit: ast.Node) -> str:
+        fact = self.infer.facts.get(culprit)
+        far = [p for p in self.far if fact is None or p in fact.reads] or list(self.far)
+        place = far[0]
+        if not place.below:
+            return _name(place.holder)
+        return f"`{'.'.join(place.below)}`"
+
+    def _hint(
+        self,
+        relation: str | None,
+        ancestor: ast.Node | None,
+        written: Mapping[ast.Node, tuple[float, float] | float],
+    ) -> str:
+        where = _name(ancestor) if ancestor is not None else "the structure that holds both"
+        if self.rule == 2:
+            said = f": `{relation}`" if relation is not None else ", and call things there by their paths"
+            return f"say it in {where}, which holds both{said}"
+        if relation is None:
+            return f"write a first guess here, and the relation as a constraint in {where}"
+        return f"write a first guess here, `{self._guess(written)}`, and in {where} `{relation}`"
+
+    # --- The fix ---------------------------------------------------------------------------------
+
+    def _relation(self, ancestor: ast.Node) -> str | None:
+        """The constraint as the ancestor states it; None when it cannot."""
+        move = Move(self.site, ancestor, self.infer)
+        if not move.is_possible:
+            return None
+        return self._equation(move) if self.rule == 1 else self._moved(move)
+
+    def _equation(self, move: Move) -> str | None:
+        path, node = self.target.path, self.target.node
+        if path is None:
+            return None
+        if isinstance(node, ast.Call) and node.callee.text in ("fixed", "guess") and node.arguments:
+            if node.callee.text == "guess":
+                return None
+            node = node.arguments[0].value
+        right = move.expression(node)
+        if right is None:
+            return None
+        if isinstance(node, ast.Conditional):
+            right = f"({right})"
+        left = ".".join(step for step in (move.path(), *path) if step)
+        return move.statement(f"constrain {left} == {right}")
+
+    def _moved(self, move: Move) -> str | None:
+        item = self.target.node
+        match item:
+            case ast.Prefer(value, weight):
+                text = move.expression(value)
+                if text is not None and weight is not None:
+                    heavy = move.expression(weight)
+                    text = None if heavy is None else f"{text} weight {heavy}"
+                return move.statement(f"prefer {text}") if text is not None else None
+            case ast.Equation(left, right):
+                sides = move.expression(left), move.expression(right)
+                return move.statement(f"constrain {sides[0]} == {sides[1]}") if None not in sides else None
+            case ast.ExpressionStatement(value):
+                text = move.expression(value)
+                return move.statement(f"constrain {text}") if text is not None else None
+            case _:
+                return None
+
+    def _fix(
+        self, relation: str, ancestor: ast.Node, written: Mapping[ast.Node, tuple[float, float] | float]
+    ) -> Fix:
+        move = Move(self.site, ancestor, self.infer)
+        where, text = insertion_after(move.anchor, relation)
+        if self.rule == 2:
+            return Fix(
+                f"move the constraint to {_name(ancestor)}",
+                (Edit(removal(self.whole), ""), Edit(where, text)),
+            )
+        return Fix(
+            f"make it a first guess and state the relation in {_name(ancestor)}",
+            (Edit(self.target.node.span, self._guess(written)), Edit(where, text)),
+        )
+
+    def _guess(self, written: Mapping[ast.Node, tuple[float, float] | float]) -> str:
+        value = written.get(self.target.node)
+        if self.target.is_point:
+            x, y = value if isinstance(value, tuple) else (0.0, 0.0)
+            return f"({_digits(x, 0.0)}, {_digits(y, 0.0)})"
+        fallback = 10.0 if self.target.is_size else 0.0
+        digits = _digits(value if isinstance(value, float | int) else fallback, fallback)
+        return f"guess({digits})" if self.target.is_size else digits
+
+
+def _digits(value: float, fallback: float) -> str:
+    """Six significant digits, without noise around zero."""
+    if not math.isfinite(value):
+        value = fallback
+    return f"{0.0 if abs(value) < 1e-9 else value:.6g}"
+
+
+def _name(node: ast.Node) -> str:
+    return f"`{node.name.text}`" if isinstance(node, ast.Structure) else "the file's assembly"
+
+
+def _root(node: ast.Node) -> ast.Node:
+    """The name that a path begins with."""
+    while isinstance(node, ast.Member | ast.Index):
+        node = node.value
+    return node

@@ -1,0 +1,37 @@
+"""How the checker speaks of types and of program text."""
+
+from __future__ import annotations
+
+from aidl_lang import ast
+from aidl_lang.types import AnyType, GeometryType, ListType, NumberType, PointType, StructureType, Type
+
+_LONGEST = 40
+
+
+def a(kind: Type) -> str:
+    """A type with its article."""
+    word = "thing" if isinstance(kind, AnyType) else str(kind)
+    if isinstance(kind, NumberType) and kind.whole:
+        word = "number" if kind.dimension is None else "whole number"
+    if word == "geometry":
+        return word
+    return f"an {word}" if word[0] in "aeio" else f"a {word}"
+
+
+def shown(node: ast.Node) -> str:
+    """The text of an expression on one line, shortened where it is long."""
+    text = " ".join(node.span.text.split())
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
+
+
+def comparison_hint(x: Type, y: Type, left: str, right: str) -> str:
+    """What to write instead of a comparison of things that have no order or equality."""
+    if isinstance(x, ListType) or isinstance(y, ListType):
+        return "compare their members one by one, in a `for`"
+    for kind, text, other in ((x, left, y), (y, right, x)):
+        if isinstance(kind, PointType) and isinstance(other, NumberType):
+            return f"points compare with points; of one coordinate say `{text}.x` or `{text}.y`"
+    kinds = GeometryType | StructureType
+    if isinstance(x, kinds) and isinstance(y, kinds):
+        return f"say what shall agree: `{left}.center == {right}.center`, `equal({left}, {right})`, …"
+    return "numbers compare with numbers and points with points: name a field, as in `.width` or `.center`"

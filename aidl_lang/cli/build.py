@@ -1,0 +1,98 @@
+"""From a program to written files: what `compile` does once and `watch` again and again."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aidl_lang.cli import files
+from aidl_lang.cli.report import UseError, exit_code
+
+if TYPE_CHECKING:
+    from aidl_lang.pipeline import Compiled
+
+
+_DEFAULT_FORMAT = ".svg"
+
+
+@dataclass(frozen=True)
+class Target:
+    """A file to write and the format of its content."""
+
+    name: str
+    suffix: str
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of one run."""
+
+    compiled: Compiled
+    written: tuple[str, ...]
+    seconds: float
+
+    @property
+    def code(self) -> int:
+        return exit_code(self.compiled.diagnostics) or (0 if self.compiled.ok else 1)
+
+    def line(self, program: str) -> str:
+        """The outcome in a line."""
+        model = self.compiled.model
+        freedom = f", {_count(model.degrees, 'degree')} of freedom" if model and self.compiled.ok else ""
+        place = ", ".join(self.written) if self.written else f"{program}, nothing written"
+        return f"{place}: {self.compiled.status}{freedom}, {self.seconds:.2f} s"
+
+
+def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
+    """The outputs asked for, refused here if their format or directory does not exist."""
+    names = arguments.output or [_default_output(arguments.file)]
+    found = tuple(Target(name, _suffix(name, arguments.format)) for name in names)
+    for target in found:
+        files.require_directory(target.name)
+        if target.name != files.STANDARD and Path(target.name).resolve() == Path(arguments.file).resolve():
+            raise UseError("E0908", f"`{target.name}` is the program itself and is not overwritten")
+    return found
+
+
+def build(arguments: argparse.Namespace) -> Outcome:
+    """Compile and write. Nothing is written unless every output could be made."""
+    from aidl_lang import pipeline
+
+    start = time.perf_counter()
+    source = files.read(arguments.file)
+    outputs = targets(arguments)
+    world = files.world(arguments.file)
+    params, show = dict(arguments.params), tuple(sorted(arguments.show))
+    compiled = pipeline.compile(source, world, params=params, show=show)
+    written: tuple[str, ...] = ()
+    if compiled.ok or (arguments.best_effort and compiled.drawing is not None):
+        data = [(target.name, compiled.export(target.suffix, arguments.show, timings=arguments.timings)) for target in outputs]
+        for name, content in data:
+            files.write(name, content)
+        written = tuple(name for name, _ in data)
+    return Outcome(compiled, written, time.perf_counter() - start)
+
+
+def _default_output(program: str) -> str:
+    return files.STANDARD if program == files.STANDARD else str(Path(program).with_suffix(_DEFAULT_FORMAT))
+
+
+def _suffix(name: str, fallback: str | None) -> str:
+    """The format of an output: its own suffix, else `--format`, else SVG on standard output."""
+    from aidl_lang.export import EXPORTERS
+
+    own = "" if name == files.STANDARD else Path(name).suffix.lower()
+    said = f".{fallback.lower().lstrip('.')}" if fallback else _DEFAULT_FORMAT * (name == files.STANDARD)
+    for suffix in (own, said):
+        if suffix in EXPORTERS:
+            return suffix
+    asked = (said or own).lstrip(".")
+    message = f"there is no format `{asked}`" if asked else f"the name `{name}` does not tell a format"
+    raise UseError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in EXPORTERS))}")
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"

@@ -1,0 +1,32 @@
+"""`aidl explain`: what a code such as E0301 means, with the mistake and the mended program."""
+
+from __future__ import annotations
+
+import argparse
+
+from aidl_lang.cli.report import UseError
+
+
+def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    parser = verbs.add_parser("explain", help="tell what a code means", description=__doc__)
+    parser.add_argument("code", nargs="?", metavar="CODE", help="as E0301; without it, all are listed")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    from aidl_lang import explain
+
+    if arguments.code is None:
+        for code in explain.codes():
+            print(f"{code}  {explain.title(code)}")
+        return 0
+    code = arguments.code.strip("[]").upper()
+    if code not in explain.codes():
+        raise UseError("E0907", f"there is no code `{arguments.code}`", *_suggestions(explain.near(code)))
+    print(explain.page(code).rstrip())
+    return 0
+
+
+def _suggestions(codes: list[str]) -> list[str]:
+    listed = "`aidl explain` lists all codes"
+    return [f"did you mean {' or '.join(codes)}?", listed] if codes else [listed]

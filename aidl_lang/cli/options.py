@@ -1,0 +1,59 @@
+"""Options that several verbs have in common."""
+
+from __future__ import annotations
+
+import argparse
+
+
+def add_program(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", help="the program; - reads standard input")
+
+
+def add_drawing(parser: argparse.ArgumentParser) -> None:
+    """The options that say what to draw and where to put it."""
+    parser.add_argument(
+        "-o",
+        "--output",
+        action="append",
+        default=[],
+        metavar="OUT",
+        help="where to write; the suffix tells the format; may be given several times; - is standard output "
+        "(default: FILE with .svg)",
+    )
+    parser.add_argument("--format", metavar="SUFFIX", help="format of outputs whose name does not tell it")
+    parser.add_argument(
+        "-D",
+        dest="params",
+        action="append",
+        default=[],
+        type=_definition,
+        metavar="NAME=VALUE",
+        help="set a param, by name or by path (part.bolt.size=4)",
+    )
+    parser.add_argument(
+        "--show",
+        type=_layers,
+        default=frozenset(),
+        metavar="LAYERS",
+        help="draw these over the picture, separated by commas: names, points, bbox, constraints, dof, plan",
+    )
+    parser.add_argument(
+        "--best-effort", action="store_true", help="draw how far the solver came even if it did not solve"
+    )
+
+
+def _definition(text: str) -> tuple[str, str]:
+    name, equals, value = (part.strip() for part in text.partition("="))
+    if not (name and equals and value):
+        raise argparse.ArgumentTypeError(f"expected NAME=VALUE, as in width=200, not `{text}`")
+    return name, value
+
+
+def _layers(text: str) -> frozenset[str]:
+    from aidl_lang.export import SHOW
+
+    layers = [layer.strip() for layer in text.split(",") if layer.strip()]
+    for layer in layers:
+        if layer not in SHOW:
+            raise argparse.ArgumentTypeError(f"there is no `{layer}`; there are {', '.join(SHOW)}")
+    return frozenset(layers)

@@ -1,0 +1,53 @@
+"""`aidl watch`: draw a program again whenever it, or a program beside it, is saved."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+
+from aidl_lang.cli import files
+from aidl_lang.cli.build import build, targets
+from aidl_lang.cli.options import add_drawing, add_program
+from aidl_lang.cli.report import UseError, say
+from aidl_lang.render import one_line
+
+
+def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    parser = verbs.add_parser(
+        "watch",
+        help="draw again on every save",
+        description=__doc__,
+        epilog="All programs in its folder and below are watched, so that a change to an import counts too.",
+    )
+    add_program(parser)
+    add_drawing(parser)
+    parser.set_defaults(run=run, timings=False)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Runs until interrupted."""
+    from watchfiles import watch
+
+    if arguments.file == files.STANDARD:
+        raise UseError("E0902", "standard input cannot be watched", "name a file")
+    files.read(arguments.file)
+    targets(arguments)
+    folder = Path(arguments.file).resolve().parent
+    _once(arguments)
+    for _ in watch(folder, watch_filter=lambda _, path: path.endswith(".aidl")):
+        _once(arguments)
+    return 0
+
+
+def _once(arguments: argparse.Namespace) -> None:
+    """One run, told in one line. A file that is gone for a moment does not end the watch."""
+    clock = time.strftime("%H:%M:%S")
+    try:
+        outcome = build(arguments)
+    except UseError as reason:
+        say(f"{clock} {one_line(reason.diagnostic)}")
+        return
+    errors = [d for d in outcome.compiled.diagnostics if d.is_error]
+    more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
+    say(f"{clock} {one_line(errors[0])}{more}" if errors else f"{clock} {outcome.line(arguments.file)}")

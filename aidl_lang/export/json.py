@@ -1,0 +1,171 @@
+"""The solved model as JSON, a stable contract: `docs/model.schema.json`, told in `docs/json.md`.
+
+Numbers carry 12 significant digits; the same program gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.export.numbers import significant
+from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.solved import Box, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.source import Span
+
+VERSION = 1
+Json = dict[str, Any]
+
+_FIELDS = {
+    "point": ("at",),
+    "line": ("start", "end"),
+    "circle": ("center", "radius"),
+    "arc": ("center", "radius", "start", "end", "clockwise"),
+    "bezier": ("points",),
+    "ellipse": ("center", "rx", "ry", "angle"),
+}
+
+
+def to_json(
+    model: SolvedModel,
+    drawing: Drawing,
+    diagnostics: Iterable[Diagnostic] = (),
+    timings: Mapping[str, float] | None = None,
+) -> str:
+    """The document as text, one top-level member per line group, ending in a line break."""
+    document = to_dict(model, drawing, diagnostics, timings)
+    return json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False) + "\n"
+
+
+def to_dict(
+    model: SolvedModel,
+    drawing: Drawing,
+    diagnostics: Iterable[Diagnostic] = (),
+    timings: Mapping[str, float] | None = None,
+) -> Json:
+    """The document as plain dicts and lists, its numbers rounded."""
+    document: Json = {
+        "aidl": VERSION,
+        "units": "mm",
+        "status": model.status,
+        "root": _structure(model.root),
+        "constraints": [
+            {
+                "path": c.path,
+                "text": c.text,
+                "line": c.span.line,
+                "column": c.span.column,
+                "residual": c.residual,
+                "satisfied": c.satisfied,
+            }
+            | ({"soft": True} if c.soft else {})
+            for c in model.constraints
+        ],
+        "dof": model.degrees,
+        "free": list(model.free),
+        "changed": [{"path": c.path, "written": c.written, "solved": c.solved} for c in model.changed],
+        "regions": {
+            path: {"area": m.area, "perimeter": m.perimeter, "loops": m.loops}
+            for path, m in drawing.measures.items()
+        },
+        "pairs": [_pair(p) for p in drawing.pairs],
+        "diagnostics": [diagnostic_dict(d) for d in diagnostics],
+    }
+    if timings is not None:
+        document["timings"] = dict(timings)
+    rounded: Json = _rounded(document)
+    return rounded
+
+
+def _rounded(value: Any) -> Any:
+    """The same value with rounded numbers; what is not finite becomes null."""
+    if isinstance(value, float):
+        value = significant(value)
+        return value if value - value == 0 else None
+    if isinstance(value, Mapping):
+        return {key: _rounded(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(v) for v in value]
+    return value
+
+
+def _structure(s: SolvedStructure) -> Json:
+    frame: Json = {"x": float(s.frame.x), "y": float(s.frame.y), "rotation": float(s.frame.rotation)}
+    if s.frame.mirrored:
+        frame["mirrored"] = True
+    entry: Json = {
+        "name": s.name,
+        "path": s.path,
+        "kind": s.kind,
+        "orientation": s.orientation,
+        "frame": frame,
+        "bb": None if s.box is None else _box(s.box),
+        "params": dict(s.params),
+        "geometry": {g.name: _geometry(g) for g in s.geometry},
+        "structures": [_structure(c) for c in s.structures],
+        "dof": s.degrees,
+    }
+    attributes = {name: list(values) for name, values in s.attributes.items() if name != "orientation"}
+    if attributes:
+        entry["attributes"] = attributes
+    if s.is_empty:
+        entry["empty"] = True
+    if s.doc:
+        entry["doc"] = s.doc
+    return entry
+
+
+def _box(box: Box) -> Json:
+    return {"left": box.left, "right": box.right, "top": box.top, "bottom": box.bottom}
+
+
+def _geometry(g: SolvedGeometry) -> Json:
+    """A primitive with its fields, a compound shape with its parts."""
+    fields = _FIELDS.get(g.type)
+    entry: Json = {"type": g.type}
+    if fields is None:
+        entry["parts"] = {part.name: _geometry(part) for part in g.parts}
+    else:
+        entry |= {name: g.values[name] for name in fields if name in g.values}
+    if g.construction:
+        entry["construction"] = True
+    return entry
+
+
+def _pair(pair: Contact) -> Json:
+    entry: Json = {"a": pair.a, "b": pair.b, "relation": pair.relation}
+    if pair.gap is not None:
+        entry["gap"] = pair.gap
+    if pair.area is not None:
+        entry["area"] = pair.area
+    return entry
+
+
+def diagnostic_dict(d: Diagnostic) -> Json:
+    """A diagnostic with its place (absent if it has none), its hints and its fix."""
+    entry: Json = {"code": d.code, "severity": str(d.severity), "message": d.message}
+    if d.span is not None:
+        entry |= _place(d.span)
+    if d.label:
+        entry["label"] = d.label
+    if d.secondary:
+        entry["secondary"] = [_place(label.span) | {"label": label.text} for label in d.secondary]
+    entry["hints"] = list(d.hints)
+    if d.fix is not None:
+        edits = [_place(e.span) | {"replacement": e.replacement} for e in d.fix.edits]
+        entry["fix"] = {"title": d.fix.title, "edits": edits}
+    return entry
+
+
+def _place(span: Span) -> Json:
+    end_line, end_column = span.source.position(span.end)
+    return {
+        "file": span.source.name,
+        "line": span.line,
+        "column": span.column,
+        "end_line": end_line,
+        "end_column": end_column,
+    }

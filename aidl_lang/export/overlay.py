@@ -1,0 +1,305 @@
+"""Layers that explain a drawing: names, points, boxes, constraints, degrees of freedom, plans.
+
+Text is sized by the picture, so that it can be read at the scale at which the whole is seen. Labels look for
+a free place near what they name; lists stand to the right of the drawing or below it.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import TypeGuard
+
+from aidl_lang.export import palette
+from aidl_lang.export.marks import Dot, Frame, Mark, Text
+from aidl_lang.geometry.curves import Curve, Vec
+from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.evaluate import Bounds, bounds
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
+
+FONT_SIZE = 0.022
+MANY = 150
+"""More points than this are drawn as dots alone."""
+LINE_LENGTH = 58
+"""Characters in a line of a list."""
+
+
+@dataclass
+class Overlay:
+    """Marks by layer, and the box that holds the drawing with all of them."""
+
+    box: Bounds
+    layers: dict[str, list[Mark]] = field(default_factory=dict)
+
+
+@dataclass
+class Explainer:
+    """The state of one overlay: what is taken already, and the font size and line width that fit."""
+
+    model: SolvedModel
+    drawing: Drawing
+    box: Bounds
+    size: float
+    taken: list[Bounds] = field(default_factory=list)
+
+    @property
+    def font(self) -> float:
+        return FONT_SIZE * self.size
+
+    @property
+    def hair(self) -> float:
+        return 0.0012 * self.size
+
+    def label(self, text: str, around: Bounds, color: str, size: float, bold: bool = False) -> Text:
+        """The text at the first free place around and in a box, else where it hides least."""
+        candidates = [Text(at, text, size, color, anchor, bold) for at, anchor in _places(around, size)]
+        return self.first_free(candidates)
+
+    def first_free(self, candidates: list[Text]) -> Text:
+        chosen = min(candidates, key=lambda c: sum(_overlap(c.box, t) for t in self.taken))
+        self.taken.append(chosen.box)
+        return chosen
+
+
+def explain(model: SolvedModel, drawing: Drawing, show: frozenset[str], box: Bounds, size: float) -> Overlay:
+    """The layers asked for, in a fixed order from the back to the front."""
+    overlay = Overlay(box)
+    if not show:
+        return overlay
+    at = Explainer(model, drawing, box, size)
+    makers = {"plan": _plans, "bbox": _boxes, "points": _points, "names": _names}
+    for name, make in makers.items():
+        if name in show:
+            overlay.layers[name] = list(make(at))
+    # Lists stand beside a tall drawing and below a wide one, where they cost the least of its size.
+    wide = box[2] - box[0] > 1.25 * (box[3] - box[1])
+    corner = (box[0], box[1] - 3 * at.font) if wide else (box[2] + 2 * at.font, box[3] - 0.7 * at.font)
+    for name, lists in (("constraints", _constraints), ("dof", _degrees)):
+        if name in show:
+            marks = lists(at, corner)
+            overlay.layers[name] = marks
+            listed = [m.box[2] for m in marks if isinstance(m, Text) and not m.halo]
+            corner = (max(listed, default=corner[0]) + 2 * at.font, corner[1])
+    texts = [m.box for marks in overlay.layers.values() for m in marks if isinstance(m, Text | Frame)]
+    overlay.box = union_bounds([box, *texts])
+    return overlay
+
+
+def _places(box: Bounds, size: float) -> Iterator[tuple[Vec, str]]:
+    """Baselines for a label: above the left corner, centred above, inside, below, beside."""
+    left, bottom, right, top = box
+    middle, gap = (left + right) / 2, 0.35 * size
+    yield (left, top + gap), "start"
+    yield (middle, top + gap), "middle"
+    yield (right, top + gap), "end"
+    yield (left + gap, top - size), "start"
+    yield (middle, (top + bottom) / 2 - 0.3 * size), "middle"
+    yield (left, bottom - size), "start"
+    yield (middle, bottom - size), "middle"
+    yield (right + gap, (top + bottom) / 2 - 0.3 * size), "start"
+    yield (left - gap, (top + bottom) / 2 - 0.3 * size), "end"
+
+
+def _overlap(a: Bounds, b: Bounds) -> float:
+    width, height = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
+    return width * height if width > 0 and height > 0 else 0.0
+
+
+def _bounds(structure: SolvedStructure) -> Bounds | None:
+    box = structure.box
+    return None if box is None else (box.left, box.bottom, box.right, box.top)
+
+
+def _names(at: Explainer) -> Iterator[Mark]:
+    """Names of structures at their boxes, the root's first and bold."""
+    for structure in at.model.root.walk():
+        box = _bounds(structure)
+        if box is not None:
+            small = max(0.5 * at.font, min(at.font, 0.3 * (box[3] - box[1])))
+            yield _name(at, structure, box, small)
+
+
+def _name(at: Explainer, structure: SolvedStructure, box: Bounds, size: float) -> Text:
+    """In the upper left corner of a structure without parts, if it fits; else around its box."""
+    inside = Text((box[0] + 0.35 * size, box[3] - 1.1 * size), structure.name, size, palette.NAME)
+    fits = inside.box[2] < box[2] and box[3] - box[1] > 2.5 * size
+    if fits and not structure.structures and not any(_overlap(inside.box, t) for t in at.taken):
+        return at.first_free([inside])
+    return at.label(structure.name, box, palette.NAME, size, bold=structure is at.model.root)
+
+
+def _boxes(at: Explainer) -> Iterator[Mark]:
+    for structure in at.model.root.walk():
+        box = _bounds(structure)
+        if box is not None:
+            yield Frame(box, palette.BOX, at.hair, 4 * at.hair)
+
+
+def _plans(at: Explainer) -> Iterator[Mark]:
+    """Empty structures as dashed boxes with their names."""
+    for plan in at.drawing.plans:
+        yield Frame(plan.box, palette.PLAN, 1.6 * at.hair, 8 * at.hair)
+        left, bottom, right, top = plan.box
+        fitting = (right - left) / max(1, 0.7 * len(plan.name))
+        size = max(0.5 * at.font, min(1.2 * at.font, fitting, 0.6 * (top - bottom)))
+        label = Text(
+            ((left + right) / 2, (top + bottom) / 2 - 0.3 * size), plan.name, size, palette.PLAN, "middle"
+        )
+        at.taken.append(label.box)
+        yield label
+
+
+def _points(at: Explainer) -> Iterator[Mark]:
+    """Dots at all named points; names that fall together share a label."""
+    names: dict[tuple[int, int], list[str]] = defaultdict(list)
+    places: dict[tuple[int, int], Vec] = {}
+    step = 1e-6 * at.size
+    for structure in at.model.root.walk():
+        for geometry in structure.geometry:
+            for name, p in _named_points(geometry, geometry.name):
+                key = (round(p[0] / step), round(p[1] / step))
+                places.setdefault(key, p)
+                if name not in names[key]:
+                    names[key].append(name)
+    radius = 0.2 * at.font
+    for p in places.values():
+        yield Dot(p, radius, palette.POINT)
+    if len(places) <= MANY:
+        size = 0.6 * at.font
+        for key, p in places.items():
+            spot = (p[0] - radius, p[1] - radius, p[0] + radius, p[1] + radius)
+            text = " = ".join(names[key][:2]) + (" …" if len(names[key]) > 2 else "")
+            yield at.label(text, spot, palette.POINT, size)
+
+
+def _named_points(geometry: SolvedGeometry, name: str) -> Iterator[tuple[str, Vec]]:
+    """The points of a geometry by name. Of compound shapes those with a name of their own, no ends of
+    edges.
+    """
+    if geometry.type == "point":
+        value = geometry.values.get("at")
+        if _is_point(value):
+            yield name, value
+        return
+    for key, value in geometry.values.items():
+        if _is_point(value):
+            yield f"{name}.{key}", value
+    for part in geometry.parts:
+        if part.type == "point":
+            yield from _named_points(part, f"{name}.{part.name}")
+
+
+def _is_point(value: object) -> TypeGuard[Vec]:
+    return isinstance(value, tuple) and len(value) == 2 and all(isinstance(v, float | int) for v in value)
+
+
+def _constraints(at: Explainer, corner: Vec) -> list[Mark]:
+    """Numbers near what the constraints mention, and their texts in a list; what does not hold is red."""
+    marks: list[Mark] = []
+    size, (left, top) = 0.7 * at.font, corner
+    for number, constraint in enumerate(at.model.constraints, 1):
+        color = palette.GOOD if constraint.satisfied else palette.BAD
+        spot = _spot(at.model, constraint)
+        if spot is not None:
+            marks.append(at.label(str(number), spot, color, 0.75 * at.font, bold=True))
+        for k, line in enumerate(_constraint_lines(number, constraint)):
+            marks.append(Text((left + (1.6 * size if k else 0), top), line, size, color, halo=False))
+            top -= 1.35 * size
+    return marks
+
+
+def _constraint_lines(number: int, constraint: ConstraintReport) -> list[str]:
+    text = " ".join(constraint.text.split())
+    holds = "" if constraint.satisfied else f"  ✗ off by {constraint.residual:.3g}"
+    soft = "prefer " if constraint.soft and not text.startswith("prefer") else ""
+    return _wrapped(f"{number}  {soft}{text}{holds}")
+
+
+def _wrapped(text: str) -> list[str]:
+    lines, line = [], ""
+    for word in text.split(" "):
+        if line and len(line) + len(word) >= LINE_LENGTH:
+            lines.append(line)
+            line = word
+        else:
+            line = f"{line} {word}" if line else word
+    return [*lines, line]
+
+
+def _spot(model: SolvedModel, constraint: ConstraintReport) -> Bounds | None:
+    """A place between the things that a constraint mentions."""
+    boxes = [box for path in constraint.mentions if (box := _box_of(model.root, path)) is not None]
+    if not boxes:
+        boxes = [box for box in [_box_of(model.root, constraint.path)] if box is not None]
+    if not boxes:
+        return None
+    x = sum(b[0] + b[2] for b in boxes) / (2 * len(boxes))
+    y = sum(b[1] + b[3] for b in boxes) / (2 * len(boxes))
+    return x, y, x, y
+
+
+def _box_of(structure: SolvedStructure, path: str) -> Bounds | None:
+    """The box of the structure, geometry or point that a path leads to, or of the last of it that is
+    known.
+    """
+    if path != structure.path and not path.startswith((structure.path + ".", structure.path + "[")):
+        return None
+    for child in structure.structures:
+        if path == child.path or path.startswith(child.path + "."):
+            return _box_of(child, path)
+    for geometry in structure.geometry:
+        if path == geometry.path or path.startswith(geometry.path + "."):
+            return _geometry_box(geometry, path)
+    return _bounds(structure)
+
+
+def _geometry_box(geometry: SolvedGeometry, path: str) -> Bounds | None:
+    field_name = path.removeprefix(geometry.path).lstrip(".")
+    value = geometry.values.get(field_name if field_name else "at")
+    if _is_point(value):
+        return value[0], value[1], value[0], value[1]
+    for part in geometry.parts:
+        if path == part.path or path.startswith(part.path + "."):
+            return _geometry_box(part, path)
+    boxes = [bounds(c) for c in _all_curves(geometry)]
+    return union_bounds(boxes) if boxes else None
+
+
+def _all_curves(geometry: SolvedGeometry) -> Iterator[Curve]:
+    if geometry.curve is not None:
+        yield geometry.curve
+    for part in geometry.parts:
+        yield from _all_curves(part)
+
+
+def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
+    """Degrees of freedom at each structure that has any, and the free parameters in a list."""
+    marks: list[Mark] = []
+    size, (left, top) = 0.7 * at.font, corner
+    structures = list(at.model.root.walk())
+    free = _free_by_structure(structures, at.model.free)
+    for structure in structures:
+        box = _bounds(structure)
+        if box is not None and (structure.degrees or structure is at.model.root):
+            marks.append(at.label(f"{structure.name}: {structure.degrees} dof", box, palette.FREE, size))
+    lines = [(0, f"{at.model.degrees} degrees of freedom")]
+    for structure in structures:
+        if names := free.get(structure.path):
+            lines.append((0, f"{structure.path}: {structure.degrees}"))
+            lines += [(1, name) for name in names]
+    for indent, line in lines:
+        marks.append(Text((left + indent * size, top), line, size, palette.FREE, halo=False))
+        top -= 1.35 * size
+    return marks
+
+
+def _free_by_structure(structures: list[SolvedStructure], free: Iterable[str]) -> dict[str, list[str]]:
+    """The free parameters by the innermost structure whose path they begin with, named from there."""
+    paths = sorted((s.path for s in structures), key=len, reverse=True)
+    result: dict[str, list[str]] = defaultdict(list)
+    for name in free:
+        path = next((p for p in paths if name.startswith(p + ".")), "")
+        result[path].append(name.removeprefix(path + "."))
+    return result

@@ -1,0 +1,289 @@
+"""Expressions over unknowns: what a program's arithmetic becomes once a solver has to find the numbers.
+
+An expression is an immutable node of a shared graph. Each carries the value it has at the first guesses, so
+that branches and readings can be chosen by what was written. Arithmetic over constants is folded, hence an
+expression is constant exactly when `op == "constant"`. Angles inside this graph are radians only between a
+trigonometric node and its argument; every number of the language is in millimetres or degrees.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from aidl_lang.model import Geometry, Structure
+
+DEGREE = math.pi / 180.0
+
+
+@dataclass(eq=False)
+class Unknown:
+    """A number that the solver finds.
+
+    guess     the first guess: what was written
+    kept      a size: changes only if the constraints cannot hold otherwise
+    holder    the geometry or structure it belongs to, `field` its name there (`center.x`)
+    owner     the structure that owns it
+    angular   counts in degrees
+    frame_of  for a coordinate of a frame, the structure that frame places
+    cell      stands for a number argument, and may still be read as a constant while building
+    exact     a constant after all: read while building, or locked and named by no constraint
+    locked    an angle that stays zero until a constraint names it
+    """
+
+    guess: float
+    owner: Structure
+    holder: Geometry | Structure
+    field: str
+    kept: bool = False
+    angular: bool = False
+    frame_of: Structure | None = None
+    cell: bool = False
+    exact: bool = False
+    locked: bool = False
+
+    @property
+    def path(self) -> str:
+        return f"{self.holder.path}.{self.field}"
+
+
+class Lazy(Protocol):
+    """An expression that is spelled out only when the comparison it stands in is known (a side of a box)."""
+
+    @property
+    def value(self) -> float: ...
+
+    def unknowns(self) -> Iterable[Unknown]: ...
+
+
+class Expression:
+    """One node. `payload` is an `Unknown`, a `Lazy`, or a measurement for the ops that need one."""
+
+    __slots__ = ("args", "op", "payload", "value")
+
+    def __init__(
+        self, op: str, args: tuple[Expression, ...] = (), value: float = 0.0, payload: object = None
+    ) -> None:
+        self.op = op
+        self.args = args
+        self.value = value
+        self.payload = payload
+
+    @property
+    def is_constant(self) -> bool:
+        return self.op == "constant"
+
+    def __repr__(self) -> str:
+        inner = ", ".join(map(repr, self.args)) or f"{self.payload or self.value}"
+        return f"{self.op}({inner})"
+
+
+def constant(value: float) -> Expression:
+    return Expression("constant", (), float(value))
+
+
+ZERO = constant(0.0)
+ONE = constant(1.0)
+
+
+def unknown(source: Unknown) -> Expression:
+    return Expression("unknown", (), source.guess, source)
+
+
+def lazy(source: Lazy) -> Expression:
+    return Expression("lazy", (), source.value, source)
+
+
+def _safe(function: Callable[..., float]) -> Callable[..., float]:
+    """Arithmetic that answers nan where a number does not exist, as the solver's does."""
+
+    def evaluate(*args: float) -> float:
+        try:
+            result = function(*args)
+        except (ValueError, ZeroDivisionError, OverflowError):
+            return math.nan
+        return result if isinstance(result, float | int) else math.nan
+
+    return evaluate
+
+
+def _cubic_max(p0: float, p1: float, p2: float, p3: float) -> float:
+    """The largest value of a cubic in Bernstein form over 0 <= t <= 1."""
+    a, b, c = -p0 + 3 * p1 - 3 * p2 + p3, 2 * (p0 - 2 * p1 + p2), p1 - p0
+    roots: list[float] = []
+    if abs(a) > 1e-12 * (abs(b) + abs(c) + 1e-300):
+        discriminant = b * b - 4 * a * c
+        if discriminant >= 0:
+            root = math.sqrt(discriminant)
+            q = -0.5 * (b + math.copysign(root, b))
+            roots = [q / a, c / q if q else 0.0]
+    elif b:
+        roots = [-c / b]
+
+    def at(t: float) -> float:
+        s = 1 - t
+        return s * s * s * p0 + 3 * s * s * t * p1 + 3 * s * t * t * p2 + t * t * t * p3
+
+    return max([p0, p3, *(at(t) for t in roots if 0 < t < 1)])
+
+
+EVALUATE: dict[str, Callable[..., float]] = {
+    "add": lambda a, b: a + b,
+    "sub": lambda a, b: a - b,
+    "mul": lambda a, b: a * b,
+    "neg": lambda a: -a,
+    "div": _safe(lambda a, b: a / b),
+    "power": _safe(lambda a, b: a**b),
+    "sin": _safe(math.sin),
+    "cos": _safe(math.cos),
+    "tan": _safe(math.tan),
+    "asin": _safe(math.asin),
+    "acos": _safe(math.acos),
+    "atan2": math.atan2,
+    "sqrt": _safe(math.sqrt),
+    "abs": abs,
+    "square": lambda a: a * a,
+    "hypot": math.hypot,
+    "minimum": min,
+    "maximum": max,
+    "mod": _safe(lambda a, b: a - b * math.floor(a / b)),
+    "select": lambda c, a, b: a if c >= 0 else b,
+    "cubic_max": _cubic_max,
+}
+"""The meaning of each op; the solver's tape has the same ops under the same names."""
+
+
+def apply(op: str, *args: Expression) -> Expression:
+    """A node, folded where all arguments are constants or where it changes nothing."""
+    value = EVALUATE[op](*[a.value for a in args])
+    if all(a.op == "constant" for a in args):
+        return Expression("constant", (), value)
+    if op in ("add", "sub") and args[1].op == "constant" and args[1].value == 0.0:
+        return args[0]
+    if op == "add" and args[0].op == "constant" and args[0].value == 0.0:
+        return args[1]
+    if op == "mul":
+        for factor, other in (args, args[::-1]):
+            if factor.op == "constant" and factor.value in (0.0, 1.0):
+                return other if factor.value else ZERO
+    if op == "div" and args[1].op == "constant" and args[1].value == 1.0:
+        return args[0]
+    return Expression(op, args, value)
+
+
+def add(a: Expression, b: Expression) -> Expression:
+    return apply("add", a, b)
+
+
+def sub(a: Expression, b: Expression) -> Expression:
+    return apply("sub", a, b)
+
+
+def mul(a: Expression, b: Expression) -> Expression:
+    return apply("mul", a, b)
+
+
+def div(a: Expression, b: Expression) -> Expression:
+    return apply("div", a, b)
+
+
+def half(a: Expression) -> Expression:
+    return mul(a, constant(0.5))
+
+
+def sin(degrees: Expression) -> Expression:
+    if degrees.is_constant:
+        return constant(exact_turn(degrees.value)[1])
+    return apply("sin", mul(degrees, constant(DEGREE)))
+
+
+def cos(degrees: Expression) -> Expression:
+    if degrees.is_constant:
+        return constant(exact_turn(degrees.value)[0])
+    return apply("cos", mul(degrees, constant(DEGREE)))
+
+
+def atan2(y: Expression, x: Expression) -> Expression:
+    """The direction of (x, y) in degrees."""
+    return mul(apply("atan2", y, x), constant(1.0 / DEGREE))
+
+
+def exact_turn(degrees: float) -> tuple[float, float]:
+    """Cosine and sine, exact at multiples of a right angle."""
+    quarter = degrees / 90.0
+    if not math.isfinite(quarter):
+        return math.nan, math.nan
+    if quarter == round(quarter):
+        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[round(quarter) % 4]
+    return math.cos(degrees * DEGREE), math.sin(degrees * DEGREE)
+
+
+def nodes(roots: Iterable[Expression]) -> Iterator[Expression]:
+    """Every node below the roots once, arguments before those that use them."""
+    seen: set[int] = set()
+    for root in roots:
+        stack = [(root, False)]
+        while stack:
+            node, done = stack.pop()
+            if done:
+                yield node
+            elif id(node) not in seen:
+                seen.add(id(node))
+                if node.args:
+                    stack.append((node, True))
+                    stack.extend((a, False) for a in node.args if id(a) not in seen)
+                else:
+                    yield node
+
+
+def unknowns(roots: Iterable[Expression]) -> Iterator[Unknown]:
+    """The unknowns that the roots depend on."""
+    for node in nodes(roots):
+        if node.op == "unknown":
+            assert isinstance(node.payload, Unknown)
+            yield node.payload
+        elif node.op == "lazy":
+            yield from node.payload.unknowns()  # type: ignore[attr-defined]
+
+
+@dataclass
+class Evaluator:
+    """Evaluates expressions at given values of the unknowns, each node once.
+
+    `measure` answers nodes that only the finished drawing can (areas, clearances).
+    """
+
+    values: Mapping[Unknown, float]
+    measure: Callable[[object], float] | None = None
+    _memo: dict[int, float] = field(default_factory=dict)
+    _alive: list[Expression] = field(default_factory=list)
+
+    def __call__(self, root: Expression) -> float:
+        memo = self._memo
+        stack = [root]
+        while stack:
+            node = stack[-1]
+            if id(node) in memo:
+                stack.pop()
+            elif missing := [a for a in node.args if id(a) not in memo]:
+                stack.extend(missing)
+            else:
+                memo[id(node)] = self._node(node)
+                self._alive.append(node)  # an id stays unique only as long as its node lives
+                stack.pop()
+        return memo[id(root)]
+
+    def _node(self, node: Expression) -> float:
+        match node.op:
+            case "constant":
+                return node.value
+            case "unknown":
+                assert isinstance(node.payload, Unknown)
+                return self.values.get(node.payload, node.payload.guess)
+            case "measure":
+                return self.measure(node.payload) if self.measure else math.nan
+            case _:
+                return EVALUATE[node.op](*[self._memo[id(a)] for a in node.args])

@@ -1,0 +1,214 @@
+"""From the faces of each structure, bottom-up, to the bodies of the whole.
+
+The region of a solid is (own faces + solid children) − holes + islands: a hole cuts all of the structure that
+holds it, a solid inside a hole is an island. An assembly keeps its solid children as separate bodies; what it
+draws itself is one more, and its holes cut them all. Where this leaves a choice:
+
+- an assembly inside a solid is united with it, all its bodies;
+- a hole inside a hole cuts what that hole cuts, and the islands beside it;
+- solids and holes inside a drawing are treated as in an assembly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
+from aidl_lang.geometry.network import Network
+from aidl_lang.geometry.sections import (
+    Section,
+    box_within,
+    covers,
+    difference,
+    intersection,
+    is_nothing,
+    union,
+)
+from aidl_lang.solved import SolvedGeometry, SolvedStructure
+
+
+@dataclass(frozen=True)
+class Void:
+    """What a hole removed."""
+
+    hole: SolvedStructure
+    section: Section
+
+
+@dataclass(frozen=True)
+class Mass:
+    """A connected or scattered piece of material that belongs to one structure.
+
+    `inner` lists the paths of the structures united in it.
+    """
+
+    structure: SolvedStructure
+    section: Section
+    voids: tuple[Void, ...] = ()
+    inner: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Cut:
+    """What a hole takes away: the holes it consists of, and the islands that stay."""
+
+    holes: tuple[Void, ...]
+    islands: tuple[Mass, ...]
+
+    @property
+    def section(self) -> Section:
+        return union([hole.section for hole in self.holes])
+
+
+@dataclass(frozen=True)
+class InnerLoop:
+    """A face that adds nothing, because other faces of its structure cover it."""
+
+    structure: SolvedStructure
+    face: OwnFace
+    around: tuple[SolvedGeometry, ...]
+
+
+@dataclass(frozen=True)
+class LooseCurves:
+    """Curves of a structure that bound no face, with their numbers in the network."""
+
+    structure: SolvedStructure
+    curves: tuple[tuple[SolvedGeometry, int], ...]
+
+
+@dataclass(frozen=True)
+class IdleHole:
+    """A hole that removes nothing from the structure that holds it."""
+
+    hole: SolvedStructure
+    holder: SolvedStructure | None
+
+
+@dataclass(frozen=True)
+class FilledHole:
+    """A hole whose void is material again in the structure above."""
+
+    hole: SolvedStructure
+    holder: SolvedStructure
+    filler: SolvedStructure | None
+
+
+Finding = InnerLoop | LooseCurves | IdleHole | FilledHole
+
+
+@dataclass
+class Bodies:
+    """The state of the walk and its result; `sections` has each structure that has material or cuts."""
+
+    network: Network
+    shapes: Mapping[str, Sequence[Shape]]
+    sections: dict[str, Section] = field(default_factory=dict)
+    findings: list[Finding] = field(default_factory=list)
+
+    def masses(self, structure: SolvedStructure) -> list[Mass]:
+        """The material of a structure that is not a hole."""
+        own = None if structure.kind == "drawing" else self._own(structure)
+        children = [m for c in structure.structures if c.kind != "hole" for m in self.masses(c)]
+        cuts = [self.cut(c) for c in structure.structures if c.kind == "hole"]
+        if structure.kind == "solid":
+            return self._united(structure, own, children, cuts)
+        return self._separate(structure, own, children, cuts)
+
+    def cut(self, hole: SolvedStructure) -> Cut:
+        """What a hole and the holes in it take away, and its islands."""
+        own = self._own(hole)
+        inner = [self.cut(c) for c in hole.structures if c.kind == "hole"]
+        islands = [m for c in hole.structures if c.kind != "hole" for m in self.masses(c)]
+        taken = union([c.section for c in inner])
+        islands = [replace(m, section=difference(m.section, taken)) for m in islands]
+        islands += [m for c in inner for m in c.islands]
+        holes = ([] if own is None else [Void(hole, own)]) + [v for c in inner for v in c.holes]
+        if holes:
+            self.sections[hole.path] = union([v.section for v in holes])
+        return Cut(tuple(holes), tuple(islands))
+
+    def _own(self, structure: SolvedStructure) -> Section | None:
+        """What a structure draws itself."""
+        shapes = self.shapes.get(structure.path, ())
+        if not shapes:
+            return None
+        own: OwnFaces = own_faces(self.network, shapes)
+        if own.loose:
+            self.findings.append(LooseCurves(structure, tuple(own.loose)))
+        if not own.faces:
+            return None
+        self._find_inner_loops(structure, own.faces)
+        return union_of(own.faces)
+
+    def _find_inner_loops(self, structure: SolvedStructure, faces: list[OwnFace]) -> None:
+        """Faces that the others cover; of two alike the later one."""
+        kept = list(faces)
+        for face in reversed(faces):
+            others = [f for f in kept if f is not face]
+            around = [f for f in others if box_within(face.section, f.section)]
+            if not others or not (around or len(others) > 1):
+                continue
+            if covers(union_of(others), face.section):
+                kept = others
+                names = tuple(g for f in around or others for g in f.geometries)
+                self.findings.append(InnerLoop(structure, face, names))
+
+    def _united(
+        self, solid: SolvedStructure, own: Section | None, children: list[Mass], cuts: list[Cut]
+    ) -> list[Mass]:
+        """One mass for a solid."""
+        islands = [island for c in cuts for island in c.islands]
+        before = union([*([] if own is None else [own]), *(m.section for m in children)])
+        after = difference(before, union([c.section for c in cuts]))
+        after = union([after, *(m.section for m in islands)]) if islands else after
+        kept = self._still_open(solid, self._voids(solid, before, cuts), after, islands)
+        for m in children:
+            kept += self._still_open(solid, m.voids, after, [c for c in children if c is not m])
+        if after.is_empty():
+            return []
+        self.sections[solid.path] = after
+        for m in (*children, *islands):
+            self.sections.setdefault(m.structure.path, m.section)
+        inner = [path for m in (*children, *islands) for path in (*m.inner, m.structure.path)]
+        return [Mass(solid, after, tuple(kept), tuple(inner))]
+
+    def _separate(
+        self, structure: SolvedStructure, own: Section | None, children: list[Mass], cuts: list[Cut]
+    ) -> list[Mass]:
+        """The masses of an assembly, each cut by its holes, and the islands."""
+        masses = ([] if own is None else [Mass(structure, own)]) + children
+        if cuts:
+            self._voids(structure, union([m.section for m in masses]), cuts)
+            taken = union([c.section for c in cuts])
+            masses = [replace(m, section=difference(m.section, taken)) for m in masses]
+            masses += [island for c in cuts for island in c.islands]
+        return [m for m in masses if not m.section.is_empty()]
+
+    def _voids(self, holder: SolvedStructure, material: Section, cuts: Iterable[Cut]) -> list[Void]:
+        """What each hole removes from the material; tells of those that remove nothing."""
+        voids = []
+        for cut in cuts:
+            for hole in cut.holes:
+                removed = intersection(material, hole.section)
+                if not is_nothing(removed):
+                    voids.append(Void(hole.hole, removed))
+                elif all(is_nothing(intersection(m.section, hole.section)) for m in cut.islands):
+                    self.findings.append(IdleHole(hole.hole, holder))
+        return voids
+
+    def _still_open(
+        self, holder: SolvedStructure, voids: Sequence[Void], material: Section, others: list[Mass]
+    ) -> list[Void]:
+        """The voids that the material does not fill again; tells of those that it does."""
+        if not voids or is_nothing(intersection(material, union([v.section for v in voids]))):
+            return list(voids)
+        kept = []
+        for void in voids:
+            if covers(material, void.section):
+                filler = next((m.structure for m in others if covers(m.section, void.section)), None)
+                self.findings.append(FilledHole(void.hole, holder, filler))
+            else:
+                kept.append(void)
+        return kept

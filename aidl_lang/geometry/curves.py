@@ -1,0 +1,81 @@
+"""Exact curves in the plane: numbers only, millimetres and radians."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TypeAlias
+
+Vec: TypeAlias = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    start: Vec
+    end: Vec
+
+
+@dataclass(frozen=True, slots=True)
+class Arc:
+    """From `start` about `center` through `sweep` radians, positive counter-clockwise, 0 < |sweep| <= 2 pi.
+
+    `end` is stored, so that chained curves share their end points to the last digit.
+    """
+
+    center: Vec
+    radius: float
+    start: Vec
+    end: Vec
+    sweep: float
+
+    @property
+    def start_angle(self) -> float:
+        return math.atan2(self.start[1] - self.center[1], self.start[0] - self.center[0])
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    center: Vec
+    radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class Ellipse:
+    """`rx` along `angle` (radians from the x axis), `ry` across it."""
+
+    center: Vec
+    rx: float
+    ry: float
+    angle: float
+
+
+@dataclass(frozen=True, slots=True)
+class Bezier:
+    """A cubic by its four control points."""
+
+    p0: Vec
+    p1: Vec
+    p2: Vec
+    p3: Vec
+
+
+@dataclass(frozen=True, slots=True)
+class EllipseArc:
+    """A piece of an ellipse, as booleans leave it, through `sweep` radians of the eccentric anomaly.
+
+    Its points are center + R(angle) (rx cos u, ry sin u) for u from `first` to `first + sweep`.
+    """
+
+    center: Vec
+    rx: float
+    ry: float
+    angle: float
+    start: Vec
+    end: Vec
+    first: float
+    sweep: float
+
+
+Curve: TypeAlias = Line | Arc | Circle | Ellipse | Bezier
+Piece: TypeAlias = Line | Arc | Circle | Ellipse | EllipseArc | Bezier
+"""What the outline of a region is made of: a curve or an exact part of one."""

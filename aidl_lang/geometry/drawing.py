@@ -1,0 +1,262 @@
+"""The drawing of a solved model: bodies with exact outlines, strokes, seams, contacts. Exporters read
+this.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from aidl_lang.diagnostics import Diagnostic, ordered
+from aidl_lang.geometry.bodies import Bodies, IdleHole, LooseCurves, Mass
+from aidl_lang.geometry.colors import css_color
+from aidl_lang.geometry.contacts import Contact, Solid, contacts
+from aidl_lang.geometry.curves import Arc, Circle, Curve, Ellipse, Line, Piece
+from aidl_lang.geometry.evaluate import Bounds, bounds
+from aidl_lang.geometry.faces import Shape
+from aidl_lang.geometry.measures import Measures, measure, region_bounds
+from aidl_lang.geometry.network import Network, union_bounds
+from aidl_lang.geometry.notes import color_note, detached_notes, finding_note, unusable_note
+from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.seams import visible_seams
+from aidl_lang.geometry.trace import trace_all
+from aidl_lang.solved import Scalar, SolvedGeometry, SolvedModel, SolvedStructure
+
+
+@dataclass(frozen=True)
+class Style:
+    """What the attributes of a structure, or of the nearest one around it that has them, say of its looks."""
+
+    color: str | None = None
+    layer: str | None = None
+    material: str | None = None
+    thickness: float | None = None
+
+
+@dataclass(frozen=True)
+class Body:
+    """A piece of material: a solid that no other solid holds, or what an assembly draws itself."""
+
+    path: str
+    region: Region
+    style: Style
+    box: Bounds
+
+
+@dataclass(frozen=True)
+class Seam:
+    """The edges of a structure that was united with the body around it, where they run inside that body."""
+
+    path: str
+    body: str
+    pieces: tuple[Piece, ...]
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """Curves drawn as lines.
+
+    `role` is `drawing` for the curves of a drawing, `open` for curves of other structures that bound no face,
+    `hole` for the outline of a hole that nothing holds.
+    """
+
+    path: str
+    geometry: str
+    pieces: tuple[Piece, ...]
+    style: Style
+    role: str = "drawing"
+
+
+@dataclass(frozen=True)
+class PlanBox:
+    """The box of a structure whose parts are not drawn yet."""
+
+    path: str
+    name: str
+    box: Bounds
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """All that is to be seen, in order of writing. Coordinates in mm in the root frame.
+
+    `regions` has every solid and every hole, each as it stands before the structures around it change it, and
+    the bodies as they are in the end. `pairs` lists bodies as `contacts` describes. `box` bounds bodies and
+    strokes, not the plans.
+    """
+
+    bodies: tuple[Body, ...]
+    regions: dict[str, Region]
+    seams: tuple[Seam, ...]
+    strokes: tuple[Stroke, ...]
+    plans: tuple[PlanBox, ...]
+    pairs: tuple[Contact, ...]
+    styles: dict[str, Style]
+    box: Bounds
+
+    @cached_property
+    def measures(self) -> dict[str, Measures]:
+        """Area, perimeter, centroid and box of each region."""
+        return {path: measure(region) for path, region in self.regions.items()}
+
+    @property
+    def size(self) -> float:
+        """The larger side of the box, 1 for an empty drawing."""
+        return max(self.box[2] - self.box[0], self.box[3] - self.box[1]) or 1.0
+
+
+def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
+    """The drawing of a model, and what is noteworthy about its curves and parts."""
+    notes: list[Diagnostic] = []
+    curves, shapes = _collect(model.root, notes)
+    network = Network(curves)
+    walk = Bodies(network, shapes)
+    masses = _root_masses(walk, model.root)
+    walk.sections.update((m.structure.path, m.section) for m in masses)
+    paths = [s.path for s in model.root.walk() if s.path in walk.sections]
+    outlines = trace_all(network, [walk.sections[path] for path in paths])
+    traced = dict(zip(paths, outlines, strict=True))
+    regions = {path: outline.region for path, outline in traced.items()}
+    styles = _styles(model.root, notes)
+    bodies = tuple(
+        Body(path, regions[path], styles[path], region_bounds(regions[path]))
+        for path in (m.structure.path for m in masses)
+    )
+    solids = [Solid(b.path, b.region, m.section, b.box) for b, m in zip(bodies, masses, strict=True)]
+    pairs = tuple(contacts(network, solids))
+    notes += [note for f in walk.findings if (note := finding_note(f, network)) is not None]
+    notes += detached_notes(model.root, [b.path for b in bodies], pairs)
+    seams = tuple(
+        Seam(path, m.structure.path, pieces)
+        for m in masses
+        for path, pieces in visible_seams(network, m, traced)
+    )
+    strokes = tuple(_strokes(model.root, shapes, walk, styles, regions))
+    plans = tuple(_plans(model.root))
+    boxes = [b.box for b in bodies]
+    boxes += [bounds(piece) for s in strokes for piece in s.pieces]
+    return Drawing(bodies, regions, seams, strokes, plans, pairs, styles, union_bounds(boxes)), ordered(notes)
+
+
+def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[list[Curve], dict[str, list[Shape]]]:
+    """All curves that can be drawn, numbered, and by structure the shapes they belong to."""
+    curves: list[Curve] = []
+    shapes: dict[str, list[Shape]] = {}
+    for structure in root.walk():
+        own = shapes.setdefault(structure.path, [])
+        for geometry in structure.geometry:
+            leaves = []
+            for leaf in _leaves(geometry):
+                usable = _usable(leaf.curve) if leaf.curve else None
+                if usable is None:
+                    notes.append(unusable_note(structure, leaf))
+                    continue
+                leaves.append((leaf, len(curves)))
+                curves.append(usable)
+            if leaves:
+                own.append(Shape(geometry, tuple(leaves)))
+    return curves, shapes
+
+
+def _leaves(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
+    """The primitives with curves, construction geometry aside."""
+    if geometry.construction:
+        return
+    if geometry.curve is not None:
+        yield geometry
+    for part in geometry.parts:
+        yield from _leaves(part)
+
+
+def _usable(curve: Curve) -> Curve | None:
+    """The curve with positive radii; None if it has no extent or no finite coordinates."""
+    if isinstance(curve, Circle):
+        curve = Circle(curve.center, abs(curve.radius))
+    elif isinstance(curve, Ellipse):
+        curve = Ellipse(curve.center, abs(curve.rx), abs(curve.ry), curve.angle)
+    elif isinstance(curve, Arc):
+        curve = Arc(curve.center, abs(curve.radius), curve.start, curve.end, curve.sweep)
+    if isinstance(curve, Ellipse) and not curve.rx * curve.ry > 0:
+        return None
+    if isinstance(curve, Circle | Arc) and not (curve.radius > 0 and math.isfinite(curve.radius)):
+        return None
+    box = bounds(curve)
+    if not all(map(math.isfinite, box)) or max(map(abs, box)) > 1e12:
+        return None
+    if isinstance(curve, Line) and curve.start == curve.end:
+        return None
+    return curve if max(box[2] - box[0], box[3] - box[1]) > 0 else None
+
+
+def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:
+    """The bodies; a root that is a hole has nothing to cut, and leaves its islands."""
+    if root.kind != "hole":
+        return walk.masses(root)
+    cut = walk.cut(root)
+    if cut.holes:
+        walk.findings.append(IdleHole(root, None))
+    return list(cut.islands)
+
+
+def _styles(root: SolvedStructure, notes: list[Diagnostic]) -> dict[str, Style]:
+    styles: dict[str, Style] = {}
+
+    def visit(structure: SolvedStructure, around: Style) -> None:
+        attributes = structure.attributes
+        color = around.color
+        if values := attributes.get("color"):
+            color = css_color(values) or around.color
+            if css_color(values) is None:
+                notes.append(color_note(structure, values))
+        style = Style(
+            color,
+            _text(attributes.get("layer")) or around.layer,
+            _text(attributes.get("material")) or around.material,
+            _number(attributes.get("thickness"), around.thickness),
+        )
+        styles[structure.path] = style
+        for child in structure.structures:
+            visit(child, style)
+
+    visit(root, Style())
+    return styles
+
+
+def _text(values: tuple[Scalar, ...] | None) -> str | None:
+    return str(values[0]) if values else None
+
+
+def _number(values: tuple[Scalar, ...] | None, default: float | None) -> float | None:
+    first = values[0] if values else None
+    return float(first) if isinstance(first, int | float) and not isinstance(first, bool) else default
+
+
+def _strokes(
+    root: SolvedStructure,
+    shapes: dict[str, list[Shape]],
+    walk: Bodies,
+    styles: dict[str, Style],
+    regions: dict[str, Region],
+) -> Iterator[Stroke]:
+    """The curves of drawings, and those of other structures that bound nothing."""
+    curves = walk.network.curves
+    loose = {f.structure.path: f.curves for f in walk.findings if isinstance(f, LooseCurves)}
+    for structure in root.walk():
+        path, style = structure.path, styles[structure.path]
+        if structure.kind == "drawing":
+            for shape in shapes[path]:
+                pieces = tuple(curves[number] for _, number in shape.leaves)
+                yield Stroke(path, shape.geometry.path, pieces, style)
+        for leaf, number in loose.get(path, ()):
+            yield Stroke(path, leaf.path, (curves[number],), style, "open")
+    if root.kind == "hole" and root.path in regions:
+        outline = tuple(p for loop in regions[root.path].loops for p in loop.pieces)
+        yield Stroke(root.path, root.path, outline, styles[root.path], "hole")
+
+
+def _plans(root: SolvedStructure) -> Iterator[PlanBox]:
+    for structure in root.walk():
+        if structure.is_empty and (box := structure.box) is not None:
+            yield PlanBox(structure.path, structure.name, (box.left, box.bottom, box.right, box.top))

@@ -1,0 +1,257 @@
+"""The faces that a structure draws itself.
+
+A closed geometry (a circle, a compound shape) is filled by itself, its nested loops alternating.
+Free-standing curves are chained across names: what lies inside their outlines is filled, dangling ends are
+trimmed. Free curves that close only together with the outline of a closed geometry (an arc on top of a
+rectangle) add what they enclose outside of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.geometry.network import Network, Use
+from aidl_lang.geometry.sections import Section, difference, fill, inside_mask, is_nothing, union
+from aidl_lang.geometry.trace import trace
+from aidl_lang.solved import SolvedGeometry
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A named geometry of a structure: its primitives that have curves, with the numbers of these in the
+    network.
+    """
+
+    geometry: SolvedGeometry
+    leaves: tuple[tuple[SolvedGeometry, int], ...]
+
+
+@dataclass(frozen=True)
+class OwnFace:
+    """What one named geometry, or some free curves together, enclose."""
+
+    geometries: tuple[SolvedGeometry, ...]
+    section: Section
+
+
+@dataclass
+class OwnFaces:
+    """The faces of a structure and the primitives that bound none."""
+
+    faces: list[OwnFace] = field(default_factory=list)
+    loose: list[tuple[SolvedGeometry, int]] = field(default_factory=list)
+
+
+def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
+    """The faces of the shapes of one structure, in order of writing, those of free curves after them."""
+    result = OwnFaces()
+    free: list[tuple[SolvedGeometry, int]] = []
+    outlines: list[Use] = []
+    for shape in shapes:
+        uses = [use for _, number in shape.leaves for use in network.uses[number]]
+        closed = _is_closed(network, shape, uses)
+        kept = _without_dangling(network, uses) if closed else []
+        if kept:
+            result.faces.append(OwnFace((shape.geometry,), _alternating(network, kept)))
+            outlines += kept
+        used = {edge for edge, _ in kept}
+        free += [leaf for leaf in shape.leaves if not _touches(network, leaf[1], used)]
+    if free:
+        _chain_free(network, free, outlines, result)
+    return result
+
+
+def _is_closed(network: Network, shape: Shape, uses: list[Use]) -> bool:
+    """Whether the shape may be a face by itself: not a single open curve."""
+    if shape.geometry.parts or len(shape.leaves) > 1:
+        return True
+    return bool(uses) and _start(network, uses[0]) == _end(network, uses[-1])
+
+
+def _touches(network: Network, curve: int, edges: set[int]) -> bool:
+    return any(edge in edges for edge, _ in network.uses[curve])
+
+
+def _start(network: Network, use: Use) -> int:
+    edge = network.edges[use[0]]
+    return edge.start if use[1] else edge.end
+
+
+def _end(network: Network, use: Use) -> int:
+    return _start(network, (use[0], not use[1]))
+
+
+def _without_dangling(network: Network, uses: Iterable[Use]) -> list[Use]:
+    """Without the edges that lead to an open end, repeatedly."""
+    kept = list(uses)
+    while True:
+        degree: dict[int, int] = defaultdict(int)
+        for use in kept:
+            degree[_start(network, use)] += 1
+            degree[_end(network, use)] += 1
+        rest = [u for u in kept if degree[_start(network, u)] > 1 and degree[_end(network, u)] > 1]
+        if len(rest) == len(kept):
+            return rest
+        kept = rest
+
+
+def _alternating(network: Network, uses: list[Use]) -> Section:
+    """The loops of one shape under the even-odd rule; where a node has an odd degree, all that is
+    enclosed.
+    """
+    degree: dict[int, int] = defaultdict(int)
+    for use in uses:
+        degree[_start(network, use)] += 1
+        degree[_end(network, use)] += 1
+    if any(d % 2 for d in degree.values()):
+        return fill(_outlines(network, uses)[0], "NonZero")
+    return fill([network.polyline(loop) for loop in _loops(network, uses)], "EvenOdd")
+
+
+def _loops(network: Network, uses: list[Use]) -> list[list[Use]]:
+    """Closed walks that use every edge once; every node has an even degree."""
+    ways: dict[int, list[Use]] = defaultdict(list)
+    for edge, forward in reversed(uses):
+        ways[_start(network, (edge, forward))].append((edge, forward))
+        ways[_end(network, (edge, forward))].append((edge, not forward))
+    left: dict[int, int] = defaultdict(int)
+    for edge, _ in uses:
+        left[edge] += 1
+    loops = []
+    for use in uses:
+        if left[use[0]]:
+            loops.append(_walk(network, use, ways, left))
+    return loops
+
+
+def _walk(network: Network, first: Use, ways: dict[int, list[Use]], left: dict[int, int]) -> list[Use]:
+    """From an edge onwards until its start comes round again."""
+    loop = [first]
+    left[first[0]] -= 1
+    while (node := _end(network, loop[-1])) != _start(network, first):
+        following = next(use for use in ways[node] if left[use[0]])
+        left[following[0]] -= 1
+        loop.append(following)
+    return loop
+
+
+def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[NDArray[np.float64]], set[int]]:
+    """The outer outline of each connected part of a planar graph, and the edges that bound some face of it.
+
+    Walks the graph keeping the face on the left, turning at each node to the next way clockwise.
+    """
+    edges = list(dict.fromkeys(edge for edge, _ in uses))
+    turn = _next_clockwise(network, edges)
+    cycle_of: dict[Use, int] = {}
+    polygons: list[NDArray[np.float64]] = []
+    for start in ((edge, forward) for edge in edges for forward in (True, False)):
+        if start in cycle_of:
+            continue
+        cycle, use = [], start
+        while use not in cycle_of:
+            cycle_of[use] = len(polygons)
+            cycle.append(use)
+            use = turn[use]
+        polygons.append(network.polyline(cycle))
+    bounding = {edge for edge in edges if cycle_of[edge, True] != cycle_of[edge, False]}
+    return [p[::-1] for p in polygons if _signed_area(p) < 0], bounding
+
+
+def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
+    """For each way along an edge, the one to take at its end."""
+    leaving: dict[int, list[tuple[float, Use]]] = defaultdict(list)
+    for edge in edges:
+        for forward in (True, False):
+            use = (edge, forward)
+            leaving[_start(network, use)].append((_direction(network, use), use))
+    turn: dict[Use, Use] = {}
+    for ways in leaving.values():
+        around = [use for _, use in sorted(ways)]
+        for k, (edge, forward) in enumerate(around):
+            turn[edge, not forward] = around[k - 1]
+    return turn
+
+
+def _direction(network: Network, use: Use) -> float:
+    """The angle at which the polyline of an edge leaves its start."""
+    edge = network.edges[use[0]]
+    inner = edge.inner if use[1] else edge.inner[::-1]
+    target = inner[0] if len(inner) else network.node_grid[_end(network, use)]
+    dx, dy = target - network.node_grid[_start(network, use)]
+    return math.atan2(dy, dx)
+
+
+def _signed_area(polygon: NDArray[np.float64]) -> float:
+    x, y = polygon[:, 0] - polygon[0, 0], polygon[:, 1] - polygon[0, 1]
+    return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+
+
+def _chain_free(
+    network: Network, free: list[tuple[SolvedGeometry, int]], outlines: list[Use], result: OwnFaces
+) -> None:
+    """Faces of free curves, first by themselves, then together with the outlines of closed shapes."""
+    uses = [use for _, number in free for use in network.uses[number]]
+    kept = _without_dangling(network, uses)
+    used: set[int] = set()
+    for part in _connected(network, kept):
+        polygons, bounding = _outlines(network, part)
+        section = fill(polygons, "NonZero")
+        if not is_nothing(section):
+            names = tuple(g for g, number in free if _touches(network, number, bounding))
+            result.faces.append(OwnFace(names, section))
+            used |= bounding
+    rest = [leaf for leaf in free if not _touches(network, leaf[1], used)]
+    if rest and outlines:
+        used |= _close_with_outlines(network, rest, outlines, result)
+    result.loose += [leaf for leaf in rest if not _touches(network, leaf[1], used)]
+
+
+def _close_with_outlines(
+    network: Network, rest: list[tuple[SolvedGeometry, int]], outlines: list[Use], result: OwnFaces
+) -> set[int]:
+    """Add what the remaining curves enclose outside the closed shapes; returns the edges that took part."""
+    uses = [use for _, number in rest for use in network.uses[number]]
+    together, bounding = _outlines(network, _without_dangling(network, [*uses, *outlines]))
+    hull, _ = _outlines(network, outlines)
+    added = difference(fill(together, "NonZero"), fill(hull, "NonZero"))
+    if is_nothing(added):
+        return set()
+    boundary = trace(network, added).edges
+    used = {
+        e
+        for e, _ in uses
+        if e in bounding and (e in boundary or inside_mask(added, [network.midpoint(e)])[0])
+    }
+    names = tuple(g for g, number in rest if _touches(network, number, used))
+    if names:
+        result.faces.append(OwnFace(names, added))
+    return used
+
+
+def _connected(network: Network, uses: list[Use]) -> list[list[Use]]:
+    """The uses by connected part, in order of first mention."""
+    parent: dict[int, int] = {}
+
+    def root(node: int) -> int:
+        while parent.setdefault(node, node) != node:
+            parent[node] = parent[parent[node]]
+            node = parent[node]
+        return node
+
+    for use in uses:
+        parent[root(_start(network, use))] = root(_end(network, use))
+    parts: dict[int, list[Use]] = defaultdict(list)
+    for use in uses:
+        parts[root(_start(network, use))].append(use)
+    return list(parts.values())
+
+
+def union_of(faces: Iterable[OwnFace]) -> Section:
+    """All faces united."""
+    return union([face.section for face in faces])

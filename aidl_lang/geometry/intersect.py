@@ -1,0 +1,144 @@
+"""Where two curves meet: closed forms for lines and circles, Newton from a sampling for the others.
+
+A near miss within the tolerance counts as a touch. Curves that lie on each other have no crossing here; what
+they share begins and ends at end points, which `network` places on both.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import derivative, is_closed, locate, point, points
+
+_SAMPLES = {Line: 1, Arc: 32, Circle: 48, Ellipse: 64, Bezier: 32}
+Crossing = tuple[float, float, Vec]
+
+
+def intersections(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
+    """Crossings and touches as (parameter on a, parameter on b, point)."""
+    if isinstance(a, Line) and isinstance(b, Line):
+        return _line_line(a, b, tolerance)
+    if isinstance(a, Line | Arc | Circle) and isinstance(b, Line | Arc | Circle):
+        candidates = _round_candidates(a, b, tolerance)
+        return _on_both(a, b, candidates, tolerance)
+    return _sampled(a, b, tolerance)
+
+
+def _on_both(a: Piece, b: Piece, candidates: list[Vec], tolerance: float) -> list[Crossing]:
+    found = []
+    for p in candidates:
+        t, s = locate(a, p, tolerance), locate(b, p, tolerance)
+        if t is not None and s is not None:
+            found.append((t, s, p))
+    return found
+
+
+def _line_line(a: Line, b: Line, tolerance: float) -> list[Crossing]:
+    (x0, y0), (x1, y1) = a.start, a.end
+    (u0, v0), (u1, v1) = b.start, b.end
+    ax, ay, bx, by = x1 - x0, y1 - y0, u1 - u0, v1 - v0
+    cross = ax * by - ay * bx
+    if abs(cross) <= 1e-9 * math.hypot(ax, ay) * math.hypot(bx, by):
+        return []
+    t = ((u0 - x0) * by - (v0 - y0) * bx) / cross
+    s = ((u0 - x0) * ay - (v0 - y0) * ax) / cross
+    slack_a, slack_b = tolerance / math.hypot(ax, ay), tolerance / math.hypot(bx, by)
+    if not (-slack_a <= t <= 1 + slack_a and -slack_b <= s <= 1 + slack_b):
+        return []
+    t, s = min(1.0, max(0.0, t)), min(1.0, max(0.0, s))
+    return [(t, s, point(a, t))]
+
+
+def _round_candidates(a: Line | Arc | Circle, b: Line | Arc | Circle, tolerance: float) -> list[Vec]:
+    """Meeting points of the endless lines and whole circles that carry the two curves."""
+    if isinstance(a, Line):
+        assert not isinstance(b, Line)
+        return _line_circle(a, b, tolerance)
+    if isinstance(b, Line):
+        return _line_circle(b, a, tolerance)
+    return _circle_circle(a, b, tolerance)
+
+
+def _line_circle(line: Line, circle: Arc | Circle, tolerance: float) -> list[Vec]:
+    (x, y), r = circle.center, circle.radius
+    dx, dy = line.end[0] - line.start[0], line.end[1] - line.start[1]
+    length = math.hypot(dx, dy)
+    dx, dy = dx / length, dy / length
+    along = (x - line.start[0]) * dx + (y - line.start[1]) * dy
+    foot = line.start[0] + along * dx, line.start[1] + along * dy
+    distance = math.hypot(foot[0] - x, foot[1] - y)
+    if distance > r + tolerance:
+        return []
+    if distance >= r - tolerance:
+        return [foot]
+    half = math.sqrt((r - distance) * (r + distance))
+    return [(foot[0] + k * dx, foot[1] + k * dy) for k in (-half, half)]
+
+
+def _circle_circle(a: Arc | Circle, b: Arc | Circle, tolerance: float) -> list[Vec]:
+    dx, dy = b.center[0] - a.center[0], b.center[1] - a.center[1]
+    d, ra, rb = math.hypot(dx, dy), a.radius, b.radius
+    if d <= tolerance or d > ra + rb + tolerance or d < abs(ra - rb) - tolerance:
+        return []
+    dx, dy = dx / d, dy / d
+    if d >= ra + rb - tolerance or d <= abs(ra - rb) + tolerance:
+        k = ra if d > rb or ra > rb else -ra
+        return [(a.center[0] + k * dx, a.center[1] + k * dy)]
+    k = (d * d + (ra - rb) * (ra + rb)) / (2 * d)
+    h = math.sqrt(max(0.0, (ra - k) * (ra + k)))
+    x, y = a.center[0] + k * dx, a.center[1] + k * dy
+    return [(x - h * dy, y + h * dx), (x + h * dy, y - h * dx)]
+
+
+def _sampled(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
+    """Crossings of the two polylines, polished by Newton; then near misses where the tangents agree."""
+    na, nb = _SAMPLES.get(type(a), 48), _SAMPLES.get(type(b), 48)
+    ta, tb = np.linspace(0, 1, na + 1), np.linspace(0, 1, nb + 1)
+    p, q = points(a, ta), points(b, tb)
+    dp, dq = np.diff(p, axis=0)[:, None, :], np.diff(q, axis=0)[None, :, :]
+    gap = q[None, :-1, :] - p[:-1, None, :]
+    cross = dp[..., 0] * dq[..., 1] - dp[..., 1] * dq[..., 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = (gap[..., 0] * dq[..., 1] - gap[..., 1] * dq[..., 0]) / cross
+        s = (gap[..., 0] * dp[..., 1] - gap[..., 1] * dp[..., 0]) / cross
+        # The curves bulge beyond their chords: look a little past each segment.
+        hit = (t >= -0.2) & (t <= 1.2) & (s >= -0.2) & (s <= 1.2)
+    found: list[Crossing] = []
+    for i, j in np.argwhere(hit):
+        start = (float((i + t[i, j]) / na), float((j + s[i, j]) / nb))
+        crossing = _newton(a, b, *start, tolerance)
+        if crossing and all(math.dist(crossing[2], other[2]) > tolerance for other in found):
+            found.append(crossing)
+    return sorted(found)
+
+
+def _newton(a: Piece, b: Piece, t: float, s: float, tolerance: float) -> Crossing | None:
+    for _ in range(20):
+        t, s = _within(a, t), _within(b, s)
+        (x, y), (u, v) = point(a, t), point(b, s)
+        ex, ey = u - x, v - y
+        (ax, ay), (bx, by) = derivative(a, t), derivative(b, s)
+        cross = ax * by - ay * bx
+        if abs(cross) <= 1e-12 * math.hypot(ax, ay) * math.hypot(bx, by):
+            break
+        dt, ds = (ex * by - ey * bx) / cross, (ex * ay - ey * ax) / cross
+        t, s = t + dt, s + ds
+        if abs(dt) + abs(ds) < 1e-14:
+            break
+    t, s = _within(a, t), _within(b, s)
+    p = point(a, t)
+    return (t, s, p) if math.dist(p, point(b, s)) <= tolerance else None
+
+
+def _within(curve: Piece, t: float) -> float:
+    return t % 1.0 if is_closed(curve) else min(1.0, max(0.0, t))
+
+
+def sorted_cuts(cuts: list[tuple[float, int]]) -> list[tuple[float, int]]:
+    """Cuts in order of their parameter, a node that follows itself kept once."""
+    cuts = sorted(cuts)
+    return cuts[:1] + [b for a, b in pairwise(cuts) if b[1] != a[1]]

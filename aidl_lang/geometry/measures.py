@@ -1,0 +1,137 @@
+"""Area, perimeter, centroid and box of a region from its exact pieces, by Green's theorem.
+
+Area and first moments are integrals along the outline: straight lines and circular segments in closed form
+(a segment of radius r and sweep s has the area r²(s - sin s)/2 and the moment 2/3 r³ sin³(s/2) along its
+bisector), ellipses as their affine images, Bézier curves by Gauss-Legendre quadrature, which is exact for
+them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import Bounds, bounds, derivative, ends, point, round_range
+from aidl_lang.geometry.region import Loop, Region
+
+Moments = tuple[float, float, float]
+"""Area and its first moments about the origin, as contributions to the integral along an outline."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measures:
+    """Square millimetres and millimetres. `box` is left, bottom, right, top."""
+
+    area: float
+    perimeter: float
+    centroid: Vec
+    box: Bounds
+    loops: int
+
+
+def _gauss(count: int) -> tuple[tuple[float, float], ...]:
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return tuple((float(x + 1) / 2, float(w) / 2) for x, w in zip(nodes, weights, strict=True))
+
+
+_GAUSS_5, _GAUSS_16 = _gauss(5), _gauss(16)
+
+
+def measure(region: Region) -> Measures:
+    """All measures of a region."""
+    area = mx = my = perimeter = 0.0
+    for loop in region.loops:
+        a, x, y = loop_moments(loop)
+        area, mx, my = area + a, mx + x, my + y
+        perimeter += sum(length(piece) for piece in loop.pieces)
+    centroid = (mx / area, my / area) if area else (0.0, 0.0)
+    return Measures(area, perimeter, centroid, region_bounds(region), len(region.loops))
+
+
+def region_bounds(region: Region) -> Bounds:
+    boxes = [bounds(piece) for face in region.faces for piece in face.outer.pieces]
+    if not boxes:
+        return 0.0, 0.0, 0.0, 0.0
+    lefts, bottoms, rights, tops = zip(*boxes, strict=True)
+    return min(lefts), min(bottoms), max(rights), max(tops)
+
+
+def area(region: Region) -> float:
+    return sum(loop_area(loop) for loop in region.loops)
+
+
+def perimeter(region: Region) -> float:
+    return sum(length(piece) for loop in region.loops for piece in loop.pieces)
+
+
+def loop_area(loop: Loop) -> float:
+    """Positive counter-clockwise."""
+    return loop_moments(loop)[0]
+
+
+def loop_moments(loop: Loop) -> Moments:
+    """Area and first moments, summed about the loop's own start so that far away nothing cancels."""
+    x, y = ends(loop.pieces[0])[0]
+    a = mx = my = 0.0
+    for da, dx, dy in (_moments(piece, (x, y)) for piece in loop.pieces):
+        a, mx, my = a + da, mx + dx, my + dy
+    sign = -1 if loop.reversed else 1
+    return sign * a, sign * (mx + a * x), sign * (my + a * y)
+
+
+def _moments(piece: Piece, origin: Vec) -> Moments:
+    """Of the triangle fan from the origin to the piece."""
+    if isinstance(piece, Bezier):
+        return _bezier_moments(piece, origin)
+    start, end = ends(piece)
+    chord = _triangle((start[0] - origin[0], start[1] - origin[1]), (end[0] - origin[0], end[1] - origin[1]))
+    if isinstance(piece, Line):
+        return chord
+    first, sweep = round_range(piece)
+    a = (sweep - math.sin(sweep)) / 2
+    moment = 2 / 3 * math.sin(sweep / 2) ** 3
+    bisector = first + sweep / 2
+    x, y = moment * math.cos(bisector), moment * math.sin(bisector)
+    if isinstance(piece, Arc | Circle):
+        rx = ry = piece.radius
+    else:
+        rx, ry = piece.rx, piece.ry
+        c, s = math.cos(piece.angle), math.sin(piece.angle)
+        x, y = (c * rx * x - s * ry * y) / rx, (s * rx * x + c * ry * y) / rx
+    a, x, y = a * rx * ry, x * rx * rx * ry, y * rx * rx * ry
+    cx, cy = piece.center[0] - origin[0], piece.center[1] - origin[1]
+    return chord[0] + a, chord[1] + x + a * cx, chord[2] + y + a * cy
+
+
+def _triangle(p: Vec, q: Vec) -> Moments:
+    a = (p[0] * q[1] - p[1] * q[0]) / 2
+    return a, a * (p[0] + q[0]) / 3, a * (p[1] + q[1]) / 3
+
+
+def _bezier_moments(piece: Bezier, origin: Vec) -> Moments:
+    """Integrals of (p x p')/2 and p (p x p')/3, polynomials of degree 5 and 8."""
+    a = mx = my = 0.0
+    for t, weight in _GAUSS_5:
+        x, y = point(piece, t)
+        x, y = x - origin[0], y - origin[1]
+        dx, dy = derivative(piece, t)
+        cross = weight * (x * dy - y * dx)
+        a, mx, my = a + cross / 2, mx + cross * x / 3, my + cross * y / 3
+    return a, mx, my
+
+
+def length(piece: Piece) -> float:
+    """Arc length; of ellipses and Bézier curves by quadrature to about nine digits."""
+    if isinstance(piece, Line):
+        return math.dist(piece.start, piece.end)
+    if isinstance(piece, Arc | Circle):
+        return piece.radius * abs(round_range(piece)[1])
+    spans = 8
+    return sum(
+        weight / spans * math.hypot(*derivative(piece, (k + t) / spans))
+        for k in range(spans)
+        for t, weight in _GAUSS_16
+    )

@@ -1,0 +1,302 @@
+"""All curves of a drawing cut at the points where they meet: the exact arrangement under the booleans.
+
+Ends and crossings closer than the tolerance (1e-6 of the drawing's size) become one node, so gaps that
+rounding left are closed and neighbours share their ends to the last digit. Between nodes run edges; curves
+that lie on each other share them. Each edge also has a polyline on an integer grid, fine enough to have the
+topology of the curve. Booleans work on these polylines, and because their vertices are known here, every edge
+of a result leads back to the curve it came from (`trace`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import (
+    TAU,
+    Bounds,
+    bounds,
+    ends,
+    is_closed,
+    locate,
+    point,
+    points,
+    round_range,
+)
+from aidl_lang.geometry.intersect import intersections, sorted_cuts
+
+RELATIVE_TOLERANCE = 1e-6
+CHORD = 1e-4
+"""Largest distance of a chord from its curve, relative to the size of the drawing."""
+GRID = 1e-8
+"""Manifold rounds plane coordinates to this step; the drawing is scaled to about 16 units before."""
+
+NODE, UNKNOWN = -1, -2
+
+Ints = NDArray[np.int64]
+Use = tuple[int, bool]
+"""An edge and whether it is run through forwards."""
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """The part `t0..t1` of a curve between two nodes, with the grid points strictly between them."""
+
+    curve: int
+    t0: float
+    t1: float
+    start: int
+    end: int
+    inner: Ints
+
+
+class Weld:
+    """Points by number; one within the tolerance of another is the same point."""
+
+    def __init__(self, tolerance: float) -> None:
+        self.tolerance = tolerance
+        self.points: list[Vec] = []
+        self._cells: dict[tuple[int, int], list[int]] = {}
+
+    def number(self, p: Vec) -> int:
+        """The number of p, a new one if no point is near. Looks into the four cells the tolerance can
+        reach.
+        """
+        step = 2 * self.tolerance
+        column, row = math.floor(p[0] / step), math.floor(p[1] / step)
+        beside = column + (1 if p[0] - column * step > self.tolerance else -1)
+        beyond = row + (1 if p[1] - row * step > self.tolerance else -1)
+        for cell in ((column, row), (beside, row), (column, beyond), (beside, beyond)):
+            for number in self._cells.get(cell, ()):
+                if math.dist(self.points[number], p) <= self.tolerance:
+                    return number
+        self.points.append(p)
+        self._cells.setdefault((column, row), []).append(len(self.points) - 1)
+        return len(self.points) - 1
+
+
+class Network:
+    """Nodes and edges of a set of curves. `uses[i]` lists the edges of curve i in its own direction."""
+
+    def __init__(self, curves: Sequence[Piece]) -> None:
+        self.curves = list(curves)
+        self.boxes = [bounds(c) for c in self.curves]
+        self.box = union_bounds(self.boxes)
+        left, bottom, right, top = self.box
+        self.size = max(right - left, top - bottom) or 1.0
+        self.tolerance = RELATIVE_TOLERANCE * self.size
+        self.middle = (left + right) / 2, (bottom + top) / 2
+        self.scale = 2.0 ** math.floor(math.log2(16 / self.size))
+        self._weld, self._middles = Weld(self.tolerance), Weld(self.tolerance)
+        self.nodes = self._weld.points
+        self.node = self._weld.number
+        self.edges: list[Edge] = []
+        self._known: dict[tuple[int, ...], int] = {}
+        self.uses: list[list[Use]] = self._arrange()
+        self._index()
+
+    def to_grid(self, xy: NDArray[np.float64]) -> Ints:
+        grid: Ints = np.rint((xy - np.array(self.middle)) * (self.scale / GRID)).astype(np.int64)
+        return grid
+
+    # -- cutting -----------------------------------------------------------------------------------------
+
+    def _arrange(self) -> list[list[Use]]:
+        both = [ends(curve) for curve in self.curves]
+        # In order of place: which of two near ends the node takes must not depend on the order of writing.
+        for p in sorted(p for pair in both for p in pair):
+            self.node(p)
+        cuts = [[(0.0, self.node(start)), (1.0, self.node(end))] for start, end in both]
+        own_ends = [(c[0][1], c[1][1]) for c in cuts]
+        for i, j in near_pairs(self.boxes, self.tolerance):
+            self._cut_pair(i, j, cuts, own_ends)
+        return [self._split(i, sorted_cuts(c)) for i, c in enumerate(cuts)]
+
+    def _cut_pair(
+        self, i: int, j: int, cuts: list[list[tuple[float, int]]], own_ends: list[tuple[int, int]]
+    ) -> None:
+        """Place the ends of each of two curves on the other, then cut both where they meet."""
+        for one, other in ((i, j), (j, i)):
+            curve, box = self.curves[other], self.boxes[other]
+            for end in dict.fromkeys(own_ends[one]):
+                p = self.nodes[end]
+                if end in own_ends[other] or not _inside(p, box, self.tolerance):
+                    continue
+                t = locate(curve, p, self.tolerance)
+                if t is not None:
+                    cuts[other].append((t, end))
+        for t, s, p in intersections(self.curves[i], self.curves[j], self.tolerance):
+            node = self.node(p)
+            if node not in own_ends[i]:
+                cuts[i].append((t, node))
+            if node not in own_ends[j]:
+                cuts[j].append((s, node))
+
+    def _split(self, number: int, cuts: list[tuple[float, int]]) -> list[Use]:
+        curve = self.curves[number]
+        if len(cuts) == 1:
+            # Both ends in one node: a whole circle or ellipse, else too short to see.
+            node = cuts[0][1]
+            whole = is_closed(curve) or (not isinstance(curve, Line) and _extent(curve) > 4 * self.tolerance)
+            return [self._edge(number, 0.0, 1.0, node, node)] if whole else []
+        return [self._edge(number, t0, t1, a, b) for (t0, a), (t1, b) in pairwise(cuts)]
+
+    def _edge(self, number: int, t0: float, t1: float, start: int, end: int) -> Use:
+        """The edge for this part of a curve: the one that lies there already, or a new one."""
+        curve = self.curves[number]
+        middle = -1 if isinstance(curve, Line) else self._middles.number(point(curve, (t0 + t1) / 2))
+        key = (min(start, end), max(start, end), middle)
+        known = self._known.get(key)
+        if known is not None:
+            edge = self.edges[known]
+            return known, self._same_way(edge, number, t0, t1, start)
+        count = _segments(curve, t1 - t0, CHORD * self.size)
+        ts = t0 + (t1 - t0) * np.arange(1, count) / count
+        inner = self.to_grid(points(curve, ts))
+        self._known[key] = len(self.edges)
+        self.edges.append(Edge(number, t0, t1, start, end, inner))
+        return len(self.edges) - 1, True
+
+    def _same_way(self, edge: Edge, number: int, t0: float, t1: float, start: int) -> bool:
+        if edge.start != edge.end:
+            return edge.start == start
+        early = self.to_grid(points(self.curves[number], np.array([t0 + (t1 - t0) / 8])))[0]
+        span = len(edge.inner)
+        first, last = edge.inner[span // 8], edge.inner[-1 - span // 8]
+        return bool(np.abs(early - first).sum() <= np.abs(early - last).sum())
+
+    # -- polylines and the way back ------------------------------------------------------------------------
+
+    def _index(self) -> None:
+        """A sorted table of all grid points with the edge they lie inside of (-1 for nodes)."""
+        self.node_grid = self.to_grid(np.array(self.nodes, dtype=float).reshape(-1, 2))
+        grids = [self.node_grid, *(e.inner for e in self.edges)]
+        owners = [np.full(len(self.node_grid), -1, dtype=np.int64)]
+        owners += [np.full(len(e.inner), k, dtype=np.int64) for k, e in enumerate(self.edges)]
+        keys, owner = pack(np.concatenate(grids)), np.concatenate(owners)
+        numbers = np.arange(len(keys))
+        order = np.lexsort((owner, keys))
+        self._keys, self._owner, self._number = keys[order], owner[order], numbers[order]
+        sizes = [len(self.node_grid), *(len(e.inner) for e in self.edges)]
+        self._offset = np.cumsum(sizes)[:-1] if self.edges else np.zeros(1, dtype=np.int64)
+        self._sides: tuple[Ints, NDArray[np.float64]] | None = None
+        self._straight: dict[tuple[int, int], int] = {}
+        for k, edge in enumerate(self.edges):
+            if not len(edge.inner):
+                self._straight[edge.start, edge.end] = self._straight[edge.end, edge.start] = k
+
+    def polyline(self, uses: Sequence[Use]) -> NDArray[np.float64]:
+        """The closed polygon through these edges, in grid units as Manifold takes them."""
+        rows: list[Ints] = []
+        for number, forward in uses:
+            edge = self.edges[number]
+            node = edge.start if forward else edge.end
+            rows.append(self.node_grid[node : node + 1])
+            rows.append(edge.inner if forward else edge.inner[::-1])
+        return np.concatenate(rows).astype(np.float64) * GRID
+
+    def midpoint(self, number: int) -> NDArray[np.float64]:
+        """A point about halfway along an edge, in grid units."""
+        edge = self.edges[number]
+        if len(edge.inner):
+            middle: NDArray[np.float64] = edge.inner[len(edge.inner) // 2].astype(np.float64) * GRID
+            return middle
+        both = (self.node_grid[edge.start] + self.node_grid[edge.end]).astype(np.float64)
+        halfway: NDArray[np.float64] = both * (GRID / 2)
+        return halfway
+
+    def look_up(self, polygon: NDArray[np.float64]) -> tuple[Ints, Ints]:
+        """For each vertex of a result the edge it lies inside of and its place there.
+
+        For a node the edge is NODE and the place its number; for a vertex of no edge it is UNKNOWN.
+        """
+        keys = pack(np.rint(polygon / GRID).astype(np.int64))
+        at = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
+        owner = np.where(self._keys[at] == keys, self._owner[at], UNKNOWN)
+        place = self._number[at] - np.where(owner >= 0, self._offset[np.maximum(owner, 0)], 0)
+        return owner, place
+
+    def position(self, vertex: NDArray[np.float64]) -> Vec:
+        """A vertex of a result in millimetres."""
+        x, y = vertex / self.scale + np.array(self.middle)
+        return float(x), float(y)
+
+    def nearest_edge(self, vertex: NDArray[np.float64]) -> int:
+        """The edge whose polyline passes nearest to a point in grid units."""
+        if self._sides is None:
+            numbers: list[int] = []
+            lines: list[NDArray[np.float64]] = []
+            for k, edge in enumerate(self.edges):
+                nodes = self.node_grid[[edge.start, edge.end]]
+                line = np.concatenate((nodes[:1], edge.inner, nodes[1:])) * GRID
+                numbers += [k] * (len(line) - 1)
+                lines.append(np.concatenate((line[:-1], line[1:]), axis=1))
+            self._sides = np.array(numbers), np.concatenate(lines)
+        numbers_, sides = self._sides
+        start, way = sides[:, :2], sides[:, 2:] - sides[:, :2]
+        square = np.maximum((way**2).sum(axis=1), GRID**2)
+        t = np.clip(((vertex - start) * way).sum(axis=1) / square, 0, 1)
+        away = ((start + t[:, None] * way - vertex) ** 2).sum(axis=1)
+        return int(numbers_[int(np.argmin(away))])
+
+    def straight(self, start: int, end: int, default: int) -> int:
+        """The line edge between two nodes."""
+        return self._straight.get((start, end), default)
+
+
+def pack(grid: Ints) -> Ints:
+    """One number for each grid point; coordinates have at most 32 bits."""
+    return (grid[:, 0] << 32) + grid[:, 1]
+
+
+def _segments(curve: Piece, share: float, chord: float) -> int:
+    """Into how many chords a part is cut: at least two, so that a curved edge owns a vertex."""
+    if isinstance(curve, Line):
+        return 1
+    if isinstance(curve, Bezier):
+        # A chord of a curve departs by at most |p''| Δt² / 8; |p''| <= 6 max |second difference|.
+        p0, p1, p2, p3 = curve.p0, curve.p1, curve.p2, curve.p3
+        bend = max(
+            math.hypot(p0[0] - 2 * p1[0] + p2[0], p0[1] - 2 * p1[1] + p2[1]),
+            math.hypot(p1[0] - 2 * p2[0] + p3[0], p1[1] - 2 * p2[1] + p3[1]),
+        )
+        return max(3, min(200, math.ceil(share * math.sqrt(0.75 * bend / chord))))
+    radius = curve.radius if isinstance(curve, Arc | Circle) else max(curve.rx, curve.ry)
+    sweep = abs(round_range(curve)[1]) * share
+    step = min(TAU / 32, 2 * math.acos(max(0.0, 1 - chord / max(radius, chord))))
+    return max(2, min(2000, math.ceil(sweep / step)))
+
+
+def _extent(curve: Piece) -> float:
+    left, bottom, right, top = bounds(curve)
+    return max(right - left, top - bottom)
+
+
+def _inside(p: Vec, box: Bounds, margin: float) -> bool:
+    return box[0] - margin <= p[0] <= box[2] + margin and box[1] - margin <= p[1] <= box[3] + margin
+
+
+def union_bounds(boxes: Sequence[Bounds]) -> Bounds:
+    if not boxes:
+        return 0.0, 0.0, 0.0, 0.0
+    lefts, bottoms, rights, tops = zip(*boxes, strict=True)
+    return min(lefts), min(bottoms), max(rights), max(tops)
+
+
+def near_pairs(boxes: Sequence[Bounds], margin: float) -> Iterator[tuple[int, int]]:
+    """Pairs i < j whose boxes come closer than the margin, by a sweep from left to right."""
+    order = sorted(range(len(boxes)), key=lambda i: boxes[i][0])
+    active: list[int] = []
+    for i in order:
+        left, bottom, _, top = boxes[i]
+        active = [j for j in active if boxes[j][2] + margin >= left]
+        for j in active:
+            if boxes[j][1] - margin <= top and boxes[j][3] + margin >= bottom:
+                yield min(i, j), max(i, j)
+        active.append(i)

@@ -1,0 +1,316 @@
+"""What the passes of this package found, as diagnostics with places, reasons and remedies."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.geometry.bodies import FilledHole, Finding, IdleHole, InnerLoop, LooseCurves
+from aidl_lang.geometry.colors import similar_colors
+from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.curves import Bezier, Vec
+from aidl_lang.geometry.evaluate import ends
+from aidl_lang.geometry.network import Network
+from aidl_lang.solved import Scalar, SolvedGeometry, SolvedStructure
+from aidl_lang.source import Span
+
+GUIDE = "to guide other geometry only, write `construction` before it"
+
+
+def short(value: float) -> str:
+    """A length for a sentence: four significant digits, no exponent for ordinary sizes."""
+    text = f"{value:.4g}"
+    return "0" if text == "-0" else text
+
+
+def at(p: Vec) -> str:
+    return f"({short(p[0])}, {short(p[1])})"
+
+
+def listed(names: Sequence[str]) -> str:
+    """`a`, `a and b`, `a, b and c`; the tail of a long list as a number."""
+    quoted = [f"`{n}`" for n in dict.fromkeys(names)]
+    if len(quoted) > 4:
+        quoted = [*quoted[:3], f"{len(quoted) - 3} more"]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
+
+
+def local(structure: SolvedStructure, geometry: SolvedGeometry) -> str:
+    """The name of a geometry as the structure writes it."""
+    return geometry.path.removeprefix(structure.path + ".")
+
+
+def finding_note(finding: Finding, network: Network) -> Diagnostic | None:
+    """The warning about a finding; open curves are one only in solids and holes."""
+    if isinstance(finding, InnerLoop):
+        return _inner_loop(finding)
+    if isinstance(finding, LooseCurves):
+        return None if finding.structure.kind == "assembly" else _loose_curves(finding, network)
+    if isinstance(finding, IdleHole):
+        return _idle_hole(finding)
+    return _filled_hole(finding)
+
+
+def _inner_loop(finding: InnerLoop) -> Diagnostic:
+    s, face = finding.structure, finding.face
+    names = [local(s, g) for g in face.geometries]
+    around = [local(s, g) for g in finding.around]
+    one = len(set(names)) == 1
+    kind = "" if s.kind == "solid" else f"{s.kind} "
+    hole = f"hole {_fresh(s, names[0])} {{ {names[0]} = … }}"
+    return Diagnostic(
+        "W0701",
+        f"{listed(names)} {'lies' if one else 'lie'} inside {listed(around)} and "
+        f"{'adds' if one else 'add'} nothing to {kind}`{s.path}`",
+        face.geometries[0].span or s.span,
+        "faces of one structure are united",
+        tuple(Label(g.span, "already covers it") for g in finding.around[:2] if g.span),
+        (
+            f"to cut it out, put it into a hole: `{hole}`",
+            f"to draw it on top, put it into a `drawing`; {GUIDE}",
+        ),
+        _wrap_fix(s, face.geometries) if one else None,
+    )
+
+
+def _fresh(structure: SolvedStructure, name: str) -> str:
+    """A name for a hole around a geometry that its structure does not use yet."""
+    taken = {g.name for g in structure.geometry} | {c.name for c in structure.structures}
+    base = re.sub(r"\W.*", "", name) + "_hole"
+    return next(n for n in (base, *(f"{base}{k}" for k in range(2, 99))) if n not in taken)
+
+
+def _wrap_fix(structure: SolvedStructure, geometries: Sequence[SolvedGeometry]) -> Fix | None:
+    """Wrap the definition into a hole, where nothing else in the program speaks of it."""
+    geometry = geometries[0]
+    span = geometry.span
+    if span is None or not re.fullmatch(rf"{re.escape(geometry.name)}\s*=\s*\w+\(.*\)", span.text, re.DOTALL):
+        return None
+    rest = span.source.text[: span.start] + span.source.text[span.end :]
+    spoken = {geometry.name, *(g.name for g in structure.geometry)}
+    if re.search(rf"\b{re.escape(geometry.name)}\b", rest) or spoken & set(
+        re.findall(r"[^\W\d]\w*(?!\s*[:=(\w])", span.text.partition("=")[2])
+    ):
+        return None
+    hole = f"hole {_fresh(structure, geometry.name)} {{ {span.text} }}"
+    return Fix(f"make `{geometry.name}` a hole", (Edit(span, hole),))
+
+
+def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
+    s = finding.structure
+    names = _whole_names(s, [g for g, _ in finding.curves])
+    gap = _gap(finding, network)
+    plural = len(set(names)) > 1
+    message = f"{listed(names)} {'enclose' if plural else 'encloses'} nothing in {s.kind} `{s.path}`"
+    hints = [f"to draw without filling, use a `drawing`; {GUIDE}"]
+    fix: Fix | None = None
+    secondary: tuple[Label, ...] = ()
+    if gap is not None:
+        (one, p, _), (other, q, _) = gap
+        distance = math.dist(p, q)
+        message += f": the end at {at(p)} is {short(distance)} mm away from {at(q)}"
+        if one is not other:
+            hints.insert(0, f"join the ends: `constrain {_end(s, gap[0])} == {_end(s, gap[1])}`")
+            fix = _join_fix(s, f"{_end(s, gap[0])} == {_end(s, gap[1])}")
+            secondary = (Label(other.span, f"the nearest other end, at {at(q)}"),) if other.span else ()
+        else:
+            hints.insert(0, "close the outline: draw the missing curve, sharing the end points")
+    else:
+        hints.insert(0, "a face needs a closed outline: draw the missing curves, sharing the end points")
+    span = gap[0][0].span if gap else finding.curves[0][0].span
+    return Diagnostic(
+        "W0702", message, span or s.span, "its end is open" if gap else "", secondary, tuple(hints), fix
+    )
+
+
+def _whole_names(structure: SolvedStructure, loose: Sequence[SolvedGeometry]) -> list[str]:
+    """The names of these primitives, a compound shape by its own where none of it bounds a face."""
+    found = {g.path for g in loose}
+    whole = {
+        curve: geometry.name
+        for geometry in structure.geometry
+        if (curves := _primitive_paths(geometry)) and found.issuperset(curves)
+        for curve in curves
+    }
+    return list(dict.fromkeys(whole.get(g.path, local(structure, g)) for g in loose))
+
+
+def _primitive_paths(geometry: SolvedGeometry) -> list[str]:
+    own = [] if geometry.curve is None or geometry.construction else [geometry.path]
+    return own + [path for part in geometry.parts for path in _primitive_paths(part)]
+
+
+End = tuple[SolvedGeometry, Vec, str]
+
+
+def _gap(finding: LooseCurves, network: Network) -> tuple[End, End] | None:
+    """The open end that is nearest to another one, ends of one curve only if there are no others."""
+    meeting: dict[int, int] = {}
+    for use in network.uses:
+        for node in {n for edge, _ in use for n in (network.edges[edge].start, network.edges[edge].end)}:
+            meeting[node] = meeting.get(node, 0) + 1
+    open_ends: list[End] = []
+    for geometry, number in finding.curves:
+        for p, name in zip(ends(network.curves[number]), ("start", "end"), strict=True):
+            if meeting.get(network.node(p), 0) <= 1:
+                open_ends.append((geometry, p, name))
+    pairs = [(a, b) for i, a in enumerate(open_ends) for b in open_ends[i + 1 :]]
+    return min(pairs, key=lambda ab: (ab[0][0] is ab[1][0], math.dist(ab[0][1], ab[1][1])), default=None)
+
+
+def _end(structure: SolvedStructure, end: End) -> str:
+    geometry, _, name = end
+    if isinstance(geometry.curve, Bezier):
+        name = {"start": "p0", "end": "p3"}[name]
+    return f"{local(structure, geometry)}.{name}"
+
+
+def _join_fix(structure: SolvedStructure, equation: str) -> Fix | None:
+    """The constraint before the closing brace of the structure."""
+    span = structure.span
+    if span is None or not span.text.endswith("}"):
+        return None
+    place = Span(span.source, span.end - 1, span.end - 1)
+    line = span.source.line(span.source.position(span.end - 1)[0])
+    own_line = line.strip() == "}"
+    indent = line[: len(line) - len(line.lstrip())]
+    text = f"    constrain {equation}\n{indent}" if own_line else f"; constrain {equation} "
+    return Fix("join the two ends", (Edit(place, text),))
+
+
+def _idle_hole(finding: IdleHole) -> Diagnostic:
+    hole, holder = finding.hole, finding.holder
+    if holder is None:
+        return Diagnostic(
+            "W0703",
+            f"hole `{hole.path}` cuts nothing: no structure holds it",
+            hole.span,
+            "the root of the program is a hole",
+            hints=(f"write it inside the solid it shall cut: `solid … {{ hole {hole.name} {{ … }} }}`",),
+        )
+    hints = [
+        f"place it inside: `constrain inside({_below(holder, hole)}, …)` in `{holder.path}`, or move it to "
+        "the structure that it shall cut: a hole cuts the structure that holds it, with all its children"
+    ]
+    if hole.box and holder.box:
+        hints.insert(0, f"the hole spans {_spans(hole)}, `{holder.name}` spans {_spans(holder)}")
+    return Diagnostic(
+        "W0703",
+        f"hole `{hole.path}` removes nothing from {holder.kind} `{holder.path}`",
+        hole.span,
+        "no material here",
+        (Label(holder.span, "holds the hole"),) if holder.span else (),
+        tuple(hints),
+    )
+
+
+def _below(holder: SolvedStructure, structure: SolvedStructure) -> str:
+    return structure.path.removeprefix(holder.path + ".")
+
+
+def _spans(structure: SolvedStructure) -> str:
+    box = structure.box
+    assert box is not None
+    return f"{at((box.left, box.bottom))} to {at((box.right, box.top))}"
+
+
+def _filled_hole(finding: FilledHole) -> Diagnostic:
+    hole, holder, filler = finding.hole, finding.holder, finding.filler
+    by = f"`{filler.path}`" if filler else "other material"
+    hints = [f"to cut all of `{holder.path}`, move the hole up into it, beside the parts that it shall cut"]
+    if filler is not None and holder.kind == "solid":
+        hints.append(
+            f"to keep `{filler.name}` a part of its own in the hole, make `{holder.name}` an `assembly`"
+        )
+    return Diagnostic(
+        "W0704",
+        f"hole `{hole.path}` is filled again by {by} in {holder.kind} `{holder.path}`",
+        hole.span,
+        "nothing of this hole remains",
+        (Label(filler.span, "fills it"),) if filler and filler.span else (),
+        tuple(hints),
+    )
+
+
+def detached_notes(root: SolvedStructure, paths: Sequence[str], pairs: Iterable[Contact]) -> list[Diagnostic]:
+    """A warning for each body that touches and overlaps none of the others."""
+    held: set[str] = set()
+    nearest: dict[str, tuple[float, str]] = {}
+    for pair in pairs:
+        if pair.relation != "apart":
+            held |= {pair.a, pair.b}
+            continue
+        for one, other in ((pair.a, pair.b), (pair.b, pair.a)):
+            candidate = (pair.gap or 0.0, other)
+            nearest[one] = min(nearest.get(one, candidate), candidate, key=lambda c: c[0])
+    if len(paths) < 2:
+        return []
+    free = _marked_detached(root)
+    lonely = [p for p in paths if p not in held and p not in free]
+    structures = {s.path: s for s in root.walk()}
+    return [_detached(structures[p], nearest.get(p)) for p in lonely]
+
+
+def _marked_detached(root: SolvedStructure) -> set[str]:
+    """Paths of the structures that are, or lie in one that is, `@detached`."""
+    return {
+        below.path
+        for s in root.walk()
+        if "detached" in s.attributes and s.attributes["detached"] != (False,)
+        for below in s.walk()
+    }
+
+
+def _detached(structure: SolvedStructure, nearest: tuple[float, str] | None) -> Diagnostic:
+    message = f"`{structure.path}` touches no other part"
+    hints = ["if that is meant, say so: `@detached` before its definition"]
+    if nearest is not None:
+        gap, other = nearest
+        message += f"; the nearest, `{other}`, is {short(gap)} mm away"
+        hints.insert(0, "to join them, let their borders meet: `gap: 0`, `touching(…)` or `on_top_of(…)`")
+    span, fix = structure.span, None
+    if span and re.match(r"(@|[a-z]+\s+\w+\s*(\[|\(|\{|at\b|rotated\b))", span.text):
+        fix = Fix("say that it is meant", (Edit(Span(span.source, span.start, span.start), "@detached "),))
+    return Diagnostic("W0705", message, span, "stands by itself", hints=tuple(hints), fix=fix)
+
+
+def unusable_note(structure: SolvedStructure, geometry: SolvedGeometry) -> Diagnostic:
+    """For a curve without extent or without finite coordinates."""
+    name = local(structure, geometry)
+    size = next((k for k in ("radius", "rx", "length") if k in geometry.values), None)
+    return Diagnostic(
+        "W0706",
+        f"`{name}` in `{structure.path}` has no extent and is not drawn",
+        geometry.span or structure.span,
+        f"this {geometry.type} is a single point",
+        hints=(
+            f"constraints may have shrunk it: hold it open with `constrain {name}.{size or 'length'} >= …`",
+        ),
+    )
+
+
+def color_note(structure: SolvedStructure, values: tuple[Scalar, ...]) -> Diagnostic:
+    written = ", ".join(map(str, values))
+    similar = similar_colors(str(values[0])) if len(values) == 1 else []
+    hints = ["a colour is a CSS name, `#rrggbb`, or three numbers from 0 to 255"]
+    if similar:
+        hints.insert(0, f"did you mean {' or '.join(f'`{s}`' for s in similar)}?")
+    fix, span = None, structure.span
+    if (
+        similar
+        and span
+        and (found := re.match(rf'@color\(\s*["\']?({re.escape(written)})["\']?\s*\)', span.text))
+    ):
+        place = Span(span.source, span.start + found.start(1), span.start + found.end(1))
+        fix = Fix(f"write `{similar[0]}`", (Edit(place, similar[0]),))
+    return Diagnostic(
+        "W0707",
+        f"`{written}` is no colour; `{structure.path}` is drawn in its usual one",
+        span,
+        "",
+        (),
+        tuple(hints),
+        fix,
+    )

@@ -1,0 +1,50 @@
+"""Regions of the plane, bounded by exact curves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from aidl_lang.geometry.curves import Circle, Ellipse, Piece
+
+
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """A closed outline; each piece starts where the one before it ends, to the last digit.
+
+    A whole circle or ellipse is a loop of one piece and counts as counter-clockwise; `reversed` turns it
+    around.
+    """
+
+    pieces: tuple[Piece, ...]
+    reversed: bool = False
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the loop is a single closed curve without ends."""
+        return len(self.pieces) == 1 and isinstance(self.pieces[0], Circle | Ellipse)
+
+
+@dataclass(frozen=True, slots=True)
+class Face:
+    """A connected area: `outer` counter-clockwise, `holes` clockwise."""
+
+    outer: Loop
+    holes: tuple[Loop, ...] = ()
+
+    @property
+    def loops(self) -> tuple[Loop, ...]:
+        return (self.outer, *self.holes)
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """Any number of faces that do not overlap."""
+
+    faces: tuple[Face, ...] = field(default=())
+
+    @property
+    def loops(self) -> tuple[Loop, ...]:
+        return tuple(loop for face in self.faces for loop in face.loops)
+
+    def __bool__(self) -> bool:
+        return bool(self.faces)

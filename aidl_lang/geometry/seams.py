@@ -1,0 +1,43 @@
+"""The edges of united structures that run inside their body: fine lines in pictures, nothing in cutting
+formats.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from aidl_lang.geometry.bodies import Mass
+from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.evaluate import part
+from aidl_lang.geometry.network import Network
+from aidl_lang.geometry.sections import inside_mask
+from aidl_lang.geometry.trace import Traced
+
+
+def visible_seams(
+    network: Network, mass: Mass, traced: Mapping[str, Traced]
+) -> Iterator[tuple[str, tuple[Piece, ...]]]:
+    """By path of the united structure, its edges inside the body, each drawn once."""
+    drawn = set(traced[mass.structure.path].edges)
+    for path in mass.inner:
+        candidates = sorted(traced[path].edges - drawn)
+        if not candidates:
+            continue
+        inside = inside_mask(mass.section, [network.midpoint(edge) for edge in candidates])
+        edges = [edge for edge, within in zip(candidates, inside, strict=True) if within]
+        drawn.update(edges)
+        if edges:
+            yield path, tuple(_merged(network, edges))
+
+
+def _merged(network: Network, edges: list[int]) -> Iterator[Piece]:
+    """Edges that follow each other on one curve as one piece."""
+    start = None
+    for number, after in zip(edges, [*edges[1:], None], strict=True):
+        edge, start = network.edges[number], network.edges[number] if start is None else start
+        following = network.edges[after] if after is not None else None
+        if following and following.curve == edge.curve and following.t0 == edge.t1:
+            continue
+        curve, nodes = network.curves[edge.curve], network.nodes
+        yield part(curve, start.t0, edge.t1, nodes[start.start], nodes[edge.end])
+        start = None

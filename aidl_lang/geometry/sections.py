@@ -1,0 +1,112 @@
+"""A thin layer over Manifold's plane booleans, on polygons in grid units (see `network`)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from importlib import import_module
+from typing import Any, Literal, Protocol, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.geometry.network import RELATIVE_TOLERANCE
+
+Polygon = NDArray[np.float64]
+NEGLIGIBLE = 16 * RELATIVE_TOLERANCE
+"""Width in grid units below which an area is rounding: the drawing measures about 16 of them."""
+
+
+class Section(Protocol):
+    """What is used of Manifold's `CrossSection`: an area of the plane bounded by polygons."""
+
+    def area(self) -> float: ...
+    def bounds(self) -> tuple[float, float, float, float]: ...
+    def is_empty(self) -> bool: ...
+    def num_contour(self) -> int: ...
+    def decompose(self) -> list[Self]: ...
+    def to_polygons(self) -> list[Polygon]: ...
+    def __sub__(self, other: Self) -> Self: ...
+    def __xor__(self, other: Self) -> Self: ...
+
+
+@lru_cache(maxsize=1)
+def _manifold() -> Any:
+    # Not imported at the top: checking and formatting a program need no kernel.
+    return import_module("manifold3d")
+
+
+def fill(polygons: Sequence[Polygon], rule: Literal["EvenOdd", "NonZero"]) -> Section:
+    m = _manifold()
+    kept = [p for p in polygons if len(p) > 2]
+    section: Section = m.CrossSection(kept, getattr(m.FillRule, rule)) if kept else m.CrossSection()
+    return section
+
+
+def union(sections: Sequence[Section]) -> Section:
+    """Of any number of sections."""
+    m = _manifold()
+    full = [s for s in sections if not s.is_empty()]
+    if len(full) == 1:
+        return full[0]
+    section: Section = m.CrossSection.batch_boolean(full, m.OpType.Add) if full else m.CrossSection()
+    return section
+
+
+def difference(a: Section, b: Section) -> Section:
+    if not boxes_meet(a, b):
+        return a
+    return a - b
+
+
+def intersection(a: Section, b: Section) -> Section:
+    if not boxes_meet(a, b):
+        nothing: Section = _manifold().CrossSection()
+        return nothing
+    return a ^ b
+
+
+def boxes_meet(a: Section, b: Section) -> bool:
+    """Whether the bounding boxes overlap by more than nothing."""
+    if a.is_empty() or b.is_empty():
+        return False
+    (a0, a1, a2, a3), (b0, b1, b2, b3) = a.bounds(), b.bounds()
+    return bool(a0 < b2 and b0 < a2 and a1 < b3 and b1 < a3)
+
+
+def box_within(a: Section, b: Section) -> bool:
+    """Whether the box of a lies in the box of b."""
+    (a0, a1, a2, a3), (b0, b1, b2, b3) = a.bounds(), b.bounds()
+    e = NEGLIGIBLE
+    return bool(a0 >= b0 - e and a1 >= b1 - e and a2 <= b2 + e and a3 <= b3 + e)
+
+
+def is_nothing(section: Section, scale: float | None = None) -> bool:
+    """Whether an area is empty or thinner than the tolerance; `scale` is the size to compare it with."""
+    if section.is_empty():
+        return True
+    if scale is None:
+        left, bottom, right, top = section.bounds()
+        scale = (right - left) + (top - bottom)
+    return bool(abs(section.area()) <= NEGLIGIBLE * scale)
+
+
+def covers(cover: Section, section: Section) -> bool:
+    """Whether nothing of the section lies outside the cover."""
+    if section.is_empty() or cover.is_empty() or not box_within(section, cover):
+        return False
+    return is_nothing(difference(section, cover), math.sqrt(abs(section.area())))
+
+
+def inside_mask(section: Section, spots: Sequence[Polygon]) -> NDArray[np.bool_]:
+    """Which points in grid units lie inside, by the crossings of a ray to the right."""
+    p = np.array(spots).reshape(-1, 1, 2)
+    inside = np.zeros(len(p), dtype=np.bool_)
+    for polygon in section.to_polygons():
+        a, b = polygon[None], np.roll(polygon, -1, axis=0)[None]
+        straddle = (a[..., 1] > p[..., 1]) != (b[..., 1] > p[..., 1])
+        rise = np.where(straddle, b[..., 1] - a[..., 1], 1.0)
+        x = a[..., 0] + (p[..., 1] - a[..., 1]) / rise * (b[..., 0] - a[..., 0])
+        inside ^= (np.count_nonzero(straddle & (x > p[..., 0]), axis=1) % 2).astype(np.bool_)
+    return inside

@@ -1,0 +1,275 @@
+"""From the polygons of a boolean back to outlines of exact curves.
+
+Each vertex of a result is a vertex of the network (see there), so the edge it belongs to is looked up, not
+guessed. Runs of vertices along one edge become one part of its curve, and parts that continue each other are
+joined again, over the nodes that other curves left on them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import accumulate
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import TAU, ends, is_closed, locate, part, point, points
+from aidl_lang.geometry.measures import length, loop_area
+from aidl_lang.geometry.network import NODE, UNKNOWN, Network
+from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.sections import Section
+
+T = TypeVar("T")
+STRAIGHT = -3
+"""Stands for the edge of a result that no curve owns: the straight way between its two vertices."""
+
+
+@dataclass(frozen=True, slots=True)
+class Traced:
+    """A region and the edges of the network that bound it."""
+
+    region: Region
+    edges: frozenset[int]
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """The part `t0..t1` of a curve (None: straight) between two points."""
+
+    curve: int | None
+    t0: float
+    t1: float
+    start: Vec
+    end: Vec
+
+
+@dataclass(frozen=True, slots=True)
+class Sides:
+    """The sides of many polygons in one table: where each vertex belongs, and the edge each side follows.
+
+    Polygon k has the rows `bounds[k]:bounds[k + 1]`.
+    """
+
+    vertices: NDArray[np.float64]
+    bounds: list[int]
+    owner: NDArray[np.int64]
+    place: NDArray[np.int64]
+    edges: NDArray[np.int64]
+
+
+def trace(network: Network, section: Section) -> Traced:
+    """The exact region whose polygons Manifold returned, faces and loops in a canonical order."""
+    return trace_all(network, [section])[0]
+
+
+def trace_all(network: Network, sections: Sequence[Section]) -> list[Traced]:
+    """Many regions at once, which spares most of the table look-ups."""
+    faces = [[c.to_polygons() for c in _components(section)] for section in sections]
+    sides = _sides(network, [polygon for section in faces for face in section for polygon in face])
+    number = 0
+    result = []
+    for section in faces:
+        used: set[int] = set()
+        traced = []
+        for face in section:
+            numbers = range(number, number + len(face))
+            traced += _faces([loop for k in numbers for loop in _loops(network, sides, k, used)])
+            number += len(face)
+        traced.sort(key=lambda face: _first_point(face.outer))
+        result.append(Traced(Region(tuple(traced)), frozenset(used)))
+    return result
+
+
+def _components(section: Section) -> list[Section]:
+    """The connected faces, one outer polygon each."""
+    count = section.num_contour()
+    return [section] if count == 1 else section.decompose() if count else []
+
+
+def _faces(loops: list[tuple[float, Loop]]) -> list[Face]:
+    """Outer loops with the holes that lie in them: one, or several that touch in a point."""
+    outers = [loop for _, loop in sorted(loops, key=lambda pair: pair[0]) if _ > 0]
+    holes: list[list[Loop]] = [[] for _ in outers]
+    for _, hole in (pair for pair in loops if pair[0] < 0 and outers):
+        p = point(hole.pieces[0], 0.5)
+        holder = 0 if len(outers) == 1 else next((k for k, o in enumerate(outers) if _contains(o, p)), -1)
+        holes[holder].append(hole)
+    return [Face(o, tuple(sorted(h, key=_first_point))) for o, h in zip(outers, holes, strict=True)]
+
+
+def _contains(loop: Loop, p: Vec) -> bool:
+    """Whether a point that is not on the loop lies inside, by the crossings of a ray to the right."""
+    ts = np.linspace(0, 1, 65)
+    polygon = np.concatenate([points(piece, ts)[:-1] for piece in loop.pieces])
+    a, b = polygon, np.concatenate((polygon[1:], polygon[:1]))
+    straddle = (a[:, 1] > p[1]) != (b[:, 1] > p[1])
+    a, b = a[straddle], b[straddle]
+    x = a[:, 0] + (p[1] - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0])
+    return bool(np.count_nonzero(x > p[0]) % 2)
+
+
+def _first_point(loop: Loop) -> Vec:
+    return ends(loop.pieces[0])[0]
+
+
+def _sides(network: Network, polygons: list[NDArray[np.float64]]) -> Sides:
+    """Look up all vertices, then find the edge from each to the next one of its polygon."""
+    bounds = [0, *accumulate(len(p) for p in polygons)]
+    vertices = np.concatenate(polygons) if polygons else np.zeros((0, 2))
+    after = np.arange(1, len(vertices) + 1)
+    after[[b - 1 for b in bounds[1:]]] = bounds[:-1]
+    owner, place = network.look_up(vertices)
+    owner_after = owner[after]
+    edges = np.where(owner >= 0, owner, np.where(owner_after >= 0, owner_after, STRAIGHT))
+    between = np.flatnonzero((owner == NODE) & (owner_after == NODE))
+    ways = zip(place[between].tolist(), place[after[between]].tolist(), strict=True)
+    edges[between] = [network.straight(a, b, STRAIGHT) for a, b in ways]
+    # Chords that cross where their curves only touch leave vertices unknown to the network.
+    changed = (owner >= 0) & (owner_after >= 0) & (owner != owner_after)
+    for k in np.flatnonzero((owner == UNKNOWN) | (owner_after == UNKNOWN) | changed):
+        edges[k] = network.nearest_edge((vertices[k] + vertices[after[k]]) / 2)
+    return Sides(vertices, bounds, owner, place, edges)
+
+
+def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[tuple[float, Loop]]:
+    """One polygon as loops of exact pieces with their areas, without those no wider than the tolerance."""
+    low, high = sides.bounds[number], sides.bounds[number + 1]
+    edges, owner = sides.edges[low:high], sides.owner[low:high]
+    before = np.concatenate((edges[-1:], edges[:-1]))
+    changes = np.flatnonzero((edges != before) | (owner == NODE) | (edges == STRAIGHT))
+    starts = changes.tolist() or [0]
+    runs: list[Run] = []
+    for begin, end in zip(starts, [*starts[1:], starts[0]], strict=True):
+        edge = int(edges[begin])
+        used.add(edge)
+        runs.append(_run(network, sides, edge, low + begin, low + end, low + (begin + 1) % (high - low)))
+    used.discard(STRAIGHT)
+    result = []
+    for simple in _split_at_pinches(_snapped(runs, network.tolerance)):
+        loop = _to_loop(network, _joined(simple, lambda a, b: _continue(network, a, b)))
+        area = loop_area(loop)
+        if abs(area) > network.tolerance * sum(map(length, loop.pieces)) / 2:
+            result.append((area, loop))
+    return result
+
+
+def _split_at_pinches(runs: list[Run]) -> list[list[Run]]:
+    """A polygon may pass a point twice (a circle inscribed in a square does): loops that do not."""
+    if len({run.start for run in runs}) == len(runs):
+        return [runs] if runs else []
+    loops: list[list[Run]] = []
+    stack: list[Run] = []
+    for run in runs:
+        stack.append(run)
+        first = next((k for k, r in enumerate(stack) if r.start == run.end), None)
+        if first is not None:
+            loops.append(stack[first:])
+            del stack[first:]
+    return loops
+
+
+def _run(network: Network, sides: Sides, number: int, begin: int, end: int, second: int) -> Run:
+    """The run along one edge from vertex `begin` by way of the vertex after it to vertex `end`."""
+    owner, place, vertices = sides.owner, sides.place, sides.vertices
+    first = int(place[begin]) if owner[begin] == NODE else None
+    last = int(place[end]) if owner[end] == NODE else None
+    start = network.nodes[first] if first is not None else network.position(vertices[begin])
+    stop = network.nodes[last] if last is not None else network.position(vertices[end])
+    if number == STRAIGHT:
+        return Run(None, 0.0, 1.0, start, stop)
+    edge = network.edges[number]
+    if first is not None and last is not None and {first, last} == {edge.start, edge.end}:
+        forward = first == edge.start
+        if edge.start == edge.end:
+            forward = int(place[second]) < len(edge.inner) / 2
+        t0, t1 = (edge.t0, edge.t1) if forward else (edge.t1, edge.t0)
+    else:
+        t0, t1 = (_parameter(network, edge.curve, edge.t0, edge.t1, p) for p in (start, stop))
+    return Run(edge.curve, t0, t1, start, stop)
+
+
+def _parameter(network: Network, curve: int, low: float, high: float, p: Vec) -> float:
+    """The parameter of p on a part of a curve, at its ends exactly."""
+    chord = 16 * network.size * 1e-4
+    t = locate(network.curves[curve], p, chord)
+    if t is None:
+        return low
+    return min(high, max(low, t))
+
+
+def _snapped(runs: list[Run], tolerance: float) -> list[Run]:
+    """Without runs that go nowhere; their neighbours meet in one point."""
+    kept = [
+        r for r in runs if r.t0 != r.t1 and (r.curve is not None or math.dist(r.start, r.end) > tolerance)
+    ]
+    return [
+        r if r.end == after.start else replace(r, end=after.start)
+        for r, after in zip(kept, kept[1:] + kept[:1], strict=True)
+    ]
+
+
+def _continue(network: Network, a: Run, b: Run) -> Run | None:
+    """One run for two that follow each other on one curve."""
+    if a.curve is None or a.curve != b.curve or (a.t1 > a.t0) != (b.t1 > b.t0):
+        return None
+    if a.t1 == b.t0:
+        return Run(a.curve, a.t0, b.t1, a.start, b.end)
+    if is_closed(network.curves[a.curve]) and abs(a.t1 - b.t0) == 1:
+        return Run(a.curve, a.t0, a.t1 + (b.t1 - b.t0), a.start, b.end)
+    return None
+
+
+def _to_loop(network: Network, runs: list[Run]) -> Loop:
+    if len(runs) == 1 and runs[0].curve is not None and is_closed(curve := network.curves[runs[0].curve]):
+        return Loop((curve,), reversed=runs[0].t1 < runs[0].t0)
+    pieces = _joined([_piece(network, r) for r in runs], lambda a, b: _fuse(a, b, network.tolerance))
+    if len(pieces) == 1 and isinstance(arc := pieces[0], Arc) and abs(arc.sweep) > TAU - 1e-6:
+        return Loop((Circle(arc.center, arc.radius),), reversed=arc.sweep < 0)
+    first = min(range(len(pieces)), key=lambda k: ends(pieces[k])[0])
+    return Loop(tuple(pieces[first:] + pieces[:first]))
+
+
+def _piece(network: Network, run: Run) -> Piece:
+    if run.curve is None:
+        return Line(run.start, run.end)
+    return part(network.curves[run.curve], run.t0, run.t1, run.start, run.end)
+
+
+def _fuse(a: Piece, b: Piece, tolerance: float) -> Piece | None:
+    """One piece for two that lie on the same line or circle and follow each other."""
+    if isinstance(a, Line) and isinstance(b, Line):
+        return _fuse_lines(a, b, tolerance)
+    if isinstance(a, Arc) and isinstance(b, Arc):
+        same = math.dist(a.center, b.center) <= tolerance and abs(a.radius - b.radius) <= tolerance
+        if same and a.sweep * b.sweep > 0 and abs(a.sweep + b.sweep) <= TAU + 1e-9:
+            return Arc(a.center, a.radius, a.start, b.end, a.sweep + b.sweep)
+    return None
+
+
+def _fuse_lines(a: Line, b: Line, tolerance: float) -> Line | None:
+    dx, dy = b.end[0] - a.start[0], b.end[1] - a.start[1]
+    ax, ay = a.end[0] - a.start[0], a.end[1] - a.start[1]
+    whole = math.hypot(dx, dy)
+    if whole <= tolerance or ax * dx + ay * dy <= 0 or math.hypot(ax, ay) >= whole:
+        return None
+    away = abs(ax * dy - ay * dx) / whole
+    shorter = min(math.hypot(ax, ay), whole - math.hypot(ax, ay))
+    return Line(a.start, b.end) if away <= min(tolerance, 1e-5 * shorter) else None
+
+
+def _joined(items: list[T], join: Callable[[T, T], T | None]) -> list[T]:
+    """Neighbours joined where they can be, around the end as well."""
+    result: list[T] = []
+    for item in items:
+        both = join(result[-1], item) if result else None
+        if both is None:
+            result.append(item)
+        else:
+            result[-1] = both
+    while len(result) > 1 and (both := join(result[-1], result[0])) is not None:
+        result = [both, *result[1:-1]]
+    return result

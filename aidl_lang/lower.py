@@ -1,0 +1,221 @@
+"""Model → Problem: the structure tree as the solver sees it, unknowns and constraints by number.
+
+The solver's groups are the structures, parents first. Unknowns that nothing can move are constants there: a
+frame that no constraint mentions, an argument that was read while building, an angle that nothing asks to turn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from aidl_lang import expression as ex
+from aidl_lang.expression import Expression, Unknown
+from aidl_lang.model import Comparison, Constraint, Geometry, Model, Structure, convert, own_geometry
+from aidl_lang.solver import Constraint as SolverConstraint
+from aidl_lang.solver import Problem, Relation, Row
+from aidl_lang.solver.expression import TapeBuilder
+from aidl_lang.units import ANGLE, LENGTH, MaybeDimension
+from aidl_lang.values import Num, PointVal
+
+_SIZES = frozenset({"radius", "diameter", "width", "height", "length", "rx", "ry"})
+"""Sizes that must not become negative."""
+
+_RADIAN = 180.0 / np.pi
+
+
+@dataclass(frozen=True)
+class Lowered:
+    """
+    unknowns  by their number in the problem
+    stated    for each constraint of the problem, the one of the model; None for those that come with the
+              nature of a size or a box (never negative)
+    """
+
+    problem: Problem
+    unknowns: tuple[Unknown, ...]
+    stated: tuple[Constraint | None, ...]
+    size: float
+
+
+def lower(model: Model) -> Lowered:
+    return _Lowering(model).run()
+
+
+class _Lowering:
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.structures = list(model.root.walk())
+        self.groups = {s: i for i, s in enumerate(self.structures)}
+        self.tape = TapeBuilder()
+        self.node_of: dict[int, int] = {}
+        self.numbers: dict[Unknown, int] = {}
+        self.variables: set[Unknown] = set()
+        self.size = model_size(self.structures)
+
+    def run(self) -> Lowered:
+        self._number_unknowns(e for s in self.structures for e in _observed(s))
+        stated: list[Constraint | None] = []
+        constraints: list[SolverConstraint] = []
+        for constraint in self.model.constraints:
+            if constraint.holder in self.groups:
+                constraints.append(self._constraint(constraint))
+                stated.append(constraint)
+        for never in self._never_negative():
+            constraints.append(never)
+            stated.append(None)
+        observables = tuple((self.groups[s], self._node(e)) for s in self.structures for e in self._in_root(s))
+        found = tuple(self.numbers)
+        parents = [self.groups[s.parent] if s.parent in self.groups else -1 for s in self.structures]  # type: ignore[index]
+        problem = Problem(
+            tape=self.tape.finish(),
+            initial=np.array([u.guess for u in found], dtype=np.float64),
+            scale=np.array([self._scale(u) for u in found], dtype=np.float64),
+            kept=np.array([u.kept for u in found], dtype=np.bool_),
+            group=np.array([self.groups[u.owner] for u in found], dtype=np.int64),
+            frame_of=np.array([self.groups[u.frame_of] if u.frame_of else -1 for u in found], dtype=np.int64),
+            parent=np.array(parents, dtype=np.int64),
+            constraints=tuple(constraints),
+            observables=observables,
+            names=tuple(u.path for u in found),
+        )
+        return Lowered(problem, found, tuple(stated), self.size)
+
+    # --- Unknowns ------------------------------------------------------------------------------
+
+    def _number_unknowns(self, observed: Iterable[Expression]) -> None:
+        """Unknowns that can move: those of named geometry, and frames that a constraint mentions."""
+        mentioned = set(
+            ex.unknowns(e for c in self.model.constraints for part in c.comparisons for e in (part.left, part.right))
+        )
+        drawn = {u for u in ex.unknowns(observed) if u.frame_of is None}
+        variables = self.variables = {
+            u for u in self.model.unknowns if isinstance(u.holder, Structure) and u.frame_of is None
+        }
+        for unknown in self.model.unknowns:
+            live = unknown in mentioned or unknown in drawn or unknown in variables
+            if live and not unknown.exact and unknown.owner in self.groups:
+                self.numbers[unknown] = len(self.numbers)
+
+    def _scale(self, unknown: Unknown) -> float:
+        """One millimetre, or the turn that moves a point at the size of the model by as much."""
+        return _RADIAN / self.size if unknown.angular else 1.0
+
+    # --- Expressions ---------------------------------------------------------------------------
+
+    def _node(self, root: Expression) -> int:
+        """The number of an expression on the tape."""
+        known, tape = self.node_of, self.tape
+        stack = [root]
+        while stack:
+            node = stack[-1]
+            if id(node) in known:
+                stack.pop()
+            elif missing := [a for a in node.args if id(a) not in known]:
+                stack.extend(missing)
+            else:
+                known[id(node)] = self._make(tape, node)
+                stack.pop()
+        return known[id(root)]
+
+    def _make(self, tape: TapeBuilder, node: Expression) -> int:
+        if node.op == "constant":
+            return tape.constant(node.value)
+        if node.op == "unknown":
+            assert isinstance(node.payload, Unknown)
+            number = self.numbers.get(node.payload)
+            return tape.constant(node.payload.guess) if number is None else tape.unknown(number)
+        made: int = getattr(tape, node.op)(*[self.node_of[id(a)] for a in node.args])
+        return made
+
+    def _in_root(self, s: Structure) -> Iterator[Expression]:
+        """What a reader of the drawing could see move of a structure, and its variables."""
+        for at in _seen(s):
+            yield from (at,) if isinstance(at, Expression) else convert(*at, s, self.structures[0])
+        for unknown in self.variables:
+            if unknown.owner is s:
+                yield ex.unknown(unknown)
+
+    # --- Constraints ---------------------------------------------------------------------------
+
+    def _constraint(self, constraint: Constraint) -> SolverConstraint:
+        rows = tuple(self._row(c) for c in constraint.comparisons)
+        placed = frozenset(
+            self.numbers[u] for c in constraint.comparisons for u in c.placed if u in self.numbers
+        )
+        return SolverConstraint(self.groups[constraint.holder], rows, placed, constraint.weight)
+
+    def _row(self, comparison: Comparison) -> Row:
+        tape = self.tape
+        left, right = self._node(comparison.left), self._node(comparison.right)
+        scale = self._magnitude(comparison.dimension)
+        if comparison.relation == "==":
+            difference = tape.sub(left, right)
+            if comparison.dimension == ANGLE:
+                # Angles agree modulo a turn: the difference brought into -180..180.
+                half = tape.constant(180.0)
+                difference = tape.sub(tape.mod(tape.add(difference, half), tape.constant(360.0)), half)
+            return Row(difference, Relation.EQUAL, scale)
+        if comparison.relation in (">=", ">"):
+            left, right = right, left
+        return Row(tape.sub(left, right), Relation.AT_MOST, scale)
+
+    def _magnitude(self, dimension: MaybeDimension) -> float:
+        """A typical value of a residual, by which its tolerance is measured."""
+        length, angle = dimension or LENGTH
+        return float(self.size**length * _RADIAN**angle)
+
+    def _never_negative(self) -> Iterator[SolverConstraint]:
+        for unknown, number in self.numbers.items():
+            if unknown.field.rpartition(".")[2] in _SIZES and unknown.guess >= 0:
+                expression = self.tape.neg(self.tape.unknown(number))
+                row = Row(expression, Relation.AT_MOST, self.size)
+                yield SolverConstraint(self.groups[unknown.owner], (row,), frozenset((number,)))
+
+
+_Observed = Expression | tuple[Expression, Expression]
+
+
+def _observed(s: Structure) -> Iterator[Expression]:
+    """Every number that defines what a structure itself draws, in its own frame."""
+    for at in _seen(s):
+        yield from (at,) if isinstance(at, Expression) else at
+
+
+def _seen(s: Structure) -> Iterator[_Observed]:
+    for geometry in s.own():
+        yield from _seen_geometry(geometry)
+    if s.plan:
+        left, bottom, width, height = s.plan
+        yield (left, bottom)
+        yield (ex.add(left, width), ex.add(bottom, height))
+
+
+def _seen_geometry(geometry: Geometry) -> Iterator[_Observed]:
+    for value in geometry.fields.values():
+        if isinstance(value, PointVal):
+            yield (value.x.expression, value.y.expression)
+        elif isinstance(value, Num):
+            yield value.expression
+    for part in own_geometry(geometry.parts, geometry):
+        yield from _seen_geometry(part)
+
+
+def model_size(structures: Iterable[Structure]) -> float:
+    """The extent of the model at its first guesses in mm, at least 1."""
+    low, high = 0.0, 0.0
+    for s in structures:
+        for at in _seen(s):
+            if not isinstance(at, Expression):
+                for e in convert(*at, s, _root(s)):
+                    if e.value == e.value and abs(e.value) < 1e12:
+                        low, high = min(low, e.value), max(high, e.value)
+    return max(high - low, 1.0)
+
+
+def _root(s: Structure) -> Structure:
+    while s.parent is not None:
+        s = s.parent
+    return s

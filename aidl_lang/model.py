@@ -1,0 +1,306 @@
+"""The structure tree that a program describes, before it is solved.
+
+A structure has a frame, a sketch (geometry and parameters), children and constraints (paper, appendix A).
+Expressions in a geometry are in the frame of the structure that owns it; those in a constraint are in the
+frame of the structure that holds it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from aidl_lang import expression as ex
+from aidl_lang.expression import Expression, Unknown
+from aidl_lang.source import Span
+from aidl_lang.units import MaybeDimension
+from aidl_lang.values import Array, ListVal, Num, PointVal, Text, members
+
+if TYPE_CHECKING:
+    from aidl_lang.values import Value
+
+KINDS = ("assembly", "solid", "hole", "drawing")
+
+
+@dataclass(eq=False)
+class Frame:
+    """Position and rotation relative to the parent; a mirrored frame reflects x before it turns."""
+
+    x: Expression = ex.ZERO
+    y: Expression = ex.ZERO
+    rotation: Expression = ex.ZERO
+    mirrored: bool = False
+
+    def outward(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
+        """Coordinates of this frame → of the parent's."""
+        u, v = self.turn(x, y)
+        return ex.add(self.x, u), ex.add(self.y, v)
+
+    def inward(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
+        """Coordinates of the parent's frame → of this one."""
+        u, v = ex.sub(x, self.x), ex.sub(y, self.y)
+        c, s = self._cos_sin()
+        a = ex.add(ex.mul(c, u), ex.mul(s, v))
+        b = ex.sub(ex.mul(c, v), ex.mul(s, u))
+        return (ex.apply("neg", a) if self.mirrored else a), b
+
+    def turn(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
+        if self.mirrored:
+            x = ex.apply("neg", x)
+        c, s = self._cos_sin()
+        return ex.sub(ex.mul(c, x), ex.mul(s, y)), ex.add(ex.mul(s, x), ex.mul(c, y))
+
+    def _cos_sin(self) -> tuple[Expression, Expression]:
+        if self.rotation.is_constant:
+            c, s = ex.exact_turn(self.rotation.value)
+            return ex.constant(c), ex.constant(s)
+        return ex.cos(self.rotation), ex.sin(self.rotation)
+
+
+@dataclass(eq=False)
+class Geometry:
+    """A primitive (point, line, arc, circle, bezier, ellipse) or a compound shape.
+
+    fields     what defines a primitive
+    scope      names of a compound shape: its parts, arguments and lets (see scopes)
+    arguments  names of the arguments of a compound shape
+    parts      named geometry inside a compound shape, in order of writing
+    clockwise  for an arc
+    """
+
+    type: str
+    owner: Structure
+    span: Span | None
+    fields: dict[str, Value] = field(default_factory=dict)
+    parts: dict[str, Value] = field(default_factory=dict)
+    scope: object = None
+    arguments: tuple[str, ...] = ()
+    clockwise: bool = False
+    name: str | None = None
+    container: Geometry | Structure | None = None
+    construction: bool = False
+    views: dict[Structure, dict[str, Value]] = field(default_factory=dict, repr=False)
+
+    @property
+    def path(self) -> str:
+        container = self.container or self.owner
+        return f"{container.path}.{self.name or self.type}"
+
+    @property
+    def is_compound(self) -> bool:
+        return self.scope is not None
+
+    def primitives(self) -> Iterator[Geometry]:
+        """The primitives that are drawn, in order of writing."""
+        if self.construction:
+            return
+        if not self.is_compound:
+            yield self
+        for part in own_geometry(self.parts, self):
+            yield from part.primitives()
+
+
+@dataclass(eq=False)
+class Structure:
+    """
+    members     everything that has a name in it: geometry, arrays, children, numbers
+    geometry    what it draws itself; children: structures directly inside
+    plan        the box of its own that an empty structure has: left, bottom, width, height
+    scope       the names its body sees (see interp)
+    """
+
+    kind: str
+    name: str
+    parent: Structure | None
+    span: Span | None
+    frame: Frame = field(default_factory=Frame)
+    attributes: dict[str, tuple[Value, ...]] = field(default_factory=dict)
+    params: dict[str, Num | Text | bool] = field(default_factory=dict)
+    members: dict[str, Value] = field(default_factory=dict)
+    geometry: dict[str, Value] = field(default_factory=dict)
+    children: list[Structure] = field(default_factory=list)
+    scope: object = None
+    plan: tuple[Expression, Expression, Expression, Expression] | None = None
+    doc: str | None = None
+    is_todo: bool = False
+    is_complete: bool = False
+
+    @property
+    def path(self) -> str:
+        return f"{self.parent.path}.{self.name}" if self.parent and self.parent.name else self.name
+
+    @property
+    def is_empty(self) -> bool:
+        return not self.geometry and not self.children
+
+    def walk(self) -> Iterator[Structure]:
+        stack = [self]
+        while stack:
+            yield (top := stack.pop())
+            stack.extend(reversed(top.children))
+
+    def own(self) -> Iterator[Geometry]:
+        """Named geometry of this structure itself, in order of writing."""
+        return own_geometry(self.geometry, self)
+
+    def is_within(self, other: Structure) -> bool:
+        """Whether this structure is `other` or lies below it."""
+        here: Structure | None = self
+        while here is not None and here is not other:
+            here = here.parent
+        return here is other
+
+
+def own_geometry(named: dict[str, Value], container: Geometry | Structure) -> Iterator[Geometry]:
+    """Geometry among named values that belongs to the container, members of arrays and lists included."""
+    for value in named.values():
+        yield from _geometry_in(value, container)
+
+
+def _geometry_in(value: Value, container: Geometry | Structure) -> Iterator[Geometry]:
+    if isinstance(value, Geometry):
+        if value.container is container:
+            yield value
+    elif isinstance(value, ListVal | Array):
+        for item in members(value) or ():
+            yield from _geometry_in(item, container)
+
+
+def chain(structure: Structure) -> list[Structure]:
+    """The structure and its ancestors, innermost first."""
+    found = [structure]
+    while (parent := found[-1].parent) is not None:
+        found.append(parent)
+    return found
+
+
+def common_ancestor(a: Structure, b: Structure) -> Structure:
+    above = set(map(id, chain(a)))
+    return next(s for s in chain(b) if id(s) in above)
+
+
+def convert(
+    x: Expression, y: Expression, source: Structure, target: Structure
+) -> tuple[Expression, Expression]:
+    """Coordinates in the frame of `source` → in that of `target`."""
+    if source is target:
+        return x, y
+    meeting = common_ancestor(source, target)
+    here = source
+    while here is not meeting:
+        x, y = here.frame.outward(x, y)
+        assert here.parent is not None
+        here = here.parent
+    below = chain(target)
+    for structure in reversed(below[: below.index(meeting)]):
+        x, y = structure.frame.inward(x, y)
+    return x, y
+
+
+def convert_point(point: PointVal, source: Structure, target: Structure) -> PointVal:
+    if source is target:
+        return point
+    x, y = convert(point.x.expression, point.y.expression, source, target)
+    status = max(point.x.status, point.y.status)
+    return PointVal(Num(x, point.x.dimension, status), Num(y, point.y.dimension, status))
+
+
+def convert_angle(angle: Expression, source: Structure, target: Structure) -> Expression:
+    """A direction in degrees in the frame of `source` → in that of `target`."""
+    meeting = common_ancestor(source, target)
+    for start, outward in ((source, True), (target, False)):
+        path: list[Structure] = chain(start)
+        path = path[: path.index(meeting)]
+        for structure in path if outward else reversed(path):
+            frame = structure.frame
+            if not outward:
+                angle = ex.sub(angle, frame.rotation)
+            if frame.mirrored:
+                angle = ex.sub(ex.constant(180.0), angle)
+            if outward:
+                angle = ex.add(angle, frame.rotation)
+    return angle
+
+
+# --- Conditions and constraints --------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """`left REL right`, REL one of `== != <= >= < >`, with boxes spelled out."""
+
+    relation: str
+    left: Expression
+    right: Expression
+    dimension: MaybeDimension
+    placed: frozenset[Unknown]
+
+
+@dataclass(frozen=True, eq=False)
+class Condition:
+    """A condition over unknowns: a comparison, or `and`, `or`, `not` of conditions."""
+
+    operator: str
+    parts: tuple[Condition | Comparison | bool, ...]
+
+    def comparisons(self) -> Iterator[Comparison]:
+        for part in self.parts:
+            if isinstance(part, Comparison):
+                yield part
+            elif isinstance(part, Condition):
+                yield from part.comparisons()
+
+
+@dataclass(frozen=True, eq=False)
+class Constraint:
+    """One constraint as its author sees it. `weight` is None for a hard one."""
+
+    holder: Structure
+    comparisons: tuple[Comparison, ...]
+    text: str
+    span: Span
+    weight: float | None = None
+    mentions: tuple[str, ...] = ()
+    label: str = ""
+    """loop variables at the place, as `i = 3`"""
+
+
+@dataclass(frozen=True, eq=False)
+class Assertion:
+    holder: Structure
+    condition: Condition | bool
+    message: str | None
+    text: str
+    span: Span
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Knob:
+    """A `param` as seen from outside: what may be set with `-D path=value` or a slider."""
+
+    path: str
+    value: float | str | bool
+    low: float | None
+    high: float | None
+    choices: tuple[float | str | bool, ...]
+    step: float | None
+    unit: str
+    doc: str | None
+    span: Span | None = field(default=None, compare=False)
+
+
+@dataclass(eq=False)
+class Model:
+    """
+    unknowns    in order of creation
+    readings    choices among the meanings of ambiguous calls, by place, for the report
+    """
+
+    root: Structure
+    constraints: list[Constraint]
+    assertions: list[Assertion]
+    unknowns: list[Unknown]
+    knobs: list[Knob]
+    readings: list[tuple[Span, str]] = field(default_factory=list)

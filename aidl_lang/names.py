@@ -1,0 +1,34 @@
+"""Names as people and models spell them: lookup without regard to case and underscores, and "did you mean"."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+from typing import TypeVar
+
+T = TypeVar("T")
+
+
+def fold(name: str) -> str:
+    """The form in which `CenterInside`, `centerInside` and `center_inside` are one name."""
+    return name.replace("_", "").casefold()
+
+
+def find(name: str, table: Mapping[str, T]) -> str | None:
+    """The key of `table` that `name` means: as written if it is there, else the one that folds alike.
+
+    None when there is none, or when two keys fold alike and neither is written so.
+    """
+    if name in table:
+        return name
+    wanted = fold(name)
+    alike = [key for key in table if fold(key) == wanted]
+    return alike[0] if len(alike) == 1 else None
+
+
+def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
+    """Known names that `name` may be a misspelling of, best first."""
+    folded: dict[str, str] = {}
+    for key in known:
+        folded.setdefault(fold(key), key)
+    return [folded[match] for match in get_close_matches(fold(name), folded, n=count, cutoff=0.7)]

@@ -1,0 +1,185 @@
+"""What there is to say of a solved model: conflicts, sizes that had to change, assertions that fail."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+from aidl_lang.conditions import holds
+from aidl_lang.diagnostics import Diagnostic, Label
+from aidl_lang.expression import Evaluator
+from aidl_lang.functions import Measurement
+from aidl_lang.geometry.distance import region_distance
+from aidl_lang.geometry.drawing import Drawing, draw
+from aidl_lang.geometry.region import Region
+from aidl_lang.lower import Lowered
+from aidl_lang.model import Assertion, Comparison, Condition, Constraint, Geometry, Model, Structure
+from aidl_lang.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.solver.solution import Failure, GroupFailure, Solution
+
+_TOLERANCE = 1e-6
+"""How far an assertion may be off, relative to what it compares (and never less than this in mm)."""
+
+
+def solution_notes(lowered: Lowered, solution: Solution, model: SolvedModel) -> list[Diagnostic]:
+    """Failures as errors; changed sizes and redundant constraints as notes."""
+    found = [_failure(lowered, solution, failure) for failure in solution.failures]
+    for change in model.changed:
+        found.append(
+            Diagnostic(
+                "N0601",
+                f"`{change.path}` was written {_short(change.written)} and became {_short(change.solved)}",
+                change.span,
+                "the constraints could not hold otherwise",
+                hints=(f"write {_short(change.solved)} to agree, or `fixed({_short(change.written)})` to insist",),
+            )
+        )
+    for index in solution.redundant:
+        stated = lowered.stated[index]
+        if stated is not None and stated.span is not None:
+            found.append(Diagnostic("N0602", f"`{stated.text}` follows from the other constraints", stated.span))
+    return found
+
+
+_HEADLINE = {
+    Failure.CONTRADICTORY: ("E0601", "these constraints cannot hold together"),
+    Failure.NOT_CONVERGED: ("E0602", "the solver did not reach a position in which these constraints hold"),
+    Failure.TIMED_OUT: ("E0603", "the time for solving ran out before these constraints held"),
+}
+
+
+def _failure(lowered: Lowered, solution: Solution, failure: GroupFailure) -> Diagnostic:
+    code, headline = _HEADLINE[failure.reason]
+    conflict: list[tuple[int, Constraint]] = []
+    for index in failure.conflict:
+        stated = lowered.stated[index]
+        if stated is not None:
+            conflict.append((index, stated))
+    if not conflict:
+        return Diagnostic(code, headline)
+    worst = max(conflict, key=lambda pair: solution.residuals[pair[0]])
+    if len(conflict) == 1:
+        headline = f"`{worst[1].text}` cannot hold" if code == "E0601" else f"`{worst[1].text}` was not reached"
+    others = tuple(
+        Label(stated.span, "conflicts with this" if failure.minimal else "takes part")
+        for index, stated in conflict
+        if index != worst[0]
+    )
+    named = ", ".join(f"`{stated.text}`" for _, stated in conflict[:6])
+    hints = [f"any one of them given up, the rest would hold: {named}"] if failure.minimal and others else []
+    hints.append("`prefer` states a wish that gives way; `guess(…)` frees a size; a `param` or `fixed(…)` never moves")
+    off = solution.residuals[worst[0]]
+    return Diagnostic(code, headline, worst[1].span, f"off by {_short(off)}", others, tuple(hints))
+
+
+def _short(value: float) -> str:
+    return f"{round(value, 6):.6g}"
+
+
+# --- Assertions ----------------------------------------------------------------------------------
+
+
+def assertion_notes(
+    model: Model, solved: SolvedModel, drawing: Drawing, evaluator: Evaluator, *, solved_fully: bool
+) -> list[Diagnostic]:
+    """Assertions that do not hold on the solved model; nothing when it did not solve."""
+    if not solved_fully:
+        return []
+    evaluator.measure = _Measure(solved, drawing)
+    return [_failed(a, evaluator) for a in model.assertions if not holds(a.condition, evaluator, _TOLERANCE)]
+
+
+def _failed(assertion: Assertion, evaluate: Evaluator) -> Diagnostic:
+    message = assertion.message or f"`{assertion.text}` does not hold"
+    where = f" [{assertion.label}]" if assertion.label else ""
+    shown = "; ".join(_compared(c, evaluate) for c in _false_parts(assertion.condition, evaluate))
+    return Diagnostic(
+        "E0604",
+        f"assertion failed: {message}{where}",
+        assertion.span,
+        f"here {shown}" if shown else "false as written",
+        hints=("an `assert` steers nothing: to make it hold, state it with `constrain` as well",),
+    )
+
+
+def _false_parts(condition: Condition | Comparison | bool, evaluate: Callable[..., float]) -> Iterator[Comparison]:
+    if isinstance(condition, Comparison):
+        if not holds(condition, evaluate, _TOLERANCE):
+            yield condition
+    elif isinstance(condition, Condition) and condition.operator != "not":
+        for part in condition.parts:
+            yield from _false_parts(part, evaluate)
+
+
+def _compared(comparison: Comparison, evaluate: Callable[..., float]) -> str:
+    left, right = evaluate(comparison.left), evaluate(comparison.right)
+    return f"{_short(left)} {comparison.relation} {_short(right)}"
+
+
+class _Measure:
+    """Answers what only the drawing can: areas, perimeters, clearances, overlaps."""
+
+    def __init__(self, model: SolvedModel, drawing: Drawing) -> None:
+        self.model = model
+        self.drawing = drawing
+
+    def __call__(self, payload: object) -> float:
+        assert isinstance(payload, Measurement)
+        regions = [self._region(thing) for thing in payload.of]
+        match payload.kind:
+            case "area":
+                from aidl_lang.geometry.measures import area
+
+                return area(regions[0])
+            case "perimeter":
+                from aidl_lang.geometry.measures import perimeter
+
+                return perimeter(regions[0])
+            case "clearance":
+                closest = region_distance(*regions)
+                return closest[0] if closest is not None else math.nan
+            case _:
+                return float(self._overlap(*payload.of))
+
+    def _region(self, thing: Structure | Geometry) -> Region:
+        if isinstance(thing, Structure):
+            return self.drawing.regions.get(thing.path, Region(()))
+        return self._alone((thing,)).regions.get("it", Region(()))
+
+    def _overlap(self, a: Structure | Geometry, b: Structure | Geometry) -> bool:
+        """Two things overlap if drawn as two bodies they do."""
+        pairs = self._alone((a, b)).pairs
+        return any(pair.relation == "overlapping" for pair in pairs)
+
+    def _alone(self, things: tuple[Structure | Geometry, ...]) -> Drawing:
+        parts = [self._as_solid(thing, "it" if i == 0 else f"it{i}") for i, thing in enumerate(things)]
+        frame = Frame(0.0, 0.0, 0.0)
+        root = parts[0]
+        if len(parts) > 1:
+            root = SolvedStructure(
+                "all", "all", "assembly", "top", frame, {}, {}, (), tuple(parts), None, False, 0, None
+            )
+        model = self.model
+        return draw(SolvedModel(model.status, root, (), 0, (), ()))[0]
+
+    def _as_solid(self, thing: Structure | Geometry, path: str) -> SolvedStructure:
+        frame = Frame(0.0, 0.0, 0.0)
+        children: tuple[SolvedStructure, ...] = ()
+        geometry: tuple[SolvedGeometry, ...] = ()
+        if isinstance(thing, Structure):
+            found = self.model.root.find(thing.path)
+            if found is not None:
+                geometry, children = found.geometry, found.structures
+        else:
+            geometry = tuple(g for g in _all_geometry(self.model.root) if g.path == thing.path)
+        return SolvedStructure(
+            path, path, "solid", "top", frame, {}, {}, geometry, children, None, False, 0, None
+        )
+
+
+def _all_geometry(root: SolvedStructure) -> Iterator[SolvedGeometry]:
+    for structure in root.walk():
+        stack = list(structure.geometry)
+        while stack:
+            yield (top := stack.pop())
+            stack.extend(top.parts)

@@ -1,0 +1,303 @@
+"""Text to syntax tree: an LALR automaton that never gives up.
+
+The automaton runs the tables of the grammar over the tokens. Where a token cannot stand, `syntax.errors`
+says what is wrong and how to go on: with tokens put in, left out or exchanged where it is clear what was
+meant, else at the next statement. What was complete before stays; so does the inside of a block whose head is broken.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from dataclasses import dataclass, replace
+
+from aidl_lang import ast
+from aidl_lang.diagnostics import Diagnostic, ordered
+from aidl_lang.source import SourceFile, Span
+from aidl_lang.syntax.automaton import Automaton, Checkpoint
+from aidl_lang.syntax.errors import explain, spaced_call
+from aidl_lang.syntax.tables import load_tables
+from aidl_lang.syntax.tokens import END, Token, Tokens, tokenize
+from aidl_lang.syntax.tree import Builder
+from aidl_lang.syntax.trouble import Trouble
+from aidl_lang.syntax.warnings import lines_joined_by_minus
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a program may ask for: its length, the levels of its tree, and how many errors are worth telling."""
+
+    max_characters: int = 2_000_000
+    max_nesting: int = 200
+    max_errors: int = 100
+
+
+DEFAULT_LIMITS = Limits()
+
+
+@dataclass(frozen=True)
+class Parsed:
+    """What was understood, and everything that was not."""
+
+    module: ast.Module
+    diagnostics: list[Diagnostic]
+
+
+def parse(source: SourceFile, limits: Limits = DEFAULT_LIMITS) -> Parsed:
+    """The syntax tree of a file. Never raises: what cannot be read is reported (E01xx, E08xx) and left out."""
+    parsed, tokens = _read(source, limits)
+    joined = lines_joined_by_minus(parsed.module, tokens, lambda part: _read(part, limits)[0])
+    return Parsed(parsed.module, ordered(parsed.diagnostics + joined))
+
+
+def _read(source: SourceFile, limits: Limits) -> tuple[Parsed, list[Token]]:
+    """What `parse` gives, warnings aside, and the tokens it came from."""
+    everything = Span(source, 0, len(source.text))
+    if len(source.text) > limits.max_characters:
+        return Parsed(ast.Module(source, (), (), span=everything), [_too_long(source, limits)]), []
+    tokens = tokenize(source)
+    builder = Builder(source, tokens.docs)
+    reader = _Reader(source, builder, tokens, limits)
+    statements = reader.run()
+    diagnostics = builder.diagnostics + reader.diagnostics
+    if reader.may_be_deep:
+        deep = [s for s in statements if _depth(s) > limits.max_nesting]
+        diagnostics += [_too_deep(s.span, limits) for s in deep]
+        statements = tuple(s for s in statements if s not in deep)
+    module = ast.Module(source, statements, tuple(tokens.comments), span=everything)
+    return Parsed(module, ordered(diagnostics)), tokens.tokens
+
+
+class _Reader:
+    """Reads one file: feeds the automaton, and mends or skips where a token cannot stand."""
+
+    _MOST_REPAIRS = 20  # of one statement; beyond that it is not a statement with slips in it
+
+    def __init__(self, source: SourceFile, builder: Builder, tokens: Tokens, limits: Limits) -> None:
+        self.source = source
+        self.tokens = tokens.tokens
+        self.limits = limits
+        self.automaton = Automaton(load_tables(), builder)
+        self.diagnostics = [spaced_call(source, token) for token in tokens.spaced_calls]
+        self.automaton.enter_block()
+        self.last = Checkpoint(
+            0, self.automaton.states[:], self.automaton.values[:], self.automaton.starts[:], 0
+        )
+        self.repairs = 0
+        self.may_be_deep = False
+        self.passed_braces: list[int] = []  # for each `{` passed over, how many blocks were open around it
+
+    def run(self) -> tuple[ast.Statement, ...]:
+        automaton, tokens, limits = self.automaton, self.tokens, self.limits
+        position = 0
+        while True:
+            token = tokens[position]
+            if self.passed_braces and token.kind == "}" and self._ends_passed_block():
+                token = tokens[position] = Token(";", "", token.start, token.end)
+            if not automaton.feed(token):
+                if len(self.diagnostics) >= limits.max_errors:
+                    return self._stop(_too_many(self.source, token, limits))
+                position = self._recover(position)
+                continue
+            if token.kind == END:
+                return tuple(automaton.values[-1])
+            if automaton.began_statement:
+                self.last = automaton.checkpoint(position)
+                self.repairs = 0
+            elif (
+                position - self.last.position > limits.max_nesting
+                or len(automaton.states) > limits.max_nesting // 2
+            ):
+                self.may_be_deep = True
+                if len(automaton.states) > 4 * limits.max_nesting:
+                    return self._stop(_too_deep(Span(self.source, token.start, token.end), limits))
+            position += 1
+
+    def _stop(self, why: Diagnostic) -> tuple[ast.Statement, ...]:
+        """Give up on the rest of the text; blocks end where they are."""
+        self.diagnostics.append(why)
+        self.automaton.drop_statement()
+        end = self.automaton.end
+        while not self.automaton.feed(Token(END, "", end, end)):
+            if not self.automaton.feed(Token("}", "", end, end)):
+                self.automaton.drop_statement()
+        return tuple(self.automaton.values[-1])
+
+    # --- Recovery ---
+
+    def _recover(self, position: int) -> int:
+        """Report the token that cannot stand; the position to go on from."""
+        automaton = self.automaton
+        if not automaton.between_statements:
+            # Rules may have been recognised on the way to the failure: return to just before the token, where
+            # everything that could stand here is still possible.
+            automaton.restore(self.last)
+            for token in self.tokens[self.last.position : position]:
+                automaton.feed(token)
+            automaton.enter_block()
+            if self._ends_statement(self.tokens[position]):
+                automaton.feed(Token(";", "", automaton.end, automaton.end))
+        problem = explain(
+            Trouble(self.source, self.tokens, position, self._statement_begin(position), automaton)
+        )
+        self._report(problem.diagnostic)
+        repair = problem.repair
+        if repair is not None and self.repairs < self._MOST_REPAIRS:
+            self.repairs += 1
+            if repair.start >= position:
+                self.tokens[repair.start : repair.stop] = repair.tokens
+                return position
+            if repair.start >= self.last.position:
+                self.tokens[repair.start : repair.stop] = repair.tokens
+                automaton.restore(self.last)
+                return self.last.position
+        return self._skip(position, problem.with_block)
+
+    def _ends_statement(self, token: Token) -> bool:
+        """Whether a statement is complete and the token plainly belongs to what follows it."""
+        if token.kind not in _CERTAIN_WORDS and token.kind not in ("}", ")", "]", "@", "else"):
+            return False
+        return not self.automaton.between_statements and self.automaton.accepts([";"])
+
+    def _report(self, diagnostic: Diagnostic) -> None:
+        """Keep a diagnostic; a reserved word is reported once, with a fix that renames it wherever it is met."""
+        for i, said in enumerate(self.diagnostics):
+            if said.code == diagnostic.code == "E0104" and said.message == diagnostic.message:
+                if said.fix and diagnostic.fix:
+                    edits = said.fix.edits + tuple(e for e in diagnostic.fix.edits if e not in said.fix.edits)
+                    self.diagnostics[i] = replace(said, fix=replace(said.fix, edits=edits))
+                return
+        self.diagnostics.append(diagnostic)
+
+    def _statement_begin(self, position: int) -> int:
+        """The number of the first token of the statement under way, or `position` between statements."""
+        automaton = self.automaton
+        statement_states = automaton.tables.statement_states
+        level = len(automaton.states) - 1
+        while automaton.states[level] not in statement_states:
+            level -= 1
+        if level == len(automaton.states) - 1:
+            return position
+        offset = automaton.starts[level + 1]
+        return bisect_left(self.tokens, offset, 0, position, key=lambda token: token.start)
+
+    def _ends_passed_block(self) -> bool:
+        if self.automaton.open_blocks() == self.passed_braces[-1]:
+            self.passed_braces.pop()
+            return True
+        return False
+
+    def _skip(self, position: int, with_block: bool) -> int:
+        """Leave out the statement under way: the position where the next one may begin.
+
+        The statements of its block are read on as if they stood in the block around it, unless `with_block`.
+        """
+        tokens, automaton = self.tokens, self.automaton
+        begin = tokens[self._statement_begin(position)].start
+        depth = sum(1 for t in automaton.open_brackets() if t.kind != "{" and t.start >= begin)
+        dropped = not automaton.between_statements
+        automaton.drop_statement()
+        begun = position
+        braces = 0
+        while (kind := tokens[position].kind) != END:
+            if kind == "{" and with_block:
+                braces += 1
+            elif kind == "}" and braces:
+                braces -= 1
+                if not braces:
+                    return position + 1
+            elif braces:
+                pass
+            elif kind == "{":
+                self.passed_braces.append(automaton.open_blocks())
+                return position + 1
+            elif kind == "}":
+                if position > begun or dropped or automaton.open_blocks():
+                    return position
+            elif (position > begun or dropped) and self._may_begin(position, depth):
+                return position
+            elif kind in ("(", "[", "CALL"):
+                depth += 1
+            elif kind in (")", "]"):
+                depth = max(0, depth - 1)
+            position += 1
+        return position
+
+    def _may_begin(self, position: int, depth: int) -> bool:
+        """Whether a token looks like the start of a statement, inside so many open brackets."""
+        tokens = self.tokens
+        token, before = tokens[position], tokens[position - 1]
+        if token.kind == ";":
+            return depth == 0
+        if token.kind in _CERTAIN_WORDS:
+            return True
+        if before.kind not in (";", "}") and "\n" not in self.source.text[before.end : token.start]:
+            return False
+        if depth == 0:
+            return token.kind in _POSSIBLE_STARTS and before.kind not in (",", "=", "+", "-", "*", "/")
+        following = tokens[min(position + 1, len(tokens) - 1)]
+        return (
+            token.kind == "NAME"
+            and following.kind in ("=", "NAME")
+            and before.kind not in (",", "(", "[", "CALL")
+        )
+
+
+_CERTAIN_WORDS = frozenset(
+    [
+        "param",
+        "var",
+        "let",
+        "constrain",
+        "prefer",
+        "assert",
+        "import",
+        "fn",
+        "shape",
+        "constraint",
+        "alias",
+        "template",
+        "construction",
+        "todo",
+    ]
+)
+_POSSIBLE_STARTS = frozenset(["NAME", "CALL", "NUMBER", "(", "@", "for", "if"])
+
+
+def _depth(root: ast.Node) -> int:
+    """The levels of a tree."""
+    deepest = 0
+    stack: list[tuple[ast.Node, int]] = [(root, 1)]
+    while stack:
+        node, depth = stack.pop()
+        deepest = max(deepest, depth)
+        stack += [(child, depth + 1) for child in ast.children(node)]
+    return deepest
+
+
+def _too_long(source: SourceFile, limits: Limits) -> Diagnostic:
+    return Diagnostic(
+        "E0801",
+        f"the program is longer than {limits.max_characters:,} characters",
+        Span(source, 0, 0),
+        hints=(
+            "write repeated geometry with `for` or a template; move parts of the program to files of their own",
+        ),
+    )
+
+
+def _too_deep(span: Span, limits: Limits) -> Diagnostic:
+    return Diagnostic(
+        "E0802",
+        f"this is nested more than {limits.max_nesting} levels deep",
+        Span(span.source, span.start, min(span.end, span.start + 1)),
+        hints=("give inner expressions names with `let`; add up many terms with `sum([...])`",),
+    )
+
+
+def _too_many(source: SourceFile, token: Token, limits: Limits) -> Diagnostic:
+    return Diagnostic(
+        "E0803",
+        f"more than {limits.max_errors} errors; the rest of the file was not read",
+        Span(source, token.start, token.end),
+        hints=("mend the first ones and check again: later ones often follow from them",),
+    )

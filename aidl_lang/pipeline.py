@@ -1,0 +1,197 @@
+"""The stages in order: text → Module → Program → Model → Problem → Solution → Drawing → bytes.
+
+Each stage hands over one value and its diagnostics; nothing here raises for what a program says.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from aidl_lang import library as library_module
+from aidl_lang import parser
+from aidl_lang.diagnostics import Diagnostic, has_errors, ordered
+from aidl_lang.interp import Interpretation, Limits, interpret
+from aidl_lang.model import Knob
+from aidl_lang.resolve import resolve
+from aidl_lang.solver.problem import Settings as SolverSettings
+from aidl_lang.source import SourceFile
+from aidl_lang.typecheck import Program
+from aidl_lang.typecheck import check as typecheck
+from aidl_lang.world import World
+
+if TYPE_CHECKING:
+    from aidl_lang.geometry.drawing import Drawing
+    from aidl_lang.solved import SolvedModel
+
+_RECURSION = 20_000
+"""Python frames for deeply nested programs; the limits on nesting and calls end sooner."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Limits for programs that are not trusted, and the solver's settings."""
+
+    text: parser.Limits = parser.Limits()
+    building: Limits = Limits()
+    solving: SolverSettings = SolverSettings(tolerance=1e-10)
+
+
+@dataclass
+class Compiled:
+    """What came of a program. `model` and `drawing` are None when it is wrong before solving."""
+
+    status: str
+    diagnostics: list[Diagnostic]
+    timings: dict[str, float]
+    knobs: tuple[Knob, ...] = ()
+    model: SolvedModel | None = None
+    drawing: Drawing | None = None
+    show: frozenset[str] = field(default_factory=frozenset)
+
+    @property
+    def ok(self) -> bool:
+        return self.status == "solved" and not has_errors(self.diagnostics)
+
+    def export(self, suffix: str, show: frozenset[str] | None = None, *, timings: bool = False) -> bytes:
+        """The drawing in the format of a file suffix (`.svg`, `.json`).
+
+        Raises KeyError for an unknown suffix and ValueError when there is nothing to export.
+        """
+        from aidl_lang.export import EXPORTERS, Job
+
+        if self.model is None or self.drawing is None:
+            raise ValueError("the program is wrong, so there is no drawing")
+        job = Job(
+            self.model,
+            self.drawing,
+            tuple(self.diagnostics),
+            self.show if show is None else show,
+            self.timings if timings else None,
+        )
+        return EXPORTERS[suffix](job)
+
+
+class _Stopwatch:
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+
+    @contextmanager
+    def __call__(self, stage: str) -> Iterator[None]:
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - start
+
+
+def front(
+    source: SourceFile, world: World | None = None, settings: Settings = Settings()
+) -> tuple[Program, list[Diagnostic]]:
+    """Text → Program: parsed, resolved and type-checked."""
+    return _front(source, world, settings, _Stopwatch())
+
+
+def _front(
+    source: SourceFile, world: World | None, settings: Settings, watch: _Stopwatch
+) -> tuple[Program, list[Diagnostic]]:
+    with watch("parse"):
+        parsed = parser.parse(source, settings.text)
+    with watch("library"):
+        library = library_module.load()
+    with watch("resolve"):
+        resolution = resolve(parsed.module, world, library)
+    with watch("typecheck"):
+        program = typecheck(resolution)
+    return program, [*parsed.diagnostics, *program.diagnostics]
+
+
+def _build(
+    source: SourceFile,
+    world: World | None,
+    params: Mapping[str, str | float | bool],
+    settings: Settings,
+    watch: _Stopwatch,
+) -> tuple[Interpretation, list[Diagnostic]]:
+    """Text → Model, with every diagnostic that does not need solving."""
+    sys.setrecursionlimit(max(sys.getrecursionlimit(), _RECURSION))
+    program, static = _front(source, world, settings, watch)
+    with watch("interpret"):
+        built = interpret(program, params, settings.building)
+    static += [violation.diagnostic(built.written) for violation in program.violations]
+    return built, ordered([*static, *_new(built.diagnostics, static)])
+
+
+def _new(found: Sequence[Diagnostic], known: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
+    """Findings of a later stage whose place an earlier one has not already complained about."""
+    places = [d.span for d in known if d.is_error and d.span is not None]
+    for d in found:
+        if not (d.is_error and d.span is not None and any(d.span.overlaps(p) for p in places)):
+            yield d
+
+
+def check(
+    source: SourceFile, world: World | None = None, settings: Settings = Settings()
+) -> list[Diagnostic]:
+    """Everything that can be said of a program without solving it."""
+    return _build(source, world, {}, settings, _Stopwatch())[1]
+
+
+def knobs(
+    source: SourceFile, world: World | None = None, settings: Settings = Settings()
+) -> tuple[tuple[Knob, ...], list[Diagnostic]]:
+    """The `param`s of a program in order of writing."""
+    built, diagnostics = _build(source, world, {}, settings, _Stopwatch())
+    return tuple(built.model.knobs), diagnostics
+
+
+def compile(
+    source: SourceFile,
+    world: World | None = None,
+    params: Mapping[str, str | float | bool] | None = None,
+    settings: Settings = Settings(),
+    show: Sequence[str] = (),
+) -> Compiled:
+    """Run the whole road. A program that is wrong, or does not solve, says so in `diagnostics`."""
+    watch = _Stopwatch()
+    built, diagnostics = _build(source, world, params or {}, settings, watch)
+    known = tuple(built.model.knobs)
+    if has_errors(diagnostics):
+        return Compiled("wrong", diagnostics, watch.seconds, known)
+    return _finish(built, diagnostics, settings, watch, known, frozenset(show))
+
+
+def _finish(
+    built: Interpretation,
+    diagnostics: list[Diagnostic],
+    settings: Settings,
+    watch: _Stopwatch,
+    known: tuple[Knob, ...],
+    show: frozenset[str],
+) -> Compiled:
+    from aidl_lang.geometry.drawing import draw
+    from aidl_lang.lower import lower
+    from aidl_lang.outcome import assertion_notes, solution_notes
+    from aidl_lang.readout import read_out
+    from aidl_lang.solver import solve
+
+    with watch("lower"):
+        lowered = lower(built.model)
+    with watch("solve"):
+        solution = solve(lowered.problem, settings.solving)
+    with watch("read out"):
+        model, evaluator = read_out(built.model, lowered, solution)
+    with watch("regions"):
+        drawing, notes = draw(model)
+    with watch("asserts"):
+        found = solution_notes(lowered, solution, model)
+        found += assertion_notes(built.model, model, drawing, evaluator, solved_fully=solution.status.value == "solved")
+    everything = ordered([*diagnostics, *found, *notes])
+    return Compiled(model.status, everything, watch.seconds, known, model, drawing, show)
+
+
+__all__ = ["Compiled", "Knob", "Settings", "check", "compile", "front", "knobs"]

@@ -1,0 +1,213 @@
+"""Model + Solution → SolvedModel: every number read off at the solved values, in the frame of the root."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from aidl_lang import expression as ex
+from aidl_lang.expression import DEGREE, Evaluator, Unknown
+from aidl_lang.geometry import curves
+from aidl_lang.geometry.curves import Curve, Vec
+from aidl_lang.geometry.evaluate import bounds
+from aidl_lang.lower import Lowered
+from aidl_lang.model import Constraint, Geometry, Model, Structure, convert, own_geometry
+from aidl_lang.primitives import clockwise, number, view, xy
+from aidl_lang.solved import (
+    Box,
+    Change,
+    ConstraintReport,
+    Frame,
+    Scalar,
+    SolvedGeometry,
+    SolvedModel,
+    SolvedStructure,
+)
+from aidl_lang.solver.solution import Solution
+from aidl_lang.values import Num, PointVal, Text, Value
+
+_FULL_TURN = 2 * math.pi
+
+
+def read_out(model: Model, lowered: Lowered, solution: Solution) -> tuple[SolvedModel, Evaluator]:
+    """The solved model, and the evaluator of its values for what is checked afterwards."""
+    values: dict[Unknown, float] = {u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)}
+    evaluator = Evaluator(values)
+    reader = _Reader(model, evaluator, dict(zip(_structures(model), solution.group_degrees, strict=False)))
+    changed = tuple(_changes(lowered, solution))
+    free = tuple(lowered.unknowns[i].path for i in solution.free)
+    reports = tuple(_reports(lowered, solution))
+    root = reader.structure(model.root)
+    return SolvedModel(solution.status.value, root, reports, solution.degrees, free, changed), evaluator
+
+
+def _structures(model: Model) -> Iterable[Structure]:
+    return model.root.walk()
+
+
+def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:
+    for index in solution.changed:
+        unknown = lowered.unknowns[index]
+        span = unknown.holder.span
+        yield Change(unknown.path, unknown.guess, float(solution.values[index]), span)
+
+
+def _reports(lowered: Lowered, solution: Solution) -> Iterator[ConstraintReport]:
+    for index, stated in enumerate(lowered.stated):
+        if stated is not None:
+            yield report_of(stated, solution.residuals[index], solution.satisfied[index])
+
+
+def report_of(stated: Constraint, residual: float, satisfied: bool) -> ConstraintReport:
+    text = f"{stated.text} [{stated.label}]" if stated.label else stated.text
+    return ConstraintReport(
+        stated.holder.path, text, stated.span, residual, satisfied, stated.mentions, stated.weight is not None
+    )
+
+
+@dataclass
+class _Reader:
+    model: Model
+    evaluate: Evaluator
+    degrees: Mapping[Structure, int]
+
+    def structure(self, s: Structure) -> SolvedStructure:
+        geometry = tuple(self.geometry(g) for g in s.own())
+        children = tuple(self.structure(child) for child in s.children)
+        frame = s.frame
+        return SolvedStructure(
+            name=s.name,
+            path=s.path,
+            kind=s.kind,
+            orientation=self._orientation(s),
+            frame=Frame(
+                self.evaluate(frame.x), self.evaluate(frame.y), self.evaluate(frame.rotation), frame.mirrored
+            ),
+            attributes={n: tuple(map(self._scalar, values)) for n, values in s.attributes.items()},
+            params={n: self._scalar(v) for n, v in s.params.items()},
+            geometry=geometry,
+            structures=children,
+            box=self._box(s, geometry, children),
+            is_empty=s.is_empty,
+            degrees=self.degrees.get(s, 0),
+            span=s.span,
+            doc=s.doc,
+        )
+
+    def _orientation(self, s: Structure) -> str:
+        word = s.attributes.get("orientation", (Text("top"),))
+        return word[0].value if word and isinstance(word[0], Text) else "top"
+
+    def _scalar(self, value: Value) -> Scalar:
+        match value:
+            case Num(expression, _, _):
+                return self.evaluate(expression)
+            case Text(text, _):
+                return text
+            case bool():
+                return value
+            case _:
+                return str(value)
+
+    def _box(
+        self, s: Structure, geometry: Iterable[SolvedGeometry], children: Iterable[SolvedStructure]
+    ) -> Box | None:
+        boxes: list[tuple[float, float, float, float]] = []
+        if s.plan:
+            left, bottom, width, height = s.plan
+            for corner in ((left, bottom), (ex.add(left, width), ex.add(bottom, height))):
+                x, y = (self.evaluate(e) for e in convert(*corner, s, self.model.root))
+                boxes.append((x, y, x, y))
+        boxes += [bounds(curve) for g in geometry for curve in g.curves()]
+        boxes += [
+            (c.box.left, c.box.bottom, c.box.right, c.box.top) for c in children if c.box and c.kind != "hole"
+        ]
+        if not boxes:
+            return None
+        return Box(
+            min(b[0] for b in boxes), min(b[1] for b in boxes), max(b[2] for b in boxes), max(b[3] for b in boxes)
+        )
+
+    # --- Geometry ------------------------------------------------------------------------------
+
+    def geometry(self, g: Geometry) -> SolvedGeometry:
+        core = g.fields if g.is_compound else view(g, self.model.root)
+        curve = None if g.is_compound or g.type == "point" else self._curve(g, core)
+        return SolvedGeometry(
+            name=g.name or g.type,
+            path=g.path,
+            type=g.type,
+            values=self._shape_values(g) if g.is_compound else self._values(g, core, curve),
+            curve=curve,
+            parts=tuple(self.geometry(part) for part in own_geometry(g.parts, g)),
+            construction=g.construction,
+            span=g.span,
+        )
+
+    def _at(self, value: Value) -> Vec:
+        x, y = xy(value)
+        return self.evaluate(x), self.evaluate(y)
+
+    def _number(self, value: Value) -> float:
+        return self.evaluate(number(value))
+
+    def _shape_values(self, g: Geometry) -> dict[str, Scalar | Vec | tuple[Vec, ...]]:
+        """The number and point arguments of a compound shape."""
+        from aidl_lang.primitives import translate
+        from aidl_lang.scopes import Scope
+
+        assert isinstance(g.scope, Scope)
+        found: dict[str, Scalar | Vec | tuple[Vec, ...]] = {}
+        for name in g.arguments:
+            value = translate(name, g.scope.values[name], g.owner, self.model.root)  # type: ignore[arg-type]
+            if isinstance(value, PointVal):
+                found[name] = self._at(value)
+            elif isinstance(value, Num):
+                found[name] = self._number(value)
+        return found
+
+    def _values(
+        self, g: Geometry, core: Mapping[str, Value], curve: Curve | None
+    ) -> dict[str, Scalar | Vec | tuple[Vec, ...]]:
+        match curve:
+            case curves.Line(start, end):
+                return {"start": start, "end": end}
+            case curves.Circle(center, radius):
+                return {"center": center, "radius": radius}
+            case curves.Arc(center, radius, start, end, sweep):
+                ends: dict[str, Scalar | Vec | tuple[Vec, ...]] = {"start": start, "end": end}
+                return {"center": center, "radius": radius, **ends, "clockwise": sweep < 0}
+            case curves.Bezier(p0, p1, p2, p3):
+                return {"points": (p0, p1, p2, p3)}
+            case curves.Ellipse(center, rx, ry, angle):
+                return {"center": center, "rx": rx, "ry": ry, "angle": angle / DEGREE}
+            case _:
+                return {"at": self._at(core["at"])}
+
+    def _curve(self, g: Geometry, core: Mapping[str, Value]) -> Curve:
+        match g.type:
+            case "line":
+                return curves.Line(self._at(core["start"]), self._at(core["end"]))
+            case "circle":
+                return curves.Circle(self._at(core["center"]), self._number(core["radius"]))
+            case "bezier":
+                return curves.Bezier(*(self._at(core[p]) for p in ("p0", "p1", "p2", "p3")))
+            case "ellipse":
+                angle = self._number(core["angle"]) * DEGREE
+                return curves.Ellipse(
+                    self._at(core["center"]), self._number(core["rx"]), self._number(core["ry"]), angle
+                )
+            case _:
+                return self._arc(g, core)
+
+    def _arc(self, g: Geometry, core: Mapping[str, Value]) -> Curve:
+        center, start, end = (self._at(core[n]) for n in ("center", "start", "end"))
+        first, last = (math.atan2(p[1] - center[1], p[0] - center[0]) for p in (start, end))
+        is_clockwise = clockwise(g, self.model.root)
+        sweep = (first - last if is_clockwise else last - first) % _FULL_TURN
+        if sweep < 1e-12:
+            sweep = _FULL_TURN
+        return curves.Arc(center, self._number(core["radius"]), start, end, -sweep if is_clockwise else sweep)
+
+

@@ -1,0 +1,125 @@
+"""Imports: the files that a program stands on, each read and parsed once.
+
+A path is relative to the file that imports it and may not leave the project, which is the folder of the program and
+all below it. What is wrong inside an imported file is reported at its place there.
+"""
+
+from __future__ import annotations
+
+import posixpath
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from aidl_lang import ast
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.source import SourceFile
+
+if TYPE_CHECKING:
+    from aidl_lang.world import World
+
+SUFFIX = ".aidl"
+MAX_FILES = 200
+MAX_CHARACTERS = 2_000_000
+"""Of all imported files together."""
+
+
+@dataclass
+class ImportedModules:
+    """
+    modules  every file once, those that are imported before those that import them; the program is the last
+    targets  import statements → the file they bring; without those that failed
+    """
+
+    modules: tuple[ast.Module, ...] = ()
+    targets: dict[ast.Import, ast.Module] = field(default_factory=dict)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+
+
+def load_imports(main: ast.Module, world: World | None) -> ImportedModules:
+    """Read what a program imports, directly or by way of other files."""
+    loader = _Loader(world)
+    loader.visit(main, posixpath.basename(main.source.name.replace("\\", "/")))
+    loader.result.modules = tuple(loader.order)
+    return loader.result
+
+
+class _Loader:
+    def __init__(self, world: World | None) -> None:
+        self.world = world
+        self.result = ImportedModules()
+        self.order: list[ast.Module] = []
+        self.known: dict[str, ast.Module] = {}
+        self.open: list[str] = []
+        self.characters = 0
+
+    def visit(self, module: ast.Module, path: str) -> None:
+        """Load the imports of a file, then count the file itself."""
+        self.known[path] = module
+        self.open.append(path)
+        for statement in module.statements:
+            if isinstance(statement, ast.Import):
+                self._import(statement, path)
+        self.open.pop()
+        self.order.append(module)
+
+    def _import(self, statement: ast.Import, importer: str) -> None:
+        written = statement.path.value
+        path = posixpath.normpath(posixpath.join(posixpath.dirname(importer), written.replace("\\", "/")))
+        if written.startswith("/") or ":" in written or path == ".." or path.startswith("../"):
+            self._report(
+                "E0212",
+                f"`{written}` lies outside the project",
+                statement.path,
+                "a program imports only from its own folder and the folders below it",
+            )
+            return
+        if path in self.open:
+            chain = " → ".join([*self.open[self.open.index(path) :], path])
+            self._report(
+                "E0211",
+                f"files import each other in a circle: {chain}",
+                statement.path,
+                "move what both need into a file of its own, which imports neither",
+            )
+            return
+        module = self.known.get(path) or self._read(statement, path)
+        if module is not None:
+            self.result.targets[statement] = module
+
+    def _read(self, statement: ast.Import, path: str) -> ast.Module | None:
+        if len(self.known) > MAX_FILES or len(self.open) > MAX_FILES // 4:
+            self._report("E0214", f"a program may import at most {MAX_FILES} files", statement.path)
+            return None
+        text = self._text(statement, path)
+        if text is None:
+            return None
+        self.characters += len(text)
+        if self.characters > MAX_CHARACTERS:
+            limit = f"{MAX_CHARACTERS:,} characters"
+            self._report("E0214", f"what a program imports may have at most {limit}", statement.path)
+            return None
+        from aidl_lang.parser import parse
+
+        parsed = parse(SourceFile(path, text))
+        self.result.diagnostics += parsed.diagnostics
+        self.visit(parsed.module, path)
+        return parsed.module
+
+    def _text(self, statement: ast.Import, path: str) -> str | None:
+        written = statement.path.value
+        if self.world is None:
+            self._report(
+                "E0210", f"`{written}` cannot be imported: only this text is at hand", statement.path
+            )
+            return None
+        try:
+            return self.world.read(path)
+        except (OSError, UnicodeDecodeError, ValueError):
+            hint = "paths are relative to the file that imports"
+            if not path.endswith(SUFFIX):
+                hint = f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`"
+            self._report("E0210", f"there is no file `{path}` that could be imported", statement.path, hint)
+            return None
+
+    def _report(self, code: str, message: str, node: ast.Node, *hints: str) -> None:
+        self.result.diagnostics.append(Diagnostic(code, message, node.span, hints=hints))

@@ -1,0 +1,152 @@
+"""What names stand for, and the scopes in which they are looked up before anything is built.
+
+A scope belongs to a structure, a definition, a turn of a `for`, a comprehension or a file. Values and callables
+live apart: `slot(` is looked up among callables only, `slot` among values only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from aidl_lang import ast
+from aidl_lang.names import find, nearest
+from aidl_lang.types import Signature
+
+
+class SymbolKind(StrEnum):
+    """The words in which messages speak of a symbol."""
+
+    PARAM = "param"
+    LET = "let"
+    VAR = "var"
+    LOOP = "loop variable"
+    ARGUMENT = "parameter"
+    GEOMETRY = "geometry"
+    STRUCTURE = "structure"
+    FUNCTION = "function"
+    SHAPE = "shape"
+    CONSTRAINT = "constraint"
+    TEMPLATE = "template"
+    ALIAS = "alias"
+    NAMESPACE = "imported file"
+    BUILTIN = "built-in name"
+    WORD = "word"
+    FIELD = "field"
+
+
+UNKNOWNS = frozenset({SymbolKind.VAR, SymbolKind.GEOMETRY, SymbolKind.STRUCTURE})
+"""What exists only from its line on, and what only its own structure may build on."""
+
+
+@dataclass(eq=False)
+class Symbol:
+    """
+    node          the definition (of an array or of branches of an `if`: the first one), None for what is built in
+    owner         the structure or other definition whose body declares it, or the file
+    declarations  the names at all places that declare it, in text order
+    is_array      declared with indices
+    makes         for an instance: the template or shape it is made from
+    """
+
+    name: str
+    kind: SymbolKind
+    node: ast.Node | None = None
+    owner: ast.Node | None = None
+    declarations: list[ast.Identifier] = field(default_factory=list)
+    nodes: list[ast.Node] = field(default_factory=list)
+    is_array: bool = False
+    scope: Scope | None = None
+
+
+@dataclass(eq=False)
+class Scope:
+    """
+    owner      the node that opens it
+    homes      the structures around, outermost (the file) first; geometry declared here belongs to the last
+    callables  definitions of this scope under each name, in the order of writing
+    known      callables that are looked up after those of this scope and count to it (of the library)
+    """
+
+    owner: ast.Node
+    parent: Scope | None = None
+    homes: tuple[ast.Node, ...] = ()
+    values: dict[str, Symbol] = field(default_factory=dict)
+    callables: dict[str, list[Signature]] = field(default_factory=dict)
+    aliases: dict[str, Symbol] = field(default_factory=dict)
+    spaces: dict[str, Scope] = field(default_factory=dict)
+    own_name: Symbol | None = None
+
+    def chain(self) -> Iterator[Scope]:
+        scope: Scope | None = self
+        while scope is not None:
+            yield scope
+            scope = scope.parent
+
+    def value(self, name: str) -> Symbol | None:
+        """As written anywhere around, else what is spelled alike in the nearest scope."""
+        for scope in self.chain():
+            if (symbol := scope.values.get(name)) is not None:
+                return symbol
+            if scope.own_name is not None and scope.own_name.name == name:
+                return scope.own_name
+        for scope in self.chain():
+            if (alike := find(name, scope.values)) is not None:
+                return scope.values[alike]
+            if scope.own_name is not None and find(name, {scope.own_name.name: 0}):
+                return scope.own_name
+        return None
+
+    def container(self) -> Scope:
+        """The scope that gets what is declared here as its members: that of the structure or definition around."""
+        scope = self
+        while isinstance(scope.owner, ast.For) and scope.parent is not None:
+            scope = scope.parent
+        return scope
+
+    def visible(self) -> dict[str, Symbol]:
+        """Every value that can be named here; inner ones hide outer ones."""
+        names: dict[str, Symbol] = {}
+        for scope in self.chain():
+            for name, symbol in scope.values.items():
+                names.setdefault(name, symbol)
+            if scope.own_name is not None:
+                names.setdefault(scope.own_name.name, scope.own_name)
+        return names
+
+    def called(self, name: str) -> tuple[str, list[Signature]] | None:
+        """All callables of a name, innermost first, aliases followed: the name as it is defined, and the
+        candidates. None when there are none.
+        """
+        key: str | None = name
+        if not any(name in s.callables or name in s.aliases for s in self.chain()):
+            key = next(
+                (
+                    k
+                    for s in self.chain()
+                    if (k := find(name, s.callables) or find(name, s.aliases)) is not None
+                ),
+                None,
+            )
+        found: list[Signature] = []
+        canonical = key
+        seen: set[str] = set()
+        while key is not None and key not in seen:
+            seen.add(key)
+            target: str | None = None
+            for scope in self.chain():
+                found += scope.callables.get(key, ())
+                if target is None and (alias := scope.aliases.get(key)) is not None:
+                    assert isinstance(alias.node, ast.Alias)
+                    target = alias.node.target.text
+            if found and canonical == name:
+                canonical = key
+            key = target
+        return (canonical or name, found) if found else None
+
+    def callable_names(self) -> list[str]:
+        return [name for scope in self.chain() for name in (*scope.callables, *scope.aliases)]
+
+    def near_values(self, name: str) -> list[str]:
+        return nearest(name, [*self.visible(), "origin", "x_axis", "y_axis", "self", "pi"])

@@ -1,0 +1,134 @@
+"""The solved model in numbers: what regions, exporters and readers of the API see.
+
+Coordinates are in the root frame, lengths in mm, angles in degrees counter-clockwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from aidl_lang.geometry.curves import Curve, Vec
+from aidl_lang.source import Span
+
+Scalar: TypeAlias = float | int | bool | str
+
+
+@dataclass(frozen=True)
+class Box:
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+    @property
+    def width(self) -> float:
+        return self.right - self.left
+
+    @property
+    def height(self) -> float:
+        return self.top - self.bottom
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Position and rotation relative to the parent; a mirrored frame reflects x before it turns."""
+
+    x: float
+    y: float
+    rotation: float
+    mirrored: bool = False
+
+
+@dataclass(frozen=True)
+class SolvedGeometry:
+    """A named geometry. `name` carries its index (`dot[3]`), `path` is the dotted path from the root.
+
+    values  the fields of section 11 for a primitive (`start`, `end`, `center`, `radius`, `at`, `points`, …),
+            the number and point parameters for a compound shape
+    curve   the curve of a primitive; None for points and compound shapes
+    parts   the named parts of a compound shape
+    """
+
+    name: str
+    path: str
+    type: str
+    values: dict[str, Scalar | Vec | tuple[Vec, ...]]
+    curve: Curve | None
+    parts: tuple[SolvedGeometry, ...]
+    construction: bool
+    span: Span | None
+
+    def curves(self) -> Iterator[Curve]:
+        """The drawn curves in order of writing; none of construction geometry."""
+        if self.construction:
+            return
+        if self.curve is not None:
+            yield self.curve
+        for part in self.parts:
+            yield from part.curves()
+
+
+@dataclass(frozen=True)
+class SolvedStructure:
+    """`box` is None where there is nothing to bound. `attributes`: name → argument values (`color`, `layer`,
+    `thickness`, `material`, `detached`, `note`, `orientation`). `is_empty`: no geometry of its own and no
+    children, so that `box` is that of the plan."""
+
+    name: str
+    path: str
+    kind: str
+    orientation: str
+    frame: Frame
+    attributes: dict[str, tuple[Scalar, ...]]
+    params: dict[str, Scalar]
+    geometry: tuple[SolvedGeometry, ...]
+    structures: tuple[SolvedStructure, ...]
+    box: Box | None
+    is_empty: bool
+    degrees: int
+    span: Span | None
+    doc: str | None = None
+
+    def walk(self) -> Iterator[SolvedStructure]:
+        """This structure and all below it, parents first, in order of writing."""
+        yield self
+        for child in self.structures:
+            yield from child.walk()
+
+    def find(self, path: str) -> SolvedStructure | None:
+        return next((s for s in self.walk() if s.path == path), None)
+
+
+@dataclass(frozen=True)
+class ConstraintReport:
+    """A constraint as written, the structure that holds it, and how well it holds."""
+
+    path: str
+    text: str
+    span: Span
+    residual: float
+    satisfied: bool
+    mentions: tuple[str, ...] = ()
+    soft: bool = False
+
+
+@dataclass(frozen=True)
+class Change:
+    """A kept size that had to change."""
+
+    path: str
+    written: float
+    solved: float
+    span: Span | None
+
+
+@dataclass(frozen=True)
+class SolvedModel:
+    status: str
+    root: SolvedStructure
+    constraints: tuple[ConstraintReport, ...]
+    degrees: int
+    free: tuple[str, ...]
+    changed: tuple[Change, ...]

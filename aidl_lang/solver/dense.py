@@ -1,0 +1,126 @@
+"""Dense linear algebra: every factorisation of the solver is here, and nothing else.
+
+A matrix whose rows are clearly independent is factorised by Cholesky's method (of J Jᵀ) or by QR; only
+where rank is in doubt are singular values worth their price, which is about ten times higher.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from aidl_lang.solver.operations import Floats
+
+RANK = 1e-10
+"""Singular values below this fraction of the greatest count as zero, in steps of Newton's method."""
+MOTION = 1e-7
+"""Singular values that count as zero in degrees of freedom, where one is the size of a typical motion."""
+CONSISTENT = 1e-7
+"""Part of a right-hand side that may lie out of reach, relative to all of it, by rounding."""
+NOISE = 1e-10
+"""Part of a right-hand side, in units of its rows, that is below what any row is asked to meet."""
+INDEPENDENT = 1e-4
+"""Least pivot of Cholesky's method, relative to the greatest, at which no row is in doubt."""
+SMALL = 300
+"""Number of entries below which singular values cost no more than the alternative."""
+
+
+def least_norm(jacobian: Floats, y: Floats) -> tuple[Floats, Floats, Floats | None]:
+    """The shortest z with J z = y, its multipliers m (z = -Jᵀ m), and the part of y out of reach, if any.
+
+    If a part is out of reach, z satisfies the rest in the sense of least squares. J is (m, n), y (m,).
+    """
+    if len(y) == 1:
+        return _least_norm_of_one(jacobian, y)
+    if jacobian.size > SMALL and (solved := _least_norm_by_cholesky(jacobian, y)):
+        return solved
+    u, sigma, vt = np.linalg.svd(jacobian, full_matrices=False)
+    rank = int(np.count_nonzero(sigma > RANK * sigma[0])) if sigma.any() else 0
+    u, sigma, vt = u[:, :rank], sigma[:rank], vt[:rank]
+    coordinates = (u.T @ y) / sigma
+    multipliers = -(u @ (coordinates / sigma))
+    outside = None
+    if rank < len(y):
+        rest = y - u @ (u.T @ y)
+        if float(np.abs(rest).max()) > max(CONSISTENT * float(np.abs(y).max()), NOISE):
+            outside = rest
+    return coordinates @ vt, multipliers, outside
+
+
+def _least_norm_of_one(jacobian: Floats, y: Floats) -> tuple[Floats, Floats, Floats | None]:
+    gradient = jacobian[0]
+    square = float(gradient @ gradient)
+    if square == 0.0:
+        return np.zeros_like(gradient), np.zeros(1), y if abs(y[0]) > NOISE else None
+    multiplier = -float(y[0]) / square
+    return gradient * -multiplier, np.array([multiplier]), None
+
+
+def _least_norm_by_cholesky(jacobian: Floats, y: Floats) -> tuple[Floats, Floats, None] | None:
+    """By the normal equations, refined once; None where they are not to be trusted."""
+    if len(y) > jacobian.shape[1]:
+        return None
+    gram = jacobian @ jacobian.T
+    if not _well_conditioned(gram):
+        return None
+    first = np.linalg.solve(gram, -y)
+    multipliers: Floats = np.asarray(first - np.linalg.solve(gram, gram @ first + y), dtype=np.float64)
+    point: Floats = -(jacobian.T @ multipliers)
+    error = float(np.abs(jacobian @ point - y).max())
+    return (point, multipliers, None) if error <= 1e-10 * float(np.abs(y).max()) else None
+
+
+def _well_conditioned(gram: Floats) -> bool:
+    try:
+        pivots = np.diagonal(np.linalg.cholesky(gram))
+    except np.linalg.LinAlgError:
+        return False
+    return float(pivots.min()) > INDEPENDENT * float(pivots.max())
+
+
+def independent_rows(matrix: Floats) -> bool:
+    """Whether the rows are independent beyond doubt; False may also mean that it is not clear."""
+    if matrix.shape[0] > matrix.shape[1]:
+        return False
+    lengths = np.linalg.norm(matrix, axis=1)
+    if not lengths.all():
+        return False
+    unit = matrix / lengths[:, None]
+    return _well_conditioned(unit @ unit.T)
+
+
+class DampedSteps:
+    """The steps -(JᵀJ + mu I)⁻¹ Jᵀ r for any mu.
+
+    largest  the greatest eigenvalue of JᵀJ, which mu is measured by
+    slope    norm of Jᵀ r, zero where no step leads down
+    """
+
+    def __init__(self, jacobian: Floats, residuals: Floats) -> None:
+        u, self._sigma, self._vt = np.linalg.svd(jacobian, full_matrices=False)
+        self._target = u.T @ residuals
+        self.largest = float(self._sigma.max(initial=0.0)) ** 2
+        self.slope = float(np.linalg.norm(self._sigma * self._target))
+
+    def step(self, mu: float) -> Floats:
+        shrunk = self._sigma / (self._sigma * self._sigma + mu) * self._target
+        step: Floats = -(shrunk @ self._vt)
+        return step
+
+
+def null_space(matrix: Floats) -> Floats:
+    """An orthonormal basis (n, n - rank) of the null space of `matrix` (m, n)."""
+    if independent_rows(matrix):
+        basis: Floats = np.linalg.qr(matrix.T, mode="complete")[0][:, len(matrix) :]
+        return basis
+    _, sigma, vt = np.linalg.svd(matrix, full_matrices=True)
+    return np.ascontiguousarray(vt[np.count_nonzero(sigma > MOTION) :].T)
+
+
+def row_space(matrix: Floats) -> Floats:
+    """An orthonormal basis (n, rank) of the rows of `matrix` (m, n)."""
+    if 0 in matrix.shape:
+        return np.zeros((matrix.shape[1], 0))
+    if matrix.shape[0] > matrix.shape[1]:
+        matrix = np.asarray(np.linalg.qr(matrix, mode="r"))
+    _, sigma, vt = np.linalg.svd(matrix, full_matrices=False)
+    return np.ascontiguousarray(vt[: np.count_nonzero(sigma > MOTION)].T)

@@ -1,0 +1,210 @@
+"""Expressions over the unknowns as one shared graph: the tape.
+
+A tape is a directed acyclic graph in plain arrays, each node after its operands, equal nodes stored once.
+`TapeBuilder` makes it; `operations` says what each node means; `program` evaluates parts of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.solver.operations import ARITY, VALUE, Floats, Op
+
+
+@dataclass(frozen=True)
+class Tape:
+    """m nodes, each of them after its operands.
+
+    ops       (m,)   `Op` of each node
+    operands  (m, 4) node ids, -1 where there are fewer; for UNKNOWN the index of the unknown
+    constants (m,)   value of a CONSTANT, else 0
+    """
+
+    ops: NDArray[np.int8]
+    operands: NDArray[np.int32]
+    constants: Floats
+
+    def __len__(self) -> int:
+        return len(self.ops)
+
+    @cached_property
+    def op_list(self) -> list[int]:
+        """`ops` as a Python list, which is quicker to read one by one."""
+        return [int(op) for op in self.ops]
+
+    @cached_property
+    def operand_lists(self) -> list[tuple[int, ...]]:
+        """The operands of each node: node ids, none for constants, the index for an unknown."""
+        arity = [1 if op == Op.UNKNOWN else ARITY[op] for op in self.op_list]
+        return [tuple(row[:k]) for row, k in zip(self.operands.tolist(), arity, strict=True)]
+
+
+class TapeBuilder:
+    """Builds a tape; each method returns the id of a node, a new one or an equal one made before.
+
+    Operations on constants are folded, and the neutral elements of + - * / ^ vanish. Angles are in radians.
+    """
+
+    def __init__(self) -> None:
+        self._ops: list[int] = []
+        self._operands: list[tuple[int, ...]] = []
+        self._constants: list[float] = []
+        self._known: dict[tuple[object, ...], int] = {}
+
+    def __len__(self) -> int:
+        return len(self._ops)
+
+    def constant(self, value: float) -> int:
+        value = float(value) + 0.0  # -0.0 becomes 0.0
+        return self._intern((Op.CONSTANT, repr(value)), Op.CONSTANT, (), value)
+
+    def unknown(self, index: int) -> int:
+        return self._intern((Op.UNKNOWN, int(index)), Op.UNKNOWN, (int(index),), 0.0)
+
+    def add(self, a: int, b: int) -> int:
+        if self._is(a, 0.0):
+            return b
+        if self._is(b, 0.0):
+            return a
+        return self._commutative(Op.ADD, a, b)
+
+    def sub(self, a: int, b: int) -> int:
+        if a == b:
+            return self.constant(0.0)
+        if self._is(b, 0.0):
+            return a
+        if self._is(a, 0.0):
+            return self.neg(b)
+        return self._node(Op.SUB, a, b)
+
+    def mul(self, a: int, b: int) -> int:
+        for factor, other in ((a, b), (b, a)):
+            if self._is(factor, 0.0):
+                return factor
+            if self._is(factor, 1.0):
+                return other
+            if self._is(factor, -1.0):
+                return self.neg(other)
+        return self.square(a) if a == b else self._commutative(Op.MUL, a, b)
+
+    def div(self, a: int, b: int) -> int:
+        if self._is(b, 1.0):
+            return a
+        return self._node(Op.DIV, a, b)
+
+    def neg(self, a: int) -> int:
+        if self._ops[a] == Op.NEG:
+            return self._operands[a][0]
+        return self._node(Op.NEG, a)
+
+    def power(self, base: int, exponent: int) -> int:
+        if self._is(exponent, 1.0):
+            return base
+        if self._is(exponent, 2.0):
+            return self.square(base)
+        if self._is(exponent, 0.5):
+            return self.sqrt(base)
+        return self._node(Op.POWER, base, exponent)
+
+    def sin(self, a: int) -> int:
+        return self._node(Op.SIN, a)
+
+    def cos(self, a: int) -> int:
+        return self._node(Op.COS, a)
+
+    def tan(self, a: int) -> int:
+        return self._node(Op.TAN, a)
+
+    def asin(self, a: int) -> int:
+        return self._node(Op.ASIN, a)
+
+    def acos(self, a: int) -> int:
+        return self._node(Op.ACOS, a)
+
+    def atan2(self, y: int, x: int) -> int:
+        return self._node(Op.ATAN2, y, x)
+
+    def sqrt(self, a: int) -> int:
+        return self._node(Op.SQRT, a)
+
+    def abs(self, a: int) -> int:
+        return self._node(Op.ABS, a)
+
+    def square(self, a: int) -> int:
+        return self._node(Op.SQUARE, a)
+
+    def hypot(self, a: int, b: int) -> int:
+        return self._node(Op.HYPOT, a, b)
+
+    def minimum(self, *args: int) -> int:
+        return self._extremum(self._minimum_of_two, args)
+
+    def maximum(self, *args: int) -> int:
+        return self._extremum(self._maximum_of_two, args)
+
+    def mod(self, a: int, b: int) -> int:
+        """The remainder a - b floor(a / b), which has the sign of `b`."""
+        return self._node(Op.MOD, a, b)
+
+    def select(self, condition: int, a: int, b: int) -> int:
+        """`a` where `condition` >= 0, else `b`."""
+        if a == b:
+            return a
+        if self._ops[condition] == Op.CONSTANT:
+            return a if self._constants[condition] >= 0.0 else b
+        return self._node(Op.SELECT, condition, a, b)
+
+    def cubic_max(self, p0: int, p1: int, p2: int, p3: int) -> int:
+        """The greatest value over t in [0, 1] of the cubic with these Bernstein coefficients."""
+        return self._node(Op.CUBIC_MAX, p0, p1, p2, p3)
+
+    def finish(self) -> Tape:
+        operands = np.full((len(self._ops), 4), -1, dtype=np.int32)
+        for node, args in enumerate(self._operands):
+            operands[node, : len(args)] = args
+        return Tape(np.array(self._ops, dtype=np.int8), operands, np.array(self._constants, dtype=np.float64))
+
+    def _is(self, node: int, value: float) -> bool:
+        return self._ops[node] == Op.CONSTANT and self._constants[node] == value
+
+    def _minimum_of_two(self, a: int, b: int) -> int:
+        return a if a == b else self._commutative(Op.MINIMUM, a, b)
+
+    def _maximum_of_two(self, a: int, b: int) -> int:
+        return a if a == b else self._commutative(Op.MAXIMUM, a, b)
+
+    def _extremum(self, of_two: Callable[[int, int], int], args: Sequence[int]) -> int:
+        """A balanced tree of binary nodes, so that the depth of the tape stays logarithmic."""
+        if not args:
+            raise ValueError("minimum and maximum take at least one operand")
+        level = sorted(set(args))
+        while len(level) > 1:
+            pairs = [of_two(level[i], level[i + 1]) for i in range(0, len(level) - 1, 2)]
+            level = pairs + level[len(pairs) * 2 :]
+        return level[0]
+
+    def _commutative(self, op: Op, a: int, b: int) -> int:
+        return self._node(op, a, b) if a <= b else self._node(op, b, a)
+
+    def _node(self, op: Op, *args: int) -> int:
+        if all(self._ops[a] == Op.CONSTANT for a in args):
+            values = [self._constants[a] for a in args]
+            folded = VALUE[op](*values) if len(values) > 1 else VALUE[op](values[0], 0.0)
+            if math.isfinite(folded):
+                return self.constant(folded)
+        return self._intern((op, *args), op, args, 0.0)
+
+    def _intern(self, key: tuple[object, ...], op: Op, operands: tuple[int, ...], constant: float) -> int:
+        node = self._known.get(key)
+        if node is None:
+            node = self._known[key] = len(self._ops)
+            self._ops.append(int(op))
+            self._operands.append(operands)
+            self._constants.append(constant)
+        return node

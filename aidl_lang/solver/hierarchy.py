@@ -1,0 +1,344 @@
+"""The order of solving: groups from the leaves to the root, and at each group the stages of section 9.
+
+At a group every unknown of its subtree has a tier, which says at which stage it becomes free:
+
+    (1, 0)  own position that a constraint of the group places
+    (2, 0)  own position, or translation of a child's frame (owned by the group, too)
+    (3, d)  translation of a frame, owned by a group d levels below
+    (4, d)  other position of a group d levels below
+    (5, 0)  own kept size that a constraint places
+    (5, 1)  own kept size
+    (5, 1 + d)  kept size of a group d levels below
+
+A stage frees all tiers up to its own, as far as they are mentioned: by the group's constraints, or by
+constraints of descendants that mention something free. Those constraints are the ones that a move could
+break, and they join the system; a descendant that nothing outside mentions therefore never moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from aidl_lang.solver import conflicts
+from aidl_lang.solver.branches import Task, Verdict, attempt, holds, violation_of
+from aidl_lang.solver.newton import Clock
+from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.problem import Problem, Row, Settings
+from aidl_lang.solver.solution import GroupFailure, StageReport
+from aidl_lang.solver.valuation import Cone, Valuation
+
+Tier: TypeAlias = tuple[int, int]
+
+OWN: Tier = (2, 0)
+POSITIONS: Tier = (5, -1)
+"""Before the first tier of kept sizes."""
+CHANGED = 1e-9
+"""A kept size that moved less than this, in units of its scale, did not change."""
+LAST_RESTARTS = 5
+"""Perturbed starts at the last stage; the earlier ones have one."""
+FIRMNESS = 1e-5
+"""Unit of the slack of a preference of weight 1: how dear it is compared with moving things."""
+
+NEARLY = 1e-6
+"""Weighted violation of a preference that is due to the slack alone."""
+MOST_FAILURES = 20
+"""Conflicts that are explained and worked around; after that, only the best effort is kept."""
+
+_NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "sizes"}
+
+
+def stage_name(tier: Tier) -> str:
+    """`placed`, `own`, `translations 1`, `positions 2`, `placed sizes`, `own sizes`, `sizes 1`, …"""
+    kind, level = tier
+    if kind == 5:
+        return ("placed sizes", "own sizes")[level] if level < 2 else f"sizes {level - 1}"
+    return _NAMES[kind] if kind < 3 else f"{_NAMES[kind]} {level}"
+
+
+@dataclass(frozen=True)
+class Scope:
+    """What takes part in one stage: the free unknowns and the indices of the hard constraints."""
+
+    free: frozenset[int]
+    constraints: tuple[int, ...]
+
+
+class Hierarchy:
+    """One solve. `values`, `failures` and `stages` are the results."""
+
+    def __init__(self, problem: Problem, settings: Settings, clock: Clock) -> None:
+        self.problem, self.settings, self.clock = problem, settings, clock
+        self.values = Valuation(problem.tape, problem.initial.tolist())
+        self.failures: list[GroupFailure] = []
+        self.stages: list[StageReport] = []
+        self.timed_out = False
+        self._kept = [bool(kept) for kept in problem.kept]
+        self._group = [int(group) for group in problem.group]
+        self._frame = [int(frame) >= 0 for frame in problem.frame_of]
+        self._depth = _depths(problem)
+        self.cones: list[Cone] = [
+            self.values.cone(row.expression for row in constraint.rows) for constraint in problem.constraints
+        ]
+        self._held_by: list[list[int]] = [[] for _ in problem.parent]
+        self._mentioned_by: dict[int, list[int]] = {}
+        for index, constraint in enumerate(problem.constraints):
+            self._held_by[constraint.group].append(index)
+            for unknown in self.cones[index].unknowns:
+                self._mentioned_by.setdefault(unknown, []).append(index)
+        self._broken: set[int] = set()
+
+    def run(self) -> None:
+        for group in reversed(range(len(self.problem.parent))):
+            if self._held_by[group]:
+                _Group(self, group).solve()
+
+    def solution(self) -> Floats:
+        return np.array(self.values.unknowns, dtype=np.float64)
+
+    def changed(self) -> list[int]:
+        """Kept sizes that are no longer what was written."""
+        moved = np.abs(self.solution() - self.problem.initial) > CHANGED * self.problem.scale
+        return [int(unknown) for unknown in np.flatnonzero(moved & self.problem.kept)]
+
+    @property
+    def mentioned(self) -> AbstractSet[int]:
+        """The unknowns that occur in any constraint."""
+        return self._mentioned_by.keys()
+
+    # -- what groups ask
+
+    def tier(self, group: int, unknown: int, placed: frozenset[int]) -> Tier:
+        """When `unknown` becomes free at `group`, whose constraints place `placed`."""
+        level = self._depth[self._group[unknown]] - self._depth[group]
+        if self._kept[unknown]:
+            return (5, (0 if unknown in placed else 1) if level == 0 else 1 + level)
+        if level == 0:
+            return (1, 0) if unknown in placed else (2, 0)
+        return (3, level) if self._frame[unknown] else (4, level)
+
+    def is_hard(self, index: int) -> bool:
+        return self.problem.constraints[index].weight is None
+
+    def held_by(self, group: int) -> list[int]:
+        return self._held_by[group]
+
+    def solved_mentioning(self, unknown: int, group: int) -> Iterable[int]:
+        """Constraints of `group` and its descendants, those that could not be met excepted."""
+        constraints, broken = self.problem.constraints, self._broken
+        return (
+            index
+            for index in self._mentioned_by.get(unknown, ())
+            if constraints[index].group >= group and index not in broken
+        )
+
+    def give_up(self, indices: Iterable[int]) -> None:
+        """These constraints no longer bind what is solved later."""
+        self._broken.update(indices)
+
+    def rows(self, indices: Iterable[int]) -> list[Row]:
+        return [row for index in indices for row in self.problem.constraints[index].rows]
+
+    def satisfied(self, index: int) -> bool:
+        """By the original expressions at the current values."""
+        self.values.refresh(self.cones[index])
+        return all(
+            holds(row, self.values, self.settings.tolerance) for row in self.problem.constraints[index].rows
+        )
+
+    def attempt(self, scope: Scope, restarts: int) -> Verdict:
+        rows = self.rows(scope.constraints)
+        task = Task(rows, [0.0] * len(rows), scope.free, restarts)
+        return attempt(task, self.values, self.problem.scale, self.settings, self.clock)
+
+    def save(self, unknowns: Iterable[int]) -> dict[int, float]:
+        return {unknown: self.values.unknowns[unknown] for unknown in unknowns}
+
+
+class _Group:
+    """The stages of one group."""
+
+    def __init__(self, hierarchy: Hierarchy, group: int) -> None:
+        self.hierarchy, self.group = hierarchy, group
+        held = hierarchy.held_by(group)
+        constraints = hierarchy.problem.constraints
+        self.hard = [index for index in held if hierarchy.is_hard(index)]
+        self.soft = [index for index in held if not hierarchy.is_hard(index)]
+        self.placed = frozenset().union(*(constraints[index].placed for index in self.hard))
+        self._tiers: dict[int, Tier] = {}
+
+    def solve(self) -> None:
+        """Satisfies the constraints; of a conflict the last one written is left out, and the rest solved."""
+        hierarchy = self.hierarchy
+        while True:
+            violated = [index for index in self.hard if not hierarchy.satisfied(index)]
+            reached = self._deepen(violated) if violated else (0, 0)
+            if reached is not None:
+                self._weigh_preferences(reached)
+                return
+            left_out = self._leave_out()
+            if left_out is None:
+                return
+            self.hard.remove(left_out)
+            hierarchy.give_up([left_out])
+
+    def _leave_out(self) -> int | None:
+        """The constraint to go on without after a failure; None if it is not known which would help."""
+        failure = self.hierarchy.failures[-1]
+        own = [index for index in failure.conflict if index in self.hard]
+        known = failure.minimal and own and not self.hierarchy.clock.expired
+        return max(own) if known and len(self.hierarchy.failures) <= MOST_FAILURES else None
+
+    def tier(self, unknown: int) -> Tier:
+        found = self._tiers.get(unknown)
+        if found is None:
+            found = self._tiers[unknown] = self.hierarchy.tier(self.group, unknown, self.placed)
+        return found
+
+    def scope(self, last: Tier, seeds: Iterable[int]) -> Scope:
+        """The unknowns up to tier `last` that `seeds` mention, what binds those, what that mentions, …"""
+        hierarchy = self.hierarchy
+        constraints, free = set(seeds), set[int]()
+        stack = list(constraints)
+        while stack:
+            for unknown in hierarchy.cones[stack.pop()].unknowns:
+                if unknown in free or self.tier(unknown) > last:
+                    continue
+                free.add(unknown)
+                for index in hierarchy.solved_mentioning(unknown, self.group):
+                    if index not in constraints and hierarchy.is_hard(index):
+                        constraints.add(index)
+                        stack.append(index)
+        return Scope(frozenset(free), tuple(sorted(constraints)))
+
+    # -- stages
+
+    def _deepen(self, violated: list[int]) -> Tier | None:
+        """The tier of the first stage that satisfies everything, None if there is none."""
+        hierarchy = self.hierarchy
+        everything = self.scope((9, 0), self.hard)
+        before = hierarchy.save(everything.free)
+        best: tuple[float, dict[int, float]] = (np.inf, before)
+        tiers = sorted({self.tier(unknown) for unknown in everything.free})
+        tried: frozenset[int] = frozenset()
+        for tier in tiers:
+            if not self._promising(violated, tier):
+                continue
+            scope = self.scope(tier, self.hard)
+            if scope.free == tried:
+                continue
+            tried = scope.free
+            verdict = hierarchy.attempt(scope, LAST_RESTARTS if tier == tiers[-1] else 1)
+            self._report(tier, scope, verdict.satisfied)
+            if verdict.satisfied:
+                return tier
+            if verdict.violation < 0.99 * best[0]:
+                best = (verdict.violation, hierarchy.save(everything.free))
+            hierarchy.values.assign(before.items())
+            if hierarchy.clock.expired:
+                hierarchy.timed_out = True
+                break
+        self._fail(violated, everything, before, best[1])
+        return None
+
+    def _promising(self, violated: list[int], tier: Tier) -> bool:
+        """Whether each violated constraint mentions something free."""
+        cones = self.hierarchy.cones
+        return all(any(self.tier(unknown) <= tier for unknown in cones[index].unknowns) for index in violated)
+
+    def _report(self, tier: Tier, scope: Scope, succeeded: bool) -> None:
+        rows = len(self.hierarchy.rows(scope.constraints))
+        report = StageReport(self.group, stage_name(tier), len(scope.free), rows, succeeded)
+        self.hierarchy.stages.append(report)
+
+    def _fail(
+        self, violated: list[int], everything: Scope, before: dict[int, float], best: dict[int, float]
+    ) -> None:
+        hierarchy = self.hierarchy
+        failure = conflicts.explain(hierarchy, self.group, violated, everything, before)
+        hierarchy.failures.append(failure)
+        if self._leave_out() is not None:
+            return
+        hierarchy.values.assign(best.items())
+        involved = set(everything.constraints) | set(self.hard)
+        hierarchy.give_up(index for index in sorted(involved) if not hierarchy.satisfied(index))
+
+    # -- preferences
+
+    def _weigh_preferences(self, reached: Tier) -> None:
+        """Satisfies preferences as well as possible within what the winning stage had free."""
+        hierarchy = self.hierarchy
+        constraints = hierarchy.problem.constraints
+        limit = min(max(reached, OWN), POSITIONS)
+        soft = set(self.soft)
+        if reached > (0, 0):
+            for unknown in self.scope(min(reached, POSITIONS), self.hard).free:
+                soft.update(
+                    index
+                    for index in hierarchy.solved_mentioning(unknown, self.group)
+                    if not hierarchy.is_hard(index)
+                )
+        if all(hierarchy.satisfied(index) for index in soft):
+            return
+        preferences = tuple(sorted(soft))
+        self.placed = self.placed.union(*(constraints[index].placed for index in preferences))
+        self._tiers.clear()
+        for tier in sorted({min(max(reached, (1, 0)), POSITIONS), limit}):
+            if self._prefer(preferences, tier):
+                break
+
+    def _prefer(self, soft: tuple[int, ...], tier: Tier) -> bool:
+        """Moves towards the preferences with everything up to `tier` free; whether all of them hold then."""
+        hierarchy = self.hierarchy
+        scope = self.scope(tier, soft)
+        before = hierarchy.save(scope.free)
+        if hierarchy.attempt(Scope(scope.free, scope.constraints), 1).satisfied:
+            return True
+        hierarchy.values.assign(before.items())
+        hard = [index for index in scope.constraints if hierarchy.is_hard(index)]
+        rows, softness = hierarchy.rows(hard), [0.0] * len(hierarchy.rows(hard))
+        for index in soft:
+            weight = hierarchy.problem.constraints[index].weight or 0.0
+            for row in hierarchy.problem.constraints[index].rows if weight > 0.0 else ():
+                rows.append(row)
+                softness.append(FIRMNESS / float(np.sqrt(weight)))
+        cost = self._cost(soft)
+        task = Task(rows, softness, scope.free)
+        verdict = attempt(
+            task, hierarchy.values, hierarchy.problem.scale, hierarchy.settings, hierarchy.clock
+        )
+        if not verdict.satisfied or not self._cost(soft) < cost:
+            hierarchy.values.assign(before.items())
+        else:
+            self._meet_exactly(scope.free, hard, soft)
+        return False
+
+    def _meet_exactly(self, free: frozenset[int], hard: list[int], soft: tuple[int, ...]) -> None:
+        """Rids the preferences that hold but for the give of their slack of what is missing."""
+        hierarchy = self.hierarchy
+        nearly = [index for index in soft if self._cost((index,)) < NEARLY**2]
+        reached = hierarchy.save(free)
+        if not hierarchy.attempt(Scope(free, tuple(sorted([*hard, *nearly]))), 0).satisfied:
+            hierarchy.values.assign(reached.items())
+
+    def _cost(self, soft: tuple[int, ...]) -> float:
+        """The weighted squares of what the preferences lack."""
+        hierarchy = self.hierarchy
+        total = 0.0
+        for index in soft:
+            constraint = hierarchy.problem.constraints[index]
+            hierarchy.values.refresh(hierarchy.cones[index])
+            for row in constraint.rows:
+                total += (constraint.weight or 0.0) * (violation_of(row, hierarchy.values) / row.scale) ** 2
+        return total
+
+
+def _depths(problem: Problem) -> list[int]:
+    depths: list[int] = []
+    for parent in problem.parent.tolist():
+        depths.append(0 if parent < 0 else depths[parent] + 1)
+    return depths

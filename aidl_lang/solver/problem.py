@@ -1,0 +1,97 @@
+"""What the solver is given: unknowns, expressions and constraints over a tree of groups, as plain arrays.
+
+Nothing here knows of the language. A *group* is what a structure is to the language: it owns unknowns and
+constraints, and has a parent. A constraint held by a group mentions only unknowns of that group's subtree.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.solver.expression import Tape
+
+Floats = NDArray[np.float64]
+
+
+class Relation(StrEnum):
+    EQUAL = "="
+    """`expression == 0`"""
+    AT_MOST = "<="
+    """`expression <= 0`"""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One scalar equation or inequality over the tape.
+
+    `scale` is the magnitude of a typical value of the expression (mm for lengths, 57.3 for an angle in
+    degrees, 1 for a ratio): the row holds when its residual is within `Settings.tolerance * scale`.
+    """
+
+    expression: int
+    relation: Relation
+    scale: float = 1.0
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """One constraint as the author sees it; a coincidence of points is two rows.
+
+    `placed` are the unknowns that may move first to satisfy it (language design, section 7: what gives way).
+    `weight` is None for a hard constraint, else the constraint is a preference.
+    """
+
+    group: int
+    rows: tuple[Row, ...]
+    placed: frozenset[int]
+    weight: float | None = None
+
+
+@dataclass(frozen=True)
+class Problem:
+    """n unknowns, g groups.
+
+    initial  (n,) first guesses
+    scale    (n,) length of a change that counts as one unit: the solver prefers the change for which
+             sum(((x - initial) / scale)**2) is least
+    kept     (n,) True for sizes that change only as a last resort (stage 5)
+    group    (n,) the group that owns each unknown
+    frame_of (n,) for a translation of a group's frame, that group; else -1. A frame's unknowns are owned by
+             the parent of the group they move.
+    parent   (g,) parent of each group, -1 for the root, which is group 0; parents come before children
+    observables: (group, tape node) for each coordinate that a reader of the drawing could see move, in the
+             root's frame: degrees of freedom are counted on these, so that a frame and its contents moving
+             against each other do not count.
+    """
+
+    tape: Tape
+    initial: Floats
+    scale: Floats
+    kept: NDArray[np.bool_]
+    group: NDArray[np.int64]
+    frame_of: NDArray[np.int64]
+    parent: NDArray[np.int64]
+    constraints: tuple[Constraint, ...]
+    observables: tuple[tuple[int, int], ...] = ()
+    names: tuple[str, ...] = field(default=(), repr=False)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Limits that keep any problem from running away.
+
+    tolerance   residual at which a row counts as satisfied, relative to its scale
+    iterations  Newton steps per attempt
+    branches    re-choices of `min`/`max` branches per stage
+    seconds     wall clock for the whole solve; reaching it ends with status `failed` and `timed_out`
+    """
+
+    tolerance: float = 1e-9
+    iterations: int = 60
+    branches: int = 12
+    seconds: float = 20.0
+    explain: bool = True

@@ -1,0 +1,85 @@
+"""Some rows as functions of their free unknowns, ready for quick evaluation.
+
+Straight-line code on plain floats: for the ten to some hundred unknowns that a structure has, it is quicker
+than arrays, whose price is paid per operation. Derivatives are accumulated in reverse, row by row, along a
+schedule made once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.valuation import Compiled, run
+
+Partial: TypeAlias = "tuple[Callable[..., tuple[float, ...]], tuple[int, ...], int, tuple[int, ...]]"
+"""Function, slots of its operands, slot of the value, edges that take the slopes."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Reverse accumulation of one row: from its root to the unknowns in it."""
+
+    root: int
+    edges: list[tuple[int, int, int]]
+    inputs: list[int]
+    touched: list[int]
+
+
+@dataclass
+class Program:
+    """Some rows as functions of their free unknowns, with branches fixed.
+
+    The programs of one `freeze` share `values` and `weights`, each writing to slots of its own.
+
+    rows    (r,) which of the roots given to `freeze`
+    columns (k,) the unknowns, ascending
+    linear  whether every row is an affine function of the unknowns
+    """
+
+    rows: list[int]
+    roots: list[int]
+    columns: list[int]
+    slots: list[int]
+    values: list[float] = field(repr=False)
+    weights: list[float] = field(repr=False)
+    linear: bool = True
+    code: list[Compiled] = field(default_factory=list, repr=False)
+    partials: list[Partial] = field(default_factory=list, repr=False)
+    sweeps: list[Sweep] = field(default_factory=list, repr=False)
+    scatter: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp), repr=False)
+
+    def residuals(self, x: Sequence[float]) -> list[float]:
+        """The r rows at the k unknowns `x`."""
+        values = self.values
+        for slot, value in zip(self.slots, x, strict=True):
+            values[slot] = value
+        run(self.code, values)
+        return [values[root] for root in self.roots]
+
+    def jacobian(self) -> Floats:
+        """The (r, k) partial derivatives where `residuals` was last evaluated."""
+        values, weights = self.values, self.weights
+        for partial, operands, out, edges in self.partials:
+            slopes = partial(*[values[i] for i in operands], values[out])
+            for edge, slope in zip(edges, slopes, strict=False):
+                weights[edge] = slope
+        adjoints = [0.0] * len(values)
+        entries: list[float] = []
+        for sweep in self.sweeps:
+            adjoints[sweep.root] = 1.0
+            for parent, child, edge in sweep.edges:
+                adjoints[child] += adjoints[parent] * weights[edge]
+            entries.extend([adjoints[slot] for slot in sweep.inputs])
+            for slot in sweep.touched:
+                adjoints[slot] = 0.0
+        matrix = np.zeros(len(self.rows) * len(self.columns))
+        matrix[self.scatter] = entries
+        if not np.isfinite(matrix).all():  # products of finite slopes may still overflow
+            np.nan_to_num(matrix, copy=False)
+        return matrix.reshape(len(self.rows), len(self.columns))

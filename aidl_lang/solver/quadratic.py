@@ -1,0 +1,98 @@
+"""The point nearest to the origin among those that satisfy linear equations and inequalities.
+
+Every step of Newton's method and every polishing step is this problem:
+
+    minimise ½ |z|²   subject to   J z = y  (equations),   J z <= y  (inequalities)
+
+It is solved in its dual, whose unknowns are the multipliers, one to a row, by an active-set method in the
+manner of Lawson and Hanson (Solving Least Squares Problems, 1974, chapter 23): rows enter by violation and
+leave when their multiplier would change sign. Rows that depend on each other are welcome.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.solver.dense import least_norm
+from aidl_lang.solver.operations import Floats
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """
+    point       (n,) the nearest point; in the sense of least squares if there is none
+    multipliers (m,) point == -J.T @ multipliers; not negative for inequalities
+    feasible    whether the rows can hold together
+    """
+
+    point: Floats
+    multipliers: Floats
+    feasible: bool
+
+
+def nearest(jacobian: Floats, y: Floats, inequality: NDArray[np.bool_]) -> Nearest:
+    """The nearest point for `jacobian` (m, n), `y` (m,); `inequality` (m,) marks the rows that are <=."""
+    if not inequality.any():
+        point, multipliers, outside = least_norm(jacobian, y)
+        return Nearest(point, multipliers, outside is None)
+    return _DualActiveSet(jacobian, y, inequality).solve()
+
+
+class _DualActiveSet:
+    def __init__(self, jacobian: Floats, y: Floats, inequality: NDArray[np.bool_]) -> None:
+        self.jacobian, self.y, self.inequality = jacobian, y, inequality
+        self.active = ~inequality
+        self.multipliers = np.zeros(len(y))
+        self.point = np.zeros(jacobian.shape[1])
+        self.slack = 1e-12 * max(1.0, float(np.abs(y).max(initial=0.0)))
+
+    def solve(self) -> Nearest:
+        feasible = self._settle()
+        for _ in range(3 * len(self.y) + 10):
+            if not feasible:
+                break
+            violation = np.where(self.active, -np.inf, self.jacobian @ self.point - self.y)
+            worst = int(np.argmax(violation))
+            if violation[worst] <= self.slack:
+                return Nearest(self.point, self.multipliers, True)
+            self.active[worst] = True
+            feasible = self._settle()
+        return Nearest(self.point, self.multipliers, False)
+
+    def _settle(self) -> bool:
+        """Brings the multipliers of the active rows to the optimum, dropping rows on the way. False: none."""
+        for _ in range(len(self.y) + 1):
+            rows = np.flatnonzero(self.active)
+            if len(rows) == 0:
+                self.point = np.zeros(self.jacobian.shape[1])
+                return True
+            point, target, outside = least_norm(self.jacobian[rows], self.y[rows])
+            if outside is None:
+                direction, length = target - self.multipliers[rows], 1.0
+            else:  # the dual is unbounded this way, unless an inequality leaves
+                direction, length = -outside, np.inf
+            blocking, step = self._first_to_vanish(rows, direction, length)
+            if blocking is None:
+                self.point = point
+                self.multipliers[rows] = target
+                return outside is None
+            self.multipliers[rows] += step * direction
+            self.multipliers[blocking] = 0.0
+            self.active[blocking] = False
+        return False
+
+    def _first_to_vanish(
+        self, rows: NDArray[np.intp], direction: Floats, length: float
+    ) -> tuple[int | None, float]:
+        """The inequality whose multiplier reaches zero before `length` along `direction`, and where."""
+        current = self.multipliers[rows]
+        falling = self.inequality[rows] & (current + direction < 0.0 if length == 1.0 else direction < 0.0)
+        candidates = np.flatnonzero(falling)
+        if len(candidates) == 0:
+            return None, length
+        steps = current[candidates] / -direction[candidates]
+        first = int(np.argmin(steps))
+        return int(rows[candidates[first]]), max(float(steps[first]), 0.0)

@@ -1,0 +1,94 @@
+"""The values of the unknowns and of the tape's nodes, brought up to date a cone at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from aidl_lang.solver.expression import Tape
+from aidl_lang.solver.operations import VALUE, Op
+
+Compiled: TypeAlias = "tuple[Callable[..., float], int | tuple[int, ...], int, int]"
+"""Function, first operand (all of them for more than two), second operand or -1, result."""
+
+
+class Valuation:
+    """The values of all unknowns, and of those nodes that were brought up to date.
+
+    unknowns (n,) current values; change them only through `assign`
+    nodes    (m,) value of each tape node as of the last `refresh` that covered it
+    """
+
+    def __init__(self, tape: Tape, initial: Sequence[float]) -> None:
+        self.tape = tape
+        self.unknowns = [float(value) for value in initial]
+        self.nodes = [float(value) for value in tape.constants]
+        self._seen = [False] * len(tape)
+        self._code = [
+            compiled(op, node, operands) if op > Op.UNKNOWN else None
+            for node, (op, operands) in enumerate(zip(tape.op_list, tape.operand_lists, strict=True))
+        ]
+
+    def assign(self, values: Iterable[tuple[int, float]]) -> None:
+        for unknown, value in values:
+            self.unknowns[unknown] = value
+
+    def cone(self, roots: Iterable[int]) -> Cone:
+        """Everything that the roots are made of, ready to be refreshed."""
+        nodes = reachable(self.tape, roots, self._seen)
+        ops, operands = self.tape.op_list, self.tape.operand_lists
+        inputs = [(node, operands[node][0]) for node in nodes if ops[node] == Op.UNKNOWN]
+        code = [instruction for node in nodes if (instruction := self._code[node])]
+        return Cone(frozenset([unknown for _, unknown in inputs]), inputs, code)
+
+    def refresh(self, cone: Cone) -> None:
+        nodes, unknowns = self.nodes, self.unknowns
+        for node, unknown in cone.inputs:
+            nodes[node] = unknowns[unknown]
+        run(cone.code, nodes)
+
+
+@dataclass(frozen=True)
+class Cone:
+    unknowns: frozenset[int]
+    inputs: list[tuple[int, int]]
+    code: list[Compiled]
+
+
+def compiled(op: int, out: int, operands: tuple[int, ...]) -> Compiled:
+    if len(operands) > 2:
+        return VALUE[op], operands, -1, out
+    return VALUE[op], operands[0], operands[-1], out
+
+
+def evaluate(op: int, operands: Sequence[float]) -> float:
+    """One operation on numbers."""
+    return VALUE[op](*operands) if len(operands) > 1 else VALUE[op](operands[0], operands[0])
+
+
+def run(code: list[Compiled], values: list[float]) -> None:
+    """Evaluates straight-line code on `values` in place."""
+    for function, a, b, out in code:
+        if b >= 0:
+            values[out] = function(values[a], values[b])  # type: ignore[index]
+        else:
+            values[out] = function(*[values[i] for i in a])  # type: ignore[union-attr]
+
+
+def reachable(tape: Tape, roots: Iterable[int], seen: list[bool]) -> list[int]:
+    """The nodes below `roots`, operands first. `seen` is scratch: all False before and after."""
+    ops, operands = tape.op_list, tape.operand_lists
+    found: list[int] = []
+    stack = list(roots)
+    while stack:
+        node = stack.pop()
+        if not seen[node]:
+            seen[node] = True
+            found.append(node)
+            if ops[node] > Op.UNKNOWN:
+                stack.extend(operands[node])
+    for node in found:
+        seen[node] = False
+    found.sort()
+    return found

@@ -1,0 +1,1 @@
+"""The parts of the parser: tables of the grammar, tokens, automaton, nodes, and what goes wrong with them."""

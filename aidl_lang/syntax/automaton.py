@@ -1,0 +1,185 @@
+"""The LALR(1) automaton that the grammar describes, with nodes built as rules are recognised."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
+
+from aidl_lang.syntax.tables import Tables
+from aidl_lang.syntax.tokens import END, Token
+from aidl_lang.syntax.tree import Builder
+
+
+class Checkpoint(NamedTuple):
+    """The stacks as they were before the statement that begins with the token number `position`."""
+
+    position: int
+    states: list[int]
+    values: list[Any]
+    starts: list[int]
+    statements: int  # of the block so far
+
+
+class Automaton:
+    """States, values and places of what has been read so far, as three stacks of one length."""
+
+    def __init__(self, tables: Tables, builder: Builder) -> None:
+        self.tables = tables
+        self.states: list[int] = [tables.start]
+        self.values: list[Any] = [None]
+        self.starts: list[int] = [0]
+        self.end = 0  # of the last token taken
+        self.methods: list[Callable[..., Any] | None] = [
+            builder.action(rule.action) if rule.action else None for rule in tables.rules
+        ]
+
+    def feed(self, token: Token) -> bool:
+        """Take one token. False if it cannot stand here; the statement before it may be complete by then."""
+        states, values, starts = self.states, self.values, self.starts
+        actions, rules, unit_steps = self.tables.actions, self.tables.rules, self.tables.unit_steps
+        kind = token.kind
+        if kind in self.tables.soft_words and not self._advance(list(states), kind):
+            kind = "NAME"
+        while True:
+            state = states[-1]
+            target = actions[state].get(kind)
+            if target is None:
+                return kind == END and state == self.tables.end
+            if target >= 0:
+                states.append(target)
+                values.append(token)
+                starts.append(token.start)
+                self.end = token.end
+                return True
+            rule = rules[~target]
+            size = rule.size
+            if size == 1 and rule.passes == 0:
+                # Chains of these (a name is a product is a sum is …) are most of the work: take them in one step.
+                step = (states[-2], state, kind)
+                if (reached := unit_steps.get(step)) is None:
+                    reached = unit_steps[step] = self._unit_chain(*step)
+                states[-1] = reached
+                continue
+            start = starts[-size] if size else token.start
+            if (method := self.methods[~target]) is not None:
+                parts = values[-size:] if size else []
+                symbols: list[Any] = []
+                for i in rule.kept:
+                    part = parts[i]
+                    if type(part) is list:
+                        symbols += part
+                    else:
+                        symbols.append(part)
+                value = method(start, self.end, *symbols)
+            elif rule.passes is not None:
+                value = values[rule.passes - size]
+            else:
+                value = self._gather(rule.kept, size)
+            if size:
+                del states[-size:], values[-size:], starts[-size:]
+            states.append(actions[states[-1]][rule.origin])
+            values.append(value)
+            starts.append(start)
+
+    def _gather(self, kept: tuple[int, ...], size: int) -> list[Any]:
+        """The values of the kept symbols in one list, which is that of the first where there is one."""
+        gathered: list[Any] | None = None
+        for i in kept:
+            part = self.values[i - size]
+            if gathered is None:
+                gathered = part if type(part) is list else [part]
+            elif type(part) is list:
+                gathered += part
+            else:
+                gathered.append(part)
+        return [] if gathered is None else gathered
+
+    def _unit_chain(self, below: int, state: int, kind: str) -> int:
+        """The state after all reductions by rules that only pass on one value."""
+        actions, rules = self.tables.actions, self.tables.rules
+        while (target := actions[state].get(kind)) is not None and target < 0:
+            rule = rules[~target]
+            if rule.size != 1 or rule.passes != 0:
+                break
+            state = actions[below][rule.origin]
+        return state
+
+    # --- For recovery ---
+
+    @property
+    def between_statements(self) -> bool:
+        """Whether a statement may begin here: none is under way."""
+        return self.states[-1] in self.tables.statement_states
+
+    @property
+    def began_statement(self) -> bool:
+        """Whether the token just taken was the first of a statement."""
+        return len(self.states) > 1 and self.states[-2] in self.tables.statement_states
+
+    def checkpoint(self, position: int) -> Checkpoint:
+        """To be taken when `began_statement`."""
+        return Checkpoint(
+            position, self.states[:-1], self.values[:-1], self.starts[:-1], len(self.values[-2])
+        )
+
+    def restore(self, checkpoint: Checkpoint) -> None:
+        self.states[:] = checkpoint.states
+        self.values[:] = checkpoint.values
+        self.starts[:] = checkpoint.starts
+        if isinstance(self.values[-1], list):
+            del self.values[-1][checkpoint.statements :]
+
+    def enter_block(self) -> None:
+        """Begin the list of statements of a block in which there are none yet."""
+        target = self.tables.actions[self.states[-1]].get(";", 0)
+        if target < 0 and not (rule := self.tables.rules[~target]).size:
+            self.states.append(self.tables.actions[self.states[-1]][rule.origin])
+            self.values.append([])
+            self.starts.append(self.end)
+
+    def drop_statement(self) -> None:
+        """Forget the statement under way, keeping all that stands before it in its block."""
+        self.enter_block()
+        while not self.between_statements:
+            del self.states[-1], self.values[-1], self.starts[-1]
+            self.enter_block()
+
+    def open_brackets(self) -> list[Token]:
+        """The `(`, `[`, `{` and calls that are not closed yet, outermost first."""
+        opened: list[Token] = []
+        for value in self.values:
+            if isinstance(value, Token):
+                if value.kind in ("(", "[", "{", "CALL"):
+                    opened.append(value)
+                elif value.kind in (")", "]", "}"):
+                    opened.pop()
+        return opened
+
+    def open_blocks(self) -> int:
+        """How many `{` are not closed yet."""
+        return sum(1 for token in self.open_brackets() if token.kind == "{")
+
+    def accepts(self, kinds: Iterable[str], from_statement: bool = False) -> bool:
+        """Whether tokens of these kinds could come next, or in the place of the whole statement under way."""
+        states = list(self.states)
+        while from_statement and states[-1] not in self.tables.statement_states:
+            states.pop()
+        for kind in kinds:
+            if kind in self.tables.soft_words and not self._advance(list(states), kind):
+                kind = "NAME"
+            if not self._advance(states, kind):
+                return kind == END and states[-1] == self.tables.end
+        return True
+
+    def _advance(self, states: list[int], kind: str) -> bool:
+        """Move a stack of states over a token; False where it cannot stand."""
+        actions, rules = self.tables.actions, self.tables.rules
+        while (target := actions[states[-1]].get(kind)) is not None and target < 0:
+            rule = rules[~target]
+            if rule.size:
+                del states[-rule.size :]
+            states.append(actions[states[-1]][rule.origin])
+        if target is None:
+            return False
+        states.append(target)
+        return True

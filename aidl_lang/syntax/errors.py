@@ -1,0 +1,98 @@
+"""What is wrong where a token cannot stand: questions are asked in order, the more particular first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from aidl_lang.diagnostics import Diagnostic, Label
+from aidl_lang.source import SourceFile, Span
+from aidl_lang.syntax import missing, spelling
+from aidl_lang.syntax.tokens import END, Token
+from aidl_lang.syntax.trouble import Problem, Trouble, replaced
+from aidl_lang.syntax.words import describe
+
+_QUESTIONS: tuple[Callable[[Trouble], Problem | None], ...] = (
+    spelling.unclosed_comment,
+    spelling.unclosed_string,
+    spelling.unknown_unit,
+    spelling.foreign_character,
+    spelling.operator_spelling,
+    spelling.spaced_unit,
+    spelling.foreign_statement,
+    missing.nameless_structure,
+    missing.repeated_placement,
+    missing.out_of_place_in_constrain,
+    spelling.reserved_word,
+    missing.else_without_if,
+    missing.wrong_closer,
+    missing.unclosed_block,
+    missing.equation_for_definition,
+    missing.definition_for_equation,
+    missing.colon_for_equals,
+    missing.unclosed_bracket,
+    missing.three_coordinates,
+    missing.missing_comma,
+    missing.missing_equals,
+    missing.missing_value,
+    missing.missing_block,
+    missing.bare_value,
+    missing.attribute_out_of_place,
+    missing.stray_closer,
+    missing.stray_comma,
+)
+
+# What could come next, in words, in the order in which it is worth saying.
+_EXPECTED = (
+    ("a value", ("NUMBER",)),
+    ("a name", ("NAME",)),
+    ("`=`", ("=",)),
+    ("`{`", ("{",)),
+    ("`in`", ("in",)),
+    ("`else`", ("else",)),
+    ("`then`", ("then",)),
+    ("`,`", (",",)),
+    ("`)`", (")",)),
+    ("`]`", ("]",)),
+    ("a comparison such as `==`", ("==",)),
+    ("an operator", ("+",)),
+)
+
+
+def explain(trouble: Trouble) -> Problem:
+    """The first answer to the questions; where none has one, what stands here and what could."""
+    for question in _QUESTIONS:
+        if (problem := question(trouble)) is not None:
+            return problem
+    return _unexpected(trouble)
+
+
+def _unexpected(t: Trouble) -> Problem:
+    possible = [words for words, kinds in _EXPECTED if t.accepts(*kinds)]
+    if t.between:
+        message = f"a statement cannot begin with {describe(t.token)}"
+        possible = []
+    elif t.complete:
+        message = f"{describe(t.token)} cannot stand here: the statement before it is complete"
+    else:
+        if possible[:2] == ["a value", "a name"]:
+            del possible[1]
+        possible = possible[:3]
+        expected = " or ".join([", ".join(possible[:-1]), possible[-1]] if len(possible) > 1 else possible)
+        place = describe(t.token) if t.token.kind != END else "the end of the file"
+        message = f"expected {expected}, not {place}" if expected else f"{place} cannot stand here"
+    secondary = (Label(t.span(t.first), "in the statement that begins here"),) if not t.between else ()
+    return Problem(Diagnostic("E0101", message, t.span(), secondary=secondary))
+
+
+def spaced_call(source: SourceFile, token: Token) -> Diagnostic:
+    """E0114 for a call whose `(` does not touch its name; it is read as the call it was meant to be."""
+    name = token.text[:-1]
+    gap = Span(source, token.start + len(name), token.end - 1)
+    return Diagnostic(
+        "E0114",
+        f"the `(` of a call touches its name: `{name}(`",
+        Span(source, token.start, token.end),
+        "a space ends the name here",
+        hints=("newlines and spaces end no statement, so `f (x)` would be the name `f` and then `(x)`",),
+        fix=replaced("remove the space", gap, ""),
+    )

@@ -1,0 +1,197 @@
+"""The expressions of the syntax tree; `tree.Builder` adds the statements."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from aidl_lang import ast
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.source import SourceFile, Span
+from aidl_lang.syntax.tokens import Token
+
+_ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "0": "\0"}
+_UNITS = ("turn", "deg", "rad", "mm", "cm", "in", "ft", "m", "°")
+
+
+class ExpressionBuilder:
+    """One method for each rule of the grammar that makes an expression."""
+
+    def __init__(self, source: SourceFile, docs: dict[int, str]) -> None:
+        self.source = source
+        self.docs = docs
+        self.diagnostics: list[Diagnostic] = []
+
+    def span(self, start: int, end: int) -> Span:
+        return Span(self.source, start, end)
+
+    def identifier(self, token: Token) -> ast.Identifier:
+        text = token.text[:-1] if token.kind == "CALL" else token.text
+        return ast.Identifier(text, span=Span(self.source, token.start, token.start + len(text)))
+
+    # --- Names and literals ---
+
+    def name(self, start: int, end: int, token: Token) -> ast.Name:
+        return ast.Name(token.text, span=Span(self.source, start, end))
+
+    def number(self, start: int, end: int, token: Token) -> ast.Number:
+        digits, unit = number_parts(token.text)
+        return ast.Number(float(digits), unit, digits, span=Span(self.source, start, end))
+
+    def string(self, start: int, end: int, token: Token) -> ast.String:
+        return ast.String(string_value(token.text), span=Span(self.source, start, end))
+
+    def true(self, start: int, end: int) -> ast.Boolean:
+        return ast.Boolean(True, span=Span(self.source, start, end))
+
+    def false(self, start: int, end: int) -> ast.Boolean:
+        return ast.Boolean(False, span=Span(self.source, start, end))
+
+    def point(self, start: int, end: int, x: ast.Expression, y: ast.Expression) -> ast.Point:
+        return ast.Point(x, y, span=Span(self.source, start, end))
+
+    def list(self, start: int, end: int, *items: Any) -> ast.List | ast.Comprehension:
+        if items and isinstance(items[0], _Generator):
+            return items[0].comprehension(self.span(start, end))
+        return ast.List(items, span=Span(self.source, start, end))
+
+    # --- Places and calls ---
+
+    def member(self, start: int, end: int, value: ast.Expression, name: Token) -> ast.Member:
+        return ast.Member(value, self.identifier(name), span=Span(self.source, start, end))
+
+    def index_of(self, start: int, end: int, value: ast.Expression, index: ast.Expression) -> ast.Index:
+        return ast.Index(value, index, span=Span(self.source, start, end))
+
+    def call(self, start: int, end: int, callee: Token, arguments: Any = ()) -> ast.Call:
+        return ast.Call(
+            self.identifier(callee), None, arguments_of(arguments), span=Span(self.source, start, end)
+        )
+
+    def method(
+        self, start: int, end: int, receiver: ast.Expression, callee: Token, arguments: Any = ()
+    ) -> ast.Call:
+        return ast.Call(
+            self.identifier(callee), receiver, arguments_of(arguments), span=self.span(start, end)
+        )
+
+    def arguments(self, start: int, end: int, *items: ast.Argument) -> tuple[ast.Argument, ...]:
+        return items
+
+    def argument(self, start: int, end: int, value: ast.Expression) -> ast.Argument:
+        return ast.Argument(None, value, span=Span(self.source, start, end))
+
+    def named_argument(self, start: int, end: int, name: Token, value: ast.Expression) -> ast.Argument:
+        return ast.Argument(self.identifier(name), value, span=Span(self.source, start, end))
+
+    # --- Operators ---
+
+    def comparison_operator(self, start: int, end: int, token: Token) -> str:
+        return token.text
+
+    add_operator = multiply_operator = comparison_operator
+
+    def binary(
+        self, start: int, end: int, left: ast.Expression, operator: str, right: ast.Expression
+    ) -> ast.Binary:
+        return ast.Binary(operator, left, right, span=Span(self.source, start, end))
+
+    def power(self, start: int, end: int, left: ast.Expression, right: ast.Expression) -> ast.Binary:
+        return ast.Binary("^", left, right, span=Span(self.source, start, end))
+
+    def conjunction(self, start: int, end: int, left: ast.Expression, right: ast.Expression) -> ast.Binary:
+        return ast.Binary("and", left, right, span=Span(self.source, start, end))
+
+    def disjunction(self, start: int, end: int, left: ast.Expression, right: ast.Expression) -> ast.Binary:
+        return ast.Binary("or", left, right, span=Span(self.source, start, end))
+
+    def sign(self, start: int, end: int, operator: str, operand: ast.Expression) -> ast.Unary:
+        return ast.Unary(operator, operand, span=Span(self.source, start, end))
+
+    def negated(self, start: int, end: int, operand: ast.Expression) -> ast.Unary:
+        return ast.Unary("not", operand, span=Span(self.source, start, end))
+
+    def comparison(self, start: int, end: int, *parts: Any) -> ast.Comparison:
+        return ast.Comparison(parts[::2], parts[1::2], span=Span(self.source, start, end))
+
+    def membership(
+        self, start: int, end: int, value: ast.Expression, container: ast.Expression
+    ) -> ast.Membership:
+        return ast.Membership(value, container, span=Span(self.source, start, end))
+
+    def not_membership(
+        self, start: int, end: int, value: ast.Expression, container: ast.Expression
+    ) -> ast.Unary:
+        return self.negated(start, end, self.membership(start, end, value, container))
+
+    def range(self, start: int, end: int, first: ast.Expression, last: ast.Expression) -> ast.Range:
+        return ast.Range(first, last, False, span=Span(self.source, start, end))
+
+    def exclusive_range(self, start: int, end: int, first: ast.Expression, last: ast.Expression) -> ast.Range:
+        return ast.Range(first, last, True, span=Span(self.source, start, end))
+
+    # --- Comprehensions ---
+
+    def variables(self, start: int, end: int, *names: Token) -> tuple[ast.Identifier, ...]:
+        return tuple(map(self.identifier, names))
+
+    def filter(self, start: int, end: int, test: ast.Expression) -> ast.Expression:
+        return test
+
+    def generator(
+        self,
+        start: int,
+        end: int,
+        element: ast.Expression,
+        variables: tuple[ast.Identifier, ...],
+        iterable: ast.Expression,
+        condition: ast.Expression | None = None,
+    ) -> _Generator:
+        return _Generator(element, variables, iterable, condition, self.span(start, end))
+
+
+class _Generator:
+    """`element for variables in iterable if condition`, not yet known to stand in brackets or in a call."""
+
+    def __init__(
+        self,
+        element: ast.Expression,
+        variables: tuple[ast.Identifier, ...],
+        iterable: ast.Expression,
+        condition: ast.Expression | None,
+        span: Span,
+    ) -> None:
+        self.parts = (element, variables, iterable, condition)
+        self.span = span
+
+    def comprehension(self, span: Span) -> ast.Comprehension:
+        return ast.Comprehension(*self.parts, span=span)
+
+
+def arguments_of(value: Any) -> tuple[ast.Argument, ...]:
+    """The arguments of a call, whose only one may be a comprehension without its brackets: `sum(a for a in b)`."""
+    if isinstance(value, _Generator):
+        return (ast.Argument(None, value.comprehension(value.span), span=value.span),)
+    return tuple(value)
+
+
+def number_parts(text: str) -> tuple[str, str | None]:
+    """Digits and unit of a number as written; `°` is `deg`."""
+    for unit in _UNITS:
+        if text.endswith(unit):
+            return text[: -len(unit)], "deg" if unit == "°" else unit
+    return text, None
+
+
+def string_value(text: str) -> str:
+    """The value of a string token, quotes and escapes undone."""
+    inner = text[1:-1]
+    if "\\" not in inner:
+        return inner
+    out: list[str] = []
+    chars = iter(inner)
+    for char in chars:
+        if char == "\\":
+            escaped = next(chars)
+            char = _ESCAPES.get(escaped, escaped)
+        out.append(char)
+    return "".join(out)

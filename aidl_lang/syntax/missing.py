@@ -1,0 +1,438 @@
+"""What is missing, left over or in the wrong place: brackets, commas, values, names, statements."""
+
+from __future__ import annotations
+
+from aidl_lang.diagnostics import Diagnostic, Label
+from aidl_lang.kinds import kind_of
+from aidl_lang.source import Span
+from aidl_lang.syntax.tokens import END, Token
+from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
+from aidl_lang.syntax.words import STATEMENT_WORDS, describe
+
+_CLOSER = {"(": ")", "CALL": ")", "[": "]", "{": "}"}
+_BRACKET = {"(": "the parenthesis", "CALL": "the call", "[": "the bracket", "{": "the block"}
+_VALUE_STARTS = frozenset(
+    ["NAME", "NUMBER", "STRING", "CALL", "(", "[", "true", "false", "True", "False", "if", "not"]
+)
+_EXAMPLE_VALUE = {"param": "80", "var": "5", "let": "w / 2"}
+
+
+# --- Brackets ------------------------------------------------------------------------------------------------
+
+
+def wrong_closer(t: Trouble) -> Problem | None:
+    """A closing bracket of another kind than the one that is open."""
+    if t.token.kind not in (")", "]") or not t.open or _CLOSER[t.open[-1].kind] == t.token.kind:
+        return None
+    opener = t.open[-1]
+    right = _CLOSER[opener.kind]
+    if not t.accepts(right):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0102",
+            f"expected `{right}` to close {_BRACKET[opener.kind]} that begins here, not `{t.token.text}`",
+            t.span(opener),
+            "opened here",
+            (Label(t.span(), f"`{right}` belongs here"),),
+            fix=replaced(f"write `{right}`", t.span(), right),
+        ),
+        Repair(t.position, t.position + 1, (t.token._replace(kind=right, text=right),)),
+    )
+
+
+def unclosed_bracket(t: Trouble) -> Problem | None:
+    """The statement ends, or another begins, inside an open bracket."""
+    if not t.open or not (t.begins_statement() or t.token.kind in (";", "{", "at", "rotated")):
+        return None
+    closers = [_CLOSER[opener.kind] for opener in reversed(t.open)]
+    if not t.accepts(*closers):
+        return None
+    opener = t.open[-1]
+    text = "".join(closers)
+    return Problem(
+        Diagnostic(
+            "E0102",
+            f"expected `{text}` to close {_BRACKET[opener.kind]} that begins here",
+            t.span(opener),
+            "opened here and not closed",
+            (Label(t.gap(), f"`{text}` is missing"),),
+            fix=replaced(f"put in `{text}`", t.gap(), text),
+        ),
+        Repair(t.position, t.position, tuple(t.token_here(c) for c in closers)),
+    )
+
+
+def unclosed_block(t: Trouble) -> Problem | None:
+    """The file ends inside a block; indentation tells which one was meant to end, and where."""
+    if t.token.kind != END or not t.between:
+        return None
+    blocks = [token for token in t.automaton.open_brackets() if token.kind == "{"]
+    if not blocks:
+        return None
+    opener, place = _misindented(t, blocks) or (blocks[-1], t.gap())
+    indent = " " * t.indentation(opener.start)
+    closer = f"\n{indent}}}"
+    return Problem(
+        Diagnostic(
+            "E0102",
+            "expected `}` to close the block that begins here",
+            t.span(opener),
+            "opened here and not closed",
+            (Label(place, "`}` is missing"),),
+            fix=replaced("close the block", place, closer),
+        ),
+        Repair(t.position, t.position, (t.token_here("}"),)),
+    )
+
+
+def _misindented(t: Trouble, blocks: list[Token]) -> tuple[Token, Span] | None:
+    """The innermost block with a line in it that is indented no deeper than its head, and the place before that."""
+    for opener in reversed(blocks):
+        head = t.indentation(opener.start)
+        first_line = t.source.position(opener.start)[0]
+        last = opener
+        for token in t.tokens:
+            if token.start <= opener.start:
+                continue
+            line, column = t.source.position(token.start)
+            if line > first_line and t.source.line(line)[: column - 1].strip() == "" and column - 1 <= head:
+                if token.kind in ("}", END):
+                    break
+                return opener, Span(t.source, last.end, last.end)
+            last = token
+    return None
+
+
+def stray_closer(t: Trouble) -> Problem | None:
+    if t.token.kind not in (")", "]", "}") or t.open or not (t.between or t.accepts(";")):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0118",
+            f"`{t.token.text}` closes nothing",
+            t.span(),
+            "no bracket is open here",
+            fix=replaced("remove it", t.span(), ""),
+        ),
+        Repair(t.position, t.position + 1),
+    )
+
+
+def missing_comma(t: Trouble) -> Problem | None:
+    if not t.open or t.token.kind not in _VALUE_STARTS or not t.accepts(",", t.token.kind):
+        return None
+    opener = t.open[-1]
+    inside = {"CALL": "arguments", "[": "items", "(": "coordinates"}[opener.kind]
+    return Problem(
+        Diagnostic(
+            "E0112",
+            f"expected `,` between two {inside}",
+            t.gap(),
+            "a comma is missing here",
+            (Label(t.span(opener), f"in {_BRACKET[opener.kind]} that begins here"),),
+            fix=replaced("put in `,`", t.gap(), ","),
+        ),
+        Repair(t.position, t.position, (t.token_here(","),)),
+    )
+
+
+def three_coordinates(t: Trouble) -> Problem | None:
+    if not t.open or t.open[-1].kind != "(" or t.token.kind in (")", END) or t.before is None:
+        return None
+    if t.before.kind != "," or not t.accepts(")"):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0123",
+            "a point has two coordinates: `(x, y)`",
+            t.span(t.open[-1], t.token),
+            "this has a third",
+            hints=("drawings are flat: leave z out; thickness is an attribute, `@thickness(3mm)`",),
+        )
+    )
+
+
+def stray_comma(t: Trouble) -> Problem | None:
+    if t.token.kind != "," or t.open or not t.accepts(";"):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0122",
+            "statements are not separated by commas",
+            t.span(),
+            "a new line or `;` does",
+            hints=("commas stand between arguments, and between constraints inside `constrain { }`",),
+            fix=replaced("write `;`", t.span(), ";"),
+        ),
+        Repair(t.position, t.position + 1, (t.token._replace(kind=";", text=";"),)),
+    )
+
+
+# --- Equals signs --------------------------------------------------------------------------------------------
+
+
+def equation_for_definition(t: Trouble) -> Problem | None:
+    """`let x == 3`"""
+    if t.token.kind != "==" or not t.accepts("="):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0111",
+            "a name is given its value by `=`, not `==`",
+            t.span(),
+            "`==` compares",
+            fix=replaced("write `=`", t.span(), "="),
+        ),
+        Repair(t.position, t.position + 1, (t.token._replace(kind="=", text="="),)),
+    )
+
+
+def definition_for_equation(t: Trouble) -> Problem | None:
+    """`a.x = b.x` outside `constrain`, `assert a = b`"""
+    if t.token.kind != "=" or not t.accepts("==", "NAME"):
+        return None
+    definition = t.first.kind not in STATEMENT_WORDS and not t.open
+    return Problem(
+        Diagnostic(
+            "E0110",
+            "`=` gives a value to a name; what must be equal is written with `==`",
+            t.span(),
+            "write `==`",
+            hints=("a part of a geometry already has a value: `constrain a.x == b.x` ties it to another",)
+            if definition
+            else (),
+            fix=replaced("write `==`", t.span(), "=="),
+        ),
+        Repair(t.position, t.position + 1, (t.token._replace(kind="==", text="=="),)),
+    )
+
+
+def colon_for_equals(t: Trouble) -> Problem | None:
+    """`param w: 80` and `param w: length = 80`"""
+    if t.token.kind != ":" or not t.accepts("="):
+        return None
+    after_next = t.tokens[min(t.position + 2, len(t.tokens) - 1)]
+    if t.following.kind == "NAME" and after_next.kind == "=":
+        return Problem(
+            Diagnostic(
+                "E0109",
+                f"`{t.first.text}` takes no type: its value tells",
+                t.span(t.token, t.following),
+                hints=("write the unit with the number: `80mm`, `30deg`",),
+                fix=replaced("remove the type", Span(t.source, t.gap().start, t.following.end), ""),
+            ),
+            Repair(t.position, t.position + 2),
+        )
+    return Problem(
+        Diagnostic(
+            "E0109",
+            "a name is given its value by `=`, not `:`",
+            t.span(),
+            fix=replaced("write `=`", Span(t.source, t.gap().start, t.token.end), " ="),
+        ),
+        Repair(t.position, t.position + 1, (t.token._replace(kind="=", text="="),)),
+    )
+
+
+def missing_equals(t: Trouble) -> Problem | None:
+    """`param w 80`"""
+    if t.first.kind not in ("param", "var", "let", "fn", "alias") or t.on_new_line:
+        return None
+    if t.token.kind not in _VALUE_STARTS or not t.accepts("=", t.token.kind):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0103",
+            f"expected `=` between the name and its value: `{t.first.text} {t.before and t.before.text} = …`",
+            t.span(),
+            fix=replaced("put in `=`", t.gap(), " ="),
+        ),
+        Repair(t.position, t.position, (t.token_here("="),)),
+    )
+
+
+# --- Statements ----------------------------------------------------------------------------------------------
+
+
+def missing_value(t: Trouble) -> Problem | None:
+    """A statement that ends before its value."""
+    if t.between or t.open or t.complete:
+        return None
+    first, before = t.first, t.before
+    if before is None or not (t.token.kind in (";", ",") or t.begins_statement() or t.on_new_line):
+        return None
+    word = first.text
+    if word in _EXAMPLE_VALUE and first.kind == word:
+        name = t.tokens[t.begin + 1].text if len(t.statement) > 1 else "w"
+        given = len(t.statement) > 1 and not t.accepts("NAME", "=")
+        if t.accepts("NAME", "=") and len(t.statement) == 1:
+            return _lacking(t, f"`{word}` needs a name and a value: `{word} w = {_EXAMPLE_VALUE[word]}`")
+        if given and (t.accepts("=") or before.kind == "="):
+            return _lacking(t, f"`{word}` needs a value: `{word} {name} = {_EXAMPLE_VALUE[word]}`")
+    if t.accepts("else", "NAME"):
+        return _lacking(t, "`if … then …` in an expression needs an `else`: `if c then a else b`")
+    if t.accepts("NAME") and (t.accepts("NUMBER") or t.accepts("(")):
+        return _lacking(t, f"expected a value after {describe(before)}")
+    if t.accepts("NAME") and before.kind in STATEMENT_WORDS | {"."}:
+        return _lacking(t, f"expected a name after {describe(before)}")
+    return None
+
+
+def _lacking(t: Trouble, message: str) -> Problem:
+    return Problem(Diagnostic("E0103", message, t.span(t.before), "nothing follows"))
+
+
+def nameless_structure(t: Trouble) -> Problem | None:
+    """`hole { … }` and `solid "base" { … }`"""
+    if len(t.statement) != 1 or t.first.kind != "NAME":
+        return None
+    word = t.first.text
+    if t.token.kind == "STRING":
+        inner = t.token.text[1:-1]
+        name = "".join(c if c.isalnum() else "_" for c in inner) or word + "_1"
+        name = name if name.isidentifier() else "_" + name
+        return Problem(
+            Diagnostic(
+                "E0116",
+                f"a name is written without quotes: `{word} {name}`",
+                t.span(),
+                fix=replaced(f"write `{name}`", t.span(), name),
+            ),
+            Repair(t.position, t.position + 1, (t.token._replace(kind="NAME", text=name),)),
+        )
+    if t.token.kind not in ("{", "at", "rotated") or not (kind_of(word) or t.token.kind == "{"):
+        return None
+    name = _fresh_name(t, word)
+    article = "an" if word[0] in "aeiou" else "a"
+    return Problem(
+        Diagnostic(
+            "E0116",
+            f"{article} `{word}` needs a name: `{word} {name} {{ … }}`",
+            t.span(t.first),
+            "the name is missing",
+            hints=("constraints and other parts speak of it by its name",),
+            fix=replaced(f"name it `{name}`", t.gap(), f" {name}"),
+        ),
+        Repair(t.position, t.position, (t.token_here("NAME", name),)),
+    )
+
+
+def _fresh_name(t: Trouble, word: str) -> str:
+    taken = {token.text for token in t.tokens if token.kind == "NAME"}
+    number = 1
+    while f"{word}_{number}" in taken:
+        number += 1
+    return f"{word}_{number}"
+
+
+def missing_block(t: Trouble) -> Problem | None:
+    """A head without its `{`, or with Python's colon."""
+    if t.between or t.open or not t.accepts("{", "}") or t.token.kind in ("(", "="):
+        return None
+    colon = t.token.kind == ":"
+    if not (colon or t.on_new_line or t.token.kind in (END, "}", ";") or t.token.kind in STATEMENT_WORDS):
+        return None
+    head = describe(t.first)
+    return Problem(
+        Diagnostic(
+            "E0121",
+            f"expected `{{` to begin the block of {head}",
+            t.gap(),
+            "the block begins with `{` and ends with `}`",
+            (Label(t.span(t.first), "for this"),),
+            hints=("blocks stand in braces, not behind a colon",) if colon else (),
+        ),
+        Repair(t.position, t.position + 1) if colon and t.following.kind == "{" else None,
+    )
+
+
+def repeated_placement(t: Trouble) -> Problem | None:
+    word = t.token.kind
+    earlier = next((token for token in t.statement if token.kind == word), None)
+    if word not in ("at", "rotated") or earlier is None or t.open:
+        return None
+    return Problem(
+        Diagnostic(
+            "E0120",
+            f"`{word}` is said twice",
+            t.span(),
+            "the second time",
+            (Label(t.span(earlier), "the first time"),),
+            hints=("a structure has one position and one rotation",),
+        )
+    )
+
+
+def out_of_place_in_constrain(t: Trouble) -> Problem | None:
+    """A statement inside `constrain { }` that is no constraint."""
+    definition = len(t.statement) == 1 and kind_of(t.first.text) and t.token.kind in ("NAME", "CALL")
+    if not t.in_constraints or not (definition or (t.between and t.token.kind in STATEMENT_WORDS | {"@"})):
+        return None
+    word = t.first.text
+    where = "behind the `}` of `constrain`" if word == "assert" else "in front of `constrain`"
+    return Problem(
+        Diagnostic(
+            "E0119",
+            f"`{word}` cannot stand inside `constrain`",
+            t.span(t.first),
+            "only constraints, `let`, `prefer`, `for` and `if` do",
+            hints=(f"move it {where}",),
+        ),
+        with_block=True,
+    )
+
+
+def attribute_out_of_place(t: Trouble) -> Problem | None:
+    if t.first.kind != "@" or t.between or t.open or not t.accepts("template"):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0119",
+            f"an attribute stands before a structure or a geometry, not before {describe(t.token)}",
+            t.span(t.first, t.before),
+            hints=('write it in front of the definition it is about: `@color("red") solid a { … }`',),
+        )
+    )
+
+
+def bare_value(t: Trouble) -> Problem | None:
+    """An expression as a statement that neither constrains nor does anything."""
+    if (
+        t.between
+        or t.open
+        or not t.accepts("==", "NAME")
+        or t.accepts(";")
+        or t.first.kind in STATEMENT_WORDS
+    ):
+        return None
+    if not (t.begins_statement() or t.on_new_line or t.token.kind in (";", ",", "and", "or")):
+        return None
+    span = t.span(t.first, t.before)
+    return Problem(
+        Diagnostic(
+            "E0117",
+            f"`{_shortened(span.text)}` alone says nothing",
+            span,
+            "a statement defines a name, compares, or calls something",
+            hints=("to constrain it, compare it: `… == …`", "to name it, write `name = …`"),
+        )
+    )
+
+
+def _shortened(text: str) -> str:
+    text = " ".join(text.split())
+    return text if len(text) <= 40 else text[:37] + "…"
+
+
+def else_without_if(t: Trouble) -> Problem | None:
+    if t.token.kind != "else" or not t.between:
+        return None
+    return Problem(
+        Diagnostic(
+            "E0101",
+            "`else` follows the block of an `if`, and there is none before it",
+            t.span(),
+            hints=("`if c { … } else { … }`",),
+        )
+    )

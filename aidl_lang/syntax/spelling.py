@@ -1,0 +1,286 @@
+"""Characters, signs and words that are written otherwise here: units, quotes, operators, reserved words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.source import Span
+from aidl_lang.syntax.tokens import END, UNKNOWN, Token, tokenize
+from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
+from aidl_lang.syntax.words import FOREIGN_WORDS, SIGNS, STATEMENT_WORDS, UNIT_WORDS, UNITS, example
+
+# --- Characters ----------------------------------------------------------------------------------------------
+
+
+def unclosed_comment(t: Trouble) -> Problem | None:
+    if t.token.kind != UNKNOWN or not t.token.text.startswith("/*"):
+        return None
+    end = Span(t.source, t.token.end, t.token.end)
+    opening = Span(t.source, t.token.start, t.token.start + 2)
+    return Problem(
+        Diagnostic(
+            "E0107",
+            "this comment is not closed: expected `*/`",
+            opening,
+            "the comment begins here and takes in the rest of the file",
+            hints=("close it with `*/`, or begin each line of it with `//`",),
+            fix=replaced("close the comment at the end of the file", end, " */"),
+        ),
+        Repair(t.position, t.position + 1),
+    )
+
+
+def unclosed_string(t: Trouble) -> Problem | None:
+    text = t.token.text
+    if t.token.kind != UNKNOWN or text[0] not in "\"'":
+        return None
+    kept = len(text.rstrip(" \t\r;,)]}")) if len(text) > 1 else 1
+    end = t.token.start + max(kept, 1)
+    string = Token("STRING", t.source.text[t.token.start : end] + text[0], t.token.start, end)
+    rest = tokenize(t.source, end, t.token.end).tokens[:-1]
+    place = Span(t.source, end, end)
+    return Problem(
+        Diagnostic(
+            "E0107",
+            f"this text is not closed: expected `{text[0]}` before the end of the line",
+            Span(t.source, t.token.start, end),
+            "the text begins here",
+            fix=replaced(f"close the text with `{text[0]}`", place, text[0]),
+        ),
+        Repair(t.position, t.position + 1, (string, *rest)),
+    )
+
+
+def unknown_unit(t: Trouble) -> Problem | None:
+    before = t.before
+    if t.token.kind != UNKNOWN or before is None or before.kind != "NUMBER" or not t.touches:
+        return None
+    text, number = t.token.text, before.text
+    if text[0].isdigit() or text[0] == ".":
+        return Problem(
+            Diagnostic(
+                "E0105", f"`{number}{text}` is not a number", t.span(before, t.token), "more than one point"
+            ),
+            Repair(t.position, t.position + 1),
+        )
+    meant = UNIT_WORDS.get(text.lower())
+    return Problem(
+        Diagnostic(
+            "E0105",
+            f"`{text}` is not a unit" + (f"; did you mean `{number}{meant}`?" if meant else ""),
+            t.span(before, t.token),
+            f"units are {', '.join(UNITS)}",
+            hints=()
+            if meant
+            else ("a number without a unit is in millimetres as a length, in degrees as an angle",),
+            fix=replaced(f"write `{meant}`", t.span(), meant) if meant else None,
+        ),
+        Repair(t.position, t.position + 1),
+    )
+
+
+def foreign_character(t: Trouble) -> Problem | None:
+    if t.token.kind != UNKNOWN:
+        return None
+    char = t.token.text
+    if char in "“”„‘’‚«»":
+        return _curly_quote(t)
+    sign, words = SIGNS.get(char, (None, ""))
+    point = "" if char.isprintable() else f" (U+{ord(char):04X})"
+    shown = char if char.isprintable() else "?"
+    if sign is None:
+        message = f"the character `{shown}`{point} has no meaning in the language"
+        fix = replaced("remove it", t.span(), "")
+    else:
+        message = f"`{shown}` is written `{sign}`"
+        fix = replaced(f"write `{sign}`", t.span(), sign if not sign.isalpha() else f" {sign} ")
+    stand_in = (t.token._replace(kind=sign, text=sign),) if sign else ()
+    hints = (words,) if words else ()
+    return Problem(
+        Diagnostic("E0108", message, t.span(), hints=hints, fix=fix),
+        Repair(t.position, t.position + 1, stand_in),
+    )
+
+
+def _curly_quote(t: Trouble) -> Problem:
+    """Text in typographic quotes: the fix makes both of them straight."""
+    quote = "'" if t.token.text in "‘’‚" else '"'
+    line_end = t.source.text.find("\n", t.token.start)
+    line_end = len(t.source.text) if line_end < 0 else line_end
+    close = next((i for i in range(t.token.end, line_end) if t.source.text[i] in "“”„‘’‚«»"), None)
+    edits = [Edit(t.span(), quote)]
+    stop, stand_in = t.position + 1, tuple[Token, ...]()
+    if close is not None:
+        edits.append(Edit(Span(t.source, close, close + 1), quote))
+        inner = t.source.text[t.token.end : close]
+        stand_in = (Token("STRING", quote + inner.replace("\\", "\\\\") + quote, t.token.start, close + 1),)
+        while t.tokens[stop].kind != END and t.tokens[stop].start <= close:
+            stop += 1
+    return Problem(
+        Diagnostic(
+            "E0108",
+            f"text stands in straight quotes: `{quote}`",
+            t.span() if close is None else Span(t.source, t.token.start, close + 1),
+            "this is a typographic quote",
+            fix=Fix("make the quotes straight", tuple(edits)),
+        ),
+        Repair(t.position, stop, stand_in),
+    )
+
+
+def spaced_unit(t: Trouble) -> Problem | None:
+    """`5 mm`: found at the unit itself, or behind it where a name may stand after a number."""
+    for at in (t.position, t.position - 1):
+        token, number = t.tokens[at], t.tokens[at - 1]
+        if at < 1 or token.kind != "NAME" or token.text not in UNITS or number.kind != "NUMBER":
+            continue
+        if at == t.position - 1 and t.begin != at:
+            continue
+        gap = Span(t.source, number.end, token.start)
+        if "\n" in gap.text or not gap.text or any(unit in number.text for unit in UNITS):
+            continue
+        return Problem(
+            Diagnostic(
+                "E0106",
+                f"a unit touches its number: `{number.text}{token.text}`",
+                t.span(number, token),
+                "the space ends the number",
+                fix=replaced("remove the space", gap, ""),
+            ),
+            Repair(at, at + 1),
+        )
+    return None
+
+
+_SPELLINGS = {
+    ("=", ">"): ">=",
+    ("=", "<"): "<=",
+    ("==", "="): "==",
+    ("!=", "="): "!=",
+    ("<", ">"): "!=",
+    (">=", "="): ">=",
+    ("<=", "="): "<=",
+    (":", "="): "=",
+    ("..", "."): "..",
+    ("=", "=="): "==",
+    ("..<", "="): "..",
+    ("..", "="): "..",
+}  # fmt: skip
+
+
+def operator_spelling(t: Trouble) -> Problem | None:
+    """`=>`, `===`, `:=` and the like, whose first half may well have been taken already."""
+    for at in (t.position, t.position - 1):
+        one, two = t.tokens[at], t.tokens[min(at + 1, len(t.tokens) - 1)]
+        if at < 0 or one.end != two.start or (right := _SPELLINGS.get((one.kind, two.kind))) is None:
+            continue
+        written = one.text + two.text
+        hints = {
+            ":=": ("`=` gives a name its value",),
+            "...": ("`a..b` includes both ends, `a..<b` leaves out the last",),
+            "..=": ("`a..b` includes both ends, `a..<b` leaves out the last",),
+        }.get(written, ())
+        return Problem(
+            Diagnostic(
+                "E0109",
+                f"`{written}` is written `{right}`",
+                t.span(one, two),
+                hints=hints,
+                fix=replaced(f"write `{right}`", t.span(one, two), right),
+            ),
+            Repair(at, at + 2, (Token(right, right, one.start, two.end),)),
+        )
+    one, two = t.token, t.following
+    if (one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start) or ((
+        two := one, one := t.before or one
+    ) and one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start):  # fmt: skip
+        return Problem(
+            Diagnostic(
+                "E0109",
+                f"there is no `{one.text}=`: a name keeps the value it was given",
+                t.span(one, two),
+                hints=("give the new value a name of its own: `let longer = length + 5`",),
+            )
+        )
+    return None
+
+
+# --- Words ---------------------------------------------------------------------------------------------------
+
+
+def foreign_statement(t: Trouble) -> Problem | None:
+    """A statement that begins with a word of another language, as `def` or `const`."""
+    first = t.first
+    word = first.text.rstrip("(")
+    if first.kind not in ("NAME", "CALL") or (entry := FOREIGN_WORDS.get(word.lower())) is None:
+        return None
+    if t.between or (t.position == t.begin + 1 and t.token.kind in ("=", ".", "[")):
+        return None
+    message, right = entry
+    span = Span(t.source, first.start, first.start + len(word))
+    fix = repair = None
+    if right:
+        fix = replaced(f"write `{right}`", span, right)
+        stand_in = [Token(part, part, first.start, first.end) for part in right.split()]
+        if first.kind == "NAME" and _would_take(t, stand_in):
+            repair = Repair(t.begin, t.begin + 1, tuple(stand_in))
+    return Problem(Diagnostic("E0113", f"there is no `{word}`: {message}", span, fix=fix), repair)
+
+
+def _would_take(t: Trouble, stand_in: Sequence[Token]) -> bool:
+    """Whether the statement could be read up to the trouble and with it, its first word exchanged."""
+    rest = [*stand_in, *t.tokens[t.begin + 1 : t.position + 1]]
+    return t.automaton.accepts((token.kind for token in rest), from_statement=True)
+
+
+def reserved_word(t: Trouble) -> Problem | None:
+    """A word that begins statements, used as a name or called."""
+    tables = t.automaton.tables
+    token, at = t.token, t.position
+    before = t.before
+    if len(t.statement) == 1 and before is not None and before.kind in tables.reserved:
+        # `shape = circle(…)`: the word was taken for what it is, and the trouble is what follows.
+        if token.kind in ("=", ".", "[", "==", "<=", ">=", ":") and before.kind != "import":
+            token, at = before, t.position - 1
+    if token.kind not in tables.reserved or (at == t.position and not _used_as_name(t)):
+        return None
+    word = token.text
+    called = at + 1 < len(t.tokens) and t.tokens[at + 1].kind == "(" and at == t.position
+    as_name = Token("NAME", word, token.start, token.end)
+    stop = at + 1
+    if called:
+        as_name = Token("CALL", word + "(", token.start, t.tokens[at + 1].end)
+        stop = at + 2
+    role = "called" if called else "a name"
+    return Problem(
+        Diagnostic(
+            "E0104",
+            f"`{word}` is a word of the language and cannot be {role}",
+            t.span(token),
+            example(word),
+            hints=(f"choose another name, as `{word}_1`",) if not called else (),
+            fix=replaced(f"call it `{word}_1` instead", t.span(token), f"{word}_1") if not called else None,
+        ),
+        Repair(at, stop, (as_name,)),
+    )
+
+
+def _used_as_name(t: Trouble) -> bool:
+    """Whether what follows a reserved word shows that it is meant as a name."""
+    after = t.following.kind
+    if t.between:
+        return after in ("=", ".", "[", "==", "<=", ">=") and t.token.kind != "else"
+    if t.before is not None and t.before.kind in STATEMENT_WORDS and t.accepts("NAME"):
+        return after in ("=", "==", ":", "(", "in") or not t.on_new_line
+    if t.before is not None and t.before.kind == ".":
+        return not t.on_new_line
+    if t.on_new_line and t.token.kind in STATEMENT_WORDS:
+        return False
+    if t.token.kind in ("step", "weight") and t.accepts("NAME") and not t.complete:
+        return True
+    if t.accepts("CALL") and after == "(":
+        return t.token.kind not in ("and", "or", "in", "else", "for")
+    return (t.accepts("NAME") or t.accepts("CALL")) and after in (
+        ":", "=", ")", "]", ",", ".", "*", "/", "+", "^", "==", "<=", ">=", "<", ">", "["
+    ) and t.token.kind not in ("and", "or", "in", "not", "else")  # fmt: skip

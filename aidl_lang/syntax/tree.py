@@ -1,0 +1,341 @@
+"""From rules of the grammar to nodes: the parser calls the method of `Builder` that bears the rule's name.
+
+Every method takes the range of the rule in the text and the values of its symbols. What the grammar cannot
+say (a second `at`, an unknown kind) is said here, as a diagnostic beside a node that keeps what was meant.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from keyword import iskeyword
+from typing import Any, cast
+
+from aidl_lang import ast
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.kinds import KIND_OF_WORD, KINDS, kind_of
+from aidl_lang.source import Span
+from aidl_lang.syntax.expressions import ExpressionBuilder, arguments_of
+from aidl_lang.syntax.tokens import Token
+from aidl_lang.syntax.words import FOREIGN_WORDS
+
+
+class ThenIf:
+    """The expression at the end of a statement and the `if` statement that follows it."""
+
+    __slots__ = ("following", "value")
+
+    def __init__(self, value: ast.Expression, following: ast.If) -> None:
+        self.value = value
+        self.following = following
+
+
+class Builder(ExpressionBuilder):
+    """Makes the nodes of one file; see the module."""
+
+    def action(self, name: str) -> Callable[..., Any]:
+        """The method for a rule; a trailing underscore keeps clear of Python's own words."""
+        return cast(Callable[..., Any], getattr(self, name + "_" if iskeyword(name) else name))
+
+    # --- Files and blocks ---
+
+    def block(self, start: int, end: int, *statements: ast.Statement) -> ast.Block:
+        return ast.Block(statements, span=self.span(start, end))
+
+    def module(self, start: int, end: int, *statements: ast.Statement) -> tuple[ast.Statement, ...]:
+        return statements
+
+    # --- Structures and geometry ---
+
+    def structure(self, start: int, end: int, *parts: Any) -> ast.Structure:
+        attributes, rest = _split(parts)
+        kind, name = rest[0], rest[1]
+        indices = tuple(p[1] for p in rest if isinstance(p, tuple) and p[0] == "index")
+        return self._structure(start, end, attributes, kind, name, indices, None, rest)
+
+    def template(self, start: int, end: int, *parts: Any) -> ast.Structure:
+        attributes, rest = _split(parts)
+        parameters = next((p for p in rest if isinstance(p, tuple) and not isinstance(p, Token)), ())
+        return self._structure(start, end, attributes, rest[0], rest[1], (), parameters, rest)
+
+    def _structure(
+        self,
+        start: int,
+        end: int,
+        attributes: tuple[ast.Attribute, ...],
+        kind: Token,
+        name: Token,
+        indices: tuple[ast.Expression, ...],
+        parameters: tuple[ast.Parameter, ...] | None,
+        rest: list[Any],
+    ) -> ast.Structure:
+        word = self.identifier(kind)
+        placement = next((p for p in rest if isinstance(p, ast.Placement)), None)
+        return ast.Structure(
+            kind_of(word.text) or self._unknown_kind(word),
+            word,
+            self.identifier(name),
+            indices,
+            parameters,
+            placement,
+            attributes,
+            rest[-1],
+            self.docs.get(start),
+            span=self.span(start, end),
+        )
+
+    def _unknown_kind(self, word: ast.Identifier) -> str:
+        """Report a word that is no kind; the nearest one is assumed."""
+        if foreign := FOREIGN_WORDS.get(word.text.lower()):
+            fix = Fix(f"write `{foreign[1]}`", (Edit(word.span, foreign[1]),)) if foreign[1] else None
+            self.diagnostics.append(
+                Diagnostic("E0113", f"there is no `{word.text}`: {foreign[0]}", word.span, fix=fix)
+            )
+            return "solid"
+        near = difflib.get_close_matches(word.text.lower(), KIND_OF_WORD, 1, 0.6)
+        guess = KIND_OF_WORD[near[0]] if near else "solid"
+        canonical = near[0] if near and near[0] in KINDS else guess
+        self.diagnostics.append(
+            Diagnostic(
+                "E0115",
+                f"`{word.text}` is not a kind of structure"
+                + (f"; did you mean `{canonical}`?" if near else ""),
+                word.span,
+                "kinds are assembly, solid, hole and drawing",
+                hints=()
+                if near
+                else ("write what it is: `solid` for material, `hole` for what is cut away",),
+                fix=Fix(f"write `{canonical}`", (Edit(word.span, canonical),)) if near else None,
+            )
+        )
+        return guess
+
+    def attribute(self, start: int, end: int, name: Token, arguments: Any = ()) -> ast.Attribute:
+        return ast.Attribute(self.identifier(name), arguments_of(arguments), span=self.span(start, end))
+
+    def at(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
+        return "at", value
+
+    def rotated(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
+        return "rotated", value
+
+    def placement(self, start: int, end: int, *parts: tuple[str, ast.Expression]) -> ast.Placement:
+        by_word = dict(parts)
+        return ast.Placement(by_word.get("at"), by_word.get("rotated"), span=self.span(start, end))
+
+    def index(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
+        return "index", value
+
+    def parameters(self, start: int, end: int, *items: ast.Parameter) -> tuple[ast.Parameter, ...]:
+        return items
+
+    def parameter(self, start: int, end: int, name: Token, *parts: Any) -> ast.Parameter:
+        kind = next((p for p in parts if isinstance(p, ast.Identifier)), None)
+        default = parts[-1] if parts and not isinstance(parts[-1], ast.Identifier) else None
+        return ast.Parameter(self.identifier(name), kind, default, span=self.span(start, end))
+
+    def parameter_type(self, start: int, end: int, name: Token) -> ast.Identifier:
+        return self.identifier(name)
+
+    def default(self, start: int, end: int, value: ast.Expression) -> ast.Expression:
+        return value
+
+    def construction(self, start: int, end: int) -> bool:
+        return True
+
+    def assign(self, start: int, end: int, *parts: Any) -> Any:
+        attributes, rest = _split(parts)
+        construction = rest[0] is True
+        target, value = rest[1:3] if construction else rest[:2]
+        placement = rest[-1] if isinstance(rest[-1], ast.Placement) else None
+        indices: list[ast.Expression] = []
+        while isinstance(target, ast.Index):
+            indices.insert(0, target.index)
+            target = target.value
+        name = ast.Identifier(target.text, span=target.span)
+        doc = self.docs.get(start)
+
+        def make(value: ast.Expression, span: Span) -> ast.Assign:
+            return ast.Assign(
+                name, tuple(indices), value, placement, construction, attributes, doc, span=span
+            )
+
+        return self._ending_in(start, end, value, make)
+
+    def _ending_in(
+        self, start: int, end: int, value: ast.Expression | ThenIf, make: Callable[[Any, Span], ast.Statement]
+    ) -> ast.Statement | list[ast.Statement]:
+        """The statement that ends in `value`, and the `if` after it if there is one."""
+        if isinstance(value, ThenIf):
+            return [make(value.value, self.span(start, value.value.span.end)), value.following]
+        return make(value, self.span(start, end))
+
+    # --- Values ---
+
+    def param(self, start: int, end: int, name: Token, value: ast.Expression, *parts: Any) -> ast.Param:
+        by_word = dict(parts)
+        return ast.Param(
+            self.identifier(name),
+            value,
+            by_word.get("in"),
+            by_word.get("step"),
+            self.docs.get(start),
+            span=self.span(start, end),
+        )
+
+    def domain(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
+        return "in", value
+
+    def step(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
+        return "step", value
+
+    def var(self, start: int, end: int, name: Token, value: Any) -> Any:
+        doc = self.docs.get(start)
+        return self._ending_in(
+            start, end, value, lambda v, span: ast.Var(self.identifier(name), v, doc, span=span)
+        )
+
+    def let(self, start: int, end: int, name: Token, value: Any) -> Any:
+        doc = self.docs.get(start)
+        return self._ending_in(
+            start, end, value, lambda v, span: ast.Let(self.identifier(name), v, doc, span=span)
+        )
+
+    def function(self, start: int, end: int, name: Token, *parts: Any) -> Any:
+        doc, parameters = self.docs.get(start), parts[0] if len(parts) > 1 else ()
+
+        def make(value: ast.Expression, span: Span) -> ast.FunctionDefinition:
+            return ast.FunctionDefinition(self.identifier(name), parameters, value, doc, span=span)
+
+        return self._ending_in(start, end, parts[-1], make)
+
+    def alias(self, start: int, end: int, name: Token, target: Token) -> ast.Alias:
+        return ast.Alias(
+            self.identifier(name), self.identifier(target), self.docs.get(start), span=self.span(start, end)
+        )
+
+    def shape(self, start: int, end: int, name: Token, *parts: Any) -> ast.ShapeDefinition:
+        parameters = parts[0] if len(parts) > 1 else ()
+        return ast.ShapeDefinition(
+            self.identifier(name), parameters, parts[-1], self.docs.get(start), span=self.span(start, end)
+        )
+
+    def import_(self, start: int, end: int, path: Token) -> ast.Import:
+        return ast.Import(self.string(path.start, path.end, path), None, (), span=self.span(start, end))
+
+    def import_as(self, start: int, end: int, path: Token, name: Token) -> ast.Import:
+        text = self.string(path.start, path.end, path)
+        return ast.Import(text, self.identifier(name), (), span=self.span(start, end))
+
+    def import_names(self, start: int, end: int, *parts: Token) -> ast.Import:
+        *names, path = parts
+        text = self.string(path.start, path.end, path)
+        return ast.Import(text, None, tuple(map(self.identifier, names)), span=self.span(start, end))
+
+    def todo(self, start: int, end: int) -> ast.Todo:
+        return ast.Todo(span=self.span(start, end))
+
+    # --- Constraints ---
+
+    def constrain(self, start: int, end: int, value: Any) -> Any:
+        if isinstance(value, ast.Block):
+            return ast.Constrain(value, True, span=self.span(start, end))
+
+        def make(item: Any, span: Span) -> ast.Constrain:
+            statement = (
+                item if isinstance(item, ast.Equation) else ast.ExpressionStatement(item, span=item.span)
+            )
+            return ast.Constrain(ast.Block((statement,), span=item.span), False, span=span)
+
+        return self._ending_in(start, end, value, make)
+
+    def constraint(self, start: int, end: int, name: Token, *parts: Any) -> ast.ConstraintDefinition:
+        parameters = parts[0] if len(parts) > 1 else ()
+        return ast.ConstraintDefinition(
+            self.identifier(name), parameters, parts[-1], self.docs.get(start), span=self.span(start, end)
+        )
+
+    def item_constrain(self, start: int, end: int, value: Any) -> Any:
+        """`constrain` inside `constrain` adds nothing: its items stand for themselves."""
+        made = self.constrain(start, end, value)
+        statements: list[ast.Statement] = []
+        for statement in made if isinstance(made, list) else [made]:
+            statements += statement.items.statements if isinstance(statement, ast.Constrain) else [statement]
+        return statements
+
+    def equation(self, start: int, end: int, left: ast.Expression, right: ast.Expression) -> ast.Equation:
+        return ast.Equation(left, right, span=self.span(start, end))
+
+    def prefer(
+        self, start: int, end: int, value: ast.Expression, weight: tuple[str, ast.Expression] | None = None
+    ) -> ast.Prefer:
+        return ast.Prefer(value, weight[1] if weight else None, span=self.span(start, end))
+
+    def weight(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
+        return "weight", value
+
+    def assert_(
+        self, start: int, end: int, test: ast.Expression, message: ast.Expression | None = None
+    ) -> ast.Assert:
+        return ast.Assert(test, message, span=self.span(start, end))
+
+    def expression_statement(self, start: int, end: int, value: ast.Expression) -> ast.ExpressionStatement:
+        return ast.ExpressionStatement(value, span=self.span(start, end))
+
+    # --- Control ---
+
+    def for_(
+        self,
+        start: int,
+        end: int,
+        variables: tuple[ast.Identifier, ...],
+        iterable: ast.Expression,
+        body: ast.Block,
+    ) -> ast.For:
+        return ast.For(variables, iterable, body, span=self.span(start, end))
+
+    def if_(
+        self,
+        start: int,
+        end: int,
+        test: ast.Expression,
+        then: ast.Block,
+        other: ast.Block | ast.If | None = None,
+    ) -> ast.If:
+        if isinstance(other, ast.If):
+            other = ast.Block((other,), span=other.span)
+        return ast.If(test, then, other, span=self.span(start, end))
+
+    def interrupted(
+        self,
+        start: int,
+        end: int,
+        value: ast.Expression,
+        word: Token,
+        test: ast.Expression,
+        then: ast.Block,
+        otherwise: ast.Block | ast.If | None = None,
+    ) -> ThenIf:
+        """An expression, and the `if` statement that begins with `word`."""
+        return ThenIf(value, self.if_(word.start, end, test, then, otherwise))
+
+    def conditional(
+        self, start: int, end: int, test: ast.Expression, then: ast.Expression, otherwise: Any
+    ) -> Any:
+        if isinstance(otherwise, ThenIf):
+            value = self.conditional(start, otherwise.value.span.end, test, then, otherwise.value)
+            return ThenIf(value, otherwise.following)
+        return ast.Conditional(test, then, otherwise, span=self.span(start, end))
+
+    def conditional_after(
+        self, start: int, end: int, then: ast.Expression, test: ast.Expression, other: Any
+    ) -> Any:
+        return self.conditional(start, end, test, then, other)
+
+
+def _split(parts: tuple[Any, ...]) -> tuple[tuple[ast.Attribute, ...], list[Any]]:
+    """The leading attributes and what follows them."""
+    return (
+        tuple(p for p in parts if isinstance(p, ast.Attribute)),
+        [p for p in parts if not isinstance(p, ast.Attribute)],
+    )

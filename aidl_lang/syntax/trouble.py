@@ -1,0 +1,127 @@
+"""The place where the parser cannot go on, and what it is told about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.source import SourceFile, Span
+from aidl_lang.syntax.automaton import Automaton
+from aidl_lang.syntax.tokens import END, Token
+from aidl_lang.syntax.words import STATEMENT_WORDS
+
+
+@dataclass(frozen=True)
+class Repair:
+    """Read on with the tokens `start:stop` exchanged for others."""
+
+    start: int
+    stop: int
+    tokens: tuple[Token, ...] = ()
+
+
+@dataclass(frozen=True)
+class Problem:
+    """`with_block`: where there is no repair, the block of the statement is left out as well."""
+
+    diagnostic: Diagnostic
+    repair: Repair | None = None
+    with_block: bool = False
+
+
+@dataclass(frozen=True)
+class Trouble:
+    """The token number `position` cannot stand where the automaton is; `begin` is the first of its statement."""
+
+    source: SourceFile
+    tokens: list[Token]
+    position: int
+    begin: int
+    automaton: Automaton
+
+    @property
+    def token(self) -> Token:
+        return self.tokens[self.position]
+
+    @property
+    def before(self) -> Token | None:
+        return self.tokens[self.position - 1] if self.position else None
+
+    @property
+    def following(self) -> Token:
+        return self.tokens[min(self.position + 1, len(self.tokens) - 1)]
+
+    @property
+    def statement(self) -> list[Token]:
+        """The tokens of the statement so far."""
+        return self.tokens[self.begin : self.position]
+
+    @property
+    def first(self) -> Token:
+        return self.tokens[self.begin]
+
+    @cached_property
+    def open(self) -> list[Token]:
+        """The open brackets of the statement, outermost first; blocks are not among them."""
+        return [t for t in self.automaton.open_brackets() if t.kind != "{" and t.start >= self.first.start]
+
+    @property
+    def between(self) -> bool:
+        return self.begin == self.position
+
+    @cached_property
+    def complete(self) -> bool:
+        """Whether the statement could end here."""
+        return self.accepts(";")
+
+    @property
+    def on_new_line(self) -> bool:
+        before = self.before
+        return before is None or "\n" in self.source.text[before.end : self.token.start]
+
+    @property
+    def touches(self) -> bool:
+        """Whether the token touches the one before it."""
+        return self.before is not None and self.before.end == self.token.start
+
+    @property
+    def in_constraints(self) -> bool:
+        """Whether the innermost block is one of constraints."""
+        states = self.automaton.states
+        inner = next(s for s in reversed(states) if s in self.automaton.tables.statement_states)
+        return self.automaton.tables.actions[inner].get(",", -1) >= 0
+
+    def accepts(self, *kinds: str) -> bool:
+        return self.automaton.accepts(kinds)
+
+    def span(self, token: Token | None = None, to: Token | None = None) -> Span:
+        token = token or self.token
+        return Span(self.source, token.start, (to or token).end)
+
+    def gap(self) -> Span:
+        """The empty place behind the last token taken, where something is missing."""
+        end = self.before.end if self.before else 0
+        return Span(self.source, end, end)
+
+    def token_here(self, kind: str, text: str = "") -> Token:
+        end = self.gap().end
+        return Token(kind, text or kind, end, end)
+
+    def indentation(self, offset: int) -> int:
+        return len(line := self.source.line(self.source.position(offset)[0])) - len(line.lstrip())
+
+    def begins_statement(self) -> bool:
+        """Whether the token, on a line of its own, looks like the start of another statement."""
+        if self.token.kind in ("}", END):
+            return True
+        if not self.on_new_line:
+            return self.token.kind in STATEMENT_WORDS - {"if", "for"}
+        if self.token.kind in STATEMENT_WORDS | {"@"}:
+            return True
+        return self.indentation(self.token.start) <= self.indentation(self.first.start)
+
+
+def replaced(title: str, span: Span, text: str) -> Fix:
+    """The fix that puts a text in the place of another."""
+    return Fix(title, (Edit(span, text),))

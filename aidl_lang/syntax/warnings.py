@@ -1,0 +1,89 @@
+"""What reads well and yet may not be what was meant."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from aidl_lang import ast
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.source import SourceFile, Span
+from aidl_lang.syntax.tokens import Token, begins_line
+
+_MOST_PLACES, _LONGEST = 100, 2000  # beyond this many lines and characters nobody wrote it by hand
+
+
+class _Parsed(Protocol):
+    @property
+    def module(self) -> ast.Module: ...
+    @property
+    def diagnostics(self) -> list[Diagnostic]: ...
+
+
+def lines_joined_by_minus(
+    module: ast.Module, tokens: Sequence[Token], read: Callable[[SourceFile], _Parsed]
+) -> list[Diagnostic]:
+    """W0101 for every line that begins with `-` where it and what stands above each read as a whole statement."""
+    source, text = module.source, module.source.text
+    places = [
+        t.start for t in tokens if t.kind == "-" and begins_line(text, t.start) and text[: t.start].strip()
+    ]
+    if not places:
+        return []
+    found = []
+    leaves = list(_leaves(module.statements))
+    for place in places[:_MOST_PLACES]:
+        leaf = next((s for s in leaves if s.span.start < place < s.span.end), None)
+        if leaf is None or leaf.span.end - leaf.span.start > _LONGEST:
+            continue
+        above, below = text[leaf.span.start : place], text[place : leaf.span.end]
+        inside = isinstance(leaf, ast.ExpressionStatement | ast.Equation)
+        if _whole(f"constrain {{ {above}\n}}" if inside else above, read) and _says_something(below, read):
+            found.append(_warning(source, place))
+    return found
+
+
+def _leaves(statements: Sequence[ast.Statement]) -> list[ast.Node]:
+    """The statements that hold no others, wherever they stand."""
+    leaves: list[ast.Node] = []
+    stack: list[ast.Node] = list(statements)
+    while stack:
+        node = stack.pop()
+        blocks = [child for child in ast.children(node) if isinstance(child, ast.Block)]
+        if not blocks or (isinstance(node, ast.Constrain) and not node.braces):
+            leaves.append(node)
+        else:
+            stack += [statement for block in blocks for statement in block.statements]
+    return leaves
+
+
+def _whole(text: str, read: Callable[[SourceFile], _Parsed]) -> bool:
+    parsed = read(SourceFile("", text))
+    return not parsed.diagnostics and len(parsed.module.statements) == 1
+
+
+def _says_something(text: str, read: Callable[[SourceFile], _Parsed]) -> bool:
+    """Whether an expression would constrain anything by itself."""
+    parsed = read(SourceFile("", f"constrain {text}\n"))
+    if parsed.diagnostics or len(parsed.module.statements) != 1:
+        return False
+    statement = parsed.module.statements[0]
+    if not isinstance(statement, ast.Constrain) or len(statement.items.statements) != 1:
+        return False
+    item = statement.items.statements[0]
+    return isinstance(item, ast.Equation) or (
+        isinstance(item, ast.ExpressionStatement) and isinstance(item.value, ast.Comparison | ast.Membership)
+    )
+
+
+def _warning(source: SourceFile, place: int) -> Diagnostic:
+    minus = Span(source, place, place + 1)
+    before = len(source.text[:place].rstrip())
+    return Diagnostic(
+        "W0101",
+        "a line that begins with `-` continues the line above",
+        minus,
+        "this subtracts from the expression above",
+        hints=("if it was meant as a statement of its own, end the line above with `;`",),
+        fix=Fix("end the line above with `;`", (Edit(Span(source, before, before), ";"),)),
+    )

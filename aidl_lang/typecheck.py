@@ -1,0 +1,288 @@
+"""The static check: types, dimensions and validity of a whole program, executed or not.
+
+Every body is checked: branches that are not taken, templates and shapes that nothing uses. Facts about expressions
+come from `infer`; this file goes through the statements and says what each wants of its expressions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from aidl_lang import ast
+from aidl_lang.checking.conditions import check_condition, check_operation
+from aidl_lang.checking.infer import Inference
+from aidl_lang.checking.validity import Violation, check_validity
+from aidl_lang.checking.wording import a, shown
+from aidl_lang.diagnostics import Diagnostic, ordered
+from aidl_lang.library import Library
+from aidl_lang.resolve import Resolution
+from aidl_lang.resolving.symbols import SymbolKind
+from aidl_lang.types import (
+    ANY,
+    GeometryType,
+    ListType,
+    NumberType,
+    PointType,
+    RangeType,
+    TextType,
+    Type,
+    accepts,
+)
+from aidl_lang.units import ANGLE, LENGTH
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """A checked program, ready to be built.
+
+    violations   breaches of the rules of validity; their diagnostics need values as written, and are therefore
+                 made after building (`Violation.diagnostic`)
+    diagnostics  everything else that resolving and checking found, in text order
+    """
+
+    main: ast.Module
+    imports: Mapping[ast.Import, ast.Module]
+    library: Library
+    resolution: Resolution
+    violations: tuple[Violation, ...]
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def check(resolution: Resolution) -> Program:
+    """Check every body of a program. Never raises for what the program says."""
+    inference = Inference(resolution)
+    checker = Checker(inference)
+    violations: list[Violation] = []
+    for module in resolution.modules:
+        checker.run(module)
+        violations += check_validity(module, inference)
+    find_cycles(inference)
+    return Program(
+        main=resolution.main,
+        imports=resolution.imports,
+        library=resolution.library,
+        resolution=resolution,
+        violations=tuple(violations),
+        diagnostics=tuple(ordered([*resolution.diagnostics, *inference.diagnostics])),
+    )
+
+
+class Checker:
+    """Goes through the statements of a file."""
+
+    def __init__(self, inference: Inference) -> None:
+        self.infer = inference
+
+    def run(self, module: ast.Module) -> None:
+        self.infer.homes = (module,)
+        self._statements(module.statements)
+
+    def _statements(self, statements: tuple[ast.Statement, ...]) -> None:
+        for statement in statements:
+            self._statement(statement)
+
+    def _statement(self, node: ast.Statement) -> None:
+        infer = self.infer
+        match node:
+            case ast.Structure():
+                self._structure(node)
+            case ast.Assign():
+                self._attributes(node.attributes)
+                self._indices(node.indices)
+                infer.fact(node.value)
+                self._placement(node.placement)
+            case ast.Let(value=value):
+                infer.fact(value)
+            case ast.Param():
+                self._param(node)
+            case ast.Var(value=value):
+                self._wanted(value, "a `var`", NumberType(LENGTH), NumberType(ANGLE), PointType())
+            case ast.ExpressionStatement(value):
+                if not check_operation(infer, value):
+                    check_condition(infer, value)
+            case ast.Constrain(items):
+                self._items(items)
+            case ast.Equation(left, right):
+                infer.compare("==", left, right, node)
+            case ast.Prefer(value, weight):
+                check_condition(infer, value)
+                if weight is not None:
+                    infer.known(weight, "a weight")
+            case ast.Assert(test, message):
+                self._assert(test, message)
+            case ast.For(variables, iterable, body):
+                infer.iterable(iterable, len(variables))
+                self._statements(body.statements)
+            case ast.If(test, then, otherwise):
+                infer.test(test)
+                self._statements(then.statements)
+                self._statements(otherwise.statements if otherwise else ())
+            case ast.FunctionDefinition() | ast.ShapeDefinition() | ast.ConstraintDefinition():
+                self._definition(node)
+            case _:
+                pass
+
+    # --- Structures and definitions --------------------------------------------------------------
+
+    def _structure(self, node: ast.Structure) -> None:
+        self._attributes(node.attributes)
+        self._indices(node.indices)
+        self._placement(node.placement)
+        self._definition(node)
+
+    def _definition(self, node: ast.Callable) -> None:
+        infer = self.infer
+        before, infer.homes = infer.homes, infer.resolution.scope_of(node).homes
+        for parameter in node.parameters or ():
+            self._default(parameter)
+        match node:
+            case ast.FunctionDefinition(value=value):
+                infer.fact(value)
+            case ast.ConstraintDefinition(body=body):
+                self._items(body)
+            case _:
+                self._statements(node.body.statements)
+        infer.homes = before
+
+    def _default(self, parameter: ast.Parameter) -> None:
+        """A default has to be what the parameter's own type asks for."""
+        if parameter.default is None:
+            return
+        fact = self.infer.fact(parameter.default)
+        symbol = self.infer.resolution.uses.get(parameter.name)
+        wanted = self.infer.of_symbol(symbol).type if symbol is not None else ANY
+        if accepts(wanted, fact.type) is None:
+            self.infer.report(
+                "E0302",
+                f"`{parameter.name.text}` is {a(wanted)}, and its default is {a(fact.type)}",
+                parameter.default,
+            )
+
+    def _items(self, block: ast.Block) -> None:
+        """What stands in `constrain { }` or in the body of a constraint."""
+        for item in block.statements:
+            if isinstance(item, ast.ExpressionStatement):
+                check_condition(self.infer, item.value)
+            else:
+                self._item(item)
+
+    def _item(self, item: ast.Statement) -> None:
+        match item:
+            case ast.For(variables, iterable, body):
+                self.infer.iterable(iterable, len(variables))
+                self._items(body)
+            case ast.If(test, then, otherwise):
+                self.infer.test(test)
+                self._items(then)
+                if otherwise is not None:
+                    self._items(otherwise)
+            case _:
+                self._statement(item)
+
+    # --- What statements want ----------------------------------------------------------------------
+
+    def _placement(self, placement: ast.Placement | None) -> None:
+        if placement is None:
+            return
+        if placement.at is not None:
+            self._wanted(placement.at, "`at`", PointType())
+        if placement.rotated is not None:
+            self._wanted(placement.rotated, "`rotated`", NumberType(ANGLE))
+
+    def _wanted(self, node: ast.Expression, what: str, *wanted: Type) -> None:
+        fact = self.infer.fact(node)
+        if all(accepts(kind, fact.type) is None for kind in wanted):
+            first = wanted[0] if len(wanted) == 1 else None
+            needs = a(first) if first is not None else "a number or a point"
+            hints = []
+            if first == PointType() and isinstance(fact.type, NumberType):
+                hints = [f"as in `at ({shown(node)}, 0)`"]
+            elif isinstance(fact.type, GeometryType):
+                hints = [f"name a part of it: `{shown(node)}.center`"]
+            self.infer.report("E0302", f"{what} wants {needs}, and this is {a(fact.type)}", node, hints=hints)
+        elif len(wanted) == 1 and isinstance(wanted[0], NumberType):
+            self.infer.serves(fact, wanted[0].dimension, node)
+
+    def _param(self, node: ast.Param) -> None:
+        infer = self.infer
+        infer.known(node.value, "the value of a `param`")
+        fact = infer.fact(node.value)
+        if node.domain is not None:
+            domain = infer.wants(node.domain, "a range or a list of choices", RangeType, ListType)
+            infer.known(node.domain, "the range of a `param`")
+            if isinstance(domain.type, RangeType) and not isinstance(fact.type, NumberType):
+                if not fact.is_any:
+                    infer.report(
+                        "E0302",
+                        f"a range fits a number, and `{node.name.text}` is {a(fact.type)}",
+                        node.domain,
+                    )
+            elif isinstance(node.domain, ast.Range):
+                infer.same_dimension(
+                    fact, infer.fact(node.domain.start), node.domain, "the range does not fit the value:"
+                )
+        if node.step is not None:
+            step = infer.numeric(node.step)
+            infer.same_dimension(fact, step, node.step, "the step does not fit the value:")
+
+    def _assert(self, test: ast.Expression, message: ast.Expression | None) -> None:
+        from aidl_lang.types import TruthType
+
+        self.infer.wants(test, "a condition", TruthType)
+        if message is not None:
+            self.infer.wants(message, "a text", TextType)
+
+    def _indices(self, indices: tuple[ast.Expression, ...]) -> None:
+        for index in indices:
+            self.infer.whole(index, "an index")
+
+    def _attributes(self, attributes: tuple[ast.Attribute, ...]) -> None:
+        for attribute in attributes:
+            for argument in attribute.arguments:
+                self.infer.known(argument.value, f"the argument of `@{attribute.name.text}`")
+
+
+def find_cycles(infer: Inference) -> None:
+    """Report constants that are defined by way of themselves, each circle once."""
+    resolution = infer.resolution
+    graph = {}
+    for symbol in resolution.symbols:
+        if symbol.kind in (SymbolKind.LET, SymbolKind.PARAM):
+            graph[symbol] = [
+                (resolution.uses[name], name)
+                for node in symbol.nodes
+                for name in _names(node)
+                if resolution.uses.get(name) is not None
+            ]
+    done: set[object] = set()
+    for start in graph:
+        trail = [(start, iter(graph[start]))]
+        on_trail = {start}
+        while trail:
+            symbol, rest = trail[-1]
+            step = next(rest, None)
+            if step is None:
+                trail.pop()
+                on_trail.discard(symbol)
+                done.add(symbol)
+                continue
+            target, name = step
+            if target in on_trail:
+                names = [s.name for s, _ in trail]
+                circle = [*names[names.index(target.name) :], target.name]
+                way = " → ".join(circle) if len(circle) > 2 else ""
+                infer.report(
+                    "E0207",
+                    f"`{target.name}` is defined by way of itself" + (f": {way}" if way else ""),
+                    name,
+                    hints=["one of them needs a value that does not depend on the others"],
+                )
+            elif target in graph and target not in done:
+                trail.append((target, iter(graph[target])))
+                on_trail.add(target)
+
+
+def _names(node: ast.Node) -> Iterator[ast.Name]:
+    assert isinstance(node, ast.Let | ast.Assign | ast.Param)
+    return (n for n in ast.walk(node.value) if isinstance(n, ast.Name))

@@ -1,0 +1,293 @@
+"""Types, what a parameter accepts, and the choice among overloads.
+
+One choice serves the checker, which knows types only, and the interpreter, which takes the types of values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from aidl_lang import ast
+from aidl_lang.names import fold
+from aidl_lang.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension, describe
+
+
+@dataclass(frozen=True)
+class AnyType:
+    """Not known before the program is built: accepted everywhere, checked again when values are there."""
+
+    def __str__(self) -> str:
+        return "anything"
+
+
+@dataclass(frozen=True)
+class NumberType:
+    """`dimension` is None for a bare number."""
+
+    dimension: MaybeDimension
+    whole: bool = False
+
+    def __str__(self) -> str:
+        return "whole number" if self.whole else describe(self.dimension)
+
+
+@dataclass(frozen=True)
+class TextType:
+    def __str__(self) -> str:
+        return "text"
+
+
+@dataclass(frozen=True)
+class TruthType:
+    """true and false, and conditions over unknowns."""
+
+    def __str__(self) -> str:
+        return "condition"
+
+
+@dataclass(frozen=True)
+class PointType:
+    def __str__(self) -> str:
+        return "point"
+
+
+@dataclass(frozen=True)
+class RangeType:
+    def __str__(self) -> str:
+        return "range"
+
+
+@dataclass(frozen=True)
+class ListType:
+    """A list or an array; `length` where it is known."""
+
+    element: Type
+    length: int | None = None
+
+    def __str__(self) -> str:
+        return f"list of {self.element}s" if not isinstance(self.element, AnyType) else "list"
+
+
+@dataclass(frozen=True)
+class GeometryType:
+    """`kind` is a primitive (`line`, `arc`, `circle`, …), the name of a shape, or "" for any geometry."""
+
+    kind: str
+
+    def __str__(self) -> str:
+        return self.kind or "geometry"
+
+
+@dataclass(frozen=True)
+class StructureType:
+    def __str__(self) -> str:
+        return "structure"
+
+
+@dataclass(frozen=True)
+class BoxType:
+    """The box of a structure, a geometry or a list of them."""
+
+    def __str__(self) -> str:
+        return "box"
+
+
+Type: TypeAlias = (
+    AnyType
+    | NumberType
+    | TextType
+    | TruthType
+    | PointType
+    | RangeType
+    | ListType
+    | GeometryType
+    | StructureType
+    | BoxType
+)
+
+ANY = AnyType()
+PRIMITIVES = ("point", "line", "arc", "circle", "bezier", "ellipse")
+
+PARAMETER_TYPES: Mapping[str, Type] = {
+    "any": ANY,
+    "length": NumberType(LENGTH),
+    "angle": NumberType(ANGLE),
+    "turn": NumberType(ANGLE),
+    "area": NumberType(AREA),
+    "number": NumberType(PLAIN),
+    "integer": NumberType(PLAIN, whole=True),
+    "text": TextType(),
+    "string": TextType(),
+    "bool": TruthType(),
+    "boolean": TruthType(),
+    "point": PointType(),
+    "list": ListType(ANY),
+    "geometry": GeometryType(""),
+    "structure": StructureType(),
+    "box": BoxType(),
+    **{name: GeometryType(name) for name in PRIMITIVES if name != "point"},
+}
+"""The words that may stand behind `:` in a parameter; the name of a shape may stand there too."""
+
+
+def parameter_type(parameter: ast.Parameter, shapes: Iterable[str] = ()) -> Type | None:
+    """The type a parameter asks for; None when the word is unknown."""
+    if parameter.type is None:
+        return ANY
+    word = fold(parameter.type.text)
+    if (known := PARAMETER_TYPES.get(word)) is not None:
+        return known
+    return next((GeometryType(shape) for shape in shapes if fold(shape) == word), None)
+
+
+def accepts(wanted: Type, given: Type) -> int | None:
+    """How far `given` is from what a place wants: 0 exact, more for a conversion, None when it does not fit."""
+    if isinstance(wanted, AnyType):
+        return 4
+    if isinstance(given, AnyType):
+        return 3
+    match wanted, given:
+        case NumberType(dimension, whole), NumberType(other, is_whole):
+            if whole and not is_whole:
+                return None
+            return 0 if dimension == other else 1 if other is None else None
+        case NumberType(), GeometryType("line"):
+            return 2 if wanted.dimension == LENGTH else None
+        case PointType(), PointType() | GeometryType("point"):
+            return 0
+        case PointType(), ListType(element, length):
+            fits = length in (2, None) and isinstance(element, NumberType | AnyType)
+            return 2 if fits else None
+        case GeometryType(kind), GeometryType(other):
+            return 0 if kind == other else 1 if kind == "" else None
+        case GeometryType(""), PointType():
+            return 1
+        case BoxType(), BoxType():
+            return 0
+        case BoxType(), StructureType() | GeometryType() | PointType():
+            return 1
+        case BoxType(), ListType(element):
+            return None if isinstance(element, NumberType | TextType | TruthType) else 2
+        case ListType(element), ListType(other):
+            return 0 if accepts(element, other) is not None else None
+        case ListType(), RangeType():
+            return 1
+        case _:
+            return 0 if type(wanted) is type(given) and not isinstance(wanted, NumberType) else None
+
+
+@dataclass(frozen=True)
+class Given:
+    """An argument of a call as the choice sees it; `name` is None for a positional one."""
+
+    name: str | None
+    type: Type
+
+
+@dataclass(frozen=True)
+class Signature:
+    """A callable: `node` is its definition, None for one that is built in."""
+
+    name: str
+    parameters: tuple[tuple[str, Type, bool], ...]
+    """name, type, and whether it has a default"""
+    node: ast.Callable | None = None
+
+    @property
+    def gathers(self) -> bool:
+        """Whether positional arguments are collected: the first parameter is a list."""
+        return bool(self.parameters) and isinstance(self.parameters[0][1], ListType)
+
+    def __str__(self) -> str:
+        shown = [
+            name + ("" if isinstance(kind, AnyType) else f": {kind}") + (" = …" if optional else "")
+            for name, kind, optional in self.parameters
+        ]
+        return f"{self.name}({', '.join(shown)})"
+
+
+@dataclass(frozen=True)
+class Binding:
+    """Which argument goes to which parameter: parameter name → indices into the arguments.
+
+    Several indices (or `gathered`) make a list. `positional` are the indices given without a name.
+    """
+
+    signature: Signature
+    arguments: Mapping[str, tuple[int, ...]]
+    gathered: str | None
+    cost: tuple[int, int]
+    positional: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class Mismatch:
+    """Why a candidate does not fit; `argument` is the index of the argument to blame, if one is."""
+
+    signature: Signature
+    reason: str
+    argument: int | None = None
+
+
+def bind(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch:
+    """Match arguments to the parameters of one callable."""
+    positional = [i for i, g in enumerate(given) if g.name is None]
+    named = [(i, g.name) for i, g in enumerate(given) if g.name is not None]
+    arguments: dict[str, tuple[int, ...]] = {}
+    gathered: str | None = None
+    parameters = signature.parameters
+    single_list = positional and isinstance(given[positional[0]].type, ListType | AnyType)
+    if signature.gathers and positional and not (single_list and len(positional) <= len(parameters)):
+        gathered = parameters[0][0]
+        arguments[gathered] = tuple(positional)
+    else:
+        if len(positional) > len(parameters):
+            count = len(parameters)
+            return Mismatch(
+                signature, f"takes at most {count} argument{'s' * (count != 1)}", positional[count]
+            )
+        for (name, _, _), index in zip(parameters, positional, strict=False):
+            arguments[name] = (index,)
+    by_fold = {fold(name): name for name, _, _ in parameters}
+    for index, written in named:
+        assert written is not None
+        target = by_fold.get(fold(written))
+        if target is None:
+            return Mismatch(signature, f"has no parameter `{written}`", index)
+        if target in arguments:
+            return Mismatch(signature, f"gets `{target}` twice", index)
+        arguments[target] = (index,)
+    total = 2 if gathered is not None else 0
+    defaulted = 0
+    for name, kind, optional in parameters:
+        if name not in arguments:
+            if not optional:
+                return Mismatch(signature, f"needs `{name}`")
+            defaulted += 1
+        elif name != gathered:
+            index = arguments[name][0]
+            distance = accepts(kind, given[index].type)
+            if distance is None:
+                return Mismatch(signature, f"`{name}` must be a {kind}, not a {given[index].type}", index)
+            total += distance
+    return Binding(signature, arguments, gathered, (total, defaulted), tuple(positional))
+
+
+def select(candidates: Sequence[Signature], given: Sequence[Given]) -> Binding | list[Mismatch]:
+    """The candidate that fits best (least conversion, then fewest defaults, then first written), or why none
+    does."""
+    fits: list[Binding] = []
+    misses: list[Mismatch] = []
+    for candidate in candidates:
+        outcome = bind(candidate, given)
+        if isinstance(outcome, Binding):
+            fits.append(outcome)
+        else:
+            misses.append(outcome)
+    return min(fits, key=lambda b: b.cost) if fits else misses
+
+
+def number(dimension: Dimension | None) -> NumberType:
+    return NumberType(dimension)

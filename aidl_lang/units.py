@@ -1,0 +1,86 @@
+"""Dimensions and units.
+
+Values are kept in millimetres, degrees and their products. A dimension counts powers of length and of
+angle; a number written without a unit is *bare*: it takes the dimension its place asks for, unchanged in value.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+
+class Dimension(NamedTuple):
+    length: int = 0
+    angle: int = 0
+
+    def __str__(self) -> str:
+        if name := _NAMES.get(self):
+            return name
+        parts = [f"{n}^{p}" if p != 1 else n for n, p in (("mm", self.length), ("deg", self.angle)) if p]
+        return " ".join(parts)
+
+
+PLAIN = Dimension()
+LENGTH = Dimension(length=1)
+ANGLE = Dimension(angle=1)
+AREA = Dimension(length=2)
+
+_NAMES = {PLAIN: "plain number", LENGTH: "length", ANGLE: "angle", AREA: "area", Dimension(3, 0): "volume"}
+
+UNITS: dict[str, tuple[float, Dimension]] = {
+    "mm": (1.0, LENGTH),
+    "cm": (10.0, LENGTH),
+    "m": (1000.0, LENGTH),
+    "in": (25.4, LENGTH),
+    "ft": (304.8, LENGTH),
+    "deg": (1.0, ANGLE),
+    "rad": (180.0 / math.pi, ANGLE),
+    "turn": (360.0, ANGLE),
+}
+"""Unit suffix → factor to millimetres or degrees, and the dimension."""
+
+MaybeDimension = Dimension | None
+"""None is the dimension of a bare number."""
+
+
+def describe(dimension: MaybeDimension) -> str:
+    return "number without a unit" if dimension is None else str(dimension)
+
+
+def add(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
+    """Dimension of a sum, difference, minimum or comparison.
+
+    Raises ValueError when the two do not go together.
+    """
+    if a is None or a == b:
+        return b
+    if b is None:
+        return a
+    raise ValueError(f"{describe(a)} and {describe(b)}")
+
+
+def multiply(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
+    """Dimension of a product; a bare number times a plain one (`10 * cos(a)`) stays bare."""
+    if {a, b} <= {None, PLAIN} and (a is None or b is None):
+        return None
+    a, b = a or PLAIN, b or PLAIN
+    return Dimension(a.length + b.length, a.angle + b.angle)
+
+
+def divide(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
+    """Dimension of a quotient; a bare number by a plain one stays bare."""
+    if a is None and b in (None, PLAIN):
+        return None
+    a, b = a or PLAIN, b or PLAIN
+    return Dimension(a.length - b.length, a.angle - b.angle)
+
+
+def power(a: MaybeDimension, exponent: float) -> MaybeDimension:
+    """Raises ValueError when a dimension would get a fractional power."""
+    if a is None or a == PLAIN:
+        return a
+    length, angle = a.length * exponent, a.angle * exponent
+    if length != int(length) or angle != int(angle):
+        raise ValueError(f"{describe(a)} to the power {exponent:g}")
+    return Dimension(int(length), int(angle))

@@ -1,0 +1,188 @@
+"""The values that expressions of the language have while a program is built."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import TYPE_CHECKING, TypeAlias
+
+from aidl_lang import expression as ex
+from aidl_lang.expression import Expression
+from aidl_lang.types import (
+    ANY,
+    BoxType,
+    GeometryType,
+    ListType,
+    NumberType,
+    PointType,
+    RangeType,
+    StructureType,
+    TextType,
+    TruthType,
+    Type,
+)
+from aidl_lang.units import LENGTH, PLAIN, MaybeDimension
+
+if TYPE_CHECKING:
+    from aidl_lang.boxes import Box
+    from aidl_lang.model import Condition, Geometry, Structure
+
+
+class Status(IntEnum):
+    """How exact a number is meant, weakest first; it travels with the value (the exactness table)."""
+
+    GUESS = 0
+    NUMBER = 1
+    PARAM = 2
+    FIXED = 3
+    REFERENCE = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Num:
+    """A number: mm, degrees or their products."""
+
+    expression: Expression
+    dimension: MaybeDimension = None
+    status: Status = Status.NUMBER
+
+    @property
+    def value(self) -> float:
+        """At the first guesses."""
+        return self.expression.value
+
+    @property
+    def is_whole(self) -> bool:
+        value = self.expression.value
+        return self.dimension in (None, PLAIN) and value == value and abs(value) < 1e15 and value == int(value)
+
+
+@dataclass(frozen=True, slots=True)
+class PointVal:
+    """Coordinates in the frame of the structure that asks."""
+
+    x: Num
+    y: Num
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    value: str
+    is_param: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class RangeVal:
+    start: Num
+    end: Num
+    exclusive: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ListVal:
+    items: tuple[Value, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Nothing:
+    """What an expression with a reported error yields; whatever it touches yields nothing too."""
+
+
+class Array:
+    """Members declared one by one under whole-number indices, possibly sparse; read in index order."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.members: dict[tuple[int, ...], Value] = {}
+
+    def items(self) -> list[Value]:
+        return [self.members[index] for index in sorted(self.members)]
+
+    def row(self, index: int) -> Array | None:
+        """The members of a many-index array whose first index is `index`."""
+        row = Array(f"{self.name}[{index}]")
+        row.members = {key[1:]: v for key, v in self.members.items() if key[0] == index and len(key) > 1}
+        return row if row.members else None
+
+
+class Namespace:
+    """What `import "p" as name` gives."""
+
+    def __init__(self, values: Mapping[str, object]) -> None:
+        self.values = values
+
+
+NOTHING = Nothing()
+
+if TYPE_CHECKING:
+    Value: TypeAlias = (
+        Num
+        | PointVal
+        | Text
+        | bool
+        | Condition
+        | RangeVal
+        | ListVal
+        | Array
+        | Geometry
+        | Structure
+        | Box
+        | Namespace
+        | Nothing
+    )
+else:
+    Value = object
+
+
+def number(value: float, dimension: MaybeDimension = None, status: Status = Status.NUMBER) -> Num:
+    return Num(ex.constant(value), dimension, status)
+
+
+def length(expression: Expression, status: Status = Status.REFERENCE) -> Num:
+    return Num(expression, LENGTH, status)
+
+
+def point(x: Expression, y: Expression, status: Status = Status.REFERENCE) -> PointVal:
+    return PointVal(Num(x, LENGTH, status), Num(y, LENGTH, status))
+
+
+def members(value: Value) -> Sequence[Value] | None:
+    """The items of something that can be run through; None for anything else."""
+    match value:
+        case ListVal(items):
+            return items
+        case Array():
+            return value.items()
+        case _:
+            return None
+
+
+def type_of(value: Value) -> Type:
+    """The type by which overloads are chosen."""
+    from aidl_lang.boxes import Box
+    from aidl_lang.model import Condition, Geometry, Structure
+
+    match value:
+        case Num():
+            return NumberType(value.dimension, value.is_whole)
+        case PointVal():
+            return PointType()
+        case Geometry():
+            return GeometryType(value.type)
+        case Structure():
+            return StructureType()
+        case Box():
+            return BoxType()
+        case Text():
+            return TextType()
+        case bool() | Condition():
+            return TruthType()
+        case RangeVal():
+            return RangeType()
+        case ListVal() | Array():
+            items = members(value) or ()
+            kinds = {type_of(item) for item in items}
+            return ListType(kinds.pop() if len(kinds) == 1 else ANY, len(items))
+        case _:
+            return ANY

@@ -1,0 +1,99 @@
+"""Every file is read through a World, so that the core is one for disk, memory, editor and browser.
+
+Paths are relative to the root of a project and written with `/`. Nothing outside the root can be read, whatever
+`..`, absolute paths or symbolic links say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+from pathlib import Path, PurePosixPath
+from typing import Protocol
+
+MAX_BYTES = 10_000_000  # of one file; a program is far smaller, and a device file has no end
+
+
+class Reason(StrEnum):
+    """Why a file cannot be read."""
+
+    MISSING = "there is no such file"
+    OUTSIDE = "it lies outside the project"
+    NOT_TEXT = "it is not UTF-8 text"
+    TOO_LARGE = "it is too large for a program"
+    UNREADABLE = "it cannot be read"
+
+
+class FileError(OSError):
+    """A file that cannot be read: `path` as asked for, and the reason in words."""
+
+    def __init__(self, path: str, reason: Reason) -> None:
+        super().__init__(f"{path}: {reason}")
+        self.path = path
+        self.reason = reason
+
+
+class World(Protocol):
+    """What a program can see of the world outside."""
+
+    def read(self, path: str) -> str:
+        """The text of a file, the path relative to the root. Raises FileError."""
+        ...
+
+
+def normalize(path: str) -> str:
+    """A path without `.` and `..`, relative to the root. Raises FileError where it leaves the root."""
+    pure = PurePosixPath(path.replace("\\", "/"))
+    parts: list[str] = []
+    for part in pure.parts:
+        if part == ".." and parts:
+            parts.pop()
+        elif part == ".." or pure.is_absolute() or part.endswith(":"):
+            raise FileError(path, Reason.OUTSIDE)
+        else:
+            parts.append(part)
+    return "/".join(parts)
+
+
+def relative_to(path: str, importer: str) -> str:
+    """What a path written in the file `importer` means from the root. Raises FileError as `normalize`."""
+    if PurePosixPath(path).is_absolute():
+        raise FileError(path, Reason.OUTSIDE)
+    return normalize(str(PurePosixPath(importer).parent / path))
+
+
+class MemoryWorld:
+    """Files held in a mapping from path to text: for tests, the editor and the browser."""
+
+    def __init__(self, files: Mapping[str, str]) -> None:
+        self.files = {normalize(path): text for path, text in files.items()}
+
+    def read(self, path: str) -> str:
+        try:
+            return self.files[normalize(path)]
+        except KeyError:
+            raise FileError(path, Reason.MISSING) from None
+
+
+class DiskWorld:
+    """The files below a folder."""
+
+    def __init__(self, root: Path | str) -> None:
+        self.root = Path(root).resolve()
+
+    def read(self, path: str) -> str:
+        try:
+            file = (self.root / normalize(path)).resolve()
+            if not file.is_relative_to(self.root):
+                raise FileError(path, Reason.OUTSIDE)
+            if not file.is_file():
+                raise FileError(path, Reason.MISSING)
+            if file.stat().st_size > MAX_BYTES:
+                raise FileError(path, Reason.TOO_LARGE)
+            return file.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            raise FileError(path, Reason.NOT_TEXT) from None
+        except FileError:
+            raise
+        except (OSError, ValueError, RuntimeError):  # no permission, a NUL in the name, a loop of links
+            raise FileError(path, Reason.UNREADABLE) from None

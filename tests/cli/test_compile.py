@@ -1,0 +1,145 @@
+"""`aidl compile`: what is written, when, and what is said."""
+
+from __future__ import annotations
+
+import json
+import os
+import stat
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import GOOD, Result
+
+Aidl = Callable[..., Result]
+
+
+def test_default_output_stands_beside_the_program(aidl: Aidl, folder: Path) -> None:
+    result = aidl("compile", "good.aidl")
+    assert (result.code, result.out) == (0, "")
+    assert result.err.startswith("good.svg: solved")
+    assert (folder / "good.svg").read_text().lstrip().startswith("<")
+
+
+def test_several_outputs_at_once(aidl: Aidl, folder: Path) -> None:
+    assert aidl("compile", "good.aidl", "-o", "a.svg", "-o", "b.json", "--quiet") == Result(0, "", "")
+    assert (folder / "a.svg").exists()
+    assert json.loads((folder / "b.json").read_text())["status"] == "solved"
+
+
+def test_standard_input_and_output(aidl: Aidl) -> None:
+    result = aidl("compile", "-", stdin=GOOD)
+    assert result.code == 0
+    assert "<svg" in result.out
+    assert json.loads(aidl("compile", "-", "-o", "-", "--format", "json", stdin=GOOD).out)["aidl"] == 1
+
+
+def test_format_for_a_name_that_does_not_tell_it(aidl: Aidl, folder: Path) -> None:
+    assert aidl("compile", "good.aidl", "-o", "picture.xml", "--format", ".SVG").code == 0
+    assert "<svg" in (folder / "picture.xml").read_text()
+
+
+def test_param_is_set(aidl: Aidl) -> None:
+    model = json.loads(aidl("compile", "good.aidl", "-D", "width=100", "-o", "-", "--format", "json").out)
+    box = model["root"]["bb"]
+    assert box["right"] - box["left"] == pytest.approx(100)
+
+
+@pytest.mark.parametrize("value", ["width", "=3", "width="])
+def test_param_must_be_a_name_and_a_value(aidl: Aidl, value: str) -> None:
+    result = aidl("compile", "good.aidl", "-D", value)
+    assert result.code == 2
+    assert "NAME=VALUE" in result.err
+
+
+@pytest.mark.parametrize("define", ["width=1000", "widht=100"])
+def test_param_that_cannot_be_set(aidl: Aidl, folder: Path, define: str) -> None:
+    result = aidl("compile", "good.aidl", "-D", define)
+    assert result.code in (1, 2)
+    assert "width" in result.err
+    assert not (folder / "good.svg").exists()
+
+
+def test_layers_are_shown(aidl: Aidl) -> None:
+    plain = aidl("compile", "good.aidl", "-o", "-").out
+    assert aidl("compile", "good.aidl", "-o", "-", "--show", "names,points").out != plain
+    assert aidl("compile", "good.aidl", "--show", "nonsense").code == 2
+
+
+def test_timings(aidl: Aidl) -> None:
+    lines = aidl("compile", "good.aidl", "--timings").err.splitlines()
+    assert any(line.startswith("total") and line.endswith(" ms") for line in lines)
+
+
+def test_same_program_gives_same_bytes(aidl: Aidl) -> None:
+    first = aidl("compile", "good.aidl", "-o", "-", "--format", "json").out
+    assert aidl("compile", "good.aidl", "-o", "-", "--format", "json").out == first
+
+
+def test_wrong_program_leaves_the_old_drawing(aidl: Aidl, folder: Path) -> None:
+    (folder / "wrong.svg").write_text("old")
+    result = aidl("compile", "wrong.aidl", "--best-effort")
+    assert result.code == 1
+    assert "wrong.aidl:2:45" in result.err
+    assert "nothing written" in result.err
+    assert (folder / "wrong.svg").read_text() == "old"
+
+
+def test_unsolved_program_is_drawn_only_if_asked(aidl: Aidl, folder: Path) -> None:
+    assert aidl("compile", "unsolvable.aidl").code == 1
+    assert not (folder / "unsolvable.svg").exists()
+    assert aidl("compile", "unsolvable.aidl", "--best-effort").code == 1
+    assert (folder / "unsolvable.svg").exists()
+
+
+def test_existing_output_keeps_its_mode_and_its_link(aidl: Aidl, folder: Path) -> None:
+    real = folder / "real.svg"
+    real.write_text("old")
+    real.chmod(0o640)
+    (folder / "link.svg").symlink_to(real)
+    assert aidl("compile", "good.aidl", "-o", "link.svg").code == 0
+    assert (folder / "link.svg").is_symlink()
+    assert stat.S_IMODE(real.stat().st_mode) == 0o640
+    assert real.read_text() != "old"
+
+
+def test_nothing_is_left_beside_the_output(aidl: Aidl, folder: Path) -> None:
+    before = set(os.listdir(folder))
+    aidl("compile", "good.aidl")
+    assert set(os.listdir(folder)) - before == {"good.svg"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["missing.aidl"], "E0901", "there is no file `missing.aidl`"),
+        (["god.aidl"], "E0901", "did you mean `good.aidl`?"),
+        (["good"], "E0901", "did you mean `good.aidl`?"),
+        (["."], "E0902", "is a directory"),
+        (["latin1.aidl"], "E0903", "not UTF-8 text (line 2)"),
+        (["zeros.aidl"], "E0903", "zero bytes"),
+        (["good.aidl", "-o", "absent/good.svg"], "E0904", "no directory `absent`"),
+        (["good.aidl", "-o", "folder.svg"], "E0904", "is a directory"),
+        (["good.aidl", "-o", "good.sgv"], "E0905", "there is no format `sgv`"),
+        (["good.aidl", "-o", "good"], "E0905", "does not tell a format"),
+        (["good.aidl", "-o", "-", "--format", "x"], "E0905", "there is no format `x`"),
+        (["good.aidl", "-o", "good.aidl", "--format", "svg"], "E0908", "the program itself"),
+    ],
+)
+def test_wrong_use(aidl: Aidl, folder: Path, arguments: list[str], code: str, words: str) -> None:
+    (folder / "latin1.aidl").write_bytes("// fine\n// gr\xf6\xdfe".encode("latin-1"))
+    (folder / "zeros.aidl").write_bytes(b"\0\0\0")
+    (folder / "folder.svg").mkdir()
+    result = aidl("compile", *arguments)
+    assert (result.code, result.out) == (2, "")
+    assert result.err.startswith(f"error[{code}]")
+    assert words in result.err
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may read and write everything")
+def test_permissions(aidl: Aidl, folder: Path) -> None:
+    (folder / "good.aidl").chmod(0)
+    assert "E0902" in aidl("compile", "good.aidl").err
+    folder.chmod(0o500)
+    assert "E0904" in aidl("compile", "-", "-o", "x.svg", stdin=GOOD).err

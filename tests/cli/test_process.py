@@ -1,0 +1,83 @@
+"""The command as a process of its own: what only shows there."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.documents import ROOT
+
+COMMAND = [sys.executable, "-m", "aidl_lang"]
+
+
+@pytest.fixture(autouse=True)
+def _package_is_found_from_anywhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+
+
+def run(*arguments: str, **more: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([*COMMAND, *arguments], capture_output=True, text=True, timeout=60, **more)  # type: ignore[call-overload,no-any-return]
+
+
+def test_installed_command_compiles(folder: Path) -> None:
+    command = Path(sys.executable).parent / "aidl"
+    if not command.exists():
+        pytest.skip("the package is not installed here")
+    subprocess.run([command, "compile", "good.aidl"], check=True, timeout=60)
+    assert (folder / "good.svg").exists()
+
+
+def test_start_is_quick_because_it_loads_little() -> None:
+    code = (
+        "import sys; from aidl_lang.cli import main; main(['explain']); print(*sys.modules, file=sys.stderr)"
+    )
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True
+    )
+    heavy = {"numpy", "scipy", "lark", "manifold3d", "svgwrite", "watchfiles", "rich"}
+    assert heavy & set(loaded.stderr.split()) == set()
+
+
+def test_reader_that_goes_away(folder: Path) -> None:
+    with subprocess.Popen([*COMMAND, "explain"], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode in (0, 141)
+
+
+def test_terminal_without_unicode(folder: Path) -> None:
+    (folder / "wide.aidl").write_text("solid 世 { = }\n", encoding="utf-8")
+    result = run("check", "wide.aidl", env={**os.environ, "PYTHONIOENCODING": "ascii"})
+    assert result.returncode == 1
+    assert "Traceback" not in result.stderr
+
+
+def test_watch_draws_again_on_save_and_stops_quietly(folder: Path) -> None:
+    command = [*COMMAND, "watch", "good.aidl", "-o", "watched.svg"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=_hear_interrupts) as process:
+        assert process.stderr is not None
+        try:
+            first = process.stderr.readline()
+            time.sleep(1.0)
+            (folder / "good.aidl").write_text("solid plate { edge = }\n")
+            second = process.stderr.readline()
+        finally:
+            process.send_signal(signal.SIGINT)
+        rest = process.stderr.read()
+    assert "watched.svg: solved" in first
+    assert "error[E0" in second
+    assert "Traceback" not in rest
+    assert process.returncode == 130
+
+
+def _hear_interrupts() -> None:
+    """In a shell's background job interrupts are ignored, and processes inherit that."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -1,0 +1,97 @@
+"""Small solved models written by hand."""
+
+from __future__ import annotations
+
+import math
+
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Curve, Ellipse, Line, Vec
+from aidl_lang.geometry.evaluate import bounds
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.solved import Box, Frame, Scalar, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.source import Span
+
+
+def arc(center: Vec, radius: float, first: float, last: float) -> Arc:
+    """From and to angles in degrees; clockwise if `last` is smaller."""
+
+    def at(angle: float) -> Vec:
+        a = math.radians(angle)
+        return center[0] + radius * math.cos(a), center[1] + radius * math.sin(a)
+
+    return Arc(center, radius, at(first), at(last), math.radians(last - first))
+
+
+def primitive(
+    name: str, curve: Curve, construction: bool = False, span: Span | None = None
+) -> SolvedGeometry:
+    values: dict[str, Scalar | Vec | tuple[Vec, ...]] = {}
+    match curve:
+        case Line(start, end):
+            values = {"start": start, "end": end}
+        case Circle(center, radius):
+            values = {"center": center, "radius": radius}
+        case Arc(center, radius, start, end, sweep):
+            values = {"center": center, "radius": radius, "start": start, "end": end, "clockwise": sweep < 0}
+        case Ellipse(center, rx, ry, angle):
+            values = {"center": center, "rx": rx, "ry": ry, "angle": math.degrees(angle)}
+        case Bezier(p0, p1, p2, p3):
+            values = {"points": (p0, p1, p2, p3)}
+    return SolvedGeometry(name, name, type(curve).__name__.lower(), values, curve, (), construction, span)
+
+
+def compound(name: str, *curves: Curve, type_: str = "polygon") -> SolvedGeometry:
+    parts = tuple(primitive(f"edges[{i}]", c) for i, c in enumerate(curves))
+    return SolvedGeometry(name, name, type_, {}, None, parts, False, None)
+
+
+def polygon(name: str, *corners: Vec) -> SolvedGeometry:
+    lines = [Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)]
+    return compound(name, *lines)
+
+
+def rectangle(name: str, left: float, bottom: float, right: float, top: float) -> SolvedGeometry:
+    return polygon(name, (left, bottom), (right, bottom), (right, top), (left, top))
+
+
+def circle(name: str, x: float, y: float, r: float) -> SolvedGeometry:
+    return primitive(name, Circle((x, y), r))
+
+
+def structure(
+    kind: str,
+    name: str,
+    *members: SolvedGeometry | SolvedStructure,
+    span: Span | None = None,
+    box: Box | None = None,
+    **attributes: tuple[Scalar, ...],
+) -> SolvedStructure:
+    geometry = tuple(m for m in members if isinstance(m, SolvedGeometry))
+    children = tuple(m for m in members if isinstance(m, SolvedStructure))
+    boxes = [bounds(c) for g in geometry for c in g.curves()]
+    boxes += [(c.box.left, c.box.bottom, c.box.right, c.box.top) for c in children if c.box]
+    box = box or (Box(*union_bounds(boxes)) if boxes else None)
+    frame = Frame(0.0, 0.0, 0.0)
+    return SolvedStructure(
+        name, name, kind, "top", frame, attributes, {}, geometry, children, box, not members, 0, span
+    )
+
+
+def model(root: SolvedStructure) -> SolvedModel:
+    return SolvedModel("solved", _with_paths(root, ""), (), 0, (), ())
+
+
+def _with_paths(s: SolvedStructure, prefix: str) -> SolvedStructure:
+    from dataclasses import replace
+
+    path = f"{prefix}{s.name}"
+
+    def below(g: SolvedGeometry, prefix: str) -> SolvedGeometry:
+        path = f"{prefix}.{g.name}"
+        return replace(g, path=path, parts=tuple(below(p, path) for p in g.parts))
+
+    return replace(
+        s,
+        path=path,
+        geometry=tuple(below(g, path) for g in s.geometry),
+        structures=tuple(_with_paths(c, f"{path}.") for c in s.structures),
+    )

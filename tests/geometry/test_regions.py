@@ -1,0 +1,362 @@
+"""Regions against closed forms and against Shapely on a fine tessellation."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely.geometry import Polygon
+
+from aidl_lang.geometry.boolean import clearance, common, united, without
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line
+from aidl_lang.geometry.drawing import Drawing, draw
+from aidl_lang.geometry.evaluate import ends, points
+from aidl_lang.geometry.measures import area, measure
+from aidl_lang.geometry.region import Loop, Region
+from aidl_lang.solved import SolvedGeometry, SolvedStructure
+from tests.geometry.models import arc, circle, compound, model, polygon, primitive, rectangle, structure
+
+
+def drawn(root: SolvedStructure) -> Drawing:
+    return draw(model(root))[0]
+
+
+def codes(root: SolvedStructure) -> list[str]:
+    return [d.code for d in draw(model(root))[1]]
+
+
+def region_of(*members: SolvedGeometry | SolvedStructure) -> Region:
+    return drawn(structure("solid", "s", *members)).regions.get("s", Region())
+
+
+def pieces(region: Region, kind: type) -> list[object]:
+    return [p for loop in region.loops for p in loop.pieces if isinstance(p, kind)]
+
+
+def flattened(loop: Loop, count: int = 400) -> Polygon:
+    rows = [points(p, np.linspace(0, 1, 2 if isinstance(p, Line) else count))[:-1] for p in loop.pieces]
+    return Polygon(np.concatenate(rows))
+
+
+def shapely_of(region: Region) -> shapely.Geometry:
+    faces = [
+        flattened(f.outer).difference(shapely.unary_union([flattened(h) for h in f.holes]))
+        for f in region.faces
+    ]
+    return shapely.unary_union(faces)
+
+
+def assert_closed(region: Region) -> None:
+    for loop in region.loops:
+        if not loop.is_whole:
+            for one, after in zip(loop.pieces, loop.pieces[1:] + loop.pieces[:1], strict=True):
+                assert ends(one)[1] == ends(after)[0]
+
+
+def test_rectangle_has_its_area_and_centroid():
+    m = measure(region_of(rectangle("r", 1, 2, 5, 5)))
+    assert m.area == pytest.approx(12)
+    assert m.perimeter == pytest.approx(14)
+    assert m.centroid == pytest.approx((3, 3.5))
+    assert m.box == (1, 2, 5, 5)
+
+
+def test_a_circle_stays_a_circle():
+    region = region_of(circle("c", 3, 4, 5))
+    assert region.faces[0].outer.pieces == (Circle((3, 4), 5),)
+    assert measure(region).area == pytest.approx(25 * math.pi, rel=1e-14)
+    assert measure(region).centroid == pytest.approx((3, 4))
+
+
+def test_ellipse_by_its_closed_form():
+    m = measure(region_of(primitive("e", Ellipse((1, 2), 5, 3, 0.4))))
+    assert m.area == pytest.approx(15 * math.pi)
+    assert m.perimeter == pytest.approx(25.526998863398124, rel=1e-9)
+    assert m.centroid == pytest.approx((1, 2))
+
+
+def test_a_circle_cut_by_a_circle_keeps_true_arcs():
+    """The lens of two circles: r² acos(d/2r)·2 − d/2 √(4r² − d²)."""
+    region = region_of(circle("a", 0, 0, 10), structure("hole", "h", circle("b", 12, 0, 10)))
+    lens = 200 * math.acos(0.6) - 6 * math.sqrt(400 - 144)
+    assert measure(region).area == pytest.approx(100 * math.pi - lens, rel=1e-12)
+    assert len(pieces(region, Arc)) == 2
+    assert not pieces(region, Line)
+
+
+def test_plate_with_two_holes_that_meet():
+    holes = [structure("hole", n, circle("rim", x, 0, 5)) for n, x in (("a", -3), ("b", 3))]
+    region = region_of(rectangle("plate", -20, -10, 20, 10), *holes)
+    assert len(region.faces) == 1
+    (hole,) = region.faces[0].holes
+    assert [type(p) for p in hole.pieces] == [Arc, Arc]
+    lens = 50 * math.acos(0.6) - 3 * math.sqrt(100 - 36)
+    assert measure(region).area == pytest.approx(800 - 50 * math.pi + lens, rel=1e-12)
+    assert_closed(region)
+
+
+def test_a_line_across_a_circle_cuts_an_exact_segment():
+    region = region_of(circle("disc", 0, 0, 5), structure("hole", "h", rectangle("r", 3, -9, 9, 9)))
+    segment = 25 * math.acos(0.6) - 12
+    assert measure(region).area == pytest.approx(25 * math.pi - segment, rel=1e-12)
+    assert {type(p) for p in region.faces[0].outer.pieces} == {Arc, Line}
+    (cut,) = pieces(region, Line)
+    assert sorted(ends(cut)) == [pytest.approx((3, -4)), pytest.approx((3, 4))]
+
+
+def test_ellipses_and_beziers_are_split_exactly():
+    bump = Bezier((0, 0), (0, 8), (10, 8), (10, 0))
+    region = region_of(
+        compound("dome", bump, Line((10, 0), (0, 0))), structure("hole", "h", rectangle("r", 5, -1, 20, 20))
+    )
+    assert len(pieces(region, Bezier)) == 1
+    assert measure(region).area == pytest.approx(
+        measure(region_of(compound("d", bump, Line((10, 0), (0, 0))))).area / 2
+    )
+    half = region_of(
+        primitive("e", Ellipse((0, 0), 6, 2, 0)), structure("hole", "h", rectangle("r", 0, -9, 9, 9))
+    )
+    assert len(pieces(half, EllipseArc)) == 1
+    assert measure(half).area == pytest.approx(6 * math.pi, rel=1e-9)
+
+
+def test_tangent_circles_and_inscribed_circle():
+    inscribed = region_of(rectangle("r", -5, -5, 5, 5), structure("hole", "h", circle("c", 0, 0, 5)))
+    assert measure(inscribed).area == pytest.approx(100 - 25 * math.pi, rel=1e-9)
+    assert not codes(structure("solid", "s", circle("a", 0, 0, 5), circle("b", 10, 0, 5)))
+    inner = region_of(circle("a", 0, 0, 10), structure("hole", "h", circle("b", 1, 0, 9)))
+    assert measure(inner).area == pytest.approx(19 * math.pi, rel=1e-9)
+    assert all(isinstance(p, Arc | Circle) for loop in inner.loops for p in loop.pieces)
+
+
+def test_coincident_arcs_of_one_circle():
+    """A disc with a sector of the same circle cut out: no slivers along the common arc."""
+    wedge = compound("w", Line((0, 0), (5, 0)), arc((0, 0), 5, 0, 90), Line((0, 5), (0, 0)))
+    region = region_of(circle("disc", 0, 0, 5), structure("hole", "h", wedge))
+    assert measure(region).area == pytest.approx(0.75 * 25 * math.pi, rel=1e-12)
+    assert sorted(type(p).__name__ for p in region.faces[0].outer.pieces) == ["Arc", "Line", "Line"]
+    assert len(region.loops) == 1
+
+
+def test_two_half_circles_become_one_circle():
+    halves = [primitive("a", arc((0, 0), 5, 0, 180)), primitive("b", arc((0, 0), 5, 180, 360))]
+    assert region_of(*halves).faces[0].outer.pieces == (Circle((0, 0), 5),)
+
+
+def test_union_of_touching_rectangles_has_no_leftover_vertices():
+    region = region_of(rectangle("a", 0, 0, 4, 3), rectangle("b", 4, 0, 9, 3))
+    assert len(region.faces[0].outer.pieces) == 4
+
+
+# -- chaining ----------------------------------------------------------------------------------------------
+
+SIDES = [
+    primitive("bottom", Line((0, 0), (10, 0))),
+    primitive("right", Line((10, 6), (10, 0))),
+    primitive("top", arc((5, 6), 5, 0, 180)),
+    primitive("left", Line((0, 6), (0, 0))),
+]
+
+
+@pytest.mark.parametrize("order", list(itertools.permutations(range(4)))[::3])
+def test_free_curves_chain_in_any_order_and_direction(order: tuple[int, ...]):
+    region = region_of(*(SIDES[i] for i in order))
+    assert measure(region).area == pytest.approx(60 + 12.5 * math.pi, rel=1e-13)
+    assert region == region_of(*SIDES)
+
+
+def test_gaps_below_the_tolerance_are_closed():
+    nudged = primitive("right", Line((10 + 4e-6, 6), (10, 4e-6)))
+    region = region_of(SIDES[0], nudged, SIDES[2], SIDES[3])
+    assert measure(region).area == pytest.approx(60 + 12.5 * math.pi, rel=1e-5)
+    assert_closed(region)
+
+
+def test_overshooting_lines_are_trimmed():
+    lines = [Line((-1, 0), (11, 0)), Line((10, -1), (10, 6)), Line((11, 5), (-1, 5)), Line((0, 7), (0, -2))]
+    root = structure("solid", "s", *(primitive(f"l{i}", line) for i, line in enumerate(lines)))
+    assert measure(drawn(root).regions["s"]).area == pytest.approx(50)
+    assert codes(root) == []
+
+
+def test_an_arc_on_top_of_a_rectangle_closes_with_its_edge():
+    root = structure("solid", "s", rectangle("r", -5, 0, 5, 4), primitive("dome", arc((0, 4), 5, 0, 180)))
+    assert measure(drawn(root).regions["s"]).area == pytest.approx(40 + 12.5 * math.pi)
+    assert codes(root) == []
+
+
+def test_nested_loops_of_one_shape_alternate():
+    ring = compound("ring", Circle((0, 0), 5), Circle((0, 0), 3), type_="ring")
+    assert measure(region_of(ring)).area == pytest.approx(16 * math.pi)
+    three = compound("target", Circle((0, 0), 5), Circle((0, 0), 3), Circle((0, 0), 1))
+    assert measure(region_of(three)).area == pytest.approx(17 * math.pi)
+
+
+def test_construction_is_not_drawn():
+    root = structure(
+        "solid", "s", circle("c", 0, 0, 1), primitive("axis", Line((0, 0), (9, 0)), construction=True)
+    )
+    assert codes(root) == []
+    assert drawn(root).box == (-1, -1, 1, 1)
+
+
+# -- holes and islands ---------------------------------------------------------------------------------------
+
+
+def test_hole_cuts_children_and_an_island_stays():
+    island = structure("solid", "island", circle("c", 0, 0, 1))
+    hole = structure("hole", "h", circle("rim", 0, 0, 3), island)
+    child = structure("solid", "child", rectangle("bar", -10, -1, 10, 1))
+    drawing = drawn(structure("solid", "s", circle("disc", 0, 0, 5), child, hole))
+    region = drawing.regions["s"]
+    assert len(region.faces) == 2
+    outside = measure(region_of(circle("disc", 0, 0, 5), child)).area
+    assert measure(region).area == pytest.approx(outside - 9 * math.pi + math.pi)
+    assert [b.path for b in drawing.bodies] == ["s"]
+
+
+def test_an_assembly_keeps_bodies_apart_and_its_hole_cuts_all():
+    hole = structure("hole", "h", rectangle("slit", -20, -1, 20, 1))
+    drawing = drawn(
+        structure(
+            "assembly",
+            "a",
+            rectangle("own", -9, -3, -5, 3),
+            structure("solid", "b", rectangle("r", -2, -3, 2, 3)),
+            structure("solid", "c", rectangle("r", 5, -3, 9, 3)),
+            hole,
+        )
+    )
+    assert [b.path for b in drawing.bodies] == ["a", "a.b", "a.c"]
+    assert [drawing.measures[b.path].area for b in drawing.bodies] == pytest.approx([16, 16, 16])
+    assert all(len(b.region.faces) == 2 for b in drawing.bodies)
+
+
+def test_holes_in_holes_cut_as_one():
+    inner = structure("hole", "b", circle("c", 3, 0, 1))
+    group = structure("hole", "pattern", structure("hole", "a", circle("c", -3, 0, 1)), inner)
+    root = structure("solid", "s", circle("disc", 0, 0, 9), group)
+    assert measure(drawn(root).regions["s"]).area == pytest.approx(79 * math.pi)
+    assert codes(root) == []
+
+
+def test_an_assembly_inside_a_solid_is_united_with_seams():
+    inner = structure("assembly", "a", structure("solid", "b", circle("c", 5, 0, 3)))
+    drawing = drawn(structure("solid", "s", rectangle("r", -5, -5, 5, 5), inner))
+    assert [b.path for b in drawing.bodies] == ["s"]
+    (seam,) = drawing.seams
+    assert (seam.path, seam.body) == ("s.a.b", "s")
+    (piece,) = seam.pieces
+    assert isinstance(piece, Arc)
+    assert abs(piece.sweep) == pytest.approx(math.pi)
+
+
+def test_drawings_are_strokes():
+    drawing = drawn(structure("drawing", "d", primitive("l", Line((0, 0), (1, 1))), circle("c", 0, 0, 1)))
+    assert not drawing.bodies
+    assert [s.geometry for s in drawing.strokes] == ["d.l", "d.c"]
+
+
+# -- properties ----------------------------------------------------------------------------------------------
+
+coordinate = st.floats(-50, 50).map(lambda v: round(v, 2))
+extent = st.floats(2, 40).map(lambda v: round(v, 2))
+rectangles = st.builds(
+    lambda x, y, w, h: rectangle("r", x, y, x + w, y + h), coordinate, coordinate, extent, extent
+)
+circles = st.builds(lambda x, y, r: circle("c", x, y, r), coordinate, coordinate, extent)
+caps = st.builds(
+    lambda x, y, r, a: compound(
+        "cap", arc((x, y), r, a, a + 200), Line(*reversed(ends(arc((x, y), r, a, a + 200))))
+    ),
+    coordinate,
+    coordinate,
+    extent,
+    st.integers(0, 359),
+)
+ellipses = st.builds(
+    lambda x, y, a, b, t: primitive("e", Ellipse((x, y), a, b, t)),
+    coordinate,
+    coordinate,
+    extent,
+    extent,
+    st.floats(0, 3),
+)
+
+
+def named(shapes: list[SolvedGeometry]) -> list[SolvedGeometry]:
+    from dataclasses import replace
+
+    return [replace(s, name=f"{s.name}{i}") for i, s in enumerate(shapes)]
+
+
+def outline(shape: SolvedGeometry) -> Polygon:
+    return flattened(Loop(tuple(shape.curves())), 2000)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.lists(rectangles | circles | caps, min_size=1, max_size=5),
+    st.lists(rectangles | circles | caps, max_size=3),
+)
+def test_booleans_agree_with_shapely(adds: list[SolvedGeometry], cuts: list[SolvedGeometry]):
+    holes = [structure("hole", f"h{i}", cut) for i, cut in enumerate(cuts)]
+    region = region_of(*named(adds), *holes)
+    expected = shapely.unary_union([outline(a) for a in adds]).difference(
+        shapely.unary_union([outline(c) for c in cuts])
+    )
+    assert measure(region).area == pytest.approx(expected.area, rel=2e-5, abs=2e-2)
+    without_slivers = expected.buffer(-1e-3).buffer(1e-3)
+    assert measure(region).perimeter == pytest.approx(without_slivers.length, rel=1e-2, abs=1)
+    assert shapely_of(region).symmetric_difference(expected).area <= 1e-4 * expected.area + 0.05
+    assert_closed(region)
+
+
+@settings(max_examples=40, deadline=None)
+@given(ellipses, ellipses | circles | rectangles)
+def test_ellipses_agree_with_shapely(one: SolvedGeometry, other: SolvedGeometry):
+    region = region_of(one, structure("hole", "h", other))
+    expected = outline(one).difference(outline(other))
+    assert measure(region).area == pytest.approx(expected.area, rel=1e-4, abs=2e-2)
+    assert_closed(region)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.permutations(range(4)), coordinate, coordinate, st.floats(0, 6))
+def test_measures_do_not_depend_on_order_or_place(order: list[int], x: float, y: float, turn: float):
+    corners = [(0.0, 0.0), (20.0, 0.0), (20.0, 8.0), (0.0, 8.0)]
+    c, s = math.cos(turn), math.sin(turn)
+    moved = [(x + c * p - s * q, y + s * p + c * q) for p, q in corners]
+    sides = [primitive(f"l{i}", Line(moved[i], moved[(i + 1) % 4])) for i in range(4)]
+    m = measure(region_of(*(sides[i] for i in order)))
+    assert m.area == pytest.approx(160)
+    assert m.centroid == pytest.approx((x + 10 * c - 4 * s, y + 10 * s + 4 * c), abs=1e-9)
+
+
+def test_a_polygon_may_cross_itself():
+    bow = polygon("bow", (0, 0), (10, 10), (10, 0), (0, 10))
+    assert measure(region_of(bow)).area == pytest.approx(50)
+
+
+def test_far_from_the_origin_and_very_small():
+    far = region_of(
+        rectangle("r", 1e6, 1e6, 1e6 + 3, 1e6 + 2), structure("hole", "h", circle("c", 1e6 + 1, 1e6 + 1, 0.5))
+    )
+    assert measure(far).area == pytest.approx(6 - math.pi / 4, rel=1e-8)
+    tiny = region_of(rectangle("r", 0, 0, 3e-4, 2e-4), structure("hole", "h", circle("c", 1e-4, 1e-4, 5e-5)))
+    assert measure(tiny).area == pytest.approx(6e-8 - math.pi * 25e-10, rel=1e-8)
+
+
+@settings(max_examples=30, deadline=None)
+@given(rectangles | circles | caps | ellipses, rectangles | circles | caps | ellipses)
+def test_booleans_of_finished_regions_add_up(one: SolvedGeometry, other: SolvedGeometry):
+    a, b = region_of(one), region_of(other)
+    both, either = area(common(a, b)), area(united(a, b))
+    assert both + either == pytest.approx(area(a) + area(b), rel=1e-6, abs=1e-3)
+    assert area(without(a, b)) + both == pytest.approx(area(a), rel=1e-6, abs=1e-3)
+    assert (clearance(a, b) == 0) == (both > 0) or clearance(a, b) < 1e-4

@@ -1,0 +1,275 @@
+"""Diagnostics as they look on a terminal."""
+
+from __future__ import annotations
+
+import io
+from textwrap import dedent
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.render import Style, one_line, render, summary, to_dict, wants_colour
+from aidl_lang.source import SourceFile, Span
+
+PART = SourceFile(
+    "part.aidl",
+    dedent("""\
+    assembly a {
+    \tsolid base {
+    \t\t世界 = circle(center: plate.center, radius: 3)
+    \t}
+        solid plate {
+            edge = square(side: 3)
+            hole h { }
+            todo
+            todo
+            todo
+        }
+    }
+    """),
+)
+
+
+def span(text: str, source: SourceFile = PART) -> Span:
+    start = source.text.index(text)
+    return Span(source, start, start + len(text))
+
+
+def shown(diagnostic: Diagnostic, width: int = 110) -> str:
+    return "\n" + render(diagnostic, width=width) + "\n"
+
+
+def test_headline_alone() -> None:
+    assert render(Diagnostic("E0901", "there is no file `x`", hints=("look\nagain",))) == (
+        "error[E0901]: there is no file `x`\n  = hint: look\n          again"
+    )
+
+
+def test_labels_on_one_line_and_wide_characters() -> None:
+    labels = (Label(span("世界"), "this circle"), Label(span("base"), "inside this"))
+    found = Diagnostic("E0401", "`plate` is out of reach", span("plate.center"), "not in `base`", labels)
+    assert shown(found) == dedent("""
+        error[E0401]: `plate` is out of reach
+         --> part.aidl:3:23
+          |
+        2 |     solid base {
+          |           ---- inside this
+        3 |         世界 = circle(center: plate.center, radius: 3)
+          |         ----                  ^^^^^^^^^^^^ not in `base`
+          |         |
+          |         this circle
+        """)
+
+
+def test_labels_that_overlap_hang_below() -> None:
+    labels = (Label(span("plate"), "a solid"), Label(span("circle"), "the call"))
+    found = Diagnostic("E0401", "out of reach", span("plate.center"), "this", labels)
+    assert shown(found) == dedent("""
+        error[E0401]: out of reach
+         --> part.aidl:3:23
+          |
+        3 |         世界 = circle(center: plate.center, radius: 3)
+          |                ------         ^^^^^^^^^^^^
+          |                |              |
+          |                |              this
+          |                |              |
+          |                |              a solid
+          |                |
+          |                the call
+        """)
+
+
+def test_long_span_is_a_bar_with_its_middle_left_out() -> None:
+    whole = span("solid plate" + PART.text.partition("solid plate")[2].removesuffix("}\n"))
+    found = Diagnostic(
+        "W0701", "nothing touches `plate`", whole, "this part", (Label(span("a {"), "in here"),)
+    )
+    assert shown(found) == dedent("""
+        warning[W0701]: nothing touches `plate`
+          --> part.aidl:5:5
+           |
+         1 |   assembly a {
+           |            --- in here
+           |   …
+         5 | /     solid plate {
+         6 | |         edge = square(side: 3)
+           | | …
+        11 | |     }
+           | |_____^ this part
+        """)
+
+
+def test_bars_within_bars() -> None:
+    inner = span("base {\n" + PART.text.partition("base {\n")[2].partition("    solid plate")[0].rstrip())
+    outer = Label(Span(PART, 0, len(PART.text)), "outer")
+    assert shown(Diagnostic("N0501", "two bars", inner, "inner", (outer,))) == dedent("""
+        note[N0501]: two bars
+          --> part.aidl:2:8
+           |
+         1 | /   assembly a {
+         2 | |       solid base {
+           | |  ___________^
+         3 | | |         世界 = circle(center: plate.center, radius: 3)
+         4 | | |     }
+           | | |_____^ inner
+           | |   …
+        12 | |   }
+           | |___- outer
+        """)
+
+
+def test_end_of_file_shows_the_line_before() -> None:
+    end = len(PART.text)
+    assert shown(
+        Diagnostic("E0102", "the file ends too early", Span(PART, end, end), "`}` is missing")
+    ) == dedent("""
+        error[E0102]: the file ends too early
+          --> part.aidl:13:1
+           |
+        12 | }
+        13 |
+           | ^ `}` is missing
+        """)
+
+
+def test_other_files_follow() -> None:
+    other = SourceFile("lib/\x1b[31mbox.aidl", "shape box(width) { }\n")
+    found = Diagnostic("E0301", "no `side`", span("side"), "", (Label(span("box", other), "declared here"),))
+    assert shown(found) == dedent("""
+        error[E0301]: no `side`
+         --> part.aidl:6:23
+          |
+        6 |         edge = square(side: 3)
+          |                       ^^^^
+         ::: lib/␛[31mbox.aidl:1:7
+          |
+        1 | shape box(width) { }
+          |       --- declared here
+        """)
+
+
+def test_fix_is_shown_as_what_goes_and_what_comes() -> None:
+    at_end = PART.text.rindex("}")
+    edits = (
+        Edit(span("plate.center"), "guess(0, 0)"),
+        Edit(Span(PART, at_end, at_end), "    constrain base.bottom == 3\n"),
+    )
+    found = Diagnostic("E0401", "out of reach", span("plate.center"), fix=Fix("say it in `a`", edits))
+    assert shown(found).partition("  = ")[2] == dedent("""\
+        fix: say it in `a`
+           |
+         3 -         世界 = circle(center: plate.center, radius: 3)
+         3 +         世界 = circle(center: guess(0, 0), radius: 3)
+           |
+        11 |     }
+        12 +     constrain base.bottom == 3
+        """)
+
+
+def test_fix_of_neighbouring_lines_and_a_whole_line_removed() -> None:
+    line = span("        hole h { }\n")
+    found = Diagnostic("E0501", "nothing is cut", line, fix=Fix("remove it", (Edit(line, ""),)))
+    assert shown(found).partition("  = ")[2] == "fix: remove it\n  |\n7 -         hole h { }\n"
+
+
+def test_very_long_line_is_cut_around_the_span() -> None:
+    text = "points = [" + ", ".join(f"({i}, {i})" for i in range(500)) + "]"
+    source = SourceFile("long.aidl", text)
+    lines = render(Diagnostic("E0301", "odd point", span("(250, 250)", source), "this"), width=60).split("\n")
+    assert all(len(line) <= 64 for line in lines)
+    excerpt, carets = lines[3], lines[4]
+    assert excerpt[carets.index("^") :].startswith("(250, 250)")
+    assert excerpt.count("…") == 2
+
+
+def test_crlf_lines_are_shown_without_their_end() -> None:
+    source = SourceFile("crlf.aidl", "a = 1\r\nb = 2\r\n")
+    assert "␍" not in render(Diagnostic("E0101", "odd", span("b", source)))
+
+
+def test_one_line_and_summary() -> None:
+    error = Diagnostic("E0301", "no `side`", span("side"))
+    assert one_line(error) == "part.aidl:6:23: error[E0301]: no `side`"
+    assert summary([]) == ""
+    assert summary([error]) == "1 error"
+    assert summary([error, Diagnostic("W0701", "w"), error, Diagnostic("N0501", "n")]) == (
+        "2 errors, 1 warning and 1 note"
+    )
+
+
+def test_colour_changes_nothing_but_colour() -> None:
+    import re
+
+    found = Diagnostic(
+        "E0401", "out", span("plate.center"), "x", fix=Fix("mend", (Edit(span("plate.center"), "origin"),))
+    )
+    coloured = render(found, Style(colour=True))
+    assert "\x1b[1;31m" in coloured
+    assert re.sub(r"\x1b\[[\d;]*m", "", coloured) == render(found)
+
+
+@pytest.mark.parametrize(
+    ("environment", "terminal", "wanted"),
+    [
+        ({}, True, True),
+        ({}, False, False),
+        ({"NO_COLOR": "1"}, True, False),
+        ({"NO_COLOR": ""}, True, True),
+        ({"FORCE_COLOR": "1"}, False, True),
+        ({"FORCE_COLOR": "0"}, False, False),
+        ({"NO_COLOR": "1", "FORCE_COLOR": "1"}, True, False),
+        ({"TERM": "dumb"}, True, False),
+    ],
+)
+def test_when_colour_is_used(environment: dict[str, str], terminal: bool, wanted: bool) -> None:
+    stream = io.StringIO()
+    stream.isatty = lambda: terminal  # type: ignore[method-assign]
+    assert wants_colour(stream, environment) is wanted
+
+
+def test_to_dict_has_every_field() -> None:
+    fix = Fix("name it", (Edit(span("side"), "width"),))
+    found = Diagnostic(
+        "E0301", "no `side`", span("side"), "here", (Label(span("h {"), "there"),), ("hint",), fix
+    )
+    place = {"file": "part.aidl", "line": 6, "column": 23, "end_line": 6, "end_column": 27}
+    start = PART.text.index("side")
+    assert to_dict(found) == {
+        "code": "E0301",
+        "severity": "error",
+        "message": "no `side`",
+        **place,
+        "label": "here",
+        "secondary": [
+            {"file": "part.aidl", "line": 7, "column": 14, "end_line": 7, "end_column": 17, "label": "there"}
+        ],
+        "hints": ["hint"],
+        "fix": {
+            "title": "name it",
+            "edits": [{**place, "start": start, "end": start + 4, "replacement": "width"}],
+        },
+    }
+
+
+def test_to_dict_without_a_place() -> None:
+    found = to_dict(Diagnostic("E0901", "there is no file"))
+    assert (found["file"], found["line"], found["fix"], found["secondary"]) == (None, None, None, [])
+
+
+@given(st.text("ab\n\t世\r\x1b", max_size=60), st.data())
+def test_any_span_of_any_text_can_be_rendered(text: str, data: st.DataObject) -> None:
+    source = SourceFile("x", text)
+    cuts = st.integers(0, len(text))
+
+    def some_span() -> Span:
+        a, b = sorted((data.draw(cuts), data.draw(cuts)))
+        return Span(source, a, b)
+
+    labels = tuple(Label(some_span(), "label") for _ in range(data.draw(st.integers(0, 3))))
+    fix = Fix("fix", (Edit(some_span(), data.draw(st.sampled_from(["", "x", "x\ny\n"]))),))
+    found = Diagnostic("E0101", "message", some_span(), "here", labels, ("hint",), fix)
+    page = render(found, width=50)
+    assert "\x1b" not in page
+    assert "^" in page

@@ -1,0 +1,154 @@
+"""A small language for writing problems in tests: numbers, unknowns and groups with operators."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from aidl_lang.solver import Constraint, Problem, Relation, Row
+from aidl_lang.solver.expression import TapeBuilder
+
+
+@dataclass(frozen=True)
+class E:
+    """A node of the tape of `builder`."""
+
+    builder: TapeBuilder
+    node: int
+
+    def _lift(self, other: E | float) -> int:
+        return other.node if isinstance(other, E) else self.builder.constant(other)
+
+    def _binary(self, method: str, other: E | float, swapped: bool = False) -> E:
+        a, b = self.node, self._lift(other)
+        return E(self.builder, getattr(self.builder, method)(*((b, a) if swapped else (a, b))))
+
+    def __add__(self, other: E | float) -> E:
+        return self._binary("add", other)
+
+    def __radd__(self, other: float) -> E:
+        return self._binary("add", other, True)
+
+    def __sub__(self, other: E | float) -> E:
+        return self._binary("sub", other)
+
+    def __rsub__(self, other: float) -> E:
+        return self._binary("sub", other, True)
+
+    def __mul__(self, other: E | float) -> E:
+        return self._binary("mul", other)
+
+    def __rmul__(self, other: float) -> E:
+        return self._binary("mul", other, True)
+
+    def __truediv__(self, other: E | float) -> E:
+        return self._binary("div", other)
+
+    def __rtruediv__(self, other: float) -> E:
+        return self._binary("div", other, True)
+
+    def __neg__(self) -> E:
+        return E(self.builder, self.builder.neg(self.node))
+
+    def __abs__(self) -> E:
+        return E(self.builder, self.builder.abs(self.node))
+
+    def __mod__(self, other: E | float) -> E:
+        return self._binary("mod", other)
+
+    def __pow__(self, other: E | float) -> E:
+        return self._binary("power", other)
+
+
+def call(method: str, *args: E) -> E:
+    return E(args[0].builder, getattr(args[0].builder, method)(*(a.node for a in args)))
+
+
+class Model:
+    """Collects a problem; unknowns are made in the order of their indices."""
+
+    def __init__(self) -> None:
+        self.builder = TapeBuilder()
+        self.initial: list[float] = []
+        self.scale: list[float] = []
+        self.kept: list[bool] = []
+        self.group_of: list[int] = []
+        self.frame_of: list[int] = []
+        self.parent: list[int] = [-1]
+        self.constraints: list[Constraint] = []
+        self.observables: list[tuple[int, int]] = []
+
+    def group(self, parent: int = 0) -> int:
+        self.parent.append(parent)
+        return len(self.parent) - 1
+
+    def unknown(
+        self,
+        initial: float,
+        group: int = 0,
+        kept: bool = False,
+        frame: int = -1,
+        scale: float = 1.0,
+        visible: bool = False,
+    ) -> E:
+        self.initial.append(initial)
+        self.scale.append(scale)
+        self.kept.append(kept)
+        self.group_of.append(group)
+        self.frame_of.append(frame)
+        expression = E(self.builder, self.builder.unknown(len(self.initial) - 1))
+        if visible:
+            self.observe(group, expression)
+        return expression
+
+    def point(self, x: float, y: float, group: int = 0, visible: bool = True) -> tuple[E, E]:
+        return self.unknown(x, group, visible=visible), self.unknown(y, group, visible=visible)
+
+    def frame(self, child: int, x: float = 0.0, y: float = 0.0) -> tuple[E, E]:
+        parent = self.parent[child]
+        return self.unknown(x, parent, frame=child), self.unknown(y, parent, frame=child)
+
+    def observe(self, group: int, *expressions: E) -> None:
+        self.observables.extend((group, e.node) for e in expressions)
+
+    def index(self, unknown: E) -> int:
+        return next(i for i in range(len(self.initial)) if self.builder.unknown(i) == unknown.node)
+
+    def equal(self, *residuals: E, group: int = 0, placed: Iterable[E] = (), **options: float) -> int:
+        return self._add(Relation.EQUAL, residuals, group, placed, **options)
+
+    def at_most(self, *residuals: E, group: int = 0, placed: Iterable[E] = (), **options: float) -> int:
+        return self._add(Relation.AT_MOST, residuals, group, placed, **options)
+
+    def _add(
+        self,
+        relation: Relation,
+        residuals: tuple[E, ...],
+        group: int,
+        placed: Iterable[E],
+        weight: float | None = None,
+        scale: float = 1.0,
+    ) -> int:
+        rows = tuple(Row(e.node, relation, scale) for e in residuals)
+        indices = frozenset(self.index(e) for e in placed)
+        self.constraints.append(Constraint(group, rows, indices, weight))
+        return len(self.constraints) - 1
+
+    def problem(self) -> Problem:
+        return Problem(
+            tape=self.builder.finish(),
+            initial=np.array(self.initial, dtype=np.float64),
+            scale=np.array(self.scale, dtype=np.float64),
+            kept=np.array(self.kept, dtype=np.bool_),
+            group=np.array(self.group_of, dtype=np.int64),
+            frame_of=np.array(self.frame_of, dtype=np.int64),
+            parent=np.array(self.parent, dtype=np.int64),
+            constraints=tuple(self.constraints),
+            observables=tuple(self.observables),
+        )
+
+
+def distance(a: tuple[E, E], b: tuple[E, E]) -> E:
+    return call("hypot", a[0] - b[0], a[1] - b[1])

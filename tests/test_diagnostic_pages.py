@@ -1,0 +1,68 @@
+"""Codes and their pages match, and the programs on each page show what it says."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from aidl_lang import explain, pipeline
+from aidl_lang.render import render
+from aidl_lang.source import SourceFile
+from aidl_lang.world import MemoryWorld
+from tests.documents import ROOT, Block, blocks, programs
+
+PAGES = ROOT / "docs" / "diagnostics"
+CODES = [path.stem for path in sorted(PAGES.glob("*.md"))]
+MISTAKE, MENDED = "The mistake", "Mended"
+
+
+def codes_in_source() -> set[str]:
+    """Codes written as string literals anywhere in the package."""
+    texts = (path.read_text(encoding="utf-8") for path in (ROOT / "aidl_lang").rglob("*.py"))
+    return {code for text in texts for code in re.findall(r"""["']([EWN]\d{4})["']""", text)}
+
+
+def test_every_code_has_a_page() -> None:
+    assert sorted(codes_in_source() - set(CODES)) == []
+
+
+def test_every_page_has_a_code() -> None:
+    assert sorted(set(CODES) - codes_in_source()) == []
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_page_has_its_parts(code: str) -> None:
+    text = (PAGES / f"{code}.md").read_text(encoding="utf-8")
+    assert re.match(rf"# {code}: \S.*\n", text)
+    assert explain.title(code)
+    shown = {block.heading for block in blocks(PAGES / f"{code}.md")}
+    assert shown >= {MISTAKE, MENDED}
+
+
+@pytest.mark.parametrize("code", [code for code in CODES if programs(PAGES / f"{code}.md")])
+def test_page_shows_the_mistake_and_mends_it(code: str) -> None:
+    page = PAGES / f"{code}.md"
+    mistake, mended = (_compile(page, heading) for heading in (MISTAKE, MENDED))
+    assert code in mistake, f"the mistake gives {mistake}"
+    assert code not in mended
+    assert not any(c.startswith("E") for c in mended), f"the mended program gives {mended}"
+
+
+def test_only_pages_about_use_do_without_programs() -> None:
+    without = [code for code in CODES if not programs(PAGES / f"{code}.md")]
+    assert [code for code in without if not code.startswith(("E09", "E08"))] == []
+
+
+def _compile(page: Path, heading: str) -> list[str]:
+    """The codes that the program under a heading gives, with the files that stand beside it."""
+    found = [block for block in programs(page) if block.heading == heading]
+    main = next(block for block in found if not block.file)
+    compiled = pipeline.compile(SourceFile(main.place, main.text), MemoryWorld(_files(found)))
+    print("\n".join(map(render, compiled.diagnostics)))
+    return [d.code for d in compiled.diagnostics]
+
+
+def _files(found: list[Block]) -> dict[str, str]:
+    return {block.file: block.text for block in found if block.file}

@@ -1,0 +1,53 @@
+"""Every program in the documentation compiles."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aidl_lang import pipeline
+from aidl_lang.parser import parse
+from aidl_lang.render import render
+from aidl_lang.source import SourceFile
+from aidl_lang.world import MemoryWorld
+from tests.documents import ROOT, Block, programs
+
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+BLOCKS = [block for page in PAGES if page.parent.name != "diagnostics" for block in programs(page)]
+
+
+@pytest.mark.parametrize("block", [pytest.param(b, id=b.place) for b in BLOCKS if b.note in ("", "error")])
+def test_program_in_documentation(block: Block) -> None:
+    compiled = pipeline.compile(SourceFile(block.place, block.text), MemoryWorld(_beside(block.path)))
+    errors = "\n".join(render(d) for d in compiled.diagnostics if d.is_error)
+    if block.note == "error":
+        assert not compiled.ok, f"{block.place} is said to show a mistake, but compiles"
+    else:
+        assert compiled.ok, f"{block.place}: {compiled.status}\n{errors}"
+
+
+@pytest.mark.parametrize("block", [pytest.param(b, id=b.place) for b in BLOCKS if b.note == "fragment"])
+def test_fragment_in_documentation_is_read(block: Block) -> None:
+    errors = [d for d in parse(SourceFile(block.place, block.text)).diagnostics if d.is_error]
+    assert not errors, "\n".join(map(render, errors))
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "examples").rglob("*.aidl")), ids=lambda path: path.name)
+def test_example(path: Path) -> None:
+    from aidl_lang.world import DiskWorld
+
+    compiled = pipeline.compile(
+        SourceFile(path.name, path.read_text(encoding="utf-8")), DiskWorld(path.parent)
+    )
+    assert compiled.ok, f"{compiled.status}\n" + "\n".join(map(render, compiled.diagnostics))
+
+
+def test_blocks_have_known_notes() -> None:
+    known = ("", "error", "fragment")
+    assert [b.place for b in BLOCKS if b.note not in known and not b.file] == []
+
+
+def _beside(page: Path) -> dict[str, str]:
+    """The programs of a page that others on it import."""
+    return {block.file: block.text for block in programs(page) if block.file}
