@@ -32,16 +32,15 @@ format: $(READY) ## put all Python code into its canonical form
 bench: $(READY) ## measure the command and the stages
 	$(BIN)/python benchmarks/run.py
 
-accept: $(READY) ## take the present results as the new goldens
-	AIDL_ACCEPT=1 $(BIN)/python -m pytest tests/golden tests/spec
-	@git status --short tests 2>/dev/null || true
+accept: $(READY) ## take the present results as the new goldens, the README's picture among them
+	AIDL_ACCEPT=1 $(BIN)/python -m pytest $(wildcard tests/golden tests/spec)
+	$(BIN)/aidl compile examples/telephone.aidl -o docs/images/telephone.svg --quiet
 
-examples: $(READY) ## draw every example into build/examples and the README's picture
-	@mkdir -p build/examples docs/images
+examples: $(READY) ## draw every example into build/examples
+	@mkdir -p build/examples
 	@for file in examples/*.aidl; do \
 		$(BIN)/aidl compile $$file -o build/examples/$$(basename $$file .aidl).svg || exit 1; \
 	done
-	@cp build/examples/telephone.svg docs/images/telephone.svg
 
 lock: $(READY) ## renew requirements-dev.lock
 	$(BIN)/python -m pip install --quiet pip-tools

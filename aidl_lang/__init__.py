@@ -93,7 +93,7 @@ class Model:
         return found
 
     def to_svg(self, show: frozenset[str] = frozenset()) -> str:
-        """The drawing as SVG; `show` adds explaining overlays (names, points, bbox, constraints, dof, plan)."""
+        """The drawing as SVG; `show` adds overlays: names, points, bbox, constraints, dof, plan."""
         return self._compiled.export(".svg", show).decode()
 
     def to_json(self, *, timings: bool = False) -> str:

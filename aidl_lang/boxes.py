@@ -7,14 +7,14 @@ meets the box of one of its descendants there leaves that descendant out (paper,
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
 from aidl_lang.model import Geometry, Structure, chain, convert
 from aidl_lang.primitives import clockwise, defining, direction, number, sweep, view, xy
-from aidl_lang.values import Array, ListVal, Num, PointVal, length, members, point
+from aidl_lang.values import Array, ListVal, Num, PointVal, Value, length, members, point
 
 SIDES = ("left", "right", "top", "bottom")
 
@@ -73,7 +73,8 @@ class Box:
     def _at(self, vertical: str, horizontal: str) -> PointVal:
         x = self.field("center_x" if horizontal == "center" else horizontal)
         y = self.field("center_y" if vertical == "center" else vertical)
-        assert isinstance(x, Num) and isinstance(y, Num)
+        assert isinstance(x, Num)
+        assert isinstance(y, Num)
         return point(x.expression, y.expression)
 
 
@@ -134,12 +135,24 @@ def spelled_out(*roots: Expression) -> tuple[Expression, ...]:
 def extent(side: _Side, ignored: frozenset[Structure]) -> Expression:
     """A side as the extreme of everything in the box; 0 when there is nothing in it."""
     here, name = side.box.here, side.name
+    only = side.box.sources[0] if len(side.box.sources) == 1 else None
+    whole = only if isinstance(only, Structure) and only.is_complete else None
+    key = (here, name, ignored)
+    if whole is not None and key in whole.extents:
+        return whole.extents[key]
     candidates = [e for s in side.box.sources for e in _extremes(s, here, name, ignored)]
+    found = _extreme_of(candidates, name)
+    if whole is not None:
+        whole.extents[key] = found
+    return found
+
+
+def _extreme_of(candidates: list[Expression], side: str) -> Expression:
     if not candidates:
         return ex.ZERO
     if len(candidates) == 1:
         return candidates[0]
-    return ex.apply("maximum" if name in ("right", "top") else "minimum", *candidates)
+    return ex.apply("maximum" if side in ("right", "top") else "minimum", *candidates)
 
 
 def _extremes(
@@ -202,33 +215,33 @@ def _curve(primitive: Geometry, here: Structure, side: str) -> Iterator[Expressi
 _TOWARDS = {"right": 0.0, "top": 90.0, "left": 180.0, "bottom": 270.0}
 
 
-def _arc_extreme(core: dict[str, object], is_clockwise: bool, side: str) -> Expression:
+def _arc_extreme(core: Mapping[str, Value], is_clockwise: bool, side: str) -> Expression:
     """The quadrant point if the arc passes through it, else the further end."""
     axis, positive = side in ("top", "bottom"), side in ("right", "top")
     center, start, end = core["center"], core["start"], core["end"]
     first = end if is_clockwise else start
-    offset = ex.sub(ex.constant(_TOWARDS[side]), direction(center, first))  # type: ignore[arg-type]
+    offset = ex.sub(ex.constant(_TOWARDS[side]), direction(center, first))
     reached = ex.apply("mod", offset, ex.constant(360.0))
-    passes = ex.sub(sweep(core, is_clockwise), reached)  # type: ignore[arg-type]
+    passes = ex.sub(sweep(core, is_clockwise), reached)
     quadrant = ex.apply(
         "add" if positive else "sub",
-        xy(center)[axis],  # type: ignore[arg-type]
-        number(core["radius"]),  # type: ignore[arg-type]
+        xy(center)[axis],
+        number(core["radius"]),
     )
-    ends = ex.apply("maximum" if positive else "minimum", xy(start)[axis], xy(end)[axis])  # type: ignore[arg-type]
+    ends = ex.apply("maximum" if positive else "minimum", xy(start)[axis], xy(end)[axis])
     return ex.apply("select", passes, quadrant, ends)
 
 
-def _ellipse_extreme(core: dict[str, object], axis: bool, positive: bool) -> Expression:
+def _ellipse_extreme(core: Mapping[str, Value], axis: bool, positive: bool) -> Expression:
     """Centre plus or minus sqrt((rx cos)^2 + (ry sin)^2), the half-width of a turned ellipse."""
-    angle = number(core["angle"])  # type: ignore[arg-type]
+    angle = number(core["angle"])
     along, across = (ex.sin, ex.cos) if axis else (ex.cos, ex.sin)
     half_width = ex.apply(
         "hypot",
-        ex.mul(number(core["rx"]), along(angle)),  # type: ignore[arg-type]
-        ex.mul(number(core["ry"]), across(angle)),  # type: ignore[arg-type]
+        ex.mul(number(core["rx"]), along(angle)),
+        ex.mul(number(core["ry"]), across(angle)),
     )
-    return ex.apply("add" if positive else "sub", xy(core["center"])[axis], half_width)  # type: ignore[arg-type]
+    return ex.apply("add" if positive else "sub", xy(core["center"])[axis], half_width)
 
 
 def box_of(value: object, here: Structure) -> Box | None:

@@ -1,4 +1,4 @@
-"""Expressions in canonical form, with parentheses only where they are needed, and line breaks where they help.
+"""Expressions in canonical form: parentheses only where they are needed, line breaks where they help.
 
 An expression becomes a `Doc`: text with groups in it, the bracketed lists that may be broken over lines.
 """
@@ -13,7 +13,7 @@ from aidl_lang import ast
 WIDTH = 100
 INDENT = 4
 
-# How tightly an expression binds; an operand that binds less tightly than its place asks for is put in parentheses.
+# How tightly an expression binds; an operand that binds less than its place asks for is put in parentheses.
 CHOICE, OR, AND, NOT, CONDITION, SUM, PRODUCT, SIGN, POWER, ATOM = range(10)
 
 _BINARY = {
@@ -127,7 +127,7 @@ class ExpressionPrinter:
         )
         return doc(Group(opening, items, ")"))
 
-    def _print(self, node: ast.Expression) -> tuple[int, Doc]:
+    def _print(self, node: ast.Expression) -> tuple[int, Doc]:  # noqa: C901 (one case a node)
         """How tightly a node binds, and its text."""
         match node:
             case ast.Number():

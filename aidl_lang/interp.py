@@ -4,165 +4,23 @@ Running means: constants are computed, loops and branches taken, geometry made w
 arithmetic over unknowns kept as an expression. An error is reported and yields `NOTHING`, which everything it
 touches passes on in silence, so that one run reports all errors and still yields what can be drawn.
 
-The work is told in four files: `evaluate` (expressions), `calls` (overloads and definitions), `construct`
-(geometry and the exactness of its numbers) and this one (structures and statements).
+The work is told in `building/`: `statements` (structures, geometry, loops), `evaluate` (expressions), `calls`
+(overloads and definitions), `construct` (geometry and the exactness of its numbers), `impose` (constraints).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from enum import Enum
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 from aidl_lang import ast
-from aidl_lang import expression as ex
-from aidl_lang.diagnostics import Diagnostic, Fix, Label
-from aidl_lang.expression import Unknown
-from aidl_lang.model import Assertion, Comparison, Constraint, Geometry, Knob, Model, Structure
-from aidl_lang.scopes import Candidate, Scope
-from aidl_lang.source import Span
+from aidl_lang.building.scopes import Candidate, LetBinding, Scope
+from aidl_lang.building.state import DEFAULT_LIMITS, Interpreter, Limits, Stop
+from aidl_lang.building.statements import run_module
+from aidl_lang.builtins import SIGNATURES
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.model import Model, Structure
 from aidl_lang.typecheck import Program
-from aidl_lang.units import ANGLE, MaybeDimension
-from aidl_lang.values import Num, PointVal, Value
-
-
-class Reach(Enum):
-    """What an expression may read (language reference: validity)."""
-
-    OWN = "geometry: unknowns of its own structure"
-    SUBTREE = "constraints: unknowns of the holder's subtree"
-    READ = "asserts: anything, since they steer nothing"
-
-
-@dataclass(frozen=True, slots=True)
-class Env:
-    """Where an expression stands: the names it sees, and the structure in whose frame it is read."""
-
-    scope: Scope
-    here: Structure
-    reach: Reach
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Bounds on what a program may build; exceeding one is a diagnostic."""
-
-    entities: int = 20_000
-    turns: int = 200_000
-    depth: int = 60
-    constraints: int = 50_000
-    items: int = 100_000
-
-
-class Stop(Exception):  # noqa: N818 (not an error of ours: the program went over a limit, which is reported)
-    """Building ends here; what there is so far is the result."""
-
-
-@dataclass
-class Interpreter:
-    """The state of one run."""
-
-    program: Program
-    overrides: Mapping[str, str | float | bool]
-    limits: Limits
-    diagnostics: list[Diagnostic] = field(default_factory=list)
-    unknowns: list[Unknown] = field(default_factory=list)
-    constraints: list[Constraint] = field(default_factory=list)
-    assertions: list[Assertion] = field(default_factory=list)
-    knobs: list[Knob] = field(default_factory=list)
-    readings: list[tuple[Span, str]] = field(default_factory=list)
-    pending: dict[Structure, list[tuple[ast.Statement, Scope]]] = field(default_factory=dict)
-    written: dict[ast.Node, tuple[float, float] | float] = field(default_factory=dict)
-    watched: frozenset[ast.Node] = frozenset()
-    used_overrides: set[str] = field(default_factory=set)
-    call_sites: list[ast.Node] = field(default_factory=list)
-    hidden: list[tuple[Geometry, tuple[Comparison, ...]]] = field(default_factory=list)
-    root: Structure | None = None
-    entities: int = 0
-    turns: int = 0
-
-    # --- Reporting -----------------------------------------------------------------------------
-
-    def place(self, node: ast.Node | Span | None) -> Span | None:
-        """The place of a node in the author's text: in library code, the call that led there."""
-        span = node.span if isinstance(node, ast.Node) else node
-        if span is not None and span.source in self.library_sources:
-            return next((s.span for s in self.call_sites if s.span.source not in self.library_sources), span)
-        return span
-
-    def report(
-        self,
-        code: str,
-        message: str,
-        node: ast.Node | Span | None,
-        label: str = "",
-        hints: Sequence[str] = (),
-        fix: Fix | None = None,
-        secondary: Sequence[Label] = (),
-    ) -> None:
-        span = self.place(node)
-        self.diagnostics.append(Diagnostic(code, message, span, label, tuple(secondary), tuple(hints), fix))
-
-    @property
-    def library_sources(self) -> tuple[object, ...]:
-        return self.program.library.sources
-
-    # --- Limits --------------------------------------------------------------------------------
-
-    def count_entity(self, node: ast.Node | None) -> None:
-        self.entities += 1
-        if self.entities > self.limits.entities:
-            self._stop(node, f"this program builds more than {self.limits.entities} structures and geometries")
-
-    def count_turn(self, node: ast.Node) -> None:
-        self.turns += 1
-        if self.turns > self.limits.turns:
-            self._stop(node, f"the loops of this program take more than {self.limits.turns} turns")
-
-    def add_constraint(self, constraint: Constraint) -> None:
-        self.constraints.append(constraint)
-        if len(self.constraints) > self.limits.constraints:
-            self._stop(None, f"this program states more than {self.limits.constraints} constraints")
-
-    def enter(self, node: ast.Node) -> None:
-        """A call is entered; `leave` ends it."""
-        self.call_sites.append(node)
-        if len(self.call_sites) > self.limits.depth:
-            self._stop(node, f"calls are nested more than {self.limits.depth} deep")
-
-    def leave(self) -> None:
-        self.call_sites.pop()
-
-    def _stop(self, node: ast.Node | None, message: str) -> None:
-        hint = "check the ends of ranges and the end of recursion; the limit is a setting of the API"
-        self.report("E0803", message, node, hints=[hint])
-        raise Stop
-
-    # --- Unknowns ------------------------------------------------------------------------------
-
-    def unknown(
-        self,
-        guess: float,
-        holder: Geometry | Structure,
-        name: str,
-        *,
-        owner: Structure,
-        dimension: MaybeDimension = None,
-        kept: bool = False,
-        frame_of: Structure | None = None,
-        cell: bool = False,
-    ) -> ex.Expression:
-        """A new unknown, as an expression."""
-        made = Unknown(guess, owner, holder, name, kept, dimension == ANGLE, frame_of, cell)
-        self.unknowns.append(made)
-        return ex.unknown(made)
-
-    def watch(self, node: ast.Node, value: Value) -> None:
-        """Keep the written value of an expression that breaks a rule of validity, for its fix."""
-        if isinstance(value, Num):
-            self.written[node] = value.value
-        elif isinstance(value, PointVal):
-            self.written[node] = (value.x.value, value.y.value)
 
 
 @dataclass(frozen=True)
@@ -177,11 +35,9 @@ class Interpretation:
 def interpret(
     program: Program,
     overrides: Mapping[str, str | float | bool] | None = None,
-    limits: Limits = Limits(),
+    limits: Limits = DEFAULT_LIMITS,
 ) -> Interpretation:
     """Run a program. Never raises for what a program says; errors are among the diagnostics."""
-    from aidl_lang.statements import run_module
-
     it = Interpreter(program, overrides or {}, limits)
     it.watched = frozenset(node for violation in program.violations for node in violation.nodes)
     try:
@@ -194,9 +50,6 @@ def interpret(
 
 def _library_scope(program: Program) -> Scope:
     """The outermost scope: built-in and library names. Library code sees no names of the program."""
-    from aidl_lang.builtins import SIGNATURES
-    from aidl_lang.scopes import LetBinding
-
     library = program.library
     scope = Scope(None)
 

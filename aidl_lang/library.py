@@ -1,9 +1,10 @@
 """The standard library: the definitions of `stdlib/*.aidl`, parsed once and kept in the user's cache.
 
-A compile touches few of the library's definitions, so each is pickled for itself and unpickled when its name is
-first asked for; opening the library reads one file and decodes its index. The cache is named after a digest
-of everything the trees depend on, hence it is never stale, only unused. It holds nothing but syntax trees: the
-unpickler knows no other classes, and a file that another user could have written is not opened at all.
+A compile touches few of the library's definitions, so each is pickled for itself and unpickled when its name
+is first asked for; opening the library reads one file and decodes its index. The cache is named after a
+digest of everything the trees depend on, hence it is never stale, only unused. It holds nothing but syntax
+trees: the unpickler knows no other classes, and a file that another user could have written is not opened at
+all.
 """
 
 from __future__ import annotations
@@ -84,8 +85,9 @@ def from_modules(modules: Sequence[ast.Module], diagnostics: Sequence[Diagnostic
 
 
 def signature(node: ast.Callable, shapes: Sequence[str] = ()) -> Signature:
-    """What a definition asks of its callers; `shapes` are the names that may stand as types beside the built-in
-    ones. A word that names no type accepts anything here: the checker reports it where it is written.
+    """What a definition asks of its callers; `shapes` are the names that may stand as types beside the
+    built-in ones. A word that names no type accepts anything here: the checker reports it where it is
+    written.
     """
     parameters = tuple(
         (p.name.text, parameter_type(p, shapes) or ANY, p.default is not None) for p in node.parameters or ()
@@ -170,7 +172,9 @@ def _read_private(path: Path) -> bytes | None:
 
 
 def _write_private(path: Path, blob: bytes) -> None:
-    """Write in one step, so that a reader sees the whole file or none. A cache that cannot be kept is no harm."""
+    """Write in one step, so that a reader sees the whole file or none. A cache that cannot be kept is no
+    harm.
+    """
     temporary = ""
     try:
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -264,8 +268,8 @@ class _Lazy(Mapping[str, Any]):
 
 
 def _encode(node: ast.Node, sources: Sequence[SourceFile]) -> bytes:
-    """A tree without the text it was parsed from; spans as plain calls, which decode several times faster than
-    the state of a frozen dataclass with slots.
+    """A tree without the text it was parsed from; spans as plain calls, which decode several times faster
+    than the state of a frozen dataclass with slots.
     """
     order = {id(source): i for i, source in enumerate(sources)}
     buffer = io.BytesIO()

@@ -1,7 +1,7 @@
 """Model → Problem: the structure tree as the solver sees it, unknowns and constraints by number.
 
-The solver's groups are the structures, parents first. Unknowns that nothing can move are constants there: a
-frame that no constraint mentions, an argument that was read while building, an angle that nothing asks to turn.
+The solver's groups are the structures, parents first. Unknowns that nothing can move are constants there:
+a frame that no constraint mentions, an argument that was read while building, an angle that nothing turns.
 """
 
 from __future__ import annotations
@@ -66,9 +66,11 @@ class _Lowering:
         for never in self._never_negative():
             constraints.append(never)
             stated.append(None)
-        observables = tuple((self.groups[s], self._node(e)) for s in self.structures for e in self._in_root(s))
+        observables = tuple(
+            (self.groups[s], self._node(e)) for s in self.structures for e in self._in_root(s)
+        )
         found = tuple(self.numbers)
-        parents = [self.groups[s.parent] if s.parent in self.groups else -1 for s in self.structures]  # type: ignore[index]
+        parents = [self.groups[s.parent] if s.parent else -1 for s in self.structures]
         problem = Problem(
             tape=self.tape.finish(),
             initial=np.array([u.guess for u in found], dtype=np.float64),
@@ -88,7 +90,9 @@ class _Lowering:
     def _number_unknowns(self, observed: Iterable[Expression]) -> None:
         """Unknowns that can move: those of named geometry, and frames that a constraint mentions."""
         mentioned = set(
-            ex.unknowns(e for c in self.model.constraints for part in c.comparisons for e in (part.left, part.right))
+            ex.unknowns(
+                e for c in self.model.constraints for part in c.comparisons for e in (part.left, part.right)
+            )
         )
         drawn = {u for u in ex.unknowns(observed) if u.frame_of is None}
         variables = self.variables = {
@@ -172,7 +176,7 @@ class _Lowering:
             if unknown.field.rpartition(".")[2] in _SIZES and unknown.guess >= 0:
                 expression = self.tape.neg(self.tape.unknown(number))
                 row = Row(expression, Relation.AT_MOST, self.size)
-                yield SolverConstraint(self.groups[unknown.owner], (row,), frozenset((number,)))
+                yield SolverConstraint(self.groups[unknown.owner], (row,), frozenset())
 
 
 _Observed = Expression | tuple[Expression, Expression]

@@ -15,7 +15,7 @@ from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
 from aidl_lang.source import Span
 from aidl_lang.units import MaybeDimension
-from aidl_lang.values import Array, ListVal, Num, PointVal, Text, members
+from aidl_lang.values import Array, ListVal, Num, PointVal, members
 
 if TYPE_CHECKING:
     from aidl_lang.values import Value
@@ -107,6 +107,7 @@ class Structure:
     members     everything that has a name in it: geometry, arrays, children, numbers
     geometry    what it draws itself; children: structures directly inside
     plan        the box of its own that an empty structure has: left, bottom, width, height
+    extents     sides of its box that were worked out (see boxes)
     scope       the names its body sees (see interp)
     """
 
@@ -116,12 +117,12 @@ class Structure:
     span: Span | None
     frame: Frame = field(default_factory=Frame)
     attributes: dict[str, tuple[Value, ...]] = field(default_factory=dict)
-    params: dict[str, Num | Text | bool] = field(default_factory=dict)
     members: dict[str, Value] = field(default_factory=dict)
     geometry: dict[str, Value] = field(default_factory=dict)
     children: list[Structure] = field(default_factory=list)
     scope: object = None
     plan: tuple[Expression, Expression, Expression, Expression] | None = None
+    extents: dict[object, Expression] = field(default_factory=dict, repr=False)
     doc: str | None = None
     is_todo: bool = False
     is_complete: bool = False
@@ -228,13 +229,23 @@ def convert_angle(angle: Expression, source: Structure, target: Structure) -> Ex
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """`left REL right`, REL one of `== != <= >= < >`, with boxes spelled out."""
+    """`left REL right`, REL one of `== != <= >= < >`, with boxes spelled out.
+
+    `moved` are the unknowns that may move first where a call decides that; else the left side does.
+    """
 
     relation: str
     left: Expression
     right: Expression
     dimension: MaybeDimension
-    placed: frozenset[Unknown]
+    moved: frozenset[Unknown] | None = None
+
+    @property
+    def placed(self) -> frozenset[Unknown]:
+        """What may move first to satisfy it; the rest is held until that is not enough."""
+        if self.moved is not None:
+            return self.moved
+        return frozenset(ex.unknowns([self.left])) or frozenset(ex.unknowns([self.right]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -261,9 +272,14 @@ class Constraint:
     text: str
     span: Span
     weight: float | None = None
-    mentions: tuple[str, ...] = ()
     label: str = ""
     """loop variables at the place, as `i = 3`"""
+
+    @property
+    def mentions(self) -> tuple[str, ...]:
+        """Paths of the geometry and structures whose unknowns it relates."""
+        both = (e for c in self.comparisons for e in (c.left, c.right))
+        return tuple(sorted({u.holder.path for u in ex.unknowns(both)}))
 
 
 @dataclass(frozen=True, eq=False)

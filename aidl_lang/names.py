@@ -31,4 +31,5 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
     folded: dict[str, str] = {}
     for key in known:
         folded.setdefault(fold(key), key)
-    return [folded[match] for match in get_close_matches(fold(name), folded, n=count, cutoff=0.7)]
+    likeness = 0.6 if len(name) < 5 else 0.7  # one wrong letter weighs more in a short name
+    return [folded[match] for match in get_close_matches(fold(name), folded, n=count, cutoff=likeness)]

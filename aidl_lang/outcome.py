@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 
-from aidl_lang.conditions import holds
+from aidl_lang.building.conditions import holds
+from aidl_lang.building.functions import Measurement
 from aidl_lang.diagnostics import Diagnostic, Label
 from aidl_lang.expression import Evaluator
-from aidl_lang.functions import Measurement
-from aidl_lang.geometry.distance import region_distance
+from aidl_lang.geometry.boolean import clearance, overlap_area
 from aidl_lang.geometry.drawing import Drawing, draw
+from aidl_lang.geometry.measures import area, perimeter
 from aidl_lang.geometry.region import Region
 from aidl_lang.lower import Lowered
 from aidl_lang.model import Assertion, Comparison, Condition, Constraint, Geometry, Model, Structure
@@ -31,13 +31,17 @@ def solution_notes(lowered: Lowered, solution: Solution, model: SolvedModel) -> 
                 f"`{change.path}` was written {_short(change.written)} and became {_short(change.solved)}",
                 change.span,
                 "the constraints could not hold otherwise",
-                hints=(f"write {_short(change.solved)} to agree, or `fixed({_short(change.written)})` to insist",),
+                hints=(
+                    f"write {_short(change.solved)} to agree, or `fixed({_short(change.written)})` to insist",
+                ),
             )
         )
     for index in solution.redundant:
         stated = lowered.stated[index]
         if stated is not None and stated.span is not None:
-            found.append(Diagnostic("N0602", f"`{stated.text}` follows from the other constraints", stated.span))
+            found.append(
+                Diagnostic("N0602", f"`{stated.text}` follows from the other constraints", stated.span)
+            )
     return found
 
 
@@ -59,7 +63,9 @@ def _failure(lowered: Lowered, solution: Solution, failure: GroupFailure) -> Dia
         return Diagnostic(code, headline)
     worst = max(conflict, key=lambda pair: solution.residuals[pair[0]])
     if len(conflict) == 1:
-        headline = f"`{worst[1].text}` cannot hold" if code == "E0601" else f"`{worst[1].text}` was not reached"
+        headline = (
+            f"`{worst[1].text}` cannot hold" if code == "E0601" else f"`{worst[1].text}` was not reached"
+        )
     others = tuple(
         Label(stated.span, "conflicts with this" if failure.minimal else "takes part")
         for index, stated in conflict
@@ -67,7 +73,9 @@ def _failure(lowered: Lowered, solution: Solution, failure: GroupFailure) -> Dia
     )
     named = ", ".join(f"`{stated.text}`" for _, stated in conflict[:6])
     hints = [f"any one of them given up, the rest would hold: {named}"] if failure.minimal and others else []
-    hints.append("`prefer` states a wish that gives way; `guess(…)` frees a size; a `param` or `fixed(…)` never moves")
+    hints.append(
+        "`prefer` states a wish that gives way; `guess(…)` frees a size; a `param` or `fixed(…)` never moves"
+    )
     off = solution.residuals[worst[0]]
     return Diagnostic(code, headline, worst[1].span, f"off by {_short(off)}", others, tuple(hints))
 
@@ -102,7 +110,9 @@ def _failed(assertion: Assertion, evaluate: Evaluator) -> Diagnostic:
     )
 
 
-def _false_parts(condition: Condition | Comparison | bool, evaluate: Callable[..., float]) -> Iterator[Comparison]:
+def _false_parts(
+    condition: Condition | Comparison | bool, evaluate: Callable[..., float]
+) -> Iterator[Comparison]:
     if isinstance(condition, Comparison):
         if not holds(condition, evaluate, _TOLERANCE):
             yield condition
@@ -128,53 +138,23 @@ class _Measure:
         regions = [self._region(thing) for thing in payload.of]
         match payload.kind:
             case "area":
-                from aidl_lang.geometry.measures import area
-
                 return area(regions[0])
             case "perimeter":
-                from aidl_lang.geometry.measures import perimeter
-
                 return perimeter(regions[0])
             case "clearance":
-                closest = region_distance(*regions)
-                return closest[0] if closest is not None else math.nan
+                return clearance(*regions)
             case _:
-                return float(self._overlap(*payload.of))
+                return float(overlap_area(*regions) > _TOLERANCE * self.drawing.size)
 
     def _region(self, thing: Structure | Geometry) -> Region:
+        """What a structure covers in the drawing; what a geometry would cover as a solid of its own."""
         if isinstance(thing, Structure):
             return self.drawing.regions.get(thing.path, Region(()))
-        return self._alone((thing,)).regions.get("it", Region(()))
-
-    def _overlap(self, a: Structure | Geometry, b: Structure | Geometry) -> bool:
-        """Two things overlap if drawn as two bodies they do."""
-        pairs = self._alone((a, b)).pairs
-        return any(pair.relation == "overlapping" for pair in pairs)
-
-    def _alone(self, things: tuple[Structure | Geometry, ...]) -> Drawing:
-        parts = [self._as_solid(thing, "it" if i == 0 else f"it{i}") for i, thing in enumerate(things)]
+        geometry = tuple(g for g in _all_geometry(self.model.root) if g.path == thing.path)
         frame = Frame(0.0, 0.0, 0.0)
-        root = parts[0]
-        if len(parts) > 1:
-            root = SolvedStructure(
-                "all", "all", "assembly", "top", frame, {}, {}, (), tuple(parts), None, False, 0, None
-            )
-        model = self.model
-        return draw(SolvedModel(model.status, root, (), 0, (), ()))[0]
-
-    def _as_solid(self, thing: Structure | Geometry, path: str) -> SolvedStructure:
-        frame = Frame(0.0, 0.0, 0.0)
-        children: tuple[SolvedStructure, ...] = ()
-        geometry: tuple[SolvedGeometry, ...] = ()
-        if isinstance(thing, Structure):
-            found = self.model.root.find(thing.path)
-            if found is not None:
-                geometry, children = found.geometry, found.structures
-        else:
-            geometry = tuple(g for g in _all_geometry(self.model.root) if g.path == thing.path)
-        return SolvedStructure(
-            path, path, "solid", "top", frame, {}, {}, geometry, children, None, False, 0, None
-        )
+        alone = SolvedStructure("it", "it", "solid", "top", frame, {}, {}, geometry, (), None, False, 0, None)
+        drawing, _ = draw(SolvedModel(self.model.status, alone, (), 0, (), ()))
+        return drawing.regions.get("it", Region(()))
 
 
 def _all_geometry(root: SolvedStructure) -> Iterator[SolvedGeometry]:

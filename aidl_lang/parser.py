@@ -2,7 +2,8 @@
 
 The automaton runs the tables of the grammar over the tokens. Where a token cannot stand, `syntax.errors`
 says what is wrong and how to go on: with tokens put in, left out or exchanged where it is clear what was
-meant, else at the next statement. What was complete before stays; so does the inside of a block whose head is broken.
+meant, else at the next statement. What was complete before stays; so does the inside of a block whose head
+is broken.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from aidl_lang.syntax.warnings import lines_joined_by_minus
 
 @dataclass(frozen=True)
 class Limits:
-    """What a program may ask for: its length, the levels of its tree, and how many errors are worth telling."""
+    """What a program may ask for: its length, the levels of its tree, and how many errors are told."""
 
     max_characters: int = 2_000_000
     max_nesting: int = 200
@@ -43,7 +44,7 @@ class Parsed:
 
 
 def parse(source: SourceFile, limits: Limits = DEFAULT_LIMITS) -> Parsed:
-    """The syntax tree of a file. Never raises: what cannot be read is reported (E01xx, E08xx) and left out."""
+    """The tree of a file. Never raises: what cannot be read is reported (E01xx, E08xx) and left out."""
     parsed, tokens = _read(source, limits)
     joined = lines_joined_by_minus(parsed.module, tokens, lambda part: _read(part, limits)[0])
     return Parsed(parsed.module, ordered(parsed.diagnostics + joined))
@@ -159,7 +160,7 @@ class _Reader:
         return not self.automaton.between_statements and self.automaton.accepts([";"])
 
     def _report(self, diagnostic: Diagnostic) -> None:
-        """Keep a diagnostic; a reserved word is reported once, with a fix that renames it wherever it is met."""
+        """Keep a diagnostic; a reserved word is told once, with a fix that renames it wherever it is met."""
         for i, said in enumerate(self.diagnostics):
             if said.code == diagnostic.code == "E0104" and said.message == diagnostic.message:
                 if said.fix and diagnostic.fix:
@@ -279,9 +280,7 @@ def _too_long(source: SourceFile, limits: Limits) -> Diagnostic:
         "E0801",
         f"the program is longer than {limits.max_characters:,} characters",
         Span(source, 0, 0),
-        hints=(
-            "write repeated geometry with `for` or a template; move parts of the program to files of their own",
-        ),
+        hints=("write repeated geometry with `for` or a template; move parts of the program to other files",),
     )
 
 

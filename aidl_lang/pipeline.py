@@ -5,6 +5,7 @@ Each stage hands over one value and its diagnostics; nothing here raises for wha
 
 from __future__ import annotations
 
+import gc
 import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,8 +15,9 @@ from typing import TYPE_CHECKING
 
 from aidl_lang import library as library_module
 from aidl_lang import parser
+from aidl_lang.building.state import DEFAULT_LIMITS, Limits
 from aidl_lang.diagnostics import Diagnostic, has_errors, ordered
-from aidl_lang.interp import Interpretation, Limits, interpret
+from aidl_lang.interp import Interpretation, interpret
 from aidl_lang.model import Knob
 from aidl_lang.resolve import resolve
 from aidl_lang.solver.problem import Settings as SolverSettings
@@ -36,8 +38,8 @@ _RECURSION = 20_000
 class Settings:
     """Limits for programs that are not trusted, and the solver's settings."""
 
-    text: parser.Limits = parser.Limits()
-    building: Limits = Limits()
+    text: parser.Limits = parser.DEFAULT_LIMITS
+    building: Limits = DEFAULT_LIMITS
     solving: SolverSettings = SolverSettings(tolerance=1e-10)
 
 
@@ -89,11 +91,27 @@ class _Stopwatch:
             self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - start
 
 
+@contextmanager
+def _working() -> Iterator[None]:
+    """What a run needs of the interpreter: room for nested programs, and no pauses to look for cycles in a
+    heap that only grows until the run ends."""
+    recursion, collecting = sys.getrecursionlimit(), gc.isenabled()
+    sys.setrecursionlimit(max(recursion, _RECURSION))
+    gc.disable()
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(recursion)
+        if collecting:
+            gc.enable()
+
+
 def front(
     source: SourceFile, world: World | None = None, settings: Settings = Settings()
 ) -> tuple[Program, list[Diagnostic]]:
     """Text → Program: parsed, resolved and type-checked."""
-    return _front(source, world, settings, _Stopwatch())
+    with _working():
+        return _front(source, world, settings, _Stopwatch())
 
 
 def _front(
@@ -118,7 +136,6 @@ def _build(
     watch: _Stopwatch,
 ) -> tuple[Interpretation, list[Diagnostic]]:
     """Text → Model, with every diagnostic that does not need solving."""
-    sys.setrecursionlimit(max(sys.getrecursionlimit(), _RECURSION))
     program, static = _front(source, world, settings, watch)
     with watch("interpret"):
         built = interpret(program, params, settings.building)
@@ -138,14 +155,16 @@ def check(
     source: SourceFile, world: World | None = None, settings: Settings = Settings()
 ) -> list[Diagnostic]:
     """Everything that can be said of a program without solving it."""
-    return _build(source, world, {}, settings, _Stopwatch())[1]
+    with _working():
+        return _build(source, world, {}, settings, _Stopwatch())[1]
 
 
 def knobs(
     source: SourceFile, world: World | None = None, settings: Settings = Settings()
 ) -> tuple[tuple[Knob, ...], list[Diagnostic]]:
     """The `param`s of a program in order of writing."""
-    built, diagnostics = _build(source, world, {}, settings, _Stopwatch())
+    with _working():
+        built, diagnostics = _build(source, world, {}, settings, _Stopwatch())
     return tuple(built.model.knobs), diagnostics
 
 
@@ -158,11 +177,12 @@ def compile(
 ) -> Compiled:
     """Run the whole road. A program that is wrong, or does not solve, says so in `diagnostics`."""
     watch = _Stopwatch()
-    built, diagnostics = _build(source, world, params or {}, settings, watch)
-    known = tuple(built.model.knobs)
-    if has_errors(diagnostics):
-        return Compiled("wrong", diagnostics, watch.seconds, known)
-    return _finish(built, diagnostics, settings, watch, known, frozenset(show))
+    with _working():
+        built, diagnostics = _build(source, world, params or {}, settings, watch)
+        known = tuple(built.model.knobs)
+        if has_errors(diagnostics):
+            return Compiled("wrong", diagnostics, watch.seconds, known)
+        return _finish(built, diagnostics, settings, watch, known, frozenset(show))
 
 
 def _finish(
@@ -189,7 +209,9 @@ def _finish(
         drawing, notes = draw(model)
     with watch("asserts"):
         found = solution_notes(lowered, solution, model)
-        found += assertion_notes(built.model, model, drawing, evaluator, solved_fully=solution.status.value == "solved")
+        found += assertion_notes(
+            built.model, model, drawing, evaluator, solved_fully=solution.status.value == "solved"
+        )
     everything = ordered([*diagnostics, *found, *notes])
     return Compiled(model.status, everything, watch.seconds, known, model, drawing, show)
 

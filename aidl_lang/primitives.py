@@ -6,7 +6,7 @@ structure that asks, and everything else a primitive is asked for follows from t
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from aidl_lang import expression as ex
@@ -88,7 +88,7 @@ def _midpoint(a: Value, b: Value) -> PointVal:
     return point(ex.half(ex.add(ax, bx)), ex.half(ex.add(ay, by)))
 
 
-def sweep(core: dict[str, Value], is_clockwise: bool) -> Expression:
+def sweep(core: Mapping[str, Value], is_clockwise: bool) -> Expression:
     """Degrees from the start of an arc to its end, in its own sense; 0 to 360."""
     start, end = direction(core["center"], core["start"]), direction(core["center"], core["end"])
     turn = ex.sub(start, end) if is_clockwise else ex.sub(end, start)
@@ -150,7 +150,8 @@ def _bezier(name: str, core: dict[str, Value], _: bool) -> Value | None:
 def _point(name: str, core: dict[str, Value], _: bool) -> Value | None:
     at = core["at"]
     assert isinstance(at, PointVal)
-    return {"x": at.x, "y": at.y, "center": at}.get(name)
+    fields: dict[str, Value] = {"x": at.x, "y": at.y, "center": at}
+    return fields.get(name)
 
 
 _DERIVED: dict[str, Callable[[str, dict[str, Value], bool], Value | None]] = {

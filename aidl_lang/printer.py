@@ -247,7 +247,7 @@ class _Printer:
 
     # --- The text of a statement up to its block ---
 
-    def _head(self, node: ast.Statement, constraints: bool) -> Doc:
+    def _head(self, node: ast.Statement, constraints: bool) -> Doc:  # noqa: C901 (one case a node)
         name, expression = self.expressions.name, self.expressions.expression
         match node:
             case ast.Structure():

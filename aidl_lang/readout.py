@@ -7,13 +7,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from aidl_lang import expression as ex
+from aidl_lang.building.scopes import ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.expression import DEGREE, Evaluator, Unknown
 from aidl_lang.geometry import curves
 from aidl_lang.geometry.curves import Curve, Vec
 from aidl_lang.geometry.evaluate import bounds
 from aidl_lang.lower import Lowered
 from aidl_lang.model import Constraint, Geometry, Model, Structure, convert, own_geometry
-from aidl_lang.primitives import clockwise, number, view, xy
+from aidl_lang.primitives import clockwise, number, translate, view, xy
 from aidl_lang.solved import (
     Box,
     Change,
@@ -32,7 +33,9 @@ _FULL_TURN = 2 * math.pi
 
 def read_out(model: Model, lowered: Lowered, solution: Solution) -> tuple[SolvedModel, Evaluator]:
     """The solved model, and the evaluator of its values for what is checked afterwards."""
-    values: dict[Unknown, float] = {u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)}
+    values: dict[Unknown, float] = {
+        u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)
+    }
     evaluator = Evaluator(values)
     reader = _Reader(model, evaluator, dict(zip(_structures(model), solution.group_degrees, strict=False)))
     changed = tuple(_changes(lowered, solution))
@@ -85,7 +88,7 @@ class _Reader:
                 self.evaluate(frame.x), self.evaluate(frame.y), self.evaluate(frame.rotation), frame.mirrored
             ),
             attributes={n: tuple(map(self._scalar, values)) for n, values in s.attributes.items()},
-            params={n: self._scalar(v) for n, v in s.params.items()},
+            params=dict(self._params(s)),
             geometry=geometry,
             structures=children,
             box=self._box(s, geometry, children),
@@ -94,6 +97,25 @@ class _Reader:
             span=s.span,
             doc=s.doc,
         )
+
+    def _params(self, s: Structure) -> Iterator[tuple[str, Scalar]]:
+        """Every named number of a structure itself: its params, variables and arguments."""
+        assert isinstance(s.scope, Scope)
+        around = s.scope.parent if s is self.model.root else None
+        for scope in (around, s.scope):
+            for name, binding in scope.values.items() if scope else ():
+                value: Value | None = None
+                match binding:
+                    case ParamBinding(known=known):
+                        value = known
+                    case VarBinding(value=known) if scope is s.scope:
+                        value = known
+                    case PassedBinding(tied=tied):
+                        value = tied.get(s, binding.value)
+                    case Text() | bool() if scope is s.scope:
+                        value = binding
+                if isinstance(value, Num | Text | bool):
+                    yield name, self._scalar(value)
 
     def _orientation(self, s: Structure) -> str:
         word = s.attributes.get("orientation", (Text("top"),))
@@ -126,7 +148,10 @@ class _Reader:
         if not boxes:
             return None
         return Box(
-            min(b[0] for b in boxes), min(b[1] for b in boxes), max(b[2] for b in boxes), max(b[3] for b in boxes)
+            min(b[0] for b in boxes),
+            min(b[1] for b in boxes),
+            max(b[2] for b in boxes),
+            max(b[3] for b in boxes),
         )
 
     # --- Geometry ------------------------------------------------------------------------------
@@ -154,8 +179,7 @@ class _Reader:
 
     def _shape_values(self, g: Geometry) -> dict[str, Scalar | Vec | tuple[Vec, ...]]:
         """The number and point arguments of a compound shape."""
-        from aidl_lang.primitives import translate
-        from aidl_lang.scopes import Scope
+        from aidl_lang.building.scopes import Scope
 
         assert isinstance(g.scope, Scope)
         found: dict[str, Scalar | Vec | tuple[Vec, ...]] = {}
@@ -209,5 +233,3 @@ class _Reader:
         if sweep < 1e-12:
             sweep = _FULL_TURN
         return curves.Arc(center, self._number(core["radius"]), start, end, -sweep if is_clockwise else sweep)
-
-

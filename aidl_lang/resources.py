@@ -1,4 +1,4 @@
-"""Where the files that ship with the package are: the grammar, the standard library, the pages on diagnostics.
+"""Where the files that ship with the package are: grammar, standard library, pages on diagnostics.
 
 In a wheel they lie in `aidl_lang/_data/`, in a checkout beside the package; nothing else needs to know.
 """

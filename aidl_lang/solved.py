@@ -74,7 +74,8 @@ class SolvedGeometry:
 class SolvedStructure:
     """`box` is None where there is nothing to bound. `attributes`: name → argument values (`color`, `layer`,
     `thickness`, `material`, `detached`, `note`, `orientation`). `is_empty`: no geometry of its own and no
-    children, so that `box` is that of the plan."""
+    children, so that `box` is that of the plan.
+    """
 
     name: str
     path: str

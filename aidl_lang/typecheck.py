@@ -1,31 +1,38 @@
 """The static check: types, dimensions and validity of a whole program, executed or not.
 
-Every body is checked: branches that are not taken, templates and shapes that nothing uses. Facts about expressions
-come from `infer`; this file goes through the statements and says what each wants of its expressions.
+Every body is checked: branches that are not taken, templates and shapes that nothing uses. Facts about
+expressions come from `infer`; this file goes through the statements and says what each wants of its
+expressions.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from aidl_lang import ast
 from aidl_lang.checking.conditions import check_condition, check_operation
+from aidl_lang.checking.cycles import find_cycles
+from aidl_lang.checking.facts import Fact
 from aidl_lang.checking.infer import Inference
-from aidl_lang.checking.validity import Violation, check_validity
+from aidl_lang.checking.named import of_symbol
+from aidl_lang.checking.operators import compare
+from aidl_lang.checking.validity import check_validity
+from aidl_lang.checking.violations import Violation
 from aidl_lang.checking.wording import a, shown
 from aidl_lang.diagnostics import Diagnostic, ordered
 from aidl_lang.library import Library
-from aidl_lang.resolve import Resolution
-from aidl_lang.resolving.symbols import SymbolKind
+from aidl_lang.resolving.resolution import Resolution
 from aidl_lang.types import (
     ANY,
+    AnyType,
     GeometryType,
     ListType,
     NumberType,
     PointType,
     RangeType,
     TextType,
+    TruthType,
     Type,
     accepts,
 )
@@ -36,8 +43,9 @@ from aidl_lang.units import ANGLE, LENGTH
 class Program:
     """A checked program, ready to be built.
 
-    violations   breaches of the rules of validity; their diagnostics need values as written, and are therefore
-                 made after building (`Violation.diagnostic`)
+    violations   breaches of the rules of validity; their diagnostics need values as written, and are made
+                 after building (`Violation.diagnostic`)
+    rejected     calls that were reported as fitting nothing; building need not say it again
     diagnostics  everything else that resolving and checking found, in text order
     """
 
@@ -47,6 +55,7 @@ class Program:
     resolution: Resolution
     violations: tuple[Violation, ...]
     diagnostics: tuple[Diagnostic, ...]
+    rejected: frozenset[ast.Call] = frozenset()
 
 
 def check(resolution: Resolution) -> Program:
@@ -65,6 +74,7 @@ def check(resolution: Resolution) -> Program:
         resolution=resolution,
         violations=tuple(violations),
         diagnostics=tuple(ordered([*resolution.diagnostics, *inference.diagnostics])),
+        rejected=frozenset(inference.rejected),
     )
 
 
@@ -83,15 +93,32 @@ class Checker:
             self._statement(statement)
 
     def _statement(self, node: ast.Statement) -> None:
-        infer = self.infer
         match node:
             case ast.Structure():
                 self._structure(node)
+            case ast.FunctionDefinition() | ast.ShapeDefinition() | ast.ConstraintDefinition():
+                self._definition(node)
+            case ast.For(variables, iterable, body):
+                self.infer.iterable(iterable, len(variables))
+                self._statements(body.statements)
+            case ast.If(test, then, otherwise):
+                self.infer.test(test)
+                self._statements(then.statements)
+                self._statements(otherwise.statements if otherwise else ())
             case ast.Assign():
                 self._attributes(node.attributes)
                 self._indices(node.indices)
-                infer.fact(node.value)
+                self.infer.fact(node.value)
                 self._placement(node.placement)
+            case ast.Constrain(items):
+                self._items(items)
+            case _:
+                self._simple(node)
+
+    def _simple(self, node: ast.Statement) -> None:
+        """A statement without a body."""
+        infer = self.infer
+        match node:
             case ast.Let(value=value):
                 infer.fact(value)
             case ast.Param():
@@ -101,25 +128,14 @@ class Checker:
             case ast.ExpressionStatement(value):
                 if not check_operation(infer, value):
                     check_condition(infer, value)
-            case ast.Constrain(items):
-                self._items(items)
             case ast.Equation(left, right):
-                infer.compare("==", left, right, node)
+                compare(infer, "==", left, right, node)
             case ast.Prefer(value, weight):
                 check_condition(infer, value)
                 if weight is not None:
                     infer.known(weight, "a weight")
             case ast.Assert(test, message):
                 self._assert(test, message)
-            case ast.For(variables, iterable, body):
-                infer.iterable(iterable, len(variables))
-                self._statements(body.statements)
-            case ast.If(test, then, otherwise):
-                infer.test(test)
-                self._statements(then.statements)
-                self._statements(otherwise.statements if otherwise else ())
-            case ast.FunctionDefinition() | ast.ShapeDefinition() | ast.ConstraintDefinition():
-                self._definition(node)
             case _:
                 pass
 
@@ -151,7 +167,7 @@ class Checker:
             return
         fact = self.infer.fact(parameter.default)
         symbol = self.infer.resolution.uses.get(parameter.name)
-        wanted = self.infer.of_symbol(symbol).type if symbol is not None else ANY
+        wanted = of_symbol(self.infer, symbol).type if symbol is not None else ANY
         if accepts(wanted, fact.type) is None:
             self.infer.report(
                 "E0302",
@@ -209,26 +225,33 @@ class Checker:
         infer.known(node.value, "the value of a `param`")
         fact = infer.fact(node.value)
         if node.domain is not None:
-            domain = infer.wants(node.domain, "a range or a list of choices", RangeType, ListType)
-            infer.known(node.domain, "the range of a `param`")
-            if isinstance(domain.type, RangeType) and not isinstance(fact.type, NumberType):
-                if not fact.is_any:
-                    infer.report(
-                        "E0302",
-                        f"a range fits a number, and `{node.name.text}` is {a(fact.type)}",
-                        node.domain,
-                    )
-            elif isinstance(node.domain, ast.Range):
-                infer.same_dimension(
-                    fact, infer.fact(node.domain.start), node.domain, "the range does not fit the value:"
-                )
+            self._domain(node, fact, node.domain)
         if node.step is not None:
             step = infer.numeric(node.step)
             infer.same_dimension(fact, step, node.step, "the step does not fit the value:")
 
-    def _assert(self, test: ast.Expression, message: ast.Expression | None) -> None:
-        from aidl_lang.types import TruthType
+    def _domain(self, node: ast.Param, fact: Fact, domain: ast.Expression) -> None:
+        """What may stand behind `in`: a range of such numbers, or a list of choices."""
+        infer = self.infer
+        match infer.fact(domain).type:
+            case RangeType() if not isinstance(fact.type, NumberType | AnyType):
+                infer.report(
+                    "E0314", f"a range fits a number, and `{node.name.text}` is {a(fact.type)}", domain
+                )
+            case RangeType() if isinstance(domain, ast.Range):
+                for end in (domain.start, domain.end):
+                    infer.same_dimension(fact, infer.fact(end), end, "the range does not fit the value:")
+            case RangeType() | ListType() | AnyType():
+                pass
+            case kind:
+                infer.report(
+                    "E0314",
+                    f"the range of a `param` is as `20..200` or a list of choices, not {a(kind)}",
+                    domain,
+                )
+        infer.known(domain, "the range of a `param`")
 
+    def _assert(self, test: ast.Expression, message: ast.Expression | None) -> None:
         self.infer.wants(test, "a condition", TruthType)
         if message is not None:
             self.infer.wants(message, "a text", TextType)
@@ -241,48 +264,3 @@ class Checker:
         for attribute in attributes:
             for argument in attribute.arguments:
                 self.infer.known(argument.value, f"the argument of `@{attribute.name.text}`")
-
-
-def find_cycles(infer: Inference) -> None:
-    """Report constants that are defined by way of themselves, each circle once."""
-    resolution = infer.resolution
-    graph = {}
-    for symbol in resolution.symbols:
-        if symbol.kind in (SymbolKind.LET, SymbolKind.PARAM):
-            graph[symbol] = [
-                (resolution.uses[name], name)
-                for node in symbol.nodes
-                for name in _names(node)
-                if resolution.uses.get(name) is not None
-            ]
-    done: set[object] = set()
-    for start in graph:
-        trail = [(start, iter(graph[start]))]
-        on_trail = {start}
-        while trail:
-            symbol, rest = trail[-1]
-            step = next(rest, None)
-            if step is None:
-                trail.pop()
-                on_trail.discard(symbol)
-                done.add(symbol)
-                continue
-            target, name = step
-            if target in on_trail:
-                names = [s.name for s, _ in trail]
-                circle = [*names[names.index(target.name) :], target.name]
-                way = " → ".join(circle) if len(circle) > 2 else ""
-                infer.report(
-                    "E0207",
-                    f"`{target.name}` is defined by way of itself" + (f": {way}" if way else ""),
-                    name,
-                    hints=["one of them needs a value that does not depend on the others"],
-                )
-            elif target in graph and target not in done:
-                trail.append((target, iter(graph[target])))
-                on_trail.add(target)
-
-
-def _names(node: ast.Node) -> Iterator[ast.Name]:
-    assert isinstance(node, ast.Let | ast.Assign | ast.Param)
-    return (n for n in ast.walk(node.value) if isinstance(n, ast.Name))

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 from aidl_lang import ast
@@ -195,6 +196,11 @@ class Signature:
     """name, type, and whether it has a default"""
     node: ast.Callable | None = None
 
+    @cached_property
+    def by_fold(self) -> Mapping[str, str]:
+        """Parameter names by their folded spelling."""
+        return {fold(name): name for name, _, _ in self.parameters}
+
     @property
     def gathers(self) -> bool:
         """Whether positional arguments are collected: the first parameter is a list."""
@@ -250,7 +256,7 @@ def bind(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch:
             )
         for (name, _, _), index in zip(parameters, positional, strict=False):
             arguments[name] = (index,)
-    by_fold = {fold(name): name for name, _, _ in parameters}
+    by_fold = signature.by_fold
     for index, written in named:
         assert written is not None
         target = by_fold.get(fold(written))
@@ -270,14 +276,19 @@ def bind(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch:
             index = arguments[name][0]
             distance = accepts(kind, given[index].type)
             if distance is None:
-                return Mismatch(signature, f"`{name}` must be a {kind}, not a {given[index].type}", index)
+                return Mismatch(
+                    signature,
+                    f"needs `{name}` to be {with_article(kind)}, not {with_article(given[index].type)}",
+                    index,
+                )
             total += distance
     return Binding(signature, arguments, gathered, (total, defaulted), tuple(positional))
 
 
 def select(candidates: Sequence[Signature], given: Sequence[Given]) -> Binding | list[Mismatch]:
     """The candidate that fits best (least conversion, then fewest defaults, then first written), or why none
-    does."""
+    does.
+    """
     fits: list[Binding] = []
     misses: list[Mismatch] = []
     for candidate in candidates:
@@ -287,6 +298,14 @@ def select(candidates: Sequence[Signature], given: Sequence[Given]) -> Binding |
         else:
             misses.append(outcome)
     return min(fits, key=lambda b: b.cost) if fits else misses
+
+
+def with_article(kind: object) -> str:
+    """`a length`, `an angle`; what has no number of its own stands as it is."""
+    word = str(kind)
+    if word in ("anything", "geometry", "text"):
+        return word
+    return f"{'an' if word[0] in 'aeiou' else 'a'} {word}"
 
 
 def number(dimension: Dimension | None) -> NumberType:

@@ -21,11 +21,13 @@ from aidl_lang.types import (
     TextType,
     TruthType,
     Type,
+    with_article,
 )
 from aidl_lang.units import LENGTH, PLAIN, MaybeDimension
 
 if TYPE_CHECKING:
     from aidl_lang.boxes import Box
+    from aidl_lang.building.templates import Instantiation
     from aidl_lang.model import Condition, Geometry, Structure
 
 
@@ -55,7 +57,9 @@ class Num:
     @property
     def is_whole(self) -> bool:
         value = self.expression.value
-        return self.dimension in (None, PLAIN) and value == value and abs(value) < 1e15 and value == int(value)
+        return (
+            self.dimension in (None, PLAIN) and value == value and abs(value) < 1e15 and value == int(value)
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +133,7 @@ if TYPE_CHECKING:
         | Structure
         | Box
         | Namespace
+        | Instantiation
         | Nothing
     )
 else:
@@ -186,3 +191,8 @@ def type_of(value: Value) -> Type:
             return ListType(kinds.pop() if len(kinds) == 1 else ANY, len(items))
         case _:
             return ANY
+
+
+def kind_of(value: Value) -> str:
+    """What a value is, for messages: `a length`, `an angle`, `a structure`."""
+    return with_article(type_of(value))

@@ -1,7 +1,7 @@
 """Every file is read through a World, so that the core is one for disk, memory, editor and browser.
 
-Paths are relative to the root of a project and written with `/`. Nothing outside the root can be read, whatever
-`..`, absolute paths or symbolic links say.
+Paths are relative to the root of a project and written with `/`. Nothing outside the root can be read,
+whatever `..`, absolute paths or symbolic links say.
 """
 
 from __future__ import annotations

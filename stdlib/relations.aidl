@@ -124,16 +124,19 @@ constraint column(things: list, gap: length, align: text) {
 /// Equal gaps in the order written; along the axis in which the first guesses spread most, unless it is said.
 constraint evenly_spaced(things: list) { evenly_spaced(things, axis: spread_axis(things)) }
 constraint evenly_spaced(things: list, axis: text) {
-    if axis == "x" {
-        for i in 2..<len(things) {
-            box(things[i]).left - box(things[i - 1]).right == box(things[i - 1]).left - box(things[i - 2]).right
-        }
-    } else {
-        for i in 2..<len(things) {
-            box(things[i]).bottom - box(things[i - 1]).top == box(things[i - 1]).bottom - box(things[i - 2]).top
-        }
+    let forward = len(things) < 2 or written(place_along(things[-1], axis) - place_along(things[0], axis)) >= 0
+    for i in 2..<len(things) {
+        room_between(things[i - 1], things[i], axis, forward) == room_between(things[i - 2], things[i - 1], axis, forward)
     }
 }
+
+/// Where the centre of a thing is along an axis, and the gap from one to the next in either direction.
+fn place_along(a: box, axis: text) = if axis == "x" then a.center_x else a.center_y
+fn room_between(a: box, b: box, axis: text, forward: bool) = (
+    if not forward then room_between(b, a, axis, true)
+    else if axis == "x" then b.left - a.right
+    else b.bottom - a.top
+)
 fn spread_axis(things: list) = if len(things) < 2 then "x" else if abs(written(box(things[-1]).center_x - box(things[0]).center_x)) >= abs(written(box(things[-1]).center_y - box(things[0]).center_y)) then "x" else "y"
 
 /// The boxes share a border: the nearest pair of sides meets.

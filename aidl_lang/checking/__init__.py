@@ -1,1 +1,1 @@
-"""Parts of the static check: facts about expressions, calls, conditions, validity. `typecheck` is the pass."""
+"""Parts of the static check: facts about expressions, conditions, validity. `typecheck` is the pass."""

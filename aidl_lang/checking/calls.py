@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from aidl_lang import ast, units
-from aidl_lang.checking import members
+from aidl_lang.checking import fields
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, Place, joined
-from aidl_lang.checking.infer import Inference
 from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.names import fold, nearest
 from aidl_lang.resolving.symbols import SymbolKind
@@ -26,6 +26,9 @@ from aidl_lang.types import (
     Type,
     bind,
 )
+
+if TYPE_CHECKING:
+    from aidl_lang.checking.infer import Inference
 
 _SAME_AS_ARGUMENT = frozenset({"fixed", "guess", "written", "abs", "min", "max"})
 _BUILD_TIME = frozenset({"floor", "ceil", "round"})
@@ -132,7 +135,7 @@ def _result(
 
 
 def _function(check: Inference, definition: ast.FunctionDefinition, reads: frozenset[Place]) -> Fact:
-    """A function gives what its expression gives; it reads what its arguments do, and what it names itself."""
+    """A function gives what its expression gives; it reads what its arguments and its expression read."""
     if definition in check._running:
         return UNKNOWN
     check._running.add(definition)
@@ -165,7 +168,7 @@ def _built_in(
         kind = kinds.pop() if len(kinds) == 1 else ANY
         one = len(facts) == 1
         return Fact(kind, reads, facts[0].of if one else None, bare=facts[0].bare if one else None)
-    return Fact(members.RESULTS.get(name, ANY), reads)
+    return Fact(fields.RESULTS.get(name, ANY), reads)
 
 
 # --- What to say of a call that no overload fits ----------------------------------------------------
@@ -179,6 +182,7 @@ def _no_overload(
     misses: Sequence[Mismatch],
 ) -> None:
     name = node.callee.text
+    check.rejected.append(node)
     if _unknown_parameter(check, node, misses):
         return
     closest = max(misses, key=lambda m: _closeness(m, given))
@@ -192,7 +196,7 @@ def _no_overload(
 
 
 def _closeness(miss: Mismatch, given: Sequence[Given]) -> tuple[int, int, int]:
-    """How near a candidate comes: how many of the named arguments it knows, and how many parameters it lacks."""
+    """How near a candidate comes: named arguments that it knows, then the number of its parameters."""
     names = {fold(name) for name, _, _ in miss.signature.parameters}
     known = sum(1 for g in given if g.name is not None and fold(g.name) in names)
     room = -abs(len(miss.signature.parameters) - len(given))

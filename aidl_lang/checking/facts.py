@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from aidl_lang import ast
 from aidl_lang.resolving.symbols import Symbol
-from aidl_lang.types import ANY, AnyType, ListType, Type
+from aidl_lang.types import ANY, AnyType, GeometryType, ListType, NumberType, PointType, Type
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ NOTHING_READ: frozenset[Place] = frozenset()
 class Fact:
     """
     type   of the value
-    reads  the structures whose unknowns the value depends on; empty for constants, and where that is not known
+    reads  the structures whose unknowns the value depends on; empty for constants, and where it is not known
     of     the definition whose members it has (a list: its elements): structure, template, shape, or file
     place  for a structure, where it stands
     bare   the param or let whose number without a unit it is
@@ -67,3 +67,12 @@ def joined(a: Fact, b: Fact) -> Fact:
     if a.type == b.type and a.of is b.of:
         return Fact(a.type, reads, a.of, a.place if a.place == b.place else None)
     return Fact(ANY, reads)
+
+
+def is_point(kind: Type) -> bool:
+    return isinstance(kind, PointType) or kind == GeometryType("point")
+
+
+def is_number(kind: Type) -> bool:
+    """A number, or an edge that stands for its coordinate."""
+    return isinstance(kind, NumberType) or kind == GeometryType("line")

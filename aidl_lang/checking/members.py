@@ -1,65 +1,155 @@
-"""What may stand behind a dot, as far as it is the same in every program: the fields of primitives and boxes."""
+"""What is known of members: of structures, shapes, primitives, points, boxes, lists and imported files."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from aidl_lang.names import fold
-from aidl_lang.types import ANY, BoxType, GeometryType, NumberType, PointType, Type
-from aidl_lang.units import ANGLE, LENGTH
+from aidl_lang import ast
+from aidl_lang.checking import fields
+from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, Place
+from aidl_lang.checking.named import of_symbol
+from aidl_lang.checking.wording import a, shown
+from aidl_lang.diagnostics import Edit, Fix
+from aidl_lang.names import find, nearest
+from aidl_lang.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.types import ANY, AnyType, BoxType, GeometryType, ListType, PointType, StructureType, Type
 
-_LENGTH, _ANGLE, _POINT = NumberType(LENGTH), NumberType(ANGLE), PointType()
-
-
-def _fields(points: str = "", lengths: str = "", angles: str = "") -> dict[str, Type]:
-    return {
-        **dict.fromkeys(points.split(), _POINT),
-        **dict.fromkeys(lengths.split(), _LENGTH),
-        **dict.fromkeys(angles.split(), _ANGLE),
-    }
-
-
-PRIMITIVE: Mapping[str, Mapping[str, Type]] = {
-    "point": _fields(points="at center", lengths="x y"),
-    "line": _fields("start end midpoint center", "length dx dy", "angle"),
-    "arc": _fields("center start end midpoint", "radius diameter length", "start_angle end_angle sweep"),
-    "circle": _fields("center", "radius diameter"),
-    "bezier": _fields("p0 p1 p2 p3 start end"),
-    "ellipse": _fields("center", "rx ry", "angle"),
-}
-
-BOX: Mapping[str, Type] = _fields(
-    "center top_left top_right bottom_left bottom_right top_center bottom_center left_center right_center",
-    "left right top bottom width height center_x center_y",
-)
-
-STRUCTURE: Mapping[str, Type] = {
-    "origin": _POINT,
-    "x_axis": GeometryType("line"),
-    "y_axis": GeometryType("line"),
-}
-
-OUTLINE = frozenset(
-    ["corner", "corners", "segment", "segments", "edge", "edges", "point", "points", "fillet", "chamfer", "outline", "parts", "source", "member", "members"]
-)
-"""Names that operations give to shapes beside what their definitions declare; the builder knows better."""
+if TYPE_CHECKING:
+    from aidl_lang.checking.infer import Inference
 
 
-def is_box_name(name: str) -> bool:
-    return fold(name) in ("bb", "box", "boundingbox")
+def member(check: Inference, node: ast.Member) -> Fact:
+    if isinstance(node.value, ast.Name):
+        symbol = check.resolution.uses.get(node.value)
+        if symbol is not None and symbol.kind is SymbolKind.NAMESPACE:
+            return _of_file(check, node, symbol)
+    return member_of(check, check.fact(node.value), node)
 
 
-RESULTS: Mapping[str, Type] = {
-    **dict.fromkeys(("sin", "cos", "tan"), NumberType(None)),
-    **dict.fromkeys(("asin", "acos", "atan", "atan2"), _ANGLE),
-    **dict.fromkeys(("floor", "ceil", "round", "abs", "min", "max", "sum"), ANY),
-    "len": NumberType(None, whole=True),
-    **dict.fromkeys(("line", "arc", "circle", "bezier", "ellipse"), ANY),
-    **{kind: GeometryType(kind) for kind in PRIMITIVE if kind != "point"},
-    "point": GeometryType("point"),
-    "area": NumberType(None),
-    "perimeter": _LENGTH,
-    "clearance": _LENGTH,
-    "bb": BoxType(),
-}
-"""Types of what the built-in functions give, where it does not depend on their arguments."""
+def _of_file(check: Inference, node: ast.Member, space: Symbol) -> Fact:
+    assert space.scope is not None
+    if (scope := space.scope.spaces.get(space.name)) is None:
+        return UNKNOWN
+    key = find(node.name.text, scope.values)
+    if key is None:
+        return _no_member(check, node, "the file", list(scope.values))
+    _means(check, node, scope.values[key])
+    return of_symbol(check, scope.values[key])
+
+
+def member_of(check: Inference, base: Fact, node: ast.Member) -> Fact:
+    """`base.name`"""
+    name = node.name.text
+    match base.type:
+        case AnyType():
+            return Fact(ANY, base.reads)
+        case ListType():
+            return _mapped(check, base, node)
+        case StructureType():
+            return _of_structure(check, base, node)
+        case GeometryType(kind):
+            if base.of is not None:
+                return _of_shape(check, base, node)
+            if kind in fields.PRIMITIVE:
+                return _field(check, base, node, fields.PRIMITIVE[kind])
+            return Fact(ANY, base.reads)
+        case PointType():
+            return _field(check, base, node, fields.PRIMITIVE["point"])
+        case BoxType():
+            return _field(check, base, node, {})
+        case _:
+            return check.report(
+                "E0202",
+                f"{a(base.type)} has no members, so there is no `{shown(node.value)}.{name}`",
+                node.name,
+            )
+
+
+def _mapped(check: Inference, base: Fact, node: ast.Member) -> Fact:
+    """`a.rim` of a list runs through its members; sides of a list may be those of its group."""
+    element = base.element()
+    if element.is_any or fields.is_box_name(node.name.text) or find(node.name.text, fields.BOX):
+        return Fact(ANY, base.reads)
+    return member_of(check, element, node).listed()
+
+
+def _of_structure(check: Inference, base: Fact, node: ast.Member) -> Fact:
+    if base.of is None:
+        return Fact(ANY, base.reads)
+    scope = check.resolution.scope_of(base.of)
+    key = find(node.name.text, scope.values)
+    if key is None:
+        return _field(check, base, node, fields.STRUCTURE, list(scope.values))
+    symbol = scope.values[key]
+    _means(check, node, symbol)
+    if symbol.kind is SymbolKind.ARGUMENT:
+        return of_symbol(check, symbol)
+    fact = of_symbol(check, symbol)
+    if base.place is None:
+        return replace(fact, reads=base.reads if fact.reads else NOTHING_READ, place=None)
+    place = fact.place and _seen(check, fact.place, base.of, base.place, symbol)
+    reads = frozenset(_seen(check, p, base.of, base.place, symbol) for p in fact.reads)
+    return replace(fact, place=place, reads=reads)
+
+
+def _seen(check: Inference, place: Place, of: ast.Node, base: Place, symbol: Symbol) -> Place:
+    """A place told from inside a structure, as it is from where that structure is named. A structure that
+    the expression itself stands in is seen from inside.
+    """
+    if place.holder is not of:
+        return place
+    if place.below == (symbol.name,) and symbol.node in check.homes and not symbol.is_array:
+        assert symbol.node is not None
+        return Place(symbol.node)
+    return Place(base.holder, base.below + place.below)
+
+
+def _of_shape(check: Inference, base: Fact, node: ast.Member) -> Fact:
+    assert base.of is not None
+    scope = check.resolution.scope_of(base.of)
+    key = find(node.name.text, scope.values)
+    if key is None:
+        if find(node.name.text, dict.fromkeys(fields.OUTLINE)):
+            return Fact(ANY, base.reads)
+        return _field(check, base, node, {}, list(scope.values))
+    symbol = scope.values[key]
+    _means(check, node, symbol)
+    fact = of_symbol(check, symbol)
+    return replace(fact, reads=base.reads, place=None, bare=None)
+
+
+def _field(
+    check: Inference, base: Fact, node: ast.Member, own: Mapping[str, Type], known: Sequence[str] = ()
+) -> Fact:
+    """A field of a primitive or a structure, or one of the box that everything has."""
+    name = node.name.text
+    if fields.is_box_name(name):
+        return Fact(BoxType(), base.reads)
+    for table in (own, fields.BOX):
+        key = find(name, table)
+        if key is not None:
+            _means(check, node, Symbol(key, SymbolKind.FIELD))
+            return Fact(table[key], base.reads)
+    return _no_member(check, node, a(base.type), [*known, *own, *fields.BOX])
+
+
+def _means(check: Inference, node: ast.Member, symbol: Symbol) -> None:
+    check.resolution.uses[node] = symbol
+    if symbol.name != node.name.text:
+        check.resolution.canonical[node.name] = symbol.name
+
+
+def _no_member(check: Inference, node: ast.Member, what: str, known: Sequence[str]) -> Fact:
+    name = node.name.text
+    like = nearest(name, known)
+    shown_names = ", ".join(f"`{n}`" for n in list(dict.fromkeys(known))[:8])
+    return check.report(
+        "E0202",
+        f"`{shown(node.value)}` has no `{name}`" + (f"; did you mean `{like[0]}`?" if like else ""),
+        node.name,
+        label=f"not a member of {what}",
+        hints=() if like else (f"its members are {shown_names}, …",) if known else (),
+        fix=Fix(f"write `{like[0]}`", (Edit(node.name.span, like[0]),)) if like else None,
+    )

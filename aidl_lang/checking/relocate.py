@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from aidl_lang import ast
 from aidl_lang.checking.facts import NOTHING_READ
 from aidl_lang.checking.infer import Inference
+from aidl_lang.checking.named import of_symbol
 from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind
 from aidl_lang.source import Span
 
@@ -45,7 +46,9 @@ class Site:
 
 
 class Move:
-    """Carries expressions from a site to an ancestor of its structure, behind the statement that holds the site."""
+    """Carries expressions from a site to an ancestor of its structure, behind the statement that holds the
+    site.
+    """
 
     def __init__(self, site: Site, ancestor: ast.Node, infer: Inference) -> None:
         self.site = site
@@ -53,8 +56,8 @@ class Move:
         self.level = site.homes.index(ancestor)
         self.between = site.homes[self.level + 1 :]
         self.scope = infer.resolution.scopes[ancestor]
-        nodes = [statement for statement, _ in site.trail]
-        self.start = nodes.index(self.between[0]) if self.between else len(nodes) - 1  # type: ignore[arg-type]
+        nodes: list[ast.Node] = [statement for statement, _ in site.trail]
+        self.start = nodes.index(self.between[0]) if self.between else len(nodes) - 1
         self.anchor = nodes[self.start]
 
     @property
@@ -143,12 +146,12 @@ class Move:
         return node.text if found is not None and found.node is symbol.node else None
 
     def _from_below(self, node: ast.Name, symbol: Symbol, scope: Scope, home: ast.Node) -> str | None:
-        """What a structure between the two declares: by its path, or, where it is a name for an expression over
-        unknowns or belongs to a turn of a loop, spelled out.
+        """What a structure between the two declares: by its path, or, where it is a name for an expression
+        over unknowns or belongs to a turn of a loop, spelled out.
         """
         if symbol.kind is SymbolKind.ARGUMENT:
             return None
-        reads = self.infer.of_symbol(symbol).reads
+        reads = of_symbol(self.infer, symbol).reads
         is_local = isinstance(scope.owner, ast.For | ast.Block)
         if symbol.kind is SymbolKind.LET and (is_local or reads != NOTHING_READ):
             value = getattr(symbol.node, "value", None)
@@ -160,8 +163,8 @@ class Move:
 
 
 def insertion_after(statement: ast.Node, text: str) -> tuple[Span, str]:
-    """Where to write a statement behind another, and how: on a line of its own, indented alike, unless more than a
-    comment follows on the line.
+    """Where to write a statement behind another, and how: on a line of its own, indented alike, unless more
+    than a comment follows on the line.
     """
     source = statement.span.source
     line_number, _ = source.position(statement.span.start)

@@ -5,8 +5,8 @@ further, since the instantiating structure ties them by equalities; `mirror`, `c
 outline of an ancestor.
 Rule 2: a constraint references only the subtree of the structure that holds it.
 
-A breach becomes a `Violation`. Its diagnostic names the nearest common ancestor, where the relation can be stated,
-and mends the program: what reads too far becomes a first guess, and the ancestor gets the constraint.
+A breach becomes a `Violation`. Its diagnostic names the nearest common ancestor, where the relation can be
+stated, and mends the program: what reads too far becomes a first guess, and the ancestor gets the constraint.
 """
 
 from __future__ import annotations
@@ -15,12 +15,13 @@ from collections.abc import Sequence
 
 from aidl_lang import ast
 from aidl_lang.checking.calls import arguments, parameter_of
-from aidl_lang.checking.facts import Fact, Place
-from aidl_lang.checking.infer import Inference, is_point
+from aidl_lang.checking.facts import Fact, Place, is_point
+from aidl_lang.checking.fields import PRIMITIVE
+from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.relocate import Site, member_path
 from aidl_lang.checking.violations import Target, Violation
 from aidl_lang.resolving.declare import DERIVING, PATTERNS
-from aidl_lang.types import AnyType, Binding, GeometryType, Given, StructureType, bind
+from aidl_lang.types import Binding, GeometryType, Given, StructureType, bind
 
 
 def check_validity(module: ast.Module, infer: Inference) -> list[Violation]:
@@ -159,8 +160,6 @@ class _Walker:
 
     def _is_field(self, call: ast.Call, name: str) -> bool:
         """Whether what a call makes can be asked for its parameter by name."""
-        from aidl_lang.checking.members import PRIMITIVE
-
         fact = self.infer.fact(call)
         if isinstance(fact.of, ast.ShapeDefinition):
             return True
@@ -193,7 +192,7 @@ class _Walker:
             if far:
                 self.found.append(Violation(1, target, whole, tuple(far), site, self.infer))
 
-    def _reads(self, node: ast.Expression) -> list[Place]:
+    def _reads(self, node: ast.Node) -> list[Place]:
         return _sorted(self.infer.fact(node).reads)
 
     # --- Rule 2 --------------------------------------------------------------------------------
@@ -201,11 +200,6 @@ class _Walker:
     def _constraint(self, statement: ast.Statement, item: ast.Statement, site: Site) -> None:
         expressions = [e for e in ast.children(item) if e in self.infer.facts]
         reads = {p for e in expressions for p in self.infer.facts[e].reads}
-        if isinstance(item, ast.ExpressionStatement) and isinstance(
-            self.infer.fact(item.value).type, AnyType
-        ):
-            if isinstance(item.value, ast.Call) and item.value.callee.text in ("fillet", "chamfer"):
-                return
         far = [p for p in _sorted(reads) if p.holder is not site.home]
         if far and isinstance(item, ast.ExpressionStatement | ast.Prefer | ast.Equation):
             self.found.append(Violation(2, Target(item, None), statement, tuple(far), site, self.infer))

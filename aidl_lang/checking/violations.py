@@ -52,14 +52,14 @@ class Violation:
 
     @property
     def ancestor(self) -> ast.Node | None:
-        """The nearest structure that holds everything the expression reads; None when no text of it is here."""
+        """The nearest structure that holds everything that is read; None when it is not of this text."""
         holders = [p.holder for p in self.far]
         if any(holder not in self.site.homes for holder in holders):
             return None
         return min(holders, key=self.site.homes.index)
 
     def diagnostic(self, written: Mapping[ast.Node, tuple[float, float] | float]) -> Diagnostic:
-        """What to tell the author. `written` has the values of `nodes` at the first guesses, as far as known."""
+        """What to tell the author. `written`: the values of `nodes` at the first guesses, where known."""
         home, culprit = _name(self.site.home), self._culprit()
         owner = self._owner(culprit)
         subject = f"geometry of {home}" if self.rule == 1 else f"a constraint of {home}"

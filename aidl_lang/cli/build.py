@@ -42,8 +42,8 @@ class Outcome:
         """The outcome in a line."""
         model = self.compiled.model
         freedom = f", {_count(model.degrees, 'degree')} of freedom" if model and self.compiled.ok else ""
-        place = ", ".join(self.written) if self.written else f"{program}, nothing written"
-        return f"{place}: {self.compiled.status}{freedom}, {self.seconds:.2f} s"
+        place, remark = (", ".join(self.written), "") if self.written else (program, ", nothing written")
+        return f"{place}: {self.compiled.status}{freedom}{remark}, {self.seconds:.2f} s"
 
 
 def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
@@ -69,7 +69,10 @@ def build(arguments: argparse.Namespace) -> Outcome:
     compiled = pipeline.compile(source, world, params=params, show=show)
     written: tuple[str, ...] = ()
     if compiled.ok or (arguments.best_effort and compiled.drawing is not None):
-        data = [(target.name, compiled.export(target.suffix, arguments.show, timings=arguments.timings)) for target in outputs]
+        data = [
+            (target.name, compiled.export(target.suffix, arguments.show, timings=arguments.timings))
+            for target in outputs
+        ]
         for name, content in data:
             files.write(name, content)
         written = tuple(name for name, _ in data)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from aidl_lang.cli import files
 from aidl_lang.cli.report import UseError, exit_code, say, show
 from aidl_lang.diagnostics import Diagnostic, apply_fixes
-from aidl_lang.render import summary, to_dict
 from aidl_lang.source import SourceFile
 
 if TYPE_CHECKING:
@@ -47,6 +45,10 @@ def run(arguments: argparse.Namespace) -> int:
         if not arguments.json:
             _tell(name, checked)
     if arguments.json:
+        import json
+
+        from aidl_lang.render import to_dict
+
         document = {"ok": exit_code(found) == 0, "fixed": fixes, "diagnostics": [to_dict(d) for d in found]}
         print(json.dumps(document, indent=2, ensure_ascii=False))
     return exit_code(found)
@@ -88,6 +90,8 @@ def mend(source: SourceFile, world: DiskWorld) -> Checked:
 
 
 def _tell(name: str, checked: Checked) -> None:
+    from aidl_lang.render import summary
+
     for title in checked.fixes:
         say(f"{name}: fixed: {title}")
     show(checked.diagnostics)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from difflib import unified_diff
 
 from aidl_lang.cli import files
 from aidl_lang.cli.report import UseError, exit_code, say, show
@@ -54,6 +53,8 @@ def _deliver(name: str, source: SourceFile, text: str, check: bool, diff: bool) 
 
 
 def _diff(source: SourceFile, text: str) -> str:
+    from difflib import unified_diff
+
     lines = unified_diff(
         source.text.splitlines(keepends=True),
         text.splitlines(keepends=True),

@@ -12,7 +12,7 @@ from aidl_lang.cli.report import say
 STARTER = """\
 // A plate with two holes. `aidl compile {file}` draws it.
 solid {name} {{
-    param width = 80 in 40..200         // a knob: aidl compile {file} -D width=120
+    param width = 80 in 40..200  // a knob: aidl compile {file} -D width=120
 
     plate = rounded_rectangle(center: origin, width: width, height: 40, radius: 5)
 

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 from typing import TYPE_CHECKING
 
 from aidl_lang.cli import files
 from aidl_lang.cli.options import add_program
 from aidl_lang.cli.report import exit_code, show
-from aidl_lang.render import escape
 
 if TYPE_CHECKING:
     from aidl_lang.model import Knob
@@ -28,6 +26,8 @@ def run(arguments: argparse.Namespace) -> int:
     knobs, diagnostics = pipeline.knobs(files.read(arguments.file), files.world(arguments.file))
     show(diagnostics, quiet=True)
     if arguments.json:
+        import json
+
         print(json.dumps([_data(knob) for knob in knobs], indent=2, ensure_ascii=False))
     else:
         _print_table(knobs)
@@ -47,6 +47,8 @@ def _print_table(knobs: tuple[Knob, ...]) -> None:
 
 
 def _row(knob: Knob) -> tuple[str, ...]:
+    from aidl_lang.render import escape
+
     value = f"= {_value(knob.value)}{knob.unit}"
     cells = (knob.path, value, _domain(knob), (knob.doc or "").replace("\n", " "))
     return tuple(map(escape, cells))
@@ -67,4 +69,4 @@ def _value(value: object) -> str:
         return str(value).lower()
     if isinstance(value, float):
         return f"{value:g}"
-    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else str(value)
+    return f'"{value}"' if isinstance(value, str) else str(value)

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 from collections.abc import Iterable
 
 from aidl_lang.diagnostics import Diagnostic, Severity
-from aidl_lang.render import Style, render, wants_colour
 
 _FAMILY_OF_USE = "E09"
 
@@ -23,6 +21,10 @@ class UseError(Exception):
 
 def show(diagnostics: Iterable[Diagnostic], quiet: bool = False) -> None:
     """Print diagnostics for a reader, errors only if `quiet`."""
+    import shutil
+
+    from aidl_lang.render import Style, render, wants_colour
+
     style = Style(wants_colour(sys.stderr, os.environ))
     width = shutil.get_terminal_size((110, 24)).columns
     for diagnostic in diagnostics:

@@ -10,7 +10,6 @@ from aidl_lang.cli import files
 from aidl_lang.cli.build import build, targets
 from aidl_lang.cli.options import add_drawing, add_program
 from aidl_lang.cli.report import UseError, say
-from aidl_lang.render import one_line
 
 
 def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -42,6 +41,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _once(arguments: argparse.Namespace) -> None:
     """One run, told in one line. A file that is gone for a moment does not end the watch."""
+    from aidl_lang.render import one_line
+
     clock = time.strftime("%H:%M:%S")
     try:
         outcome = build(arguments)

@@ -6,6 +6,7 @@ Numbers carry 12 significant digits; the same program gives the same bytes.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -13,10 +14,11 @@ from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.export.numbers import significant
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.render.data import to_dict as diagnostic_dict
 from aidl_lang.solved import Box, SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.source import Span
 
 VERSION = 1
+_NUMBERS = re.compile(r"\[\n\s*[-+.\deE]+(?:,\n\s*[-+.\deE]+)*\n\s*\]")
 Json = dict[str, Any]
 
 _FIELDS = {
@@ -35,9 +37,11 @@ def to_json(
     diagnostics: Iterable[Diagnostic] = (),
     timings: Mapping[str, float] | None = None,
 ) -> str:
-    """The document as text, one top-level member per line group, ending in a line break."""
+    """The document as text with one member per line, lists of numbers in one line."""
     document = to_dict(model, drawing, diagnostics, timings)
-    return json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False) + "\n"
+    text = json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False)
+    # No JSON string holds a line break, so this pattern is never inside one.
+    return _NUMBERS.sub(lambda match: "".join(match[0].split()).replace(",", ", "), text) + "\n"
 
 
 def to_dict(
@@ -127,6 +131,7 @@ def _geometry(g: SolvedGeometry) -> Json:
     fields = _FIELDS.get(g.type)
     entry: Json = {"type": g.type}
     if fields is None:
+        entry["params"] = {name: list(v) if isinstance(v, tuple) else v for name, v in g.values.items()}
         entry["parts"] = {part.name: _geometry(part) for part in g.parts}
     else:
         entry |= {name: g.values[name] for name in fields if name in g.values}
@@ -142,30 +147,3 @@ def _pair(pair: Contact) -> Json:
     if pair.area is not None:
         entry["area"] = pair.area
     return entry
-
-
-def diagnostic_dict(d: Diagnostic) -> Json:
-    """A diagnostic with its place (absent if it has none), its hints and its fix."""
-    entry: Json = {"code": d.code, "severity": str(d.severity), "message": d.message}
-    if d.span is not None:
-        entry |= _place(d.span)
-    if d.label:
-        entry["label"] = d.label
-    if d.secondary:
-        entry["secondary"] = [_place(label.span) | {"label": label.text} for label in d.secondary]
-    entry["hints"] = list(d.hints)
-    if d.fix is not None:
-        edits = [_place(e.span) | {"replacement": e.replacement} for e in d.fix.edits]
-        entry["fix"] = {"title": d.fix.title, "edits": edits}
-    return entry
-
-
-def _place(span: Span) -> Json:
-    end_line, end_column = span.source.position(span.end)
-    return {
-        "file": span.source.name,
-        "line": span.line,
-        "column": span.column,
-        "end_line": end_line,
-        "end_column": end_column,
-    }

@@ -58,7 +58,8 @@ class Explainer:
         return self.first_free(candidates)
 
     def first_free(self, candidates: list[Text]) -> Text:
-        chosen = min(candidates, key=lambda c: sum(_overlap(c.box, t) for t in self.taken))
+        air = 0.2 * candidates[0].size
+        chosen = min(candidates, key=lambda c: sum(_overlap(_grown(c.box, air), t) for t in self.taken))
         self.taken.append(chosen.box)
         return chosen
 
@@ -100,6 +101,10 @@ def _places(box: Bounds, size: float) -> Iterator[tuple[Vec, str]]:
     yield (middle, bottom - size), "middle"
     yield (right + gap, (top + bottom) / 2 - 0.3 * size), "start"
     yield (left - gap, (top + bottom) / 2 - 0.3 * size), "end"
+
+
+def _grown(box: Bounds, by: float) -> Bounds:
+    return box[0] - by, box[1] - by, box[2] + by, box[3] + by
 
 
 def _overlap(a: Bounds, b: Bounds) -> float:
@@ -165,11 +170,12 @@ def _points(at: Explainer) -> Iterator[Mark]:
                     names[key].append(name)
     radius = 0.2 * at.font
     for p in places.values():
+        at.taken.append((p[0] - radius, p[1] - radius, p[0] + radius, p[1] + radius))
         yield Dot(p, radius, palette.POINT)
     if len(places) <= MANY:
         size = 0.6 * at.font
         for key, p in places.items():
-            spot = (p[0] - radius, p[1] - radius, p[0] + radius, p[1] + radius)
+            spot = (p[0] - radius, p[1] - 1.5 * radius, p[0] + radius, p[1] + 1.5 * radius)
             text = " = ".join(names[key][:2]) + (" …" if len(names[key]) > 2 else "")
             yield at.label(text, spot, palette.POINT, size)
 

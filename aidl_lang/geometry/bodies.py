@@ -72,10 +72,14 @@ class InnerLoop:
 
 @dataclass(frozen=True)
 class LooseCurves:
-    """Curves of a structure that bound no face, with their numbers in the network."""
+    """Curves of a structure that bound no face, with their numbers in the network.
+
+    `numbers` are those of all curves of the structure.
+    """
 
     structure: SolvedStructure
     curves: tuple[tuple[SolvedGeometry, int], ...]
+    numbers: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -136,7 +140,8 @@ class Bodies:
             return None
         own: OwnFaces = own_faces(self.network, shapes)
         if own.loose:
-            self.findings.append(LooseCurves(structure, tuple(own.loose)))
+            numbers = tuple(number for shape in shapes for _, number in shape.leaves)
+            self.findings.append(LooseCurves(structure, tuple(own.loose), numbers))
         if not own.faces:
             return None
         self._find_inner_loops(structure, own.faces)

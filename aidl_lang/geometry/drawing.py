@@ -17,11 +17,11 @@ from aidl_lang.geometry.curves import Arc, Circle, Curve, Ellipse, Line, Piece
 from aidl_lang.geometry.evaluate import Bounds, bounds
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
-from aidl_lang.geometry.network import Network, union_bounds
+from aidl_lang.geometry.network import CHORD, FINE_CHORD, Network, union_bounds
 from aidl_lang.geometry.notes import color_note, detached_notes, finding_note, unusable_note
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.seams import visible_seams
-from aidl_lang.geometry.trace import trace_all
+from aidl_lang.geometry.trace import Traced, trace_all
 from aidl_lang.solved import Scalar, SolvedGeometry, SolvedModel, SolvedStructure
 
 
@@ -111,13 +111,9 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     """The drawing of a model, and what is noteworthy about its curves and parts."""
     notes: list[Diagnostic] = []
     curves, shapes = _collect(model.root, notes)
-    network = Network(curves)
-    walk = Bodies(network, shapes)
-    masses = _root_masses(walk, model.root)
-    walk.sections.update((m.structure.path, m.section) for m in masses)
-    paths = [s.path for s in model.root.walk() if s.path in walk.sections]
-    outlines = trace_all(network, [walk.sections[path] for path in paths])
-    traced = dict(zip(paths, outlines, strict=True))
+    network, walk, masses, traced = _arranged(model.root, curves, shapes, CHORD)
+    if network.blurred:
+        network, walk, masses, traced = _arranged(model.root, curves, shapes, FINE_CHORD)
     regions = {path: outline.region for path, outline in traced.items()}
     styles = _styles(model.root, notes)
     bodies = tuple(
@@ -140,6 +136,20 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     return Drawing(bodies, regions, seams, strokes, plans, pairs, styles, union_bounds(boxes)), ordered(notes)
 
 
+def _arranged(
+    root: SolvedStructure, curves: list[Curve], shapes: dict[str, list[Shape]], chord: float
+) -> tuple[Network, Bodies, list[Mass], dict[str, Traced]]:
+    """The bodies, and the outlines of everything that has material or cuts, in order of writing."""
+    network = Network(curves, chord)
+    walk = Bodies(network, shapes)
+    masses = _root_masses(walk, root)
+    walk.sections.update((m.structure.path, m.section) for m in masses)
+    paths = [s.path for s in root.walk() if s.path in walk.sections]
+    outlines = trace_all(network, [walk.sections[path] for path in paths])
+    traced = dict(zip(paths, outlines, strict=True))
+    return network, walk, [m for m in masses if traced[m.structure.path].region], traced
+
+
 def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[list[Curve], dict[str, list[Shape]]]:
     """All curves that can be drawn, numbered, and by structure the shapes they belong to."""
     curves: list[Curve] = []
@@ -148,15 +158,19 @@ def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[list[Curve
         own = shapes.setdefault(structure.path, [])
         for geometry in structure.geometry:
             leaves = []
+            vanished = []
             for leaf in _leaves(geometry):
                 usable = _usable(leaf.curve) if leaf.curve else None
                 if usable is None:
-                    notes.append(unusable_note(structure, leaf))
+                    vanished.append(leaf)
                     continue
                 leaves.append((leaf, len(curves)))
                 curves.append(usable)
             if leaves:
+                # A shape may have edges of no length (a rounded rectangle with half-round ends).
                 own.append(Shape(geometry, tuple(leaves)))
+            else:
+                notes += [unusable_note(structure, leaf) for leaf in vanished[:1]]
     return curves, shapes
 
 

@@ -138,6 +138,27 @@ def _within(curve: Piece, t: float) -> float:
     return t % 1.0 if is_closed(curve) else min(1.0, max(0.0, t))
 
 
+def self_crossing(curve: Bezier) -> tuple[float, float] | None:
+    """The two parameters at which a cubic passes one point, if its loop is within 0..1.
+
+    With p = a t³ + b t² + c t + d and u = s + t, v = s t, p(s) = p(t) gives a (u² - v) + b u + c = 0.
+    """
+    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = curve.p0, curve.p1, curve.p2, curve.p3
+    ax, ay = x3 - 3 * x2 + 3 * x1 - x0, y3 - 3 * y2 + 3 * y1 - y0
+    bx, by = 3 * (x2 - 2 * x1 + x0), 3 * (y2 - 2 * y1 + y0)
+    cx, cy = 3 * (x1 - x0), 3 * (y1 - y0)
+    across = ax * by - ay * bx
+    if abs(across) <= 1e-12 * (math.hypot(ax, ay) * math.hypot(bx, by) + 1e-300):
+        return None
+    u = -(ax * cy - ay * cx) / across
+    v = u * u + ((ax * bx + ay * by) * u + ax * cx + ay * cy) / (ax * ax + ay * ay)
+    root = u * u - 4 * v
+    if root <= 1e-12:
+        return None
+    s, t = (u - math.sqrt(root)) / 2, (u + math.sqrt(root)) / 2
+    return (s, t) if s > 1e-9 and t < 1 - 1e-9 else None
+
+
 def sorted_cuts(cuts: list[tuple[float, int]]) -> list[tuple[float, int]]:
     """Cuts in order of their parameter, a node that follows itself kept once."""
     cuts = sorted(cuts)

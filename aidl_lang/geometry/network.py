@@ -29,11 +29,13 @@ from aidl_lang.geometry.evaluate import (
     points,
     round_range,
 )
-from aidl_lang.geometry.intersect import intersections, sorted_cuts
+from aidl_lang.geometry.intersect import intersections, self_crossing, sorted_cuts
 
 RELATIVE_TOLERANCE = 1e-6
 CHORD = 1e-4
 """Largest distance of a chord from its curve, relative to the size of the drawing."""
+FINE_CHORD = CHORD / 100
+"""For curves that come so close to each other that their chords cross."""
 GRID = 1e-8
 """Manifold rounds plane coordinates to this step; the drawing is scaled to about 16 units before."""
 
@@ -82,17 +84,23 @@ class Weld:
 
 
 class Network:
-    """Nodes and edges of a set of curves. `uses[i]` lists the edges of curve i in its own direction."""
+    """Nodes and edges of a set of curves. `uses[i]` lists the edges of curve i in its own direction.
 
-    def __init__(self, curves: Sequence[Piece]) -> None:
+    `blurred` is set once a result had a vertex that no curve owns: chords crossed where their curves do not.
+    Then a smaller `chord` (relative to the size) gives the exact result.
+    """
+
+    def __init__(self, curves: Sequence[Piece], chord: float = CHORD) -> None:
         self.curves = list(curves)
         self.boxes = [bounds(c) for c in self.curves]
         self.box = union_bounds(self.boxes)
         left, bottom, right, top = self.box
         self.size = max(right - left, top - bottom) or 1.0
+        self.chord = chord * self.size
         self.tolerance = RELATIVE_TOLERANCE * self.size
         self.middle = (left + right) / 2, (bottom + top) / 2
         self.scale = 2.0 ** math.floor(math.log2(16 / self.size))
+        self.blurred = False
         self._weld, self._middles = Weld(self.tolerance), Weld(self.tolerance)
         self.nodes = self._weld.points
         self.node = self._weld.number
@@ -114,6 +122,10 @@ class Network:
             self.node(p)
         cuts = [[(0.0, self.node(start)), (1.0, self.node(end))] for start, end in both]
         own_ends = [(c[0][1], c[1][1]) for c in cuts]
+        for curve, own in zip(self.curves, cuts, strict=True):
+            if isinstance(curve, Bezier) and (loop := self_crossing(curve)) is not None:
+                node, middle = self.node(point(curve, loop[0])), sum(loop) / 2
+                own += [(loop[0], node), (middle, self.node(point(curve, middle))), (loop[1], node)]
         for i, j in near_pairs(self.boxes, self.tolerance):
             self._cut_pair(i, j, cuts, own_ends)
         return [self._split(i, sorted_cuts(c)) for i, c in enumerate(cuts)]
@@ -156,7 +168,7 @@ class Network:
         if known is not None:
             edge = self.edges[known]
             return known, self._same_way(edge, number, t0, t1, start)
-        count = _segments(curve, t1 - t0, CHORD * self.size)
+        count = _segments(curve, t1 - t0, self.chord)
         ts = t0 + (t1 - t0) * np.arange(1, count) / count
         inner = self.to_grid(points(curve, ts))
         self._known[key] = len(self.edges)
@@ -228,7 +240,8 @@ class Network:
         return float(x), float(y)
 
     def nearest_edge(self, vertex: NDArray[np.float64]) -> int:
-        """The edge whose polyline passes nearest to a point in grid units."""
+        """The edge whose polyline passes nearest to a vertex that no curve owns."""
+        self.blurred = True
         if self._sides is None:
             numbers: list[int] = []
             lines: list[NDArray[np.float64]] = []

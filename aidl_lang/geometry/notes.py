@@ -148,7 +148,7 @@ End = tuple[SolvedGeometry, Vec, str]
 def _gap(finding: LooseCurves, network: Network) -> tuple[End, End] | None:
     """The open end that is nearest to another one, ends of one curve only if there are no others."""
     meeting: dict[int, int] = {}
-    for use in network.uses:
+    for use in (network.uses[number] for number in finding.numbers):
         for node in {n for edge, _ in use for n in (network.edges[edge].start, network.edges[edge].end)}:
             meeting[node] = meeting.get(node, 0) + 1
     open_ends: list[End] = []

@@ -100,13 +100,20 @@ def covers(cover: Section, section: Section) -> bool:
 
 
 def inside_mask(section: Section, spots: Sequence[Polygon]) -> NDArray[np.bool_]:
-    """Which points in grid units lie inside, by the crossings of a ray to the right."""
-    p = np.array(spots).reshape(-1, 1, 2)
+    """Which points in grid units lie inside."""
+    p = np.array(spots).reshape(-1, 2)
     inside = np.zeros(len(p), dtype=np.bool_)
     for polygon in section.to_polygons():
-        a, b = polygon[None], np.roll(polygon, -1, axis=0)[None]
-        straddle = (a[..., 1] > p[..., 1]) != (b[..., 1] > p[..., 1])
-        rise = np.where(straddle, b[..., 1] - a[..., 1], 1.0)
-        x = a[..., 0] + (p[..., 1] - a[..., 1]) / rise * (b[..., 0] - a[..., 0])
-        inside ^= (np.count_nonzero(straddle & (x > p[..., 0]), axis=1) % 2).astype(np.bool_)
+        inside ^= in_polygon(polygon, p)
     return inside
+
+
+def in_polygon(polygon: Polygon, spots: Polygon) -> NDArray[np.bool_]:
+    """Which points lie inside a polygon, by the crossings of rays to the right (even-odd)."""
+    p = spots[:, None, :]
+    a, b = polygon[None], np.concatenate((polygon[1:], polygon[:1]))[None]
+    straddle = (a[..., 1] > p[..., 1]) != (b[..., 1] > p[..., 1])
+    rise = np.where(straddle, b[..., 1] - a[..., 1], 1.0)
+    x = a[..., 0] + (p[..., 1] - a[..., 1]) / rise * (b[..., 0] - a[..., 0])
+    odd: NDArray[np.bool_] = np.count_nonzero(straddle & (x > p[..., 0]), axis=1) % 2 == 1
+    return odd

@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import TAU, ends, is_closed, locate, part, point, points
+from aidl_lang.geometry.evaluate import TAU, ends, is_closed, nearest, part, point, points
 from aidl_lang.geometry.measures import length, loop_area
-from aidl_lang.geometry.network import NODE, UNKNOWN, Network
+from aidl_lang.geometry.network import NODE, UNKNOWN, Edge, Network
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import Section
+from aidl_lang.geometry.sections import Section, in_polygon
 
 T = TypeVar("T")
 STRAIGHT = -3
@@ -102,14 +102,10 @@ def _faces(loops: list[tuple[float, Loop]]) -> list[Face]:
 
 
 def _contains(loop: Loop, p: Vec) -> bool:
-    """Whether a point that is not on the loop lies inside, by the crossings of a ray to the right."""
+    """Whether a point that is not on the loop lies inside."""
     ts = np.linspace(0, 1, 65)
     polygon = np.concatenate([points(piece, ts)[:-1] for piece in loop.pieces])
-    a, b = polygon, np.concatenate((polygon[1:], polygon[:1]))
-    straddle = (a[:, 1] > p[1]) != (b[:, 1] > p[1])
-    a, b = a[straddle], b[straddle]
-    x = a[:, 0] + (p[1] - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0])
-    return bool(np.count_nonzero(x > p[0]) % 2)
+    return bool(in_polygon(polygon, np.array([p]))[0])
 
 
 def _first_point(loop: Loop) -> Vec:
@@ -146,7 +142,8 @@ def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[
     for begin, end in zip(starts, [*starts[1:], starts[0]], strict=True):
         edge = int(edges[begin])
         used.add(edge)
-        runs.append(_run(network, sides, edge, low + begin, low + end, low + (begin + 1) % (high - low)))
+        second, last = low + (begin + 1) % (high - low), low + (end - 1) % (high - low)
+        runs.append(_run(network, sides, edge, (low + begin, second), (low + end, last)))
     used.discard(STRAIGHT)
     result = []
     for simple in _split_at_pinches(_snapped(runs, network.tolerance)):
@@ -172,33 +169,42 @@ def _split_at_pinches(runs: list[Run]) -> list[list[Run]]:
     return loops
 
 
-def _run(network: Network, sides: Sides, number: int, begin: int, end: int, second: int) -> Run:
-    """The run along one edge from vertex `begin` by way of the vertex after it to vertex `end`."""
-    owner, place, vertices = sides.owner, sides.place, sides.vertices
-    first = int(place[begin]) if owner[begin] == NODE else None
-    last = int(place[end]) if owner[end] == NODE else None
-    start = network.nodes[first] if first is not None else network.position(vertices[begin])
-    stop = network.nodes[last] if last is not None else network.position(vertices[end])
+def _run(network: Network, sides: Sides, number: int, begin: tuple[int, int], end: tuple[int, int]) -> Run:
+    """The run along one edge; its ends are given with the vertices of the run beside them."""
+    place = sides.place
+    first, start = _spot(network, sides, begin[0])
+    last, stop = _spot(network, sides, end[0])
     if number == STRAIGHT:
         return Run(None, 0.0, 1.0, start, stop)
     edge = network.edges[number]
     if first is not None and last is not None and {first, last} == {edge.start, edge.end}:
         forward = first == edge.start
         if edge.start == edge.end:
-            forward = int(place[second]) < len(edge.inner) / 2
+            forward = int(place[begin[1]]) < len(edge.inner) / 2
         t0, t1 = (edge.t0, edge.t1) if forward else (edge.t1, edge.t0)
     else:
-        t0, t1 = (_parameter(network, edge.curve, edge.t0, edge.t1, p) for p in (start, stop))
+        t0, t1 = (_parameter(network, sides, edge, vertex, beside) for vertex, beside in (begin, end))
     return Run(edge.curve, t0, t1, start, stop)
 
 
-def _parameter(network: Network, curve: int, low: float, high: float, p: Vec) -> float:
-    """The parameter of p on a part of a curve, at its ends exactly."""
-    chord = 16 * network.size * 1e-4
-    t = locate(network.curves[curve], p, chord)
-    if t is None:
-        return low
-    return min(high, max(low, t))
+def _spot(network: Network, sides: Sides, vertex: int) -> tuple[int | None, Vec]:
+    """The node at a vertex, if there is one, and its place in millimetres."""
+    if sides.owner[vertex] == NODE:
+        node = int(sides.place[vertex])
+        return node, network.nodes[node]
+    return None, network.position(sides.vertices[vertex])
+
+
+def _parameter(network: Network, sides: Sides, edge: Edge, vertex: int, beside: int) -> float:
+    """Where a vertex lies on a part of a curve."""
+    node, p = _spot(network, sides, vertex)
+    if node in (edge.start, edge.end):
+        if edge.start != edge.end:
+            return edge.t0 if node == edge.start else edge.t1
+        # Both ends of the part are here: the one that the vertex beside it is near to.
+        t = nearest(network.curves[edge.curve], _spot(network, sides, beside)[1])
+        return edge.t0 if t < (edge.t0 + edge.t1) / 2 else edge.t1
+    return min(edge.t1, max(edge.t0, nearest(network.curves[edge.curve], p)))
 
 
 def _snapped(runs: list[Run], tolerance: float) -> list[Run]:

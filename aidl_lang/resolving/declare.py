@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, TypeAlias, TypeVar
 from aidl_lang import ast
 from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.library import signature
-from aidl_lang.names import find, fold, nearest
+from aidl_lang.names import fold, nearest
+from aidl_lang.resolving import complaints
 from aidl_lang.resolving.symbols import Scope, SymbolKind
 from aidl_lang.types import PARAMETER_TYPES, PRIMITIVES, Signature
 
@@ -32,11 +33,6 @@ def is_definition(node: ast.Node) -> bool:
     if isinstance(node, ast.Structure):
         return node.parameters is not None
     return isinstance(node, ast.FunctionDefinition | ast.ShapeDefinition | ast.ConstraintDefinition)
-
-
-def outer_name(name: str, known: Sequence[str] | frozenset[str]) -> str | None:
-    """The one of a few fixed words that a name means."""
-    return find(name, dict.fromkeys(known))
 
 
 def made_by(value: ast.Expression, scope: Scope) -> SymbolKind:
@@ -88,7 +84,7 @@ class Declarer:
                     self._callables(then.statements)
                     self._callables(otherwise.statements if otherwise else ())
                 case ast.Alias(name):
-                    self.scope.aliases[name.text] = self.resolver._enter(
+                    self.scope.aliases[name.text] = self.resolver.enter(
                         self.scope, name, SymbolKind.ALIAS, node
                     )
                 case (
@@ -105,11 +101,11 @@ class Declarer:
         made = signature(node, self._shape_types(node, shapes))
         name = node.name.text
         overloads = self.scope.callables.setdefault(name, [])
-        symbol = self.resolver._enter(self.scope, node.name, _definition_kind(node), node)
+        symbol = self.resolver.enter(self.scope, node.name, _definition_kind(node), node)
         for other in overloads:
             if _same_parameters(made, other) and other.node is not None:
                 earlier = self.resolver.resolution.of_definition[other.node]
-                self.resolver._declared_twice(symbol.declarations[0], earlier)
+                complaints.declared_twice(self.resolver, symbol.declarations[0], earlier)
                 break
         overloads.append(made)
 
@@ -126,7 +122,7 @@ class Declarer:
                 found.append(word.text)
                 continue
             like = nearest(word.text, [*PARAMETER_TYPES, *shapes])
-            self.resolver._report(
+            self.resolver.report(
                 "E0215",
                 f"`{word.text}` is not a type" + (f"; did you mean `{like[0]}`?" if like else ""),
                 word,
@@ -175,18 +171,17 @@ class Declarer:
         assert isinstance(self.scope.owner, ast.For)
         name, loop = node.name, self.scope.owner
         index = loop.variables[0].text
-        end = ast.Identifier("", span=name.span).span
-        self.resolver._report(
+        self.resolver.report(
             "E0208",
             f"`{name.text}` is made in every turn of this `for` and needs an index",
             name,
             label="one name for several members",
             hints=(f"`{name.text}[{index}]` gives each turn a member of its own",),
-            fix=Fix(f"write `{name.text}[{index}]`", (Edit(end, f"{name.text}[{index}]"),)),
+            fix=Fix(f"write `{name.text}[{index}]`", (Edit(name.span, f"{name.text}[{index}]"),)),
         )
 
     def _indexed(self, statements: Sequence[ast.Statement], branch: Branch, local: set[str]) -> None:
-        """The members that a loop declares for the structure around it; `local` are the names of its turns."""
+        """What a loop declares for the structure around it; `local` are the names of its turns."""
         local = local | {
             s.name.text
             for s in statements
@@ -212,7 +207,7 @@ class Declarer:
 
     def _same_index(self, node: ast.Structure | ast.Assign, indices: Sequence[ast.Expression]) -> None:
         name = node.name.text
-        self.resolver._report(
+        self.resolver.report(
             "E0208",
             f"`{name}` gets the same index in every turn of this `for`",
             indices[-1],
@@ -232,7 +227,7 @@ class Declarer:
         numbers = tuple(i.value for i in indices if isinstance(i, ast.Number))
         place = numbers if len(numbers) == len(indices) and indices else None
         if known is None:
-            symbol = self.resolver._enter(self.scope, name, kind, node)
+            symbol = self.resolver.enter(self.scope, name, kind, node)
             symbol.is_array = bool(indices)
             self.scope.values[name.text] = symbol
             self.branches[name.text] = [(branch, place)]
@@ -242,7 +237,7 @@ class Declarer:
                 continue
             if bool(indices) and known.is_array and (place is None or place != other_place):
                 continue
-            self.resolver._declared_twice(name, known)
+            complaints.declared_twice(self.resolver, name, known)
             break
         self.branches.setdefault(name.text, []).append((branch, place))
         self.resolver.resolution.uses[name] = known

@@ -1,7 +1,7 @@
 """Imports: the files that a program stands on, each read and parsed once.
 
-A path is relative to the file that imports it and may not leave the project, which is the folder of the program and
-all below it. What is wrong inside an imported file is reported at its place there.
+A path is relative to the file that imports it and may not leave the project, which is the folder of the
+program and all below it. What is wrong inside an imported file is reported at its place there.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ class _Loader:
 
     def _read(self, statement: ast.Import, path: str) -> ast.Module | None:
         if len(self.known) > MAX_FILES or len(self.open) > MAX_FILES // 4:
-            self._report("E0214", f"a program may import at most {MAX_FILES} files", statement.path)
+            self._report("E0804", f"a program may import at most {MAX_FILES} files", statement.path)
             return None
         text = self._text(statement, path)
         if text is None:
@@ -96,7 +96,7 @@ class _Loader:
         self.characters += len(text)
         if self.characters > MAX_CHARACTERS:
             limit = f"{MAX_CHARACTERS:,} characters"
-            self._report("E0214", f"what a program imports may have at most {limit}", statement.path)
+            self._report("E0804", f"what a program imports may have at most {limit}", statement.path)
             return None
         from aidl_lang.parser import parse
 

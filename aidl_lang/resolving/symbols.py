@@ -1,12 +1,12 @@
 """What names stand for, and the scopes in which they are looked up before anything is built.
 
-A scope belongs to a structure, a definition, a turn of a `for`, a comprehension or a file. Values and callables
-live apart: `slot(` is looked up among callables only, `slot` among values only.
+A scope belongs to a structure, a definition, a turn of a `for`, a comprehension or a file. Values and
+callables live apart: `slot(` is looked up among callables only, `slot` among values only.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -35,6 +35,12 @@ class SymbolKind(StrEnum):
     WORD = "word"
     FIELD = "field"
 
+    @property
+    def with_article(self) -> str:
+        if self is SymbolKind.GEOMETRY:
+            return str(self)
+        return f"an {self}" if self[0] in "aeiou" else f"a {self}"
+
 
 UNKNOWNS = frozenset({SymbolKind.VAR, SymbolKind.GEOMETRY, SymbolKind.STRUCTURE})
 """What exists only from its line on, and what only its own structure may build on."""
@@ -43,11 +49,10 @@ UNKNOWNS = frozenset({SymbolKind.VAR, SymbolKind.GEOMETRY, SymbolKind.STRUCTURE}
 @dataclass(eq=False)
 class Symbol:
     """
-    node          the definition (of an array or of branches of an `if`: the first one), None for what is built in
+    node          the definition, of several the first; None for what is built in
     owner         the structure or other definition whose body declares it, or the file
     declarations  the names at all places that declare it, in text order
     is_array      declared with indices
-    makes         for an instance: the template or shape it is made from
     """
 
     name: str
@@ -66,7 +71,9 @@ class Scope:
     owner      the node that opens it
     homes      the structures around, outermost (the file) first; geometry declared here belongs to the last
     callables  definitions of this scope under each name, in the order of writing
-    known      callables that are looked up after those of this scope and count to it (of the library)
+    spaces     what `import … as name` names, by that name
+    own_name   of a structure, by which it is known inside
+    missing    names that imports which failed would have brought; None when they could have been any
     """
 
     owner: ast.Node
@@ -77,6 +84,7 @@ class Scope:
     aliases: dict[str, Symbol] = field(default_factory=dict)
     spaces: dict[str, Scope] = field(default_factory=dict)
     own_name: Symbol | None = None
+    missing: set[str] | None = field(default_factory=set)
 
     def chain(self) -> Iterator[Scope]:
         scope: Scope | None = self
@@ -99,7 +107,9 @@ class Scope:
         return None
 
     def container(self) -> Scope:
-        """The scope that gets what is declared here as its members: that of the structure or definition around."""
+        """The scope that gets what is declared here as its members: that of the structure or definition
+        around.
+        """
         scope = self
         while isinstance(scope.owner, ast.For) and scope.parent is not None:
             scope = scope.parent
@@ -148,5 +158,14 @@ class Scope:
     def callable_names(self) -> list[str]:
         return [name for scope in self.chain() for name in (*scope.callables, *scope.aliases)]
 
+    def may_be_missing(self, name: str) -> bool:
+        """Whether a name may have been in a file that could not be imported, which was reported."""
+        return any(scope.missing is None or name in scope.missing for scope in self.chain())
+
     def near_values(self, name: str) -> list[str]:
         return nearest(name, [*self.visible(), "origin", "x_axis", "y_axis", "self", "pi"])
+
+
+def word_meant(name: str, known: Iterable[str]) -> str | None:
+    """The one of a few fixed words that a name means."""
+    return find(name, dict.fromkeys(known))

@@ -26,15 +26,26 @@ THOROUGH = 5
 
 
 def explain(
-    hierarchy: Hierarchy, group: int, violated: Sequence[int], scope: Scope, before: dict[int, float]
+    hierarchy: Hierarchy,
+    group: int,
+    violated: Sequence[int],
+    scope: Scope,
+    before: dict[int, float],
+    best: dict[int, float],
 ) -> GroupFailure:
-    """Why the constraints of `scope` cannot hold with its unknowns free, starting from `before`."""
+    """Why the constraints of `scope` cannot hold with its unknowns free, starting from `before`.
+
+    `best` is the closest that the stages came: where no step leads on, the gradients of the rows that are
+    violated cancel, so that the culprits are among these.
+    """
     if hierarchy.timed_out:
         return GroupFailure(group, Failure.TIMED_OUT, tuple(violated), False)
     if not hierarchy.settings.explain:
         return GroupFailure(group, Failure.NOT_CONVERGED, tuple(violated), False)
+    hierarchy.values.assign(best.items())
+    suspects = [index for index in scope.constraints if not hierarchy.satisfied(index)]
     search = _Search(hierarchy, scope, before)
-    conflict = search.conflict()
+    conflict = search.conflict(suspects)
     minimal = not search.clock.expired and search.is_minimal(conflict)
     reason = Failure.CONTRADICTORY if search.contradicts(conflict) else Failure.NOT_CONVERGED
     return GroupFailure(group, reason, tuple(sorted(conflict)), minimal)
@@ -46,9 +57,10 @@ class _Search:
         self.clock = Clock(min(SECONDS, hierarchy.clock.left / 2.0))
         self._ends: dict[tuple[int, ...], End] = {}
 
-    def conflict(self) -> list[int]:
-        """A set that cannot hold together; minimal unless the time ran out."""
-        return self._reduce([], False, self._connected())
+    def conflict(self, suspects: list[int]) -> list[int]:
+        """A set that cannot hold together, among `suspects` if possible; minimal unless the time ran out."""
+        candidates = self._connected() if self._holds(suspects) else suspects
+        return self._reduce([], False, candidates)
 
     def is_minimal(self, conflict: Sequence[int]) -> bool:
         return all(self._holds([other for other in conflict if other != index]) for index in conflict)
@@ -98,6 +110,6 @@ class _Search:
     def _try(self, constraints: tuple[int, ...], restarts: int) -> End:
         hierarchy = self.hierarchy
         hierarchy.values.assign(self.before.items())
-        end = hierarchy.attempt(replace(self.scope, constraints=constraints), restarts).end
+        end = hierarchy.attempt(replace(self.scope, constraints=constraints), restarts, self.clock).end
         hierarchy.values.assign(self.before.items())
         return end

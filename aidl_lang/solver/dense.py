@@ -20,6 +20,8 @@ NOISE = 1e-10
 """Part of a right-hand side, in units of its rows, that is below what any row is asked to meet."""
 INDEPENDENT = 1e-4
 """Least pivot of Cholesky's method, relative to the greatest, at which no row is in doubt."""
+LARGE = 3000
+"""Number of entries above which damped steps are solved for one by one."""
 SMALL = 300
 """Number of entries below which singular values cost no more than the alternative."""
 
@@ -89,22 +91,31 @@ def independent_rows(matrix: Floats) -> bool:
 
 
 class DampedSteps:
-    """The steps -(JᵀJ + mu I)⁻¹ Jᵀ r for any mu.
+    """The steps -(JᵀJ + mu I)⁻¹ Jᵀ r of Levenberg and Marquardt at one place, for any mu.
 
-    largest  the greatest eigenvalue of JᵀJ, which mu is measured by
+    largest  about the greatest eigenvalue of JᵀJ, which mu is measured by
     slope    norm of Jᵀ r, zero where no step leads down
     """
 
     def __init__(self, jacobian: Floats, residuals: Floats) -> None:
-        u, self._sigma, self._vt = np.linalg.svd(jacobian, full_matrices=False)
-        self._target = u.T @ residuals
-        self.largest = float(self._sigma.max(initial=0.0)) ** 2
-        self.slope = float(np.linalg.norm(self._sigma * self._target))
+        self._jacobian, self._residuals = jacobian, residuals
+        self._small = jacobian.size <= LARGE
+        if self._small:
+            u, self._sigma, self._vt = np.linalg.svd(jacobian, full_matrices=False)
+            self._target = u.T @ residuals
+            self.largest = float(self._sigma.max(initial=0.0)) ** 2
+        else:
+            self._gram = jacobian @ jacobian.T
+            self.largest = float(np.abs(self._gram).sum(axis=1).max())
+        self.slope = float(np.linalg.norm(jacobian.T @ residuals))
 
     def step(self, mu: float) -> Floats:
-        shrunk = self._sigma / (self._sigma * self._sigma + mu) * self._target
-        step: Floats = -(shrunk @ self._vt)
-        return step
+        if self._small:
+            shrunk = self._sigma / (self._sigma * self._sigma + mu) * self._target
+            step: Floats = -(shrunk @ self._vt)
+            return step
+        damped = self._gram + max(mu, 1e-10 * self.largest) * np.eye(len(self._gram))
+        return np.asarray(-(self._jacobian.T @ np.linalg.solve(damped, self._residuals)))
 
 
 def null_space(matrix: Floats) -> Floats:

@@ -150,10 +150,11 @@ class Hierarchy:
             holds(row, self.values, self.settings.tolerance) for row in self.problem.constraints[index].rows
         )
 
-    def attempt(self, scope: Scope, restarts: int) -> Verdict:
+    def attempt(self, scope: Scope, restarts: int, clock: Clock | None = None) -> Verdict:
+        """Tries to satisfy the constraints of `scope` as hard ones; leaves `values` at what was reached."""
         rows = self.rows(scope.constraints)
         task = Task(rows, [0.0] * len(rows), scope.free, restarts)
-        return attempt(task, self.values, self.problem.scale, self.settings, self.clock)
+        return attempt(task, self.values, self.problem.scale, self.settings, clock or self.clock)
 
     def save(self, unknowns: Iterable[int]) -> dict[int, float]:
         return {unknown: self.values.unknowns[unknown] for unknown in unknowns}
@@ -259,7 +260,7 @@ class _Group:
         self, violated: list[int], everything: Scope, before: dict[int, float], best: dict[int, float]
     ) -> None:
         hierarchy = self.hierarchy
-        failure = conflicts.explain(hierarchy, self.group, violated, everything, before)
+        failure = conflicts.explain(hierarchy, self.group, violated, everything, before, best)
         hierarchy.failures.append(failure)
         if self._leave_out() is not None:
             return

@@ -33,6 +33,11 @@ POLISHING_STEPS = 40
 MEMORY = 5
 RESTARTS = (1e-3, 0.03, 0.3, 1.0, 3.0)
 """Sizes of the perturbations tried from a singular start, relative to the greatest residual."""
+CONVINCING = 2
+SAME = 1e-6
+"""So many restarts that end with the same violation (relatively) are taken for proof that there is no less."""
+COSTLY = 40_000
+"""Entries of the Jacobian above which one restart must do."""
 GOLDEN = 0.6180339887498949
 SILVER = 0.4142135623730951
 STALLED = 0.99
@@ -150,12 +155,16 @@ def solve(
     best = solver.run(np.zeros(system.size) if start is None else start)
     if best.converged or (system.linear and best.end is End.INFEASIBLE):
         return best
+    if len(system.origin) * len(system.inequality) > COSTLY:
+        restarts = min(restarts, 1)
+    agreeing = 0
     for turn, amplitude in enumerate(RESTARTS[:restarts]):
-        if clock.expired:
+        if clock.expired or agreeing == CONVINCING:
             break
         again = solver.run(perturbation(system.size, turn) * amplitude * solver.reach)
         if again.converged:
             return again
+        agreeing += again.end is best.end and abs(again.violation - best.violation) <= SAME * best.violation
         if again.violation < 0.99 * best.violation:
             best = again
     return best

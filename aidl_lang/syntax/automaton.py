@@ -54,7 +54,7 @@ class Automaton:
             rule = rules[~target]
             size = rule.size
             if size == 1 and rule.passes == 0:
-                # Chains of these (a name is a product is a sum is …) are most of the work: take them in one step.
+                # Chains of these (a name is a product is a sum is …) are most of the work: one step for all.
                 step = (states[-2], state, kind)
                 if (reached := unit_steps.get(step)) is None:
                     reached = unit_steps[step] = self._unit_chain(*step)

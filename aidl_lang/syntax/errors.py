@@ -33,6 +33,7 @@ _QUESTIONS: tuple[Callable[[Trouble], Problem | None], ...] = (
     missing.three_coordinates,
     missing.missing_comma,
     missing.missing_equals,
+    missing.import_without_path,
     missing.missing_value,
     missing.missing_block,
     missing.bare_value,

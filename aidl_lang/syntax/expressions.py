@@ -168,7 +168,7 @@ class _Generator:
 
 
 def arguments_of(value: Any) -> tuple[ast.Argument, ...]:
-    """The arguments of a call, whose only one may be a comprehension without its brackets: `sum(a for a in b)`."""
+    """The arguments of a call; a comprehension may be its only one without brackets: `sum(a for a in b)`."""
     if isinstance(value, _Generator):
         return (ast.Argument(None, value.comprehension(value.span), span=value.span),)
     return tuple(value)

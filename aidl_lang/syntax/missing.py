@@ -5,7 +5,7 @@ from __future__ import annotations
 from aidl_lang.diagnostics import Diagnostic, Label
 from aidl_lang.kinds import kind_of
 from aidl_lang.source import Span
-from aidl_lang.syntax.tokens import END, Token
+from aidl_lang.syntax.tokens import END, Token, begins_line
 from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
 from aidl_lang.syntax.words import STATEMENT_WORDS, describe
 
@@ -17,7 +17,7 @@ _VALUE_STARTS = frozenset(
 _EXAMPLE_VALUE = {"param": "80", "var": "5", "let": "w / 2"}
 
 
-# --- Brackets ------------------------------------------------------------------------------------------------
+# --- Brackets -------------------------------------------------------------------------------------
 
 
 def wrong_closer(t: Trouble) -> Problem | None:
@@ -70,7 +70,8 @@ def unclosed_block(t: Trouble) -> Problem | None:
     blocks = [token for token in t.automaton.open_brackets() if token.kind == "{"]
     if not blocks:
         return None
-    opener, place = _misindented(t, blocks) or (blocks[-1], t.gap())
+    opener = _misindented(t, blocks[0]) or blocks[-1]
+    place = _place_for_brace(t, opener)
     indent = " " * t.indentation(opener.start)
     closer = f"\n{indent}}}"
     return Problem(
@@ -86,22 +87,34 @@ def unclosed_block(t: Trouble) -> Problem | None:
     )
 
 
-def _misindented(t: Trouble, blocks: list[Token]) -> tuple[Token, Span] | None:
-    """The innermost block with a line in it that is indented no deeper than its head, and the place before that."""
-    for opener in reversed(blocks):
-        head = t.indentation(opener.start)
-        first_line = t.source.position(opener.start)[0]
-        last = opener
-        for token in t.tokens:
-            if token.start <= opener.start:
-                continue
-            line, column = t.source.position(token.start)
-            if line > first_line and t.source.line(line)[: column - 1].strip() == "" and column - 1 <= head:
-                if token.kind in ("}", END):
-                    break
-                return opener, Span(t.source, last.end, last.end)
-            last = token
+def _misindented(t: Trouble, outermost: Token) -> Token | None:
+    """The first block that ends with a brace indented less than the line on which it begins."""
+    opened: list[Token] = []
+    for token in t.tokens:
+        if token.kind == "{" and token.start >= outermost.start:
+            opened.append(token)
+        elif token.kind == "}" and opened:
+            opener = opened.pop()
+            if begins_line(t.source.text, token.start) and t.indentation(token.start) < t.indentation(
+                opener.start
+            ):
+                return opener
     return None
+
+
+def _place_for_brace(t: Trouble, opener: Token) -> Span:
+    """The end of the last line in a block before one that is indented no deeper than its head."""
+    head = t.indentation(opener.start)
+    last = opener
+    for token in t.tokens:
+        if token.start <= opener.start:
+            continue
+        if (
+            begins_line(t.source.text, token.start) and t.indentation(token.start) <= head
+        ) or token.kind == END:
+            break
+        last = token
+    return Span(t.source, last.end, last.end)
 
 
 def stray_closer(t: Trouble) -> Problem | None:
@@ -169,7 +182,7 @@ def stray_comma(t: Trouble) -> Problem | None:
     )
 
 
-# --- Equals signs --------------------------------------------------------------------------------------------
+# --- Equals signs ---------------------------------------------------------------------------------
 
 
 def equation_for_definition(t: Trouble) -> Problem | None:
@@ -252,7 +265,7 @@ def missing_equals(t: Trouble) -> Problem | None:
     )
 
 
-# --- Statements ----------------------------------------------------------------------------------------------
+# --- Statements -----------------------------------------------------------------------------------
 
 
 def missing_value(t: Trouble) -> Problem | None:
@@ -281,6 +294,22 @@ def missing_value(t: Trouble) -> Problem | None:
 
 def _lacking(t: Trouble, message: str) -> Problem:
     return Problem(Diagnostic("E0103", message, t.span(t.before), "nothing follows"))
+
+
+def import_without_path(t: Trouble) -> Problem | None:
+    """`import gears`"""
+    if t.first.kind != "import" or t.before is None or t.before.kind != "NAME" or not t.accepts("from"):
+        return None
+    name = t.before.text
+    return Problem(
+        Diagnostic(
+            "E0103",
+            f"`import {name}` does not say from which file",
+            t.span(t.first, t.before),
+            "a file is named by its path, in quotes",
+            hints=(f'`import "{name}.aidl"` for all of it, `import {name} from "parts.aidl"` for one name',),
+        )
+    )
 
 
 def nameless_structure(t: Trouble) -> Problem | None:

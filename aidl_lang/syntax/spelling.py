@@ -8,9 +8,18 @@ from aidl_lang.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.source import Span
 from aidl_lang.syntax.tokens import END, UNKNOWN, Token, tokenize
 from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
-from aidl_lang.syntax.words import FOREIGN_WORDS, SIGNS, STATEMENT_WORDS, UNIT_WORDS, UNITS, example
+from aidl_lang.syntax.words import (
+    FOREIGN_WORDS,
+    QUOTES,
+    SIGNS,
+    SINGLE_QUOTES,
+    STATEMENT_WORDS,
+    UNIT_WORDS,
+    UNITS,
+    example,
+)
 
-# --- Characters ----------------------------------------------------------------------------------------------
+# --- Characters -----------------------------------------------------------------------------------
 
 
 def unclosed_comment(t: Trouble) -> Problem | None:
@@ -84,7 +93,7 @@ def foreign_character(t: Trouble) -> Problem | None:
     if t.token.kind != UNKNOWN:
         return None
     char = t.token.text
-    if char in "“”„‘’‚«»":
+    if char in QUOTES:
         return _curly_quote(t)
     sign, words = SIGNS.get(char, (None, ""))
     point = "" if char.isprintable() else f" (U+{ord(char):04X})"
@@ -97,18 +106,18 @@ def foreign_character(t: Trouble) -> Problem | None:
         fix = replaced(f"write `{sign}`", t.span(), sign if not sign.isalpha() else f" {sign} ")
     stand_in = (t.token._replace(kind=sign, text=sign),) if sign else ()
     hints = (words,) if words else ()
-    return Problem(
-        Diagnostic("E0108", message, t.span(), hints=hints, fix=fix),
-        Repair(t.position, t.position + 1, stand_in),
-    )
+    repair = Repair(t.position, t.position + 1, stand_in)
+    if not stand_in and t.complete and t.following.kind != END:
+        repair = None  # it stood for something, and what follows makes no sense without
+    return Problem(Diagnostic("E0108", message, t.span(), hints=hints, fix=fix), repair)
 
 
 def _curly_quote(t: Trouble) -> Problem:
     """Text in typographic quotes: the fix makes both of them straight."""
-    quote = "'" if t.token.text in "‘’‚" else '"'
+    quote = "'" if t.token.text in SINGLE_QUOTES else '"'
     line_end = t.source.text.find("\n", t.token.start)
     line_end = len(t.source.text) if line_end < 0 else line_end
-    close = next((i for i in range(t.token.end, line_end) if t.source.text[i] in "“”„‘’‚«»"), None)
+    close = next((i for i in range(t.token.end, line_end) if t.source.text[i] in QUOTES), None)
     edits = [Edit(t.span(), quote)]
     stop, stand_in = t.position + 1, tuple[Token, ...]()
     if close is not None:
@@ -206,7 +215,7 @@ def operator_spelling(t: Trouble) -> Problem | None:
     return None
 
 
-# --- Words ---------------------------------------------------------------------------------------------------
+# --- Words ----------------------------------------------------------------------------------------
 
 
 def foreign_statement(t: Trouble) -> Problem | None:
@@ -239,10 +248,10 @@ def reserved_word(t: Trouble) -> Problem | None:
     tables = t.automaton.tables
     token, at = t.token, t.position
     before = t.before
-    if len(t.statement) == 1 and before is not None and before.kind in tables.reserved:
+    alone = len(t.statement) == 1 and before is not None and before.kind in tables.reserved
+    if alone and before is not None and token.kind in ("=", ".", "[", "==", "<=", ">=", ":"):
         # `shape = circle(…)`: the word was taken for what it is, and the trouble is what follows.
-        if token.kind in ("=", ".", "[", "==", "<=", ">=", ":") and before.kind != "import":
-            token, at = before, t.position - 1
+        token, at = before, t.position - 1
     if token.kind not in tables.reserved or (at == t.position and not _used_as_name(t)):
         return None
     word = token.text

@@ -27,8 +27,8 @@ _FORMAT = 3  # of the cached data: to be raised when the classes below change
 class Rule:
     """A production: `size` symbols become one `origin`.
 
-    `action` names the builder's method for it. Without one the rule makes no node: `passes` is the position of
-    the one symbol whose value it hands on, or None where it gathers the values of its symbols in a list.
+    `action` names the builder's method for it. Without one the rule makes no node: `passes` is the position
+    of the one symbol whose value it hands on, or None where it gathers the values of its symbols in a list.
     `kept` are the positions of the symbols that have a value.
     """
 
@@ -44,9 +44,9 @@ class Tables:
     """An LALR(1) automaton. Terminals go by their text where it is fixed (`==`, `param`), else by their name;
     the symbols of the grammar's rules stand in angle brackets (`<param>`).
 
-    `actions[state][symbol]` is a state to go to, or `~r` (negative) for a reduction by `rules[r]`. `reserved` are
-    the words that CALL leaves out, `soft_words` those that are names wherever the grammar has no place for them;
-    in `statement_states` a statement may begin.
+    `actions[state][symbol]` is a state to go to, or `~r` (negative) for a reduction by `rules[r]`.
+    `reserved` are the words that CALL leaves out, `soft_words` those that are names wherever the grammar has
+    no place for them; in `statement_states` a statement may begin. `unit_steps` is filled while parsing.
     """
 
     start: int

@@ -45,54 +45,75 @@ class Tokens:
 def tokenize(source: SourceFile, start: int = 0, end: int | None = None) -> Tokens:
     """The tokens of a text or a part of it. Never fails: see UNKNOWN."""
     text, tables = source.text, load_tables()
-    match = _scanner().match
-    words, soft = tables.reserved | tables.soft_words, tables.soft_words
+    match, words, soft = _scanner().match, tables.reserved | tables.soft_words, tables.soft_words
     result = Tokens()
     tokens = result.tokens
     doc: list[str] = []
     position, length = start, len(text) if end is None else end
     while position < length:
-        if (found := match(text, position, length)) is None:
-            stop = _unknown_end(text, position, length)
-            tokens.append(Token(UNKNOWN, text[position:stop], position, stop))
-            position = stop
+        found = match(text, position, length)
+        if found is None:
+            token = _unknown(text, position, length)
+        elif (kind := found.lastgroup) == "SPACE":
+            position = found.end()
             continue
-        kind, stop, word = found.lastgroup or UNKNOWN, found.end(), found.group()
-        if kind == "SPACE":
-            position = stop
+        elif kind == "COMMENT":
+            _take_comment(source, position, found.group(), result.comments, doc)
+            position = found.end()
             continue
-        if kind == "COMMENT":
-            result.comments.append(Comment(Span(source, position, stop), word))
-            if word.startswith("///") and not word.startswith("////") and begins_line(text, position):
-                doc.append(word[3:].removeprefix(" ").rstrip())
-            position = stop
-            continue
-        touches = tokens and tokens[-1].kind == "NUMBER" and tokens[-1].end == position
-        if kind == "NAME":
-            if word in words:
-                kind = word
-            # The grammar's CALL, read as what it is: a name that is not reserved, and the `(` that touches it.
-            if kind == "NAME" or kind in soft:
-                if text.startswith("(", stop):
-                    kind, word, stop = "CALL", word + "(", stop + 1
-                elif kind == "NAME" and (spaced := _BLANKS_AND_PARENTHESIS.match(text, stop, length)):
-                    kind, word, stop = "CALL", word + "(", spaced.end()
-                    result.spaced_calls.append(Token(kind, word, position, stop))
+        elif kind == "NAME":
+            token = Token(kind, found.group(), position, found.end())
+            if token.text in words:
+                token = token._replace(kind=token.text)
+            if token.kind == "NAME" or token.kind in soft:
+                token = _call_or_name(text, token, length, result)
         elif kind == "SIGN":
-            kind = word if not text.startswith("/*", position) else UNKNOWN
-            if kind == UNKNOWN:
-                word, stop = text[position:length], length  # a comment that is not closed
-        elif kind == "NUMBER" and word[0] == "." and tokens and tokens[-1][::3] == ("..", position):
-            kind, word, stop = ".", ".", position + 1  # `0...5` is no range that ends at .5
-        if touches and kind in ("NAME", "CALL", "NUMBER"):
-            kind, word, stop = UNKNOWN, word.rstrip("("), position + len(word.rstrip("("))
+            token = Token(found.group(), found.group(), position, found.end())
+            if text.startswith("/*", position):
+                token = Token(
+                    UNKNOWN, text[position:length], position, length
+                )  # a comment that is not closed
+        else:
+            token = Token(kind or UNKNOWN, found.group(), position, found.end())
+        if tokens and tokens[-1].end == position:
+            token = _touching(tokens, token)
         if doc:
             result.docs[position] = "\n".join(doc)
-            doc = []
-        tokens.append(Token(kind, word, position, stop))
-        position = stop
+            doc.clear()
+        tokens.append(token)
+        position = token.end
     tokens.append(Token(END, "", length, length))
     return result
+
+
+def _take_comment(source: SourceFile, start: int, text: str, comments: list[Comment], doc: list[str]) -> None:
+    comments.append(Comment(Span(source, start, start + len(text)), text))
+    if text.startswith("///") and not text.startswith("////") and begins_line(source.text, start):
+        doc.append(text[3:].removeprefix(" ").rstrip())
+
+
+def _call_or_name(text: str, name: Token, length: int, result: Tokens) -> Token:
+    """The grammar's CALL, read as what it is: a name that is not reserved, and the `(` that touches it."""
+    if text.startswith("(", name.end):
+        return Token("CALL", name.text + "(", name.start, name.end + 1)
+    if name.kind == "NAME" and (spaced := _BLANKS_AND_PARENTHESIS.match(text, name.end, length)):
+        call = Token("CALL", name.text + "(", name.start, spaced.end())
+        result.spaced_calls.append(call)
+        return call
+    return name
+
+
+def _touching(tokens: list[Token], token: Token) -> Token:
+    """What a token is that touches the one before it: letters behind a number are meant as a unit."""
+    before = tokens[-1]
+    if before.kind == "NUMBER" and token.kind in ("NAME", "CALL", "NUMBER"):
+        digits = before.text.rstrip(_LETTERS) if token.kind != "NUMBER" else before.text
+        tokens[-1] = Token("NUMBER", digits, before.start, before.start + len(digits))
+        text = before.text[len(digits) :] + token.text.rstrip("(")
+        return Token(UNKNOWN, text, tokens[-1].end, tokens[-1].end + len(text))
+    if before.kind == ".." and token.kind == "NUMBER" and token.text[0] == ".":
+        return Token(".", ".", token.start, token.start + 1)  # `0...5` is no range that ends at .5
+    return token
 
 
 def begins_line(text: str, offset: int) -> bool:
@@ -100,6 +121,7 @@ def begins_line(text: str, offset: int) -> bool:
     return not text[text.rfind("\n", 0, offset) + 1 : offset].strip()
 
 
+_LETTERS = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ°"
 _BLANKS_AND_PARENTHESIS = re.compile(r"[ \t]+\(")
 
 
@@ -120,11 +142,10 @@ def _scanner() -> re.Pattern[str]:
     return re.compile("|".join(f"(?P<{name}>{pattern})" for name, pattern in named.items()))
 
 
-def _unknown_end(text: str, start: int, length: int) -> int:
-    """Where the stretch ends that begins no token: an open comment or string runs on, the rest is one character."""
-    if text.startswith("/*", start):
-        return length
+def _unknown(text: str, start: int, length: int) -> Token:
+    """What begins no token: an open string, up to the end of its line, or one character."""
+    end = start + 1
     if text[start] in "\"'":
         end = text.find("\n", start, length)
-        return length if end < 0 else end
-    return start + 1
+        end = length if end < 0 else end
+    return Token(UNKNOWN, text[start:end], start, end)

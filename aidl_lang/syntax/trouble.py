@@ -32,7 +32,7 @@ class Problem:
 
 @dataclass(frozen=True)
 class Trouble:
-    """The token number `position` cannot stand where the automaton is; `begin` is the first of its statement."""
+    """Token number `position` cannot stand where the automaton is; `begin` is the first of its statement."""
 
     source: SourceFile
     tokens: list[Token]

@@ -23,7 +23,7 @@ class _Parsed(Protocol):
 def lines_joined_by_minus(
     module: ast.Module, tokens: Sequence[Token], read: Callable[[SourceFile], _Parsed]
 ) -> list[Diagnostic]:
-    """W0101 for every line that begins with `-` where it and what stands above each read as a whole statement."""
+    """W0101 for each line that begins with `-` where it and what stands above read as whole statements."""
     source, text = module.source, module.source.text
     places = [
         t.start for t in tokens if t.kind == "-" and begins_line(text, t.start) and text[: t.start].strip()

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from aidl_lang.syntax.tokens import END, Token
 
+# Typographic quotes, which stand for straight ones.
+SINGLE_QUOTES = "‘’‚"  # noqa: RUF001
+QUOTES = "“”„«»" + SINGLE_QUOTES
+
 UNITS = ("mm", "cm", "m", "in", "ft", "deg", "rad", "turn")
 
 UNIT_WORDS = {
@@ -39,14 +43,16 @@ STATEMENT_WORDS = frozenset(
 # A sign of other languages or of typography, the sign it stands for here, and a word about it.
 SIGNS: dict[str, tuple[str | None, str]] = {
     "≤": ("<=", ""), "≥": (">=", ""), "≠": ("!=", ""), "×": ("*", ""), "·": ("*", ""), "÷": ("/", ""),
-    "−": ("-", ""), "–": ("-", ""), "—": ("-", ""), "…": ("..", "`a..b` includes both ends"), "′": (None, ""),
-    "∧": ("and", ""), "∨": ("or", ""), "¬": ("not", ""), "&": ("and", ""), "|": ("or", ""),
+    "−": ("-", ""), "–": ("-", ""), "—": ("-", ""), "…": ("..", "`a..b` includes both ends"),
+    "∧": ("and", ""),
+    "∨": ("or", ""),  # noqa: RUF001
+    "¬": ("not", ""), "&": ("and", ""), "|": ("or", ""),
     "≈": ("==", ""), "⊥": (None, "write `perpendicular(a, b)`"), "∥": (None, "write `parallel(a, b)`"),
     "?": (None, "a choice is written `if c then a else b`"), "$": (None, "names stand for themselves"),
-    "π": (None, "write `pi`"), "`": (None, ""), "\\": (None, "newlines need no sign: a statement may go on below"),
+    "π": (None, "write `pi`"), "`": (None, ""), "\\": (None, "statements go on below without a sign"),
 }  # fmt: skip
 
-# A word that begins statements elsewhere: what is done here instead, and the word to put in its place, if one is.
+# A word that begins statements elsewhere: what is done here instead, and the word to put in its place if any.
 FOREIGN_WORDS: dict[str, tuple[str, str | None]] = {
     "def": ("functions are defined as `fn f(x) = 2 * x`", "fn"),
     "function": ("functions are defined as `fn f(x) = 2 * x`", "fn"),

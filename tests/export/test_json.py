@@ -96,6 +96,13 @@ def test_a_schema_that_means_something():
         jsonschema.validate(document, SCHEMA)
 
 
+def test_lists_of_numbers_stay_in_one_line():
+    m = everything()
+    text = to_json(m, draw(m)[0])
+    assert '"start": [0, 0],' in text
+    assert json.loads(text) == to_dict(m, draw(m)[0])
+
+
 def test_places_of_diagnostics():
     m = everything()
     note = Diagnostic("N0601", "so", SPAN)
@@ -103,6 +110,7 @@ def test_places_of_diagnostics():
     assert entry == {
         "code": "N0601", "severity": "note", "message": "so", "hints": [],
         "file": "x.aidl", "line": 2, "column": 5, "end_line": 2, "end_column": 15,
+        "label": "", "secondary": [], "fix": None,
     }  # fmt: skip
 
 

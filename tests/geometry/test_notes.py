@@ -69,6 +69,15 @@ def test_an_open_outline_names_its_ends_and_the_gap():
     assert [s.role for s in draw(model(root))[0].strokes] == ["open"] * 3
 
 
+def test_what_another_structure_draws_there_does_not_count():
+    lines = [primitive("a", Line((0, 0), (10, 0))), primitive("b", Line((10, 0), (0, 0.5)))]
+    other = structure("solid", "other", rectangle("r", -5, -5, 0, 0))
+    found = notes(structure("assembly", "all", structure("solid", "s", *lines), other))
+    assert "the end at (0, 0) is 0.5 mm away from (0, 0.5)" in next(
+        n.message for n in found if n.code == "W0702"
+    )
+
+
 def test_the_fix_joins_the_ends():
     source = SourceFile("x.aidl", "solid s {\n    a = line((0, 0), (4, 0))\n    b = arc(…)\n}\n")
     root = structure(

@@ -343,6 +343,25 @@ def test_a_polygon_may_cross_itself():
     assert measure(region_of(bow)).area == pytest.approx(50)
 
 
+def test_a_bezier_may_cross_itself():
+    """A loop: both of its parts are filled."""
+    loop = Bezier((0, 0), (12, 10), (-2, 10), (10, 0))
+    shape = compound("b", loop, Line((10, 0), (0, 0)))
+    region = region_of(shape)
+    assert measure(region).area == pytest.approx(shapely.make_valid(outline(shape)).area, rel=1e-5)
+    assert len(pieces(region, Bezier)) == 3
+    assert_closed(region)
+
+
+@pytest.mark.parametrize("turn", range(7))
+def test_circles_closer_than_their_chords(turn: float):
+    """An eccentric ring whose narrowest place is a hundred-thousandth of its size."""
+    gap, off = 0.0842, 0.084
+    hole = circle("c", off * math.cos(turn), off * math.sin(turn), 12 - gap)
+    region = region_of(circle("a", 0, 0, 12), structure("hole", "h", hole))
+    assert [type(p) for loop in region.loops for p in loop.pieces] == [Circle, Circle]
+
+
 def test_far_from_the_origin_and_very_small():
     far = region_of(
         rectangle("r", 1e6, 1e6, 1e6 + 3, 1e6 + 2), structure("hole", "h", circle("c", 1e6 + 1, 1e6 + 1, 0.5))

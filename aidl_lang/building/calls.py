@@ -1,0 +1,382 @@
+"""Calls: which definition is meant, how its parameters are bound, and what running its body gives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from aidl_lang import ast
+from aidl_lang.boxes import box_of
+from aidl_lang.building.coerce import as_point, edge_coordinate
+from aidl_lang.building.conditions import all_of, replace_placed, value_unknowns
+from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, size, turn
+from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
+from aidl_lang.building.functions import FUNCTIONS
+from aidl_lang.building.scopes import Candidate, LetBinding, Scope
+from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.building.templates import Instantiation
+from aidl_lang.model import Condition, Geometry
+from aidl_lang.names import nearest
+from aidl_lang.types import (
+    ANY,
+    Binding,
+    BoxType,
+    Given,
+    ListType,
+    Mismatch,
+    NumberType,
+    PointType,
+    Signature,
+    select,
+)
+from aidl_lang.values import (
+    NOTHING,
+    ListVal,
+    Namespace,
+    Nothing,
+    Num,
+    PointVal,
+    RangeVal,
+    Value,
+    members,
+    type_of,
+)
+
+
+def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
+    """`f(…)` or `a.f(…)`."""
+    name = node.callee.text
+    receiver: Value | None = None
+    if node.receiver is not None:
+        receiver = evaluate(it, node.receiver, env)
+        if isinstance(receiver, Nothing):
+            return NOTHING
+    candidates = find_candidates(it, name, env.scope, receiver)
+    if not candidates:
+        _unknown_callable(it, node, env)
+        return NOTHING
+    if any(isinstance(c.signature.node, ast.Structure) for c in candidates):
+        # References passed to a template are tied by its instantiating structure, which may reach further.
+        env = Env(env.scope, env.here, Reach.SUBTREE if env.reach is Reach.OWN else env.reach)
+    values: list[Value] = [] if receiver is None or isinstance(receiver, Namespace) else [receiver]
+    first = len(values)
+    values += [evaluate(it, a.value, env) for a in node.arguments]
+    given = [Given(None, type_of(v)) for v in values[:first]]
+    given += [
+        Given(a.name.text if a.name else None, type_of(v))
+        for a, v in zip(node.arguments, values[first:], strict=True)
+    ]
+    nodes: list[ast.Node] = [node.receiver] if first and node.receiver is not None else []
+    nodes += [a.value for a in node.arguments]
+    chosen = select([c.signature for c in candidates], given)
+    if isinstance(chosen, list):
+        if not any(isinstance(v, Nothing) for v in values):
+            _no_overload(it, node, chosen, nodes)
+        return NOTHING
+    candidate = next(c for c in candidates if c.signature is chosen.signature)
+    if any(isinstance(v, Nothing) for v in values):
+        return NOTHING
+    arguments = bound(it, chosen, values, nodes, env)
+    if arguments is None:
+        return NOTHING
+    it.enter(node)
+    try:
+        return invoke(it, candidate, arguments, chosen, values, node, env)
+    finally:
+        it.leave()
+
+
+def find_candidates(it: Interpreter, name: str, scope: Scope, receiver: Value | None) -> list[Candidate]:
+    """The callables of a name: as written, else spelled alike."""
+    from aidl_lang.builtins import SIGNATURES
+    from aidl_lang.names import find
+
+    if isinstance(receiver, Namespace):
+        inner = receiver.values.get("")
+        return inner.candidates(name) if isinstance(inner, Scope) else []
+    if found := scope.candidates(name):
+        return found
+    names = scope.callable_names(it.program.library.callables) | dict.fromkeys(SIGNATURES)
+    alike = find(name, names)
+    return scope.candidates(alike) if alike else []
+
+
+def _unknown_callable(it: Interpreter, node: ast.Call, env: Env) -> None:
+    from aidl_lang.builtins import SIGNATURES
+
+    names = env.scope.callable_names(it.program.library.callables) | dict.fromkeys(SIGNATURES)
+    like = nearest(node.callee.text, names, 3)
+    hints = [f"did you mean {' or '.join(f'`{n}`' for n in like)}?"] if like else []
+    it.report("E0203", f"there is no `{node.callee.text}(…)`", node.callee, hints=hints)
+
+
+def _no_overload(
+    it: Interpreter, node: ast.Call, misses: Sequence[Mismatch], nodes: Sequence[ast.Node]
+) -> None:
+    name = node.callee.text
+    closest = max(misses, key=lambda m: m.argument is not None)
+    at = nodes[closest.argument] if len(misses) == 1 and closest.argument is not None else node
+    if len(misses) == 1:
+        message, hints = f"`{name}` {closest.reason}", [f"it is called as `{closest.signature}`"]
+    else:
+        message = f"no `{name}` takes these arguments"
+        hints = [f"`{m.signature}`: {m.reason}" for m in misses]
+    it.report("E0311", message, at, hints=hints)
+
+
+def bound(
+    it: Interpreter, binding: Binding, values: Sequence[Value], nodes: Sequence[ast.Node], env: Env
+) -> dict[str, Value] | None:
+    """Parameter → argument, each as the kind of value the parameter asks for."""
+    result: dict[str, Value] = {}
+    for name, kind, _ in binding.signature.parameters:
+        indices = binding.arguments.get(name)
+        if indices is None:
+            continue
+        if name == binding.gathered:
+            result[name] = ListVal(tuple(item for i in indices for item in _spliced(values[i])))
+            continue
+        value = _as_kind(it, values[indices[0]], kind, nodes[indices[0]], env)
+        if value is None:
+            return None
+        result[name] = value
+    return result
+
+
+def _spliced(value: Value) -> Sequence[Value]:
+    items = members(value)
+    return items if items is not None else [value]
+
+
+def _as_kind(it: Interpreter, value: Value, kind: object, node: ast.Node, env: Env) -> Value | None:
+    match kind:
+        case PointType():
+            return as_point(it, value, node, env)
+        case NumberType(dimension):
+            if isinstance(value, Geometry):
+                return edge_coordinate(it, value, node, env)
+            if isinstance(value, Num):
+                return Num(value.expression, dimension, value.status)
+        case BoxType():
+            return box_of(value, env.here)
+        case ListType() if isinstance(value, RangeVal):
+            from aidl_lang.building.evaluate import range_items
+
+            items = range_items(it, value, node)
+            return ListVal(tuple(items)) if items is not None else None
+    return value
+
+
+def invoke(
+    it: Interpreter,
+    candidate: Candidate,
+    arguments: Mapping[str, Value],
+    binding: Binding,
+    values: Sequence[Value],
+    node: ast.Call,
+    env: Env,
+) -> Value:
+    definition = candidate.signature.node
+    match definition:
+        case None:
+            name = candidate.signature.name
+            if name in CONSTRUCTORS:
+                return construct(it, name, arguments, node, env)
+            return FUNCTIONS[name](it, arguments, node, env)
+        case ast.FunctionDefinition():
+            scope = _body_scope(it, candidate, arguments, definition.parameters, env)
+            return evaluate(it, definition.value, Env(scope, env.here, env.reach))
+        case ast.ConstraintDefinition():
+            scope = _body_scope(it, candidate, arguments, definition.parameters, env)
+            condition = run_items(it, definition.body, Env(scope, env.here, env.reach))
+            return _placing(condition, definition, binding, values, env)
+        case ast.ShapeDefinition():
+            return _shape(it, candidate, definition, arguments, node, env)
+        case ast.Structure():
+            return Instantiation(candidate, definition, dict(arguments), node)
+
+
+def _body_scope(
+    it: Interpreter,
+    candidate: Candidate,
+    arguments: Mapping[str, Value],
+    parameters: Sequence[ast.Parameter],
+    env: Env,
+) -> Scope:
+    scope = Scope(candidate.scope)
+    for parameter, (name, kind, _) in zip(parameters, candidate.signature.parameters, strict=True):
+        value = arguments.get(name)
+        if value is None:
+            value = default_of(it, parameter, kind, Env(scope, env.here, env.reach))
+        scope.values[name] = value
+    return scope
+
+
+def default_of(it: Interpreter, parameter: ast.Parameter, kind: object, env: Env) -> Value:
+    """The default of a parameter that got no argument, in the scope of the definition."""
+    if parameter.default is None:
+        return NOTHING
+    value = evaluate(it, parameter.default, env)
+    converted = _as_kind(it, value, kind, parameter.default, env) if not isinstance(value, Nothing) else value
+    return converted if converted is not None else NOTHING
+
+
+# --- Constraint definitions ------------------------------------------------------------------------
+
+
+def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
+    """The items of a constraint's body as one condition."""
+    scope = env.scope
+    hoist_lets(scope, block)
+    found: list[Value] = []
+    for statement in block.statements:
+        inner = Env(scope, env.here, env.reach)
+        match statement:
+            case ast.ExpressionStatement(value=value):
+                found.append(evaluate(it, value, inner))
+            case ast.Constrain(items=items):
+                found.append(run_items(it, items, inner))
+            case ast.For(variables=variables, iterable=iterable, body=body):
+                for item in iterate(it, iterable, inner) or ():
+                    it.count_turn(statement)
+                    turn = turn_scope(it, scope, variables, item, statement)
+                    found.append(run_items(it, body, Env(turn, env.here, env.reach)))
+            case ast.If(test=test, then=then, otherwise=otherwise):
+                chosen = then if truth(it, evaluate(it, test, inner), test) else otherwise
+                if chosen is not None:
+                    found.append(run_items(it, chosen, inner))
+            case ast.Let() | ast.Assign():
+                pass
+            case _:
+                it.report(
+                    "E0312", "a constraint's body holds conditions, `let`, `for` and `if` only", statement
+                )
+    return all_of(found)
+
+
+def hoist_lets(scope: Scope, block: ast.Block) -> None:
+    for statement in block.statements:
+        if isinstance(statement, ast.Let | ast.Assign):
+            scope.values[statement.name.text] = LetBinding(statement.value, scope)
+
+
+def _placing(
+    condition: Value,
+    definition: ast.ConstraintDefinition,
+    binding: Binding,
+    values: Sequence[Value],
+    env: Env,
+) -> Value:
+    """In a call the last positional argument is held on the first try and those before it are placed. A
+    definition that only calls another leaves the choice to that one (`contains` holds its first).
+    """
+    statements = definition.body.statements
+    delegates = len(statements) == 1 and (
+        isinstance(only := statements[0], ast.ExpressionStatement) and isinstance(only.value, ast.Call)
+    )
+    if not isinstance(condition, Condition) or delegates:
+        return condition
+    positional = [values[i] for i in binding.positional]
+    flat = [item for value in positional for item in _spliced(value)] if binding.gathered else positional
+    placed = flat[:-1] if len(flat) > 1 else flat
+    unknowns = frozenset(u for value in placed for u in value_unknowns(value, env.here))
+    return replace_placed(condition, unknowns) if unknowns else condition
+
+
+# --- Shapes --------------------------------------------------------------------------------------
+
+
+def _shape(
+    it: Interpreter,
+    candidate: Candidate,
+    definition: ast.ShapeDefinition,
+    arguments: Mapping[str, Value],
+    node: ast.Call,
+    env: Env,
+) -> Value:
+    from aidl_lang.building.statements import run_block
+
+    it.count_entity(node)
+    geometry = Geometry(definition.name.text, env.here, it.place(node))
+    scope = Scope(candidate.scope, geometry)
+    geometry.scope = scope
+    geometry.arguments = tuple(name for name, _, _ in candidate.signature.parameters)
+    given = _defaults_filled(it, candidate.signature, definition.parameters, arguments, scope, env)
+    if given is None:
+        return NOTHING
+    _bind_shape(it, definition.parameters, candidate.signature, given, geometry, scope)
+    run_block(it, definition.body.statements, scope, env.here)
+    return geometry
+
+
+def _defaults_filled(
+    it: Interpreter,
+    signature: Signature,
+    parameters: Sequence[ast.Parameter],
+    arguments: Mapping[str, Value],
+    scope: Scope,
+    env: Env,
+) -> dict[str, Value] | None:
+    given = dict(arguments)
+    for parameter, (name, kind, _) in zip(parameters, signature.parameters, strict=True):
+        if name not in given:
+            scope.values.update(given)  # a default may mention the parameters before it
+            given[name] = default_of(it, parameter, kind, Env(scope, env.here, env.reach))
+        if isinstance(given[name], Nothing):
+            return None
+    return given
+
+
+def _bind_shape(
+    it: Interpreter,
+    parameters: Sequence[ast.Parameter],
+    signature: Signature,
+    given: Mapping[str, Value],
+    geometry: Geometry,
+    scope: Scope,
+) -> None:
+    """Number and point arguments become one unknown each (or what they refer to); the rest is constant."""
+    points = _literal_points(given)
+    placed = positions(it, [p for _, p in points], geometry, [n for n, _ in points], geometry.owner)
+    moved = dict(zip((n for n, _ in points), placed, strict=True))
+    for parameter, (name, kind, _) in zip(parameters, signature.parameters, strict=True):
+        value = given[name]
+        word = parameter.type.text if parameter.type else ""
+        if isinstance(value, PointVal):
+            value = moved[name]
+        elif isinstance(value, ListVal) and any(isinstance(i, PointVal) for i in value.items):
+            value = ListVal(tuple(moved.get(f"{name}[{i}]", item) for i, item in enumerate(value.items)))
+        elif isinstance(value, Num):
+            value = _bind_number(it, value, kind, word, name, given, geometry)
+        scope.values[name] = value
+
+
+def _bind_number(
+    it: Interpreter,
+    value: Num,
+    kind: object,
+    word: str,
+    name: str,
+    given: Mapping[str, Value],
+    geometry: Geometry,
+) -> Num:
+    whole = isinstance(kind, NumberType) and kind.whole
+    if whole:
+        return value
+    if word == "turn":
+        return turn(it, value, geometry, name, rotatable=given.get("rotatable") is True)
+    dimension = kind.dimension if isinstance(kind, NumberType) else value.dimension
+    bound = size(it, value, geometry, name, dimension)
+    payload = bound.expression.payload
+    if kind == ANY and value.expression.is_constant and hasattr(payload, "cell"):
+        payload.cell = True
+    return bound
+
+
+def _literal_points(given: Mapping[str, Value]) -> list[tuple[str, PointVal]]:
+    found: list[tuple[str, PointVal]] = []
+    for name, value in given.items():
+        if isinstance(value, PointVal):
+            found.append((name, value))
+        elif isinstance(value, ListVal):
+            found += [(f"{name}[{i}]", p) for i, p in enumerate(value.items) if isinstance(p, PointVal)]
+    return found

@@ -1,0 +1,148 @@
+"""Values where a kind of value is expected: coercions, and what may be read from where.
+
+Each returns None after reporting what does not fit, unless it says otherwise.
+"""
+
+from __future__ import annotations
+
+import math
+
+from aidl_lang import ast, primitives, units
+from aidl_lang import expression as ex
+from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.model import Geometry, Structure, common_ancestor
+from aidl_lang.units import LENGTH
+from aidl_lang.values import ListVal, Nothing, Num, PointVal, Value, kind_of, length, number
+
+
+def as_written(value: Value) -> Value:
+    """A value out of reach, read as the numbers it has at the first guesses."""
+    match value:
+        case Num(expression, dimension, _):
+            return number(expression.value, dimension)
+        case PointVal(x, y):
+            return PointVal(number(x.value, x.dimension), number(y.value, y.dimension))
+        case _:
+            return value
+
+
+def may_read(it: Interpreter, owner: Structure, node: ast.Node, env: Env) -> bool:
+    """Whether the unknowns of `owner` are within reach here; reported when they are not."""
+    if env.reach is Reach.READ or (owner is env.here):
+        return True
+    if env.reach is Reach.SUBTREE and owner.is_within(env.here):
+        return True
+    if not it.watched:
+        kind = "geometry" if env.reach is Reach.OWN else "a constraint"
+        allowed = "its own structure" if env.reach is Reach.OWN else "the structure that holds it"
+        it.report(
+            "E0401" if env.reach is Reach.OWN else "E0402",
+            f"{kind} of `{env.here.path}` cannot use `{node.span.text}`, which belongs to `{owner.path}`",
+            node,
+            label=f"outside {allowed}",
+            hints=[f"write a first guess here and a constraint in `{common_ancestor(owner, env.here).path}`"],
+        )
+    return False
+
+
+def look(it: Interpreter, geometry: Geometry, node: ast.Node, env: Env) -> dict[str, Value]:
+    """What defines a primitive, in the frame of the structure that asks."""
+    core = primitives.view(geometry, env.here)
+    if may_read(it, geometry.owner, node, env):
+        return core
+    return {name: as_written(value) for name, value in core.items()}
+
+
+def numeric(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num | None:
+    """A value where a number is expected; None after an error, reported here."""
+    if isinstance(value, Num):
+        return value
+    if isinstance(value, Geometry) and value.type == "line":
+        return edge_coordinate(it, value, node, env)
+    if not isinstance(value, Nothing):
+        it.report("E0302", f"a number is needed here, and this is {kind_of(value)}", node)
+    return None
+
+
+def coordinate(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num | None:
+    """A number as a coordinate; an edge of an axis-aligned shape stands for its own."""
+    found = numeric(it, value, node, env)
+    if found is None:
+        return None
+    if found.dimension not in (None, LENGTH):
+        it.report("E0301", f"a coordinate must be a length, not a {units.describe(found.dimension)}", node)
+        return None
+    return Num(found.expression, LENGTH, found.status)
+
+
+def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -> Num | None:
+    """The coordinate that an edge parallel to an axis of the holder's frame stands for."""
+    core = look(it, edge, node, env)
+    (x0, y0), (x1, y1) = primitives.xy(core["start"]), primitives.xy(core["end"])
+    dx, dy = abs(x1.value - x0.value), abs(y1.value - y0.value)
+    tolerance = 1e-9 * max(dx, dy, 1e-300)
+    if dx <= tolerance < dy:
+        return length(x0)
+    if dy <= tolerance < dx:
+        return length(y0)
+    it.report(
+        "E0303",
+        f"`{node.span.text}` is not parallel to an axis, so it stands for no coordinate",
+        node,
+        label="a slanted edge",
+        hints=["name a side of the box (`.bb.left`) or a point of the edge (`.start.x`, `.midpoint.y`)"],
+    )
+    return None
+
+
+def as_point(it: Interpreter, value: Value, node: ast.Node, env: Env) -> PointVal | None:
+    """A value where a point is expected; None when it is none (nothing is reported)."""
+    match value:
+        case PointVal():
+            return value
+        case Geometry(type="point"):
+            at = look(it, value, node, env)["at"]
+            return at if isinstance(at, PointVal) else None
+        case ListVal((Num() as x, Num() as y)):
+            return PointVal(Num(x.expression, LENGTH, x.status), Num(y.expression, LENGTH, y.status))
+        case _:
+            return None
+
+
+def constant(it: Interpreter, value: Num, node: ast.Node, what: str) -> float | None:
+    """The value of a number that has to be known while building; None after an error.
+
+    A number argument that is read so becomes a constant for good.
+    """
+    if value.expression.is_constant:
+        return value.value
+    found = list(ex.unknowns([value.expression]))
+    if all(u.cell or u.exact for u in found):
+        for u in found:
+            u.exact = True
+        return value.value
+    names = ", ".join(f"`{u.path}`" for u in found[:2])
+    it.report(
+        "E0501",
+        f"{what} must be known before solving, and this depends on {names}",
+        node,
+        label="found by the solver only",
+        hints=["use a `param`, a `let` of constants, or a loop variable"],
+    )
+    return None
+
+
+def whole(it: Interpreter, value: Value, node: ast.Node, what: str) -> int | None:
+    """A whole number known while building; None after an error."""
+    if isinstance(value, Nothing):
+        return None
+    if not isinstance(value, Num):
+        it.report("E0302", f"{what} must be a whole number, not {kind_of(value)}", node)
+        return None
+    known = constant(it, value, node, what)
+    if known is None:
+        return None
+    if abs(known - round(known)) > 1e-9 * max(1.0, abs(known)) or not math.isfinite(known):
+        it.report("E0306", f"{what} must be a whole number, and this is {known:g}", node)
+        return None
+    return round(known)

@@ -1,0 +1,234 @@
+"""Conditions: comparing values, joining comparisons, and telling whether a condition holds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator
+
+from aidl_lang import ast, units
+from aidl_lang import expression as ex
+from aidl_lang.boxes import box_of, source_unknowns, spelled_out
+from aidl_lang.building.coerce import as_point, numeric
+from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.expression import Expression, Unknown
+from aidl_lang.model import Comparison, Condition, Structure
+from aidl_lang.units import ANGLE
+from aidl_lang.values import (
+    NOTHING,
+    Array,
+    ListVal,
+    Nothing,
+    Num,
+    PointVal,
+    Text,
+    Value,
+    kind_of,
+    members,
+)
+
+RELATIONS = ("==", "<=", ">=", "<", ">")
+"""What can constrain; `!=` can only be asserted or tested."""
+
+_EXACT = 1e-9
+"""How far constants may differ, relative to their size, and still count as equal."""
+
+
+def compare(
+    it: Interpreter,
+    relation: str,
+    left: Value,
+    right: Value,
+    node: ast.Node,
+    env: Env,
+    left_node: ast.Node,
+    right_node: ast.Node,
+) -> Value:
+    """`left relation right` as a condition, or as a truth where both are constants."""
+    if isinstance(left, Nothing) or isinstance(right, Nothing):
+        return NOTHING
+    if isinstance(left, Text | bool) or isinstance(right, Text | bool):
+        return _compare_plain(it, relation, left, right, node)
+    a, b = as_point(it, left, left_node, env), as_point(it, right, right_node, env)
+    if a is not None and b is not None:
+        return _compare_points(it, relation, a, b, node)
+    if a is not None or b is not None:
+        it.report(
+            "E0309",
+            f"{kind_of(left)} is compared with {kind_of(right)}",
+            node,
+            hints=["points compare with points, coordinates (`.x`, `.y`) with lengths"],
+        )
+        return NOTHING
+    x, y = numeric(it, left, left_node, env), numeric(it, right, right_node, env)
+    return compare_numbers(it, relation, x, y, node) if x is not None and y is not None else NOTHING
+
+
+def _compare_plain(it: Interpreter, relation: str, left: Value, right: Value, node: ast.Node) -> Value:
+    if relation in ("==", "!=") and type(left) is type(right):
+        return (
+            (left == right) == (relation == "==")
+            if not isinstance(left, Text)
+            else (
+                (left.value == right.value) == (relation == "==")  # type: ignore[union-attr]
+            )
+        )
+    it.report("E0309", f"`{relation}` does not compare {kind_of(left)} with {kind_of(right)}", node)
+    return NOTHING
+
+
+def _compare_points(it: Interpreter, relation: str, a: PointVal, b: PointVal, node: ast.Node) -> Value:
+    if relation not in ("==", "!="):
+        it.report(
+            "E0309",
+            f"points have no order, so `{relation}` does not compare them",
+            node,
+            hints=["compare coordinates, as in `a.x <= b.x`"],
+        )
+        return NOTHING
+    both = conjunction(
+        it,
+        "and",
+        compare_numbers(it, "==", a.x, b.x, node),
+        compare_numbers(it, "==", a.y, b.y, node),
+        node,
+    )
+    return both if relation == "==" else negation(it, both, node)
+
+
+def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.Node) -> Value:
+    try:
+        dimension = units.add(a.dimension, b.dimension)
+    except ValueError as reason:
+        it.report(
+            "E0308",
+            f"`{node.span.text}` compares {str(reason).replace(' and ', ' with ')}",
+            node,
+            hints=["both sides need the same dimension; units are written as in `30deg`, `4mm`"],
+        )
+        return NOTHING
+    left, right = spelled_out(a.expression, b.expression)
+    if left.is_constant and right.is_constant:
+        return _relates(relation, left.value, right.value, dimension == ANGLE, _EXACT)
+    return Condition("and", (Comparison(relation, left, right, dimension),))
+
+
+def _relates(relation: str, a: float, b: float, is_angle: bool, tolerance: float) -> bool:
+    difference = a - b
+    if is_angle and relation in ("==", "!="):
+        difference = (difference + 180.0) % 360.0 - 180.0
+    near = abs(difference) <= tolerance * max(1.0, abs(a), abs(b))
+    match relation:
+        case "==":
+            return near
+        case "!=":
+            return not near
+        case "<=" | "<":
+            return near or difference < 0
+        case _:
+            return near or difference > 0
+
+
+def conjunction(it: Interpreter, operator: str, left: Value, right: Value, node: ast.Node) -> Value:
+    """`left and right`, `left or right`; constants that decide nothing vanish."""
+    if isinstance(left, Nothing) or isinstance(right, Nothing):
+        return NOTHING
+    for side in (left, right):
+        if not isinstance(side, bool | Condition):
+            it.report("E0302", f"`{operator}` joins conditions, and this is {kind_of(side)}", node)
+            return NOTHING
+    neutral = operator == "and"
+    if left is neutral:
+        return right
+    if right is neutral:
+        return left
+    if isinstance(left, bool) or isinstance(right, bool):
+        return not neutral
+    assert isinstance(left, Condition)
+    assert isinstance(right, Condition)
+    if left.operator == right.operator == operator:
+        return Condition(operator, left.parts + right.parts)
+    return Condition(operator, (left, right))
+
+
+def negation(it: Interpreter, value: Value, node: ast.Node) -> Value:
+    match value:
+        case bool():
+            return not value
+        case Condition():
+            return Condition("not", (value,))
+        case Nothing():
+            return NOTHING
+        case _:
+            it.report("E0302", f"`not` turns a condition round, and this is {kind_of(value)}", node)
+            return NOTHING
+
+
+def all_of(parts: Iterable[Value]) -> Value:
+    """The conjunction of conditions that were made elsewhere; NOTHING if one of them failed."""
+    found: list[Condition | Comparison | bool] = []
+    for part in parts:
+        if isinstance(part, Nothing):
+            return NOTHING
+        if isinstance(part, Condition):
+            found += part.parts if part.operator == "and" else (part,)
+        elif part is False:
+            found.append(False)
+    return Condition("and", tuple(found)) if found else True
+
+
+def holds(
+    condition: Condition | Comparison | bool,
+    evaluate: Callable[[Expression], float],
+    tolerance: float,
+) -> bool:
+    """Whether a condition is true at given values, within a tolerance relative to what is compared."""
+    if isinstance(condition, bool):
+        return condition
+    if isinstance(condition, Comparison):
+        a, b = evaluate(condition.left), evaluate(condition.right)
+        if not (math.isfinite(a) and math.isfinite(b)):
+            return False
+        return _relates(condition.relation, a, b, condition.dimension == ANGLE, tolerance)
+    parts = (holds(part, evaluate, tolerance) for part in condition.parts)
+    match condition.operator:
+        case "and":
+            return all(parts)
+        case "or":
+            return any(parts)
+        case _:
+            return not all(parts)
+
+
+def placed_by(comparison: Comparison, placed: frozenset[Unknown]) -> Comparison:
+    return Comparison(comparison.relation, comparison.left, comparison.right, comparison.dimension, placed)
+
+
+def replace_placed(condition: Condition, placed: frozenset[Unknown]) -> Condition:
+    """The same condition, with other unknowns moving first."""
+    return Condition(
+        condition.operator,
+        tuple(
+            placed_by(p, placed)
+            if isinstance(p, Comparison)
+            else replace_placed(p, placed)
+            if isinstance(p, Condition)
+            else p
+            for p in condition.parts
+        ),
+    )
+
+
+def value_unknowns(value: Value, here: Structure) -> Iterator[Unknown]:
+    """The unknowns that place a value, as seen from a structure."""
+    match value:
+        case Num(expression=e):
+            yield from ex.unknowns([e])
+        case PointVal(x, y):
+            yield from ex.unknowns([x.expression, y.expression])
+        case ListVal() | Array():
+            for item in members(value) or ():
+                yield from value_unknowns(item, here)
+        case _:
+            box = box_of(value, here)
+            for source in box.sources if box else ():
+                yield from source_unknowns(source, here)

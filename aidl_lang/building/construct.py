@@ -1,0 +1,250 @@
+"""Geometry and the exactness of its numbers (language reference: numbers, parameters, exactness).
+
+A number becomes an unknown, a constant or an expression by its status and by the place it is given to:
+positions are free first guesses, sizes are kept. Several literal points given to one constructor move as
+one: the first is the position, the differences to it are kept sizes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from aidl_lang import ast
+from aidl_lang import expression as ex
+from aidl_lang.building.conditions import all_of, compare_numbers
+from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.expression import Expression
+from aidl_lang.model import Constraint, Geometry, Structure
+from aidl_lang.primitives import direction, distance, polar
+from aidl_lang.units import ANGLE, LENGTH, MaybeDimension
+from aidl_lang.values import Nothing, Num, PointVal, Status, Value, length, point
+
+Arguments = Mapping[str, Value]
+
+
+def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: MaybeDimension = LENGTH) -> Num:
+    """A number given as a size: kept if literal, exact if a param is in it, derived from unknowns."""
+    expression = value.expression
+    if expression.is_constant and value.status in (Status.NUMBER, Status.GUESS):
+        expression = it.unknown(
+            value.value,
+            holder,
+            name,
+            owner=holder.owner,
+            dimension=dimension,
+            kept=value.status is Status.NUMBER,
+        )
+    return Num(expression, dimension, Status.REFERENCE)
+
+
+def turn(it: Interpreter, value: Num, holder: Geometry, name: str, rotatable: bool) -> Num:
+    """An angle that stays exactly 0 until something asks for it: `rotatable`, another value, a constraint."""
+    expression = value.expression
+    if not expression.is_constant or value.status >= Status.PARAM or (value.value != 0 and not rotatable):
+        return size(it, value, holder, name, ANGLE)
+    made = it.unknown(value.value, holder, name, owner=holder.owner, dimension=ANGLE)
+    assert isinstance(made.payload, ex.Unknown)
+    made.payload.locked = made.payload.exact = not rotatable
+    return Num(made, ANGLE, Status.REFERENCE)
+
+
+def positions(
+    it: Interpreter,
+    points: Sequence[PointVal],
+    holder: Geometry | Structure,
+    names: Sequence[str],
+    owner: Structure,
+) -> list[PointVal]:
+    """Points given as positions to one constructor; literal ones move as one."""
+    placed: list[list[Expression]] = []
+    for axis in ("x", "y"):
+        coordinates: list[Num] = [getattr(p, axis) for p in points]
+        placed.append(_along(it, coordinates, holder, [f"{n}.{axis}" for n in names], owner))
+    return [point(x, y) for x, y in zip(*placed, strict=True)]
+
+
+def _along(
+    it: Interpreter,
+    numbers: Sequence[Num],
+    holder: Geometry | Structure,
+    names: Sequence[str],
+    owner: Structure,
+) -> list[Expression]:
+    anchor: tuple[Num, Expression] | None = None
+    found: list[Expression] = []
+    for number, name in zip(numbers, names, strict=True):
+        if number.status >= Status.FIXED:
+            found.append(number.expression)
+        elif anchor is None or number.status is Status.GUESS:
+            made = it.unknown(number.value, holder, name, owner=owner, dimension=LENGTH)
+            anchor = anchor or (number, made)
+            found.append(made)
+        else:
+            first, base = anchor
+            offset = number.value - first.value
+            if Status.PARAM in (number.status, first.status):
+                difference = ex.constant(offset)
+            else:
+                field = name.replace(".", ".d") if "." in name else name
+                difference = it.unknown(offset, holder, field, owner=owner, dimension=LENGTH, kept=True)
+            found.append(ex.add(base, difference))
+    return found
+
+
+# --- Primitives ----------------------------------------------------------------------------------
+
+
+def _point(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
+    at = a.get("at")
+    if at is None:
+        x, y = a["x"], a["y"]
+        assert isinstance(x, Num)
+        assert isinstance(y, Num)
+        at = PointVal(x, y)
+    assert isinstance(at, PointVal)
+    g.fields = dict(zip(["at"], [loose_point(it, at, g)], strict=True))
+
+
+def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
+    """A named point: its unknowns are called `p.x` and `p.y`."""
+    x, y = (
+        n.expression
+        if n.status >= Status.FIXED
+        else it.unknown(n.value, g, axis, owner=g.owner, dimension=LENGTH)
+        for n, axis in ((at.x, "x"), (at.y, "y"))
+    )
+    return point(x, y)
+
+
+def _points(it: Interpreter, g: Geometry, a: Arguments, names: Sequence[str]) -> dict[str, Value]:
+    """The named point arguments as positions of one geometry; a missing one is a guess at the origin."""
+    given = [a.get(name, _ORIGIN) for name in names]
+    found = positions(it, [p for p in given if isinstance(p, PointVal)], g, names, g.owner)
+    return dict(zip(names, found, strict=True))
+
+
+_ORIGIN = PointVal(Num(ex.ZERO, LENGTH), Num(ex.ZERO, LENGTH))
+
+
+def _size(it: Interpreter, g: Geometry, a: Arguments, name: str, dimension: MaybeDimension = LENGTH) -> Num:
+    value = a[name]
+    assert isinstance(value, Num)
+    return size(it, value, g, name, dimension)
+
+
+def _line(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
+    if "end" in a:
+        g.fields = _points(it, g, a, ("start", "end"))
+        return
+    g.fields = _points(it, g, a, ("start",))
+    reach, angle = _size(it, g, a, "length"), _size(it, g, a, "angle", ANGLE)
+    end = polar(g.fields["start"], reach.expression, angle.expression)
+    g.fields |= {"end": end, "length": reach, "angle": angle}
+
+
+def _circle(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
+    g.fields = _points(it, g, a, ("center",))
+    if "radius" in a:
+        g.fields["radius"] = _size(it, g, a, "radius")
+    else:
+        diameter = _size(it, g, a, "diameter")
+        g.fields |= {"diameter": diameter, "radius": length(ex.half(diameter.expression))}
+
+
+def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
+    g.clockwise = a.get("clockwise") is True
+    if "start_angle" in a:
+        _arc_by_angles(it, g, a)
+    elif "radius" in a:
+        _arc_by_radius(it, g, a)
+    else:
+        g.fields = _points(it, g, a, ("center", "start", "end"))
+        g.fields["radius"] = length(distance(g.fields["center"], g.fields["start"]))
+    if "start_angle" not in a:
+        hidden = [distance(g.fields["center"], g.fields["end"])]
+        if "radius" in a:
+            hidden.append(distance(g.fields["center"], g.fields["start"]))
+        radius = g.fields["radius"]
+        assert isinstance(radius, Num)
+        hold(it, g, [(length(h), radius) for h in hidden])
+
+
+def _arc_by_angles(it: Interpreter, g: Geometry, a: Arguments) -> None:
+    g.fields = _points(it, g, a, ("center",))
+    radius = _size(it, g, a, "radius")
+    ends = {n: _size(it, g, a, f"{n}_angle", ANGLE) for n in ("start", "end")}
+    g.fields |= {
+        n: polar(g.fields["center"], radius.expression, angle.expression) for n, angle in ends.items()
+    }
+    g.fields |= {"radius": radius, "start_angle": ends["start"], "end_angle": ends["end"]}
+
+
+def _arc_by_radius(it: Interpreter, g: Geometry, a: Arguments) -> None:
+    """The centre is an unknown tied by two equations: a formula for it would be singular at half a circle."""
+    g.fields = _points(it, g, a, ("start", "end"))
+    g.fields["radius"] = radius = _size(it, g, a, "radius")
+    start, end = g.fields["start"], g.fields["end"]
+    chord = distance(start, end).value
+    reach = radius.value
+    height = (max(reach * reach - chord * chord / 4, 0.0)) ** 0.5
+    # Counter-clockwise and shorter than half a turn, the centre lies to the left of the chord.
+    side = 1.0 if (a.get("large") is True) == g.clockwise else -1.0
+    along = direction(start, end).value + 90.0 * side
+    c, s = ex.exact_turn(along)
+    assert isinstance(start, PointVal)
+    assert isinstance(end, PointVal)
+    x = (start.x.value + end.x.value) / 2 + height * c
+    y = (start.y.value + end.y.value) / 2 + height * s
+    center = PointVal(Num(ex.constant(x), LENGTH), Num(ex.constant(y), LENGTH))
+    g.fields["center"] = positions(it, [center], g, ["center"], g.owner)[0]
+
+
+def hold(it: Interpreter, g: Geometry, equations: Sequence[tuple[Num, Num]]) -> None:
+    """Equations that belong to a geometry itself: constraints named after it."""
+    assert g.span is not None
+    node = ast.Identifier(span=g.span, text=g.type)
+    made = [compare_numbers(it, "==", left, right, node) for left, right in equations]
+    condition = all_of(made)
+    if not isinstance(condition, bool | Nothing):
+        comparisons = tuple(condition.comparisons())  # type: ignore[union-attr]
+        it.hidden.append((g, comparisons))
+
+
+def _bezier(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
+    g.fields = _points(it, g, a, ("p0", "p1", "p2", "p3"))
+
+
+def _ellipse(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
+    g.fields = _points(it, g, a, ("center",))
+    g.fields |= {"rx": _size(it, g, a, "rx"), "ry": _size(it, g, a, "ry")}
+    angle = a.get("angle", Num(ex.ZERO, ANGLE))
+    assert isinstance(angle, Num)
+    g.fields["angle"] = turn(it, angle, g, "angle", rotatable=False)
+
+
+CONSTRUCTORS: dict[str, Callable[[Interpreter, Geometry, Arguments, Env], None]] = {
+    "point": _point,
+    "line": _line,
+    "circle": _circle,
+    "arc": _arc,
+    "bezier": _bezier,
+    "ellipse": _ellipse,
+}
+
+
+def construct(it: Interpreter, kind: str, arguments: Arguments, node: ast.Node, env: Env) -> Geometry:
+    """A primitive from arguments that fit one of its constructors."""
+    it.count_entity(node)
+    geometry = Geometry(kind, env.here, it.place(node))
+    CONSTRUCTORS[kind](it, geometry, arguments, env)
+    return geometry
+
+
+def hidden_constraints(it: Interpreter) -> list[Constraint]:
+    """The equations of geometry that became part of the model."""
+    found: list[Constraint] = []
+    for g, comparisons in it.hidden:
+        if g.name is not None and g.span is not None:
+            text = f"{g.path.removeprefix(g.owner.path + '.')} is an arc of one radius"
+            found.append(Constraint(g.owner, comparisons, text, g.span))
+    return found

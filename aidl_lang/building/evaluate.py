@@ -1,0 +1,551 @@
+"""Expressions of the language → values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from aidl_lang import ast, boxes, primitives, units
+from aidl_lang import expression as ex
+from aidl_lang.boxes import Box
+from aidl_lang.building.coerce import as_point, as_written, constant, coordinate, may_read, numeric, whole
+from aidl_lang.building.conditions import compare, conjunction, holds, negation
+from aidl_lang.building.scopes import Binding, LetBinding, ParamBinding, PassedBinding, Scope, VarBinding
+from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.model import Condition, Geometry, Structure
+from aidl_lang.names import find, nearest
+from aidl_lang.units import UNITS
+from aidl_lang.values import (
+    NOTHING,
+    Array,
+    ListVal,
+    Namespace,
+    Nothing,
+    Num,
+    PointVal,
+    RangeVal,
+    Status,
+    Text,
+    Value,
+    kind_of,
+    members,
+    number,
+)
+
+
+def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
+    """The value of an expression; NOTHING after an error, which has been reported."""
+    value = _EVALUATE[type(node)](it, node, env)
+    if node in it.watched:
+        it.watch(node, value)
+        return as_written(value)
+    return value
+
+
+# --- Literals ------------------------------------------------------------------------------------
+
+
+def _number(it: Interpreter, node: ast.Number, env: Env) -> Value:
+    if node.unit is None:
+        return number(node.value)
+    factor, dimension = UNITS[node.unit]
+    return number(node.value * factor, dimension)
+
+
+def _point(it: Interpreter, node: ast.Point, env: Env) -> Value:
+    x, y = (coordinate(it, evaluate(it, n, env), n, env) for n in (node.x, node.y))
+    return PointVal(x, y) if x is not None and y is not None else NOTHING
+
+
+def _list(it: Interpreter, node: ast.List, env: Env) -> Value:
+    items = [evaluate(it, item, env) for item in node.items]
+    return NOTHING if any(isinstance(i, Nothing) for i in items) else ListVal(tuple(items))
+
+
+def _comprehension(it: Interpreter, node: ast.Comprehension, env: Env) -> Value:
+    turns = iterate(it, node.iterable, env)
+    found: list[Value] = []
+    for item in turns or ():
+        it.count_turn(node)
+        scope = turn_scope(it, env.scope, node.variables, item, node)
+        inner = Env(scope, env.here, env.reach)
+        if node.condition is None or truth(it, evaluate(it, node.condition, inner), node.condition):
+            found.append(evaluate(it, node.element, inner))
+    return NOTHING if turns is None or any(isinstance(f, Nothing) for f in found) else ListVal(tuple(found))
+
+
+def iterate(it: Interpreter, node: ast.Expression, env: Env) -> list[Value] | None:
+    """What a `for` runs through; None after an error."""
+    value = evaluate(it, node, env)
+    if isinstance(value, RangeVal):
+        return range_items(it, value, node)
+    items = members(value)
+    if items is None and not isinstance(value, Nothing):
+        it.report(
+            "E0304",
+            f"`for` runs through a range or a list, and this is {kind_of(value)}",
+            node,
+            hints=["as in `for i in 0..9 { … }` or `for s in [-1, 1] { … }`"],
+        )
+        return None
+    return list(items) if items is not None else None
+
+
+def range_items(it: Interpreter, value: RangeVal, node: ast.Node) -> list[Value] | None:
+    start, end = (
+        constant(it, n, node, "the ends of a range that is run through") for n in (value.start, value.end)
+    )
+    if start is None or end is None:
+        return None
+    tolerance = 1e-9 * max(1.0, abs(start), abs(end))
+    count = math.ceil(end - start - tolerance) if value.exclusive else math.floor(end - start + tolerance) + 1
+    if count > it.limits.items:
+        it.report("E0805", f"this range has {count} members; at most {it.limits.items} are allowed", node)
+        return None
+    status = max(value.start.status, value.end.status)
+    return [
+        number(start + i, value.start.dimension, min(status, Status.NUMBER)) for i in range(max(count, 0))
+    ]
+
+
+def turn_scope(
+    it: Interpreter, scope: Scope, variables: tuple[ast.Identifier, ...], item: Value, node: ast.Node
+) -> Scope:
+    """The scope of one turn of a loop with its variables bound."""
+    inner = Scope(scope, scope.container, turn=True, labels=scope.labels)
+    items: list[Value] = [item]
+    if len(variables) > 1:
+        unpacked = [item.x, item.y] if isinstance(item, PointVal) else members(item)
+        if unpacked is None or len(unpacked) != len(variables):
+            it.report("E0304", f"each turn has to give {len(variables)} values, one for each variable", node)
+            unpacked = [NOTHING] * len(variables)
+        items = list(unpacked)
+    for variable, value in zip(variables, items, strict=True):
+        inner.values[variable.text] = value
+        shown = (
+            f"{value.value:g}" if isinstance(value, Num) else value.value if isinstance(value, Text) else "…"
+        )
+        inner.labels += (f"{variable.text} = {shown}",)
+    return inner
+
+
+def truth(it: Interpreter, value: Value, node: ast.Node) -> bool:
+    """A condition that decides what is built; False after an error."""
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, Condition):
+        found = [u for c in value.comparisons() for u in ex.unknowns([c.left, c.right])]
+        if all(u.cell or u.exact for u in found):
+            for u in found:
+                u.exact = True
+            return holds(value, lambda e: e.value, 1e-9)
+        it.report(
+            "E0502",
+            f"`{node.span.text}` is decided by the solver, so it cannot choose what is built",
+            node,
+            label="depends on unknowns",
+            hints=["compare `param`s and constants, or use `written(…)` for the value as written"],
+        )
+    elif not isinstance(value, Nothing):
+        it.report("E0302", f"a condition is needed here, and this is {kind_of(value)}", node)
+    return False
+
+
+# --- Names and members ---------------------------------------------------------------------------
+
+
+def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
+    found = env.scope.find(node.text)
+    if found is not None:
+        name, scope = found
+        return read(it, scope.values[name], node, env)
+    known: set[str] = set()
+    for scope in env.scope.chain():
+        known |= scope.values.keys()
+    like = nearest(node.text, known)
+    hint = f"did you mean `{like[0]}`?" if like else "names are declared with `let`, `param` or `name = …`"
+    it.report(
+        "E0201", f"there is no `{node.text}` here", node, label="not declared, or not built", hints=[hint]
+    )
+    return NOTHING
+
+
+def read(it: Interpreter, binding: Binding, node: ast.Node, env: Env) -> Value:
+    """The value of a name for the expression that reads it."""
+    match binding:
+        case LetBinding():
+            return _read_let(it, binding, node, env)
+        case ParamBinding():
+            from aidl_lang.building.params import read_param
+
+            return read_param(it, binding, node)
+        case VarBinding(value, unknown):
+            reached = may_read(it, unknown.owner, node, env)
+            return value if reached else as_written(value)
+        case PassedBinding():
+            from aidl_lang.building.templates import read_passed
+
+            return read_passed(it, binding, env)
+        case _:
+            return binding
+
+
+def _read_let(it: Interpreter, let: LetBinding, node: ast.Node, env: Env) -> Value:
+    if let.known is not None:
+        return let.known
+    if let.running:
+        it.report("E0207", f"`{node.span.text}` is defined by way of itself", node)
+        return NOTHING
+    let.running = True
+    try:
+        value = evaluate(it, let.node, Env(let.scope, env.here, env.reach))
+    finally:
+        let.running = False
+    if is_same_everywhere(value):
+        let.known = value
+    return value
+
+
+def is_same_everywhere(value: Value) -> bool:
+    """Whether a value does not depend on the frame or the reach of the code that reads it."""
+    match value:
+        case Num(expression=e):
+            return e.is_constant
+        case PointVal(x, y):
+            return x.expression.is_constant and y.expression.is_constant
+        case ListVal(items):
+            return all(map(is_same_everywhere, items))
+        case Condition() | Box():
+            return False
+        case _:
+            return True
+
+
+def _member(it: Interpreter, node: ast.Member, env: Env) -> Value:
+    value = evaluate(it, node.value, env)
+    return member(it, value, node.name.text, node, env)
+
+
+def member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Value:
+    """`value.name`"""
+    found: Value | None = None
+    match value:
+        case Nothing():
+            return NOTHING
+        case PointVal(x, y):
+            found = {"x": x, "y": y}.get(name.casefold())
+        case Structure():
+            found = _structure_member(it, value, name, node, env)
+        case Geometry():
+            found = _geometry_member(it, value, name, node, env)
+        case Box():
+            found = _box_field(it, value, name, node, env)
+        case Namespace():
+            key = find(name, value.values)
+            found = read(it, value.values[key], node, env) if key else None  # type: ignore[arg-type]
+        case ListVal() | Array():
+            items = [member(it, item, name, node, env) for item in members(value) or ()]
+            return NOTHING if any(isinstance(i, Nothing) for i in items) else ListVal(tuple(items))
+    if found is None:
+        _no_member(it, value, name, node)
+        return NOTHING
+    return found
+
+
+def _no_member(it: Interpreter, value: Value, name: str, node: ast.Member) -> None:
+    known = member_names(value)
+    like = nearest(name, known)
+    if like:
+        hint = f"did you mean `{like[0]}`?"
+    elif known:
+        hint = "it has " + ", ".join(f"`{k}`" for k in known[:12])
+    else:
+        hint = "members belong to structures, geometry, boxes and points"
+    what = f"`{node.value.span.text}`"
+    it.report("E0202", f"{what} has no `{name}` (it is {kind_of(value)})", node.name, hints=[hint])
+
+
+def member_names(value: Value) -> list[str]:
+    """What may stand behind a dot, for messages."""
+    match value:
+        case PointVal():
+            return ["x", "y"]
+        case Box():
+            return list(boxes.FIELDS)
+        case Structure():
+            return [*value.members, "bb", *boxes.FIELDS]
+        case Geometry(scope=Scope() as scope):
+            return [*scope.values, "bb", *boxes.FIELDS]
+        case Geometry():
+            return [*primitives.FIELDS[value.type], "bb", *boxes.FIELDS]
+        case _:
+            return []
+
+
+def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, env: Env) -> Value | None:
+    assert isinstance(s.scope, Scope)
+    if (key := find(name, s.scope.values)) is not None:
+        return read(it, s.scope.values[key], node, env)
+    box = boxes.box_of(s, env.here)
+    return _box_field(it, box, name, node, env) if box else None
+
+
+def _geometry_member(it: Interpreter, g: Geometry, name: str, node: ast.Node, env: Env) -> Value | None:
+    if isinstance(g.scope, Scope):
+        if (key := find(name, g.scope.values)) is not None:
+            return _shape_member(it, g, key, node, env)
+    else:
+        fields = dict.fromkeys(primitives.FIELDS[g.type])
+        key = find(name, fields) or name
+        reached = may_read(it, g.owner, node, env)
+        value = primitives.field(g, key, env.here)
+        if value is not None:
+            return value if reached else as_written(value)
+    box = boxes.box_of(g, env.here)
+    return _box_field(it, box, name, node, env) if box else None
+
+
+def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: Env) -> Value:
+    """A part, argument or let of a compound shape: read in the frame of its owner, then seen from here."""
+    assert isinstance(g.scope, Scope)
+    value = read(it, g.scope.values[key], node, Env(g.scope, g.owner, Reach.OWN))
+    value = primitives.translate(key, value, g.owner, env.here)
+    if isinstance(value, Num | PointVal) and not is_same_everywhere(value):
+        if not may_read(it, g.owner, node, env):
+            return as_written(value)
+        if env.reach is Reach.SUBTREE and isinstance(value, Num):
+            _unlock(value)
+    return value
+
+
+def _unlock(value: Num) -> None:
+    """A constraint names an angle that was exact only because nothing asked it to turn."""
+    payload = value.expression.payload
+    if isinstance(payload, ex.Unknown) and payload.locked:
+        payload.exact = False
+
+
+def _box_field(it: Interpreter, box: Box, name: str, node: ast.Node, env: Env) -> Value | None:
+    if name.casefold() in ("bb", "box", "boundingbox", "bounding_box"):
+        return box
+    key = find(name, dict.fromkeys(boxes.FIELDS))
+    if key is None:
+        return None
+    value = box.field(key)
+    owners = (s if isinstance(s, Structure) else getattr(s, "owner", None) for s in box.sources)
+    reached = all(may_read(it, owner, node, env) for owner in owners if owner is not None)
+    return value if reached or value is None else as_written(value)
+
+
+def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
+    value = evaluate(it, node.value, env)
+    index = evaluate(it, node.index, env)
+    if isinstance(value, Nothing) or isinstance(index, Nothing):
+        return NOTHING
+    items = members(value)
+    if items is None:
+        it.report("E0305", f"`{node.value.span.text}` is {kind_of(value)} and has no members by number", node)
+        return NOTHING
+    position = whole(it, index, node.index, "an index")
+    if position is None:
+        return NOTHING
+    if isinstance(value, Array):
+        if (position,) in value.members:
+            return value.members[(position,)]
+        if (row := value.row(position)) is not None:
+            return row
+        if position >= 0:
+            return _no_index(it, node, sorted({k[0] for k in value.members}), position)
+    if -len(items) <= position < len(items):
+        return items[position]
+    return _no_index(it, node, list(range(len(items))), position)
+
+
+def _no_index(it: Interpreter, node: ast.Index, known: list[int], wanted: int) -> Value:
+    name = node.value.span.text
+    has = f"its indices are {known[0]} to {known[-1]}" if known else "it is empty"
+    it.report("E0503", f"`{name}` has no member {wanted}: {has}", node.index)
+    return NOTHING
+
+
+# --- Operators -----------------------------------------------------------------------------------
+
+
+def _unary(it: Interpreter, node: ast.Unary, env: Env) -> Value:
+    value = evaluate(it, node.operand, env)
+    if node.operator == "not":
+        return negation(it, value, node)
+    if isinstance(value, Nothing) or node.operator == "+":
+        return value
+    if isinstance(value, PointVal):
+        return PointVal(_negative(value.x), _negative(value.y))
+    found = numeric(it, value, node.operand, env)
+    return _negative(found) if found else NOTHING
+
+
+def _negative(value: Num) -> Num:
+    return Num(ex.apply("neg", value.expression), value.dimension, value.status)
+
+
+def _binary(it: Interpreter, node: ast.Binary, env: Env) -> Value:
+    left = evaluate(it, node.left, env)
+    if node.operator in ("and", "or"):
+        # A constant that decides ends it: what guards an expression may make it meaningless.
+        if left is (node.operator == "or"):
+            return left
+        return conjunction(it, node.operator, left, evaluate(it, node.right, env), node)
+    right = evaluate(it, node.right, env)
+    if isinstance(left, Nothing) or isinstance(right, Nothing):
+        return NOTHING
+    a, b = (as_point(it, v, n, env) for v, n in ((left, node.left), (right, node.right)))
+    if a is not None or b is not None:
+        return _vector(it, node, a if a is not None else left, b if b is not None else right, env)
+    x = numeric(it, left, node.left, env)
+    y = numeric(it, right, node.right, env)
+    return arithmetic(it, node.operator, x, y, node) if x is not None and y is not None else NOTHING
+
+
+def _vector(it: Interpreter, node: ast.Binary, left: Value, right: Value, env: Env) -> Value:
+    """Points as vectors: sum, difference, and product or quotient with a number."""
+    op = node.operator
+    if isinstance(left, PointVal) and isinstance(right, PointVal) and op in "+-":
+        x, y = arithmetic(it, op, left.x, right.x, node), arithmetic(it, op, left.y, right.y, node)
+    elif isinstance(left, PointVal) and isinstance(right, Num) and op in "*/":
+        x, y = arithmetic(it, op, left.x, right, node), arithmetic(it, op, left.y, right, node)
+    elif isinstance(left, Num) and isinstance(right, PointVal) and op == "*":
+        x, y = arithmetic(it, op, left, right.x, node), arithmetic(it, op, left, right.y, node)
+    else:
+        it.report(
+            "E0307",
+            f"`{op}` does not work on {kind_of(left)} and {kind_of(right)}",
+            node,
+            hints=[
+                "points take `+` and `-` with points, `*` and `/` with numbers; see also `dot` and `cross`"
+            ],
+        )
+        return NOTHING
+    return PointVal(x, y) if isinstance(x, Num) and isinstance(y, Num) else NOTHING
+
+
+_DIMENSION: dict[str, Callable[[units.MaybeDimension, units.MaybeDimension], units.MaybeDimension]] = {
+    "+": units.add,
+    "-": units.add,
+    "%": units.add,
+    "*": units.multiply,
+    "/": units.divide,
+}
+_OPS = {"+": "add", "-": "sub", "*": "mul", "/": "div", "^": "power"}
+
+
+def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num | Nothing:
+    """Arithmetic on numbers, dimensions included; of two statuses the stronger counts."""
+    status = max(a.status, b.status)
+    try:
+        if op == "^":
+            exponent = constant(it, b, node, "an exponent")
+            if exponent is None:
+                return NOTHING
+            dimension = units.power(a.dimension, exponent)
+        else:
+            dimension = _DIMENSION[op](a.dimension, b.dimension)
+    except ValueError as reason:
+        it.report("E0308", f"`{op}` does not join {str(reason).replace(' and ', ' with ')}", node)
+        return NOTHING
+    if op == "%":
+        x, y = (constant(it, n, node, "an operand of `%`") for n in (a, b))
+        if x is None or y is None:
+            return NOTHING
+        if y == 0:
+            return _undefined(it, node)
+        return number(x - y * math.floor(x / y), dimension, status)
+    result = ex.apply(_OPS[op], a.expression, b.expression)
+    if result.is_constant and not math.isfinite(result.value):
+        return _undefined(it, node)
+    return Num(result, dimension, status)
+
+
+def _undefined(it: Interpreter, node: ast.Node) -> Nothing:
+    it.report(
+        "E0504", f"`{node.span.text}` has no value: it divides by zero or leaves the range of numbers", node
+    )
+    return NOTHING
+
+
+def _comparison(it: Interpreter, node: ast.Comparison, env: Env) -> Value:
+    values = [evaluate(it, operand, env) for operand in node.operands]
+    result: Value = True
+    for i, operator in enumerate(node.operators):
+        pair = compare(
+            it, operator, values[i], values[i + 1], node, env, node.operands[i], node.operands[i + 1]
+        )
+        result = conjunction(it, "and", result, pair, node)
+    return result
+
+
+def _membership(it: Interpreter, node: ast.Membership, env: Env) -> Value:
+    value, container = evaluate(it, node.value, env), evaluate(it, node.container, env)
+    if isinstance(value, Nothing) or isinstance(container, Nothing):
+        return NOTHING
+    if isinstance(container, RangeVal):
+        low = compare(it, ">=", value, container.start, node, env, node.value, node.container)
+        relation = "<" if container.exclusive else "<="
+        high = compare(it, relation, value, container.end, node, env, node.value, node.container)
+        return conjunction(it, "and", low, high, node)
+    items = members(container)
+    if items is None:
+        it.report("E0302", f"`in` wants a range or a list, not {kind_of(container)}", node.container)
+        return NOTHING
+    result: Value = False
+    for item in items:
+        equal = compare(it, "==", value, item, node, env, node.value, node.container)
+        result = conjunction(it, "or", result, equal, node)
+    return result
+
+
+def _range(it: Interpreter, node: ast.Range, env: Env) -> Value:
+    start, end = (numeric(it, evaluate(it, n, env), n, env) for n in (node.start, node.end))
+    if start is None or end is None:
+        return NOTHING
+    try:
+        dimension = units.add(start.dimension, end.dimension)
+    except ValueError as reason:
+        it.report("E0308", f"a range does not join {reason}", node)
+        return NOTHING
+    return RangeVal(
+        Num(start.expression, dimension, start.status),
+        Num(end.expression, dimension, end.status),
+        node.exclusive,
+    )
+
+
+def _conditional(it: Interpreter, node: ast.Conditional, env: Env) -> Value:
+    test = evaluate(it, node.test, env)
+    if isinstance(test, Nothing):
+        return NOTHING
+    return evaluate(it, node.then if truth(it, test, node.test) else node.otherwise, env)
+
+
+def _call(it: Interpreter, node: ast.Call, env: Env) -> Value:
+    from aidl_lang.building.calls import call
+
+    return call(it, node, env)
+
+
+_EVALUATE: dict[type, Callable[..., Value]] = {
+    ast.Number: _number,
+    ast.String: lambda it, node, env: Text(node.value),
+    ast.Boolean: lambda it, node, env: node.value,
+    ast.Name: _name,
+    ast.Member: _member,
+    ast.Index: _index,
+    ast.Call: _call,
+    ast.Point: _point,
+    ast.List: _list,
+    ast.Comprehension: _comprehension,
+    ast.Unary: _unary,
+    ast.Binary: _binary,
+    ast.Comparison: _comparison,
+    ast.Membership: _membership,
+    ast.Range: _range,
+    ast.Conditional: _conditional,
+}

@@ -1,0 +1,302 @@
+"""The built-in functions: arithmetic that AIDL cannot express, marks of exactness, measurements."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from aidl_lang import ast, units
+from aidl_lang import expression as ex
+from aidl_lang.boxes import spelled_out
+from aidl_lang.building.coerce import as_written, constant, numeric
+from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.expression import DEGREE, Expression
+from aidl_lang.model import Geometry, Structure
+from aidl_lang.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension
+from aidl_lang.values import (
+    NOTHING,
+    ListVal,
+    Num,
+    PointVal,
+    Status,
+    Value,
+    kind_of,
+    members,
+    number,
+)
+
+Arguments = Mapping[str, Value]
+Function = Callable[[Interpreter, Arguments, ast.Call, Env], Value]
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A number that only the finished drawing has: area, perimeter, clearance, overlaps (1 or 0)."""
+
+    kind: str
+    of: tuple[Structure | Geometry, ...]
+
+
+def _checked(it: Interpreter, result: Num, node: ast.Node) -> Value:
+    if result.expression.is_constant and not math.isfinite(result.value):
+        it.report(
+            "E0504", f"`{node.span.text}` has no value", node, label="outside the range of this function"
+        )
+        return NOTHING
+    return result
+
+
+def _num(it: Interpreter, a: Arguments, name: str, node: ast.Call, env: Env) -> Num | None:
+    return numeric(it, a[name], node, env)
+
+
+def _of_angle(op: Callable[[Expression], Expression]) -> Function:
+    def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+        angle = _num(it, a, "angle", node, env)
+        if angle is None:
+            return NOTHING
+        return _checked(it, Num(op(angle.expression), PLAIN, angle.status), node)
+
+    return function
+
+
+def _tan(angle: Expression) -> Expression:
+    return ex.apply("tan", ex.mul(angle, ex.constant(DEGREE)))
+
+
+def _to_angle(op: str) -> Function:
+    def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+        value = _num(it, a, "value", node, env)
+        if value is None:
+            return NOTHING
+        if op == "atan":
+            angle = ex.atan2(value.expression, ex.ONE)
+        else:
+            angle = ex.mul(ex.apply(op, value.expression), ex.constant(1 / DEGREE))
+        return _checked(it, Num(angle, ANGLE, value.status), node)
+
+    return function
+
+
+def _atan2(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    y, x = _num(it, a, "y", node, env), _num(it, a, "x", node, env)
+    if x is None or y is None:
+        return NOTHING
+    return Num(ex.atan2(y.expression, x.expression), ANGLE, max(x.status, y.status))
+
+
+def _halved(dimension: MaybeDimension) -> MaybeDimension:
+    return units.power(dimension, 0.5)
+
+
+def _of_one(op: str, dimension: Callable[[MaybeDimension], MaybeDimension]) -> Function:
+    def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+        value = _num(it, a, "value", node, env)
+        if value is None:
+            return NOTHING
+        try:
+            result = dimension(value.dimension)
+        except ValueError as reason:
+            it.report("E0308", f"`{node.callee.text}` has no meaning for an {reason}", node)
+            return NOTHING
+        return _checked(it, Num(ex.apply(op, value.expression), result, value.status), node)
+
+    return function
+
+
+def _hypot(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    x, y = _num(it, a, "a", node, env), _num(it, a, "b", node, env)
+    if x is None or y is None:
+        return NOTHING
+    try:
+        dimension = units.add(x.dimension, y.dimension)
+    except ValueError as reason:
+        it.report("E0308", f"`hypot` does not join {reason}", node)
+        return NOTHING
+    return Num(ex.apply("hypot", x.expression, y.expression), dimension, max(x.status, y.status))
+
+
+def _numbers(it: Interpreter, a: Arguments, name: str, node: ast.Call, env: Env) -> list[Num] | None:
+    items = members(a[name])
+    if items is None:
+        it.report("E0302", f"`{node.callee.text}` wants numbers or a list of them", node)
+        return None
+    found = [numeric(it, item, node, env) for item in items]
+    return None if None in found else [n for n in found if n is not None]
+
+
+def _common(it: Interpreter, values: list[Num], node: ast.Call) -> tuple[MaybeDimension, Status] | None:
+    dimension: MaybeDimension = None
+    try:
+        for value in values:
+            dimension = units.add(dimension, value.dimension)
+    except ValueError as reason:
+        it.report("E0308", f"`{node.callee.text}` does not join {reason}", node)
+        return None
+    return dimension, max((v.status for v in values), default=Status.NUMBER)
+
+
+def _extreme(op: str) -> Function:
+    def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+        values = _numbers(it, a, "values", node, env)
+        kind = _common(it, values, node) if values else None
+        if not values or kind is None:
+            if values == []:
+                it.report("E0504", f"`{node.callee.text}` of nothing has no value", node)
+            return NOTHING
+        return Num(ex.apply(op, *[v.expression for v in values]), *kind)
+
+    return function
+
+
+def _sum(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    items = members(a["values"])
+    if items and all(isinstance(i, PointVal) for i in items):
+        x = [i.x for i in items if isinstance(i, PointVal)]
+        y = [i.y for i in items if isinstance(i, PointVal)]
+        return PointVal(_total(x, LENGTH), _total(y, LENGTH))
+    values = _numbers(it, a, "values", node, env)
+    kind = _common(it, values, node) if values is not None else None
+    return _total(values, kind[0]) if values is not None and kind is not None else NOTHING
+
+
+def _total(values: list[Num], dimension: MaybeDimension) -> Num:
+    total, status = ex.ZERO, Status.NUMBER
+    for value in values:
+        total, status = ex.add(total, value.expression), max(status, value.status)
+    return Num(total, dimension, status)
+
+
+def _rounded(function: Callable[[float], float]) -> Function:
+    def rounded(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+        value = _num(it, a, "value", node, env)
+        known = constant(it, value, node, f"what `{node.callee.text}` rounds") if value else None
+        if value is None or known is None:
+            return NOTHING
+        # 2.9999999999999996 is 3 that went through arithmetic.
+        near = round(known)
+        result = near if abs(known - near) < 1e-9 * max(1.0, abs(known)) else function(known)
+        return number(float(result), value.dimension, value.status)
+
+    return rounded
+
+
+def _half_up(value: float) -> float:
+    return math.floor(value + 0.5)
+
+
+def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    items = members(a["values"])
+    if items is None:
+        it.report("E0302", f"`len` counts the members of a list, and this is {kind_of(a['values'])}", node)
+        return NOTHING
+    return number(float(len(items)), PLAIN)
+
+
+def _mark(status: Status) -> Function:
+    """`fixed(x)` and `guess(x)`: the value with another status, points and lists by member."""
+
+    def mark(value: Value) -> Value:
+        match value:
+            case Num(expression, dimension, _):
+                return Num(expression, dimension, status)
+            case PointVal(x, y):
+                return PointVal(
+                    Num(x.expression, x.dimension, status), Num(y.expression, y.dimension, status)
+                )
+            case ListVal(items):
+                return ListVal(tuple(map(mark, items)))
+            case _:
+                return value
+
+    def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+        value = a["value"]
+        if isinstance(value, Num | PointVal | ListVal):
+            return mark(as_written(value) if status is Status.GUESS else value)
+        it.report(
+            "E0310",
+            f"`{node.callee.text}` marks a number or a point, and this is {kind_of(value)}",
+            node,
+            hints=["to hold a geometry where it was written: `constrain fixed(…)`"],
+        )
+        return NOTHING
+
+    return function
+
+
+def _written(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    return as_written(a["value"])
+
+
+def _nearest(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """The candidate that is nearest to a value as written; the choice is part of the report."""
+    value = _num(it, a, "value", node, env)
+    candidates = _numbers(it, a, "candidates", node, env)
+    if value is None or not candidates:
+        return NOTHING
+    (target,) = spelled_out(value.expression)
+    is_angle = value.dimension == ANGLE
+
+    def away(candidate: Num) -> float:
+        difference = candidate.value - target.value
+        return abs((difference + 180) % 360 - 180) if is_angle else abs(difference)
+
+    chosen = min(candidates, key=away)
+    if it.call_sites and (span := it.place(node)) is not None and len(candidates) > 1:
+        it.readings.append(
+            (span, f"taken as {chosen.value:.6g} ({candidates.index(chosen) + 1} of {len(candidates)})")
+        )
+    return chosen
+
+
+def _measure(kind: str, dimension: Dimension) -> Function:
+    def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+        of = tuple(v for v in a.values() if isinstance(v, Structure | Geometry))
+        if len(of) != len(a):
+            wrong = next(v for v in a.values() if not isinstance(v, Structure | Geometry))
+            it.report("E0310", f"`{kind}` measures structures and geometry, not {kind_of(wrong)}", node)
+            return NOTHING
+        value = Expression("measure", (), math.nan, Measurement(kind, of))
+        measured = Num(value, dimension, Status.REFERENCE)
+        if kind == "overlaps":
+            from aidl_lang.building.conditions import compare_numbers
+
+            return compare_numbers(it, "==", Num(value, PLAIN, Status.REFERENCE), number(1.0, PLAIN), node)
+        return measured
+
+    return function
+
+
+def _keep(dimension: MaybeDimension) -> MaybeDimension:
+    return dimension
+
+
+FUNCTIONS: dict[str, Function] = {
+    "sin": _of_angle(ex.sin),
+    "cos": _of_angle(ex.cos),
+    "tan": _of_angle(_tan),
+    "asin": _to_angle("asin"),
+    "acos": _to_angle("acos"),
+    "atan": _to_angle("atan"),
+    "atan2": _atan2,
+    "sqrt": _of_one("sqrt", _halved),
+    "abs": _of_one("abs", _keep),
+    "square": _of_one("square", lambda d: units.multiply(d, d)),
+    "hypot": _hypot,
+    "min": _extreme("minimum"),
+    "max": _extreme("maximum"),
+    "sum": _sum,
+    "floor": _rounded(math.floor),
+    "ceil": _rounded(math.ceil),
+    "round": _rounded(_half_up),
+    "len": _len,
+    "fixed": _mark(Status.FIXED),
+    "guess": _mark(Status.GUESS),
+    "written": _written,
+    "nearest": _nearest,
+    "area": _measure("area", AREA),
+    "perimeter": _measure("perimeter", LENGTH),
+    "clearance": _measure("clearance", LENGTH),
+    "overlaps": _measure("overlaps", PLAIN),
+}

@@ -1,0 +1,188 @@
+"""From a condition that an author states to a constraint of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from aidl_lang import ast
+from aidl_lang import expression as ex
+from aidl_lang.boxes import Box
+from aidl_lang.building.coerce import as_point
+from aidl_lang.building.conditions import RELATIONS, all_of, compare_numbers, holds, placed_by, value_unknowns
+from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.model import Assertion, Comparison, Condition, Constraint, Geometry, Structure
+from aidl_lang.names import fold
+from aidl_lang.primitives import defining
+from aidl_lang.units import LENGTH
+from aidl_lang.values import Array, ListVal, Nothing, Num, PointVal, Text, Value, kind_of, members, number
+
+
+def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None = None) -> None:
+    """`constrain EXPR` or, with a weight, `prefer EXPR`: constant conditions are checked on the spot."""
+    if isinstance(node, ast.Call) and fold(node.callee.text) == "fixed":
+        value = _held(it, node, env)
+    else:
+        value = evaluate(it, node, env)
+    match value:
+        case Nothing() | True:
+            return
+        case False:
+            if weight is None:
+                _never(it, node)
+        case Condition():
+            _impose_condition(it, value, node, env, weight)
+        case Geometry():
+            it.report(
+                "E0323",
+                f"this {value.type} has no name, so it is not part of the model",
+                node,
+                hints=[f"give it one: `{value.type}_1 = {node.span.text}`"],
+            )
+        case _:
+            it.report(
+                "E0321",
+                f"a constraint is a condition, and this is {kind_of(value)}",
+                node,
+                hints=["compare it (`== 20`), or call a relation such as `above(a, b)`"],
+            )
+
+
+def _never(it: Interpreter, node: ast.Expression) -> None:
+    it.report(
+        "E0513",
+        f"`{one_line(node.span.text)}` can never hold: both sides are constants",
+        node,
+        label="false as written",
+        hints=["a number or `param` does not move; make one side a `var`, a `guess(…)` or a reference"],
+    )
+
+
+def _impose_condition(
+    it: Interpreter, condition: Condition, node: ast.Expression, env: Env, weight: float | None
+) -> None:
+    comparisons: list[Comparison] = []
+    for part in condition.parts if condition.operator == "and" else (condition,):
+        if part is False:
+            _never(it, node)
+            return
+        if isinstance(part, Condition) or (isinstance(part, Comparison) and part.relation not in RELATIONS):
+            word = part.operator if isinstance(part, Condition) else part.relation
+            it.report(
+                "E0322",
+                f"`{word}` does not constrain: a solver cannot choose between alternatives",
+                node,
+                hints=["state the one that is meant, choose with `if` over params, or `assert` it"],
+            )
+            return
+        if isinstance(part, Comparison):
+            comparisons.append(part)
+    if any(n.op == "measure" for c in comparisons for n in ex.nodes([c.left, c.right])):
+        it.report(
+            "E0512",
+            "areas, perimeters and clearances of outlines are known after solving only",
+            node,
+            hints=["put it in an `assert`, or constrain boxes and distances instead"],
+        )
+        return
+    if comparisons:
+        comparisons = _placed_in_call(it, node, comparisons, env)
+        it.add_constraint(
+            Constraint(
+                env.here,
+                tuple(comparisons),
+                one_line(node.span.text),
+                it.place(node) or node.span,
+                weight,
+                ", ".join(env.scope.labels),
+            )
+        )
+
+
+def _placed_in_call(
+    it: Interpreter, node: ast.Expression, comparisons: list[Comparison], env: Env
+) -> list[Comparison]:
+    """In `distance(a, b) == 18` the call's last argument is held, as in every call."""
+    if not isinstance(node, ast.Comparison) or not isinstance(call := node.operands[0], ast.Call):
+        return comparisons
+    positional = [call.receiver] if call.receiver is not None else []
+    positional += [a.value for a in call.arguments if a.name is None]
+    if len(positional) < 2 or any(isinstance(p, ast.Call) for p in positional):
+        return comparisons
+    values = [evaluate(it, p, env) for p in positional[:-1]]
+    placed = frozenset(u for v in values for u in value_unknowns(v, env.here))
+    return [placed_by(c, c.placed & placed or c.placed) for c in comparisons]
+
+
+def one_line(text: str) -> str:
+    """Source text on one line."""
+    return " ".join(text.split())
+
+
+def record_assertion(it: Interpreter, node: ast.Assert, env: Env) -> None:
+    """`assert`: kept to be checked on the solved model."""
+    value = evaluate(it, node.test, env)
+    if isinstance(value, Nothing):
+        return
+    if not isinstance(value, bool | Condition):
+        it.report("E0321", f"`assert` wants a condition, and this is {kind_of(value)}", node.test)
+        return
+    message = evaluate(it, node.message, env) if node.message is not None else None
+    it.assertions.append(
+        Assertion(
+            env.here,
+            value,
+            message.value if isinstance(message, Text) else None,
+            one_line(node.test.span.text),
+            it.place(node.test) or node.span,
+            ", ".join(env.scope.labels),
+        )
+    )
+
+
+# --- constrain fixed(x) ----------------------------------------------------------------------------
+
+
+def _held(it: Interpreter, node: ast.Call, env: Env) -> Value:
+    """`constrain fixed(x)`: x stays where it was written, in the frame of the holder."""
+    arguments = [node.receiver] if node.receiver is not None else []
+    arguments += [a.value for a in node.arguments]
+    found: list[Value] = []
+    for argument in arguments:
+        value = evaluate(it, argument, env)
+        if isinstance(value, Nothing):
+            return value
+        numbers = list(_numbers(it, value, argument, env))
+        if not numbers:
+            it.report("E0321", f"{kind_of(value)} has nothing to hold", argument)
+        found += [compare_numbers(it, "==", n, number(n.value, n.dimension), node) for n in numbers]
+    return all_of(found)
+
+
+def _numbers(it: Interpreter, value: Value, node: ast.Expression, env: Env) -> Iterator[Num]:
+    match value:
+        case Num():
+            yield value
+        case PointVal(x, y):
+            yield x
+            yield y
+        case Geometry():
+            at = as_point(it, value, node, env)
+            if at is not None:
+                yield from (at.x, at.y)
+            else:
+                yield from (Num(e, LENGTH) for e in defining(value, env.here))
+        case Structure():
+            for structure in value.walk():
+                for geometry in structure.own():
+                    yield from (Num(e, LENGTH) for e in defining(geometry, env.here))
+        case ListVal() | Array():
+            for item in members(value) or ():
+                yield from _numbers(it, item, node, env)
+        case Box():
+            yield from (Num(value.side(s), LENGTH) for s in ("left", "right", "top", "bottom"))
+
+
+def check_assertion(assertion: Assertion, evaluator: ex.Evaluator, tolerance: float) -> bool:
+    """Whether an assertion holds on the solved model."""
+    return holds(assertion.condition, evaluator, tolerance)

@@ -1,0 +1,219 @@
+"""Knobs: a `param` with its range, its value from the program or from outside."""
+
+from __future__ import annotations
+
+import re
+
+from aidl_lang import ast, units
+from aidl_lang.building.coerce import constant
+from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.scopes import ParamBinding
+from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.model import Knob, Structure
+from aidl_lang.names import fold, nearest
+from aidl_lang.units import UNITS
+from aidl_lang.values import (
+    NOTHING,
+    Nothing,
+    Num,
+    RangeVal,
+    Status,
+    Text,
+    Value,
+    kind_of,
+    members,
+    number,
+)
+
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-z]*)\s*")
+_RANGE_SLACK = 1e-9
+
+
+def knob_path(structure: Structure, name: str) -> str:
+    """The path by which a param is set from outside: from the root, without the root's own name."""
+    below = structure.path.partition(".")[2] if structure.parent is not None else ""
+    return f"{below}.{name}" if below else name
+
+
+def read_param(it: Interpreter, binding: ParamBinding, node: ast.Node) -> Value:
+    """The value of a knob; evaluated, checked against its range and registered on first use."""
+    if binding.known is None:
+        if binding.running:
+            it.report("E0207", f"param `{binding.node.name.text}` is defined by way of itself", node)
+            return NOTHING
+        binding.running = True
+        binding.known = _evaluate(it, binding)
+        binding.running = False
+    return binding.known
+
+
+def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
+    node = binding.node
+    env = Env(binding.scope, binding.structure, Reach.OWN)
+    written = evaluate(it, node.value, env)
+    if isinstance(written, Num):
+        known = constant(it, written, node.value, "the value of a `param`")
+        written = number(known, written.dimension) if known is not None else NOTHING
+    elif not isinstance(written, Text | bool | Nothing):
+        it.report("E0314", f"a `param` is a number, a text or true/false, not {kind_of(written)}", node.value)
+        return NOTHING
+    domain = evaluate(it, node.domain, env) if node.domain is not None else None
+    step = evaluate(it, node.step, env) if node.step is not None else None
+    if isinstance(written, Nothing) or isinstance(domain, Nothing):
+        return NOTHING
+    low, high, choices = _domain(it, domain, node)
+    path = knob_path(binding.structure, node.name.text)
+    value = _from_outside(it, path, written, choices)
+    where = "written" if value is written else "set from outside"
+    fits = _is_allowed(value, low, high, choices)
+    if not fits:
+        allowed = (
+            f"{low:g}..{high:g}"
+            if low is not None and high is not None
+            else " or ".join(map(_shown, choices))
+        )
+        code = "E0505" if value is written else "E0909"
+        it.report(
+            code,
+            f"`{path}` is {_shown(_plain(value))} as {where}, outside its range {allowed}",
+            node.value if value is written else node.name,
+            label=f"allowed: {allowed}",
+            hints=[f"give a value in {allowed}, or widen the range of the `param`"],
+        )
+    unit = (
+        "deg"
+        if isinstance(value, Num) and value.dimension == units.ANGLE
+        else ("mm" if isinstance(value, Num) and value.dimension == units.LENGTH else "")
+    )
+    it.knobs.append(
+        Knob(
+            path,
+            _plain(value),
+            low,
+            high,
+            choices,
+            step.value if isinstance(step, Num) else None,
+            unit,
+            node.doc,
+            node.span,
+        )
+    )
+    if isinstance(value, Num):
+        return Num(value.expression, value.dimension, Status.PARAM)
+    return Text(value.value, is_param=True) if isinstance(value, Text) else value
+
+
+def _plain(value: Value) -> float | str | bool:
+    match value:
+        case Num():
+            return value.value
+        case Text():
+            return value.value
+        case bool():
+            return value
+        case _:
+            raise TypeError(f"no plain form of {value!r}")
+
+
+def _shown(value: float | str | bool) -> str:
+    return (
+        f"{value:g}"
+        if isinstance(value, float)
+        else f'"{value}"'
+        if isinstance(value, str)
+        else str(value).lower()
+    )
+
+
+def _domain(
+    it: Interpreter, domain: Value | None, node: ast.Param
+) -> tuple[float | None, float | None, tuple[float | str | bool, ...]]:
+    if domain is None:
+        return None, None, ()
+    if isinstance(domain, RangeVal):
+        return domain.start.value, domain.end.value, ()
+    items = members(domain)
+    if items is None or not all(isinstance(i, Num | Text | bool) for i in items):
+        it.report("E0314", "the range of a `param` is as `20..200` or a list of choices", node.domain)
+        return None, None, ()
+    return None, None, tuple(_plain(i) for i in items)
+
+
+def _is_allowed(
+    value: Value, low: float | None, high: float | None, choices: tuple[float | str | bool, ...]
+) -> bool:
+    if choices:
+        return _plain(value) in choices
+    if low is None or high is None:
+        return True
+    slack = _RANGE_SLACK * max(1.0, abs(low), abs(high))
+    return isinstance(value, Num) and low - slack <= value.value <= high + slack
+
+
+def _from_outside(
+    it: Interpreter, path: str, written: Value, choices: tuple[float | str | bool, ...]
+) -> Value:
+    """The value set for a path with `-D path=value` or `compile(params=…)`, else the written one."""
+    key = _override(it, path)
+    if key is None:
+        return written
+    it.used_overrides.add(key)
+    given = it.overrides[key]
+    value = _parse(given, written)
+    if value is None:
+        kind = (
+            "a text"
+            if isinstance(written, Text)
+            else "true or false"
+            if isinstance(written, bool)
+            else "a number"
+        )
+        it.report("E0910", f"`{key}={given}` does not fit: `{path}` is {kind}", None)
+        return written
+    return value
+
+
+def _override(it: Interpreter, path: str) -> str | None:
+    root = it.root.name if it.root else ""
+    names = {fold(path), fold(f"{root}.{path}")}
+    return next((key for key in it.overrides if fold(key.strip()) in names), None)
+
+
+def _parse(given: str | float | bool, written: Value) -> Value | None:
+    match written:
+        case Text():
+            return Text(given.strip().strip("\"'")) if isinstance(given, str) else None
+        case bool():
+            word = str(given).strip().casefold()
+            return {"true": True, "false": False, "1": True, "0": False}.get(word)
+        case Num(dimension=dimension):
+            if isinstance(given, bool):
+                return None
+            if isinstance(given, int | float):
+                return number(float(given), dimension)
+            matched = _NUMBER.fullmatch(given)
+            if matched is None:
+                return None
+            factor, unit = UNITS.get(matched[2], (1.0, None))
+            if matched[2] and (unit is None or dimension not in (None, unit)):
+                return None
+            value = float(matched[1]) * factor
+            return number(value, dimension) if abs(value) < 1e300 else None
+        case _:
+            return None
+
+
+def report_unused(it: Interpreter) -> None:
+    """Values set from outside that no param takes."""
+    paths = [knob.path for knob in it.knobs]
+    for key in it.overrides:
+        if key not in it.used_overrides:
+            like = nearest(key, paths)
+            hints = [f"did you mean `{like[0]}`?"] if like else []
+            known = ", ".join(f"`{p}`" for p in paths[:12]) or "none"
+            it.report(
+                "E0911",
+                f"there is no param `{key}`",
+                None,
+                hints=[*hints, f"params of this program: {known}"],
+            )

@@ -1,0 +1,141 @@
+"""Where names are found while a program is built: a chain of scopes, each with values and callables apart.
+
+A value that other code may read in its own frame, or before its line was reached, is kept as a binding and
+evaluated when it is asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeAlias
+
+from aidl_lang import ast
+from aidl_lang.expression import Unknown
+from aidl_lang.model import Geometry, Structure
+from aidl_lang.names import find
+from aidl_lang.types import Signature
+
+if TYPE_CHECKING:
+    from aidl_lang.values import Value
+
+
+@dataclass(eq=False)
+class LetBinding:
+    """A name for an expression, evaluated where it is used; what is the same everywhere is kept."""
+
+    node: ast.Expression
+    scope: Scope
+    known: Value | None = None
+    running: bool = False
+
+
+@dataclass(eq=False)
+class ParamBinding:
+    """A knob, evaluated once with what was set from outside."""
+
+    node: ast.Param
+    scope: Scope
+    structure: Structure
+    known: Value | None = None
+    running: bool = False
+
+
+@dataclass(eq=False)
+class VarBinding:
+    """An unknown declared with `var`."""
+
+    value: Value
+    unknown: Unknown
+
+
+@dataclass(eq=False)
+class PassedBinding:
+    """An argument of a template: a number with its status, or a reference that each structure using it gets
+    as an unknown of its own, tied by an equality in `holder`.
+    """
+
+    name: str
+    value: Value
+    instance: Structure
+    holder: Structure
+    node: ast.Node
+    tied: dict[Structure, Value] = field(default_factory=dict)
+
+
+Binding: TypeAlias = "Value | LetBinding | ParamBinding | VarBinding | PassedBinding"
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A callable and the scope its body sees; `scope` is None for what is built in."""
+
+    signature: Signature
+    scope: Scope | None
+
+
+@dataclass(eq=False)
+class Scope:
+    """
+    container  what declarations in it become members of: a structure, a compound shape, or None
+    turn       one turn of a `for`: its lets are its own, what it declares goes to the container
+    labels     loop variables of the turns around, for messages
+    """
+
+    parent: Scope | None
+    container: Structure | Geometry | None = None
+    turn: bool = False
+    labels: tuple[str, ...] = ()
+    values: dict[str, Binding] = field(default_factory=dict)
+    callables: dict[str, list[Candidate]] = field(default_factory=dict)
+    aliases: dict[str, str] = field(default_factory=dict)
+    supply: Callable[[str], Iterable[Candidate]] | None = None
+    """looks up callables that are kept elsewhere (the library's)"""
+
+    def chain(self) -> Iterable[Scope]:
+        scope: Scope | None = self
+        while scope is not None:
+            yield scope
+            scope = scope.parent
+
+    def find(self, name: str) -> tuple[str, Scope] | None:
+        """The scope that has a value of this name: as written anywhere, else the nearest spelled alike."""
+        for scope in self.chain():
+            if name in scope.values:
+                return name, scope
+        for scope in self.chain():
+            if (alike := find(name, scope.values)) is not None:
+                return alike, scope
+        return None
+
+    def declaring(self) -> Scope:
+        """The scope whose container gets what is declared here."""
+        scope = self
+        while scope.turn and scope.parent is not None:
+            scope = scope.parent
+        return scope
+
+    def candidates(self, name: str) -> list[Candidate]:
+        """All callables of a name, innermost first; aliases followed."""
+        found: list[Candidate] = []
+        seen: set[str] = set()
+        while name not in seen:
+            seen.add(name)
+            alias: str | None = None
+            for scope in self.chain():
+                key = name if name in scope.callables else None
+                found += scope.callables[key] if key else ()
+                if scope.supply is not None:
+                    found += scope.supply(name)
+                alias = alias or scope.aliases.get(name)
+            if alias is None:
+                break
+            name = alias
+        return found
+
+    def callable_names(self, library: Mapping[str, object]) -> dict[str, None]:
+        """Every name that can be called from here."""
+        names: dict[str, None] = {}
+        for scope in self.chain():
+            names |= dict.fromkeys(scope.callables) | dict.fromkeys(scope.aliases)
+        return names | dict.fromkeys(library)

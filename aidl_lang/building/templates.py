@@ -1,0 +1,102 @@
+"""Templates: what a call of one yields, and what its arguments are inside it.
+
+A number argument keeps its status; one that is literal is a single unknown inside the instance. A
+reference becomes an unknown of every structure that uses it, tied by an equality that the instantiating
+structure holds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from aidl_lang import ast
+from aidl_lang.building.coerce import as_written
+from aidl_lang.building.conditions import compare_numbers
+from aidl_lang.building.construct import positions
+from aidl_lang.building.scopes import Candidate, PassedBinding
+from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.model import Condition, Constraint, Geometry, Structure, convert_point
+from aidl_lang.values import Num, PointVal, Status, Value, kind_of
+
+
+@dataclass(frozen=True, eq=False)
+class Instantiation:
+    """A call of a template, waiting for the name it is assigned to."""
+
+    candidate: Candidate
+    definition: ast.Structure
+    arguments: dict[str, Value]
+    node: ast.Call
+
+
+def passed(
+    it: Interpreter, name: str, value: Value, instance: Structure, holder: Structure, node: ast.Node
+) -> Value | PassedBinding:
+    """What the parameter of an instance is bound to."""
+    if isinstance(value, Geometry | Structure):
+        it.report(
+            "E0313",
+            f"a template takes numbers, points, texts and lists, and `{name}` is given {kind_of(value)}",
+            node,
+            hints=[f"pass one of its points or sizes, or constrain `{instance.name}` from outside"],
+        )
+    if isinstance(value, Num | PointVal):
+        return PassedBinding(name, value, instance, holder, node)
+    return value
+
+
+def read_passed(it: Interpreter, binding: PassedBinding, env: Env) -> Value:
+    """An argument as the structure that reads it has it."""
+    here = env.here if env.here.is_within(binding.instance) else binding.instance
+    if (known := binding.tied.get(here)) is None:
+        known = binding.tied[here] = _tie(it, binding, here)
+    return known
+
+
+def _tie(it: Interpreter, binding: PassedBinding, here: Structure) -> Value:
+    match binding.value:
+        case Num(status=Status.REFERENCE) as number:
+            made = it.unknown(number.value, here, binding.name, owner=here, dimension=number.dimension)
+            own = Num(made, number.dimension, Status.REFERENCE)
+            _hold_equal(it, binding, [(own, number)])
+            return own
+        case Num(status=Status.NUMBER) as number if here is binding.instance:
+            made = it.unknown(
+                number.value, here, binding.name, owner=here, dimension=number.dimension, kept=True, cell=True
+            )
+            return Num(made, number.dimension, Status.NUMBER)
+        case PointVal() as point if here is not binding.instance and not _refers(point):
+            return point
+        case PointVal() as point:
+            own_point = _own_point(it, binding, point, here)
+            if _refers(point):
+                outside = convert_point(own_point, here, binding.holder)
+                pairs = [(outside.x, point.x), (outside.y, point.y)]
+                _hold_equal(it, binding, [p for p in pairs if p[1].status is Status.REFERENCE])
+            return own_point
+        case value:
+            return value
+
+
+def _refers(point: PointVal) -> bool:
+    return Status.REFERENCE in (point.x.status, point.y.status)
+
+
+def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: Structure) -> PointVal:
+    """A point of the instance at the place, in its frame, that the argument has at the first guesses."""
+    if _refers(point):
+        numbers = as_written(point)
+        assert isinstance(numbers, PointVal)
+        at = as_written(convert_point(numbers, binding.holder, here))
+        assert isinstance(at, PointVal)
+        point = at
+    return positions(it, [point], here, [binding.name], here)[0]
+
+
+def _hold_equal(it: Interpreter, binding: PassedBinding, pairs: list[tuple[Num, Num]]) -> None:
+    conditions = [compare_numbers(it, "==", own, outer, binding.node) for own, outer in pairs]
+    comparisons = tuple(c for m in conditions if isinstance(m, Condition) for c in m.comparisons())
+    span = it.place(binding.node)
+    if comparisons and span is not None:
+        text = f"{binding.instance.name}.{binding.name} == {span.text}"
+        it.add_constraint(Constraint(binding.holder, comparisons, text, span))

@@ -1,0 +1,58 @@
+"""Constants that are defined by way of themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from aidl_lang import ast
+from aidl_lang.checking.infer import Inference
+from aidl_lang.resolving.symbols import Symbol, SymbolKind
+
+
+def find_cycles(infer: Inference) -> None:
+    """Report every circle of params and lets once, at the use that closes it.
+
+    A depth-first search in text order, with a stack of its own since chains may be long.
+    """
+    graph = _dependences(infer)
+    done: set[Symbol] = set()
+    for start in graph:
+        trail = [(start, iter(graph[start]))]
+        places = {start: 0}
+        while trail and start not in done:
+            symbol, rest = trail[-1]
+            target, name = next(rest, (None, None))
+            if target is None or name is None:
+                done.add(symbol)
+                del places[symbol]
+                trail.pop()
+            elif target in places:
+                _report(infer, [*(s.name for s, _ in trail[places[target] :]), target.name], name)
+            elif target in graph and target not in done:
+                places[target] = len(trail)
+                trail.append((target, iter(graph[target])))
+
+
+def _dependences(infer: Inference) -> dict[Symbol, list[tuple[Symbol, ast.Name]]]:
+    """Param or let → what its value names, and where."""
+    uses = infer.resolution.uses
+    return {
+        symbol: [(uses[name], name) for node in symbol.nodes for name in _names(node) if name in uses]
+        for symbol in infer.resolution.symbols
+        if symbol.kind in (SymbolKind.LET, SymbolKind.PARAM)
+    }
+
+
+def _names(node: ast.Node) -> Iterator[ast.Name]:
+    assert isinstance(node, ast.Let | ast.Assign | ast.Param)
+    return (n for n in ast.walk(node.value) if isinstance(n, ast.Name))
+
+
+def _report(infer: Inference, circle: list[str], name: ast.Name) -> None:
+    way = f": {' → '.join(circle)}" if len(circle) > 2 else ""
+    infer.report(
+        "E0207",
+        f"`{circle[-1]}` is defined by way of itself{way}",
+        name,
+        hints=["one of them needs a value that does not depend on the others"],
+    )

@@ -1,0 +1,81 @@
+"""What may stand behind a dot in every program: the fields of primitives and boxes, and their types."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from aidl_lang.names import fold
+from aidl_lang.types import ANY, BoxType, GeometryType, NumberType, PointType, Type
+from aidl_lang.units import ANGLE, LENGTH
+
+_LENGTH, _ANGLE, _POINT = NumberType(LENGTH), NumberType(ANGLE), PointType()
+
+
+def _fields(points: str = "", lengths: str = "", angles: str = "") -> dict[str, Type]:
+    return {
+        **dict.fromkeys(points.split(), _POINT),
+        **dict.fromkeys(lengths.split(), _LENGTH),
+        **dict.fromkeys(angles.split(), _ANGLE),
+    }
+
+
+PRIMITIVE: Mapping[str, Mapping[str, Type]] = {
+    "point": _fields(points="at center", lengths="x y"),
+    "line": _fields("start end midpoint center", "length dx dy", "angle"),
+    "arc": _fields("center start end midpoint", "radius diameter length", "start_angle end_angle sweep"),
+    "circle": _fields("center", "radius diameter"),
+    "bezier": _fields("p0 p1 p2 p3 start end"),
+    "ellipse": _fields("center", "rx ry", "angle"),
+}
+
+BOX: Mapping[str, Type] = _fields(
+    "center top_left top_right bottom_left bottom_right top_center bottom_center left_center right_center",
+    "left right top bottom width height center_x center_y",
+)
+
+STRUCTURE: Mapping[str, Type] = {
+    "origin": _POINT,
+    "x_axis": GeometryType("line"),
+    "y_axis": GeometryType("line"),
+}
+
+OUTLINE = frozenset(
+    [
+        "corner",
+        "corners",
+        "segment",
+        "segments",
+        "edge",
+        "edges",
+        "point",
+        "points",
+        "fillet",
+        "chamfer",
+        "outline",
+        "parts",
+        "source",
+        "member",
+        "members",
+    ]
+)
+"""Names that operations give to shapes beside what their definitions declare; the builder knows better."""
+
+
+def is_box_name(name: str) -> bool:
+    return fold(name) in ("bb", "box", "boundingbox")
+
+
+RESULTS: Mapping[str, Type] = {
+    **dict.fromkeys(("sin", "cos", "tan"), NumberType(None)),
+    **dict.fromkeys(("asin", "acos", "atan", "atan2"), _ANGLE),
+    **dict.fromkeys(("floor", "ceil", "round", "abs", "min", "max", "sum"), ANY),
+    "len": NumberType(None, whole=True),
+    **dict.fromkeys(("line", "arc", "circle", "bezier", "ellipse"), ANY),
+    **{kind: GeometryType(kind) for kind in PRIMITIVE if kind != "point"},
+    "point": GeometryType("point"),
+    "area": NumberType(None),
+    "perimeter": _LENGTH,
+    "clearance": _LENGTH,
+    "bb": BoxType(),
+}
+"""Types of what the built-in functions give, where it does not depend on their arguments."""

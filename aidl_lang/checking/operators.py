@@ -1,0 +1,144 @@
+"""Arithmetic, vectors and comparisons: which operands go together, and what they give."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from aidl_lang import ast, units
+from aidl_lang.checking.facts import Fact, is_number, is_point
+from aidl_lang.checking.wording import a, comparison_hint, shown
+from aidl_lang.types import (
+    ANY,
+    ListType,
+    NumberType,
+    PointType,
+    RangeType,
+    TextType,
+    TruthType,
+)
+
+if TYPE_CHECKING:
+    from aidl_lang.checking.infer import Inference
+
+
+def unary(check: Inference, node: ast.Unary) -> Fact:
+    if node.operator == "not":
+        return Fact(TruthType(), check.wants(node.operand, "a condition", TruthType).reads)
+    fact = check.fact(node.operand)
+    return fact if isinstance(fact.type, PointType) else check.numeric(node.operand)
+
+
+def binary(check: Inference, node: ast.Binary) -> Fact:
+    if node.operator in ("and", "or"):
+        sides = [check.wants(n, "a condition", TruthType) for n in (node.left, node.right)]
+        return Fact(TruthType(), sides[0].reads | sides[1].reads)
+    left, right = check.fact(node.left), check.fact(node.right)
+    reads = left.reads | right.reads
+    if left.is_any or right.is_any or isinstance(left.type, ListType) or isinstance(right.type, ListType):
+        return Fact(ANY, reads)
+    if is_point(left.type) or is_point(right.type):
+        return _vector(check, node, left, right)
+    left, right = check.numeric(node.left), check.numeric(node.right)
+    if not isinstance(left.type, NumberType) or not isinstance(right.type, NumberType):
+        return Fact(ANY, reads)
+    return _arithmetic(check, node, left, right, left.type, right.type)
+
+
+def _vector(check: Inference, node: ast.Binary, left: Fact, right: Fact) -> Fact:
+    points = is_point(left.type), is_point(right.type)
+    numbers = isinstance(left.type, NumberType), isinstance(right.type, NumberType)
+    op = node.operator
+    if (
+        (all(points) and op in "+-")
+        or (points[0] and numbers[1] and op in "*/")
+        or (numbers[0] and op == "*")
+    ):
+        return Fact(PointType(), left.reads | right.reads)
+    hint = "points take `+` and `-` with points, `*` and `/` with numbers; see also `dot` and `cross`"
+    if op in "+-" and any(numbers):
+        hint = "to move a point, add a point: `p + (dx, dy)`"
+    return check.report(
+        "E0307", f"`{op}` does not work on {a(left.type)} and {a(right.type)}", node, hints=[hint]
+    )
+
+
+def _arithmetic(
+    check: Inference, node: ast.Binary, left: Fact, right: Fact, x: NumberType, y: NumberType
+) -> Fact:
+    reads = left.reads | right.reads
+    op = node.operator
+    if op == "%":
+        for operand in (node.left, node.right):
+            if not check.known(operand, "an operand of `%`"):
+                break
+    if op in "+-%":
+        dimension = check.same_dimension(left, right, node, f"`{op}` does not join")
+        bare = left.bare or right.bare if dimension is None else None
+        return Fact(NumberType(dimension, x.whole and y.whole), reads, bare=bare)
+    if op == "^":
+        if x.dimension in (None, units.PLAIN):
+            return Fact(NumberType(x.dimension), reads)
+        return Fact(ANY, reads)
+    if (x.dimension is None) != (y.dimension is None) and not _is_plain(
+        node.left if x.dimension is None else node.right
+    ):
+        return Fact(ANY, reads)  # a bare param may be a length or a plain number: building tells
+    combine = units.multiply if op == "*" else units.divide
+    return Fact(NumberType(combine(x.dimension, y.dimension), op == "*" and x.whole and y.whole), reads)
+
+
+def comparison(check: Inference, node: ast.Comparison) -> Fact:
+    facts = [check.fact(operand) for operand in node.operands]
+    for i, operator in enumerate(node.operators):
+        compare(check, operator, node.operands[i], node.operands[i + 1], node)
+    return Fact(TruthType(), frozenset().union(*(f.reads for f in facts)))
+
+
+def compare(
+    check: Inference, operator: str, left: ast.Expression, right: ast.Expression, node: ast.Node
+) -> None:
+    """Report two sides that cannot be compared."""
+    x, y = check.fact(left), check.fact(right)
+    if x.is_any or y.is_any:
+        return
+    if is_number(x.type) and is_number(y.type):
+        check.same_dimension(
+            check.numeric(left), check.numeric(right), node, f"`{operator}` does not compare"
+        )
+        return
+    if is_point(x.type) and is_point(y.type):
+        if operator not in ("==", "!="):
+            check.report(
+                "E0309",
+                f"points have no order, so `{operator}` does not compare them",
+                node,
+                hints=["compare coordinates, as in `a.x <= b.x`"],
+            )
+        return
+    if isinstance(x.type, ListType) or isinstance(y.type, ListType):
+        return
+    if type(x.type) is type(y.type) and isinstance(x.type, TextType | TruthType) and operator in ("==", "!="):
+        return
+    check.report(
+        "E0309",
+        f"`{operator}` does not compare {a(x.type)} with {a(y.type)}",
+        node,
+        hints=[comparison_hint(x.type, y.type, shown(left), shown(right))],
+    )
+
+
+def membership(check: Inference, node: ast.Membership) -> Fact:
+    value, container = (
+        check.fact(node.value),
+        check.wants(node.container, "a range or a list", RangeType, ListType),
+    )
+    if isinstance(node.container, ast.Range) and isinstance(container.type, RangeType):
+        compare(check, ">=", node.value, node.container.start, node)
+        if not isinstance(node.container.end, ast.Number):
+            compare(check, "<=", node.value, node.container.end, node)
+    return Fact(TruthType(), value.reads | container.reads)
+
+
+def _is_plain(node: ast.Expression) -> bool:
+    """Whether a number without a unit can only be plain: it is made of digits alone."""
+    return all(isinstance(n, ast.Number | ast.Unary | ast.Binary) for n in ast.walk(node))

@@ -1,0 +1,189 @@
+"""What to say of names that mean nothing, too much, or something that is not there yet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from aidl_lang import ast
+from aidl_lang.diagnostics import Edit, Fix, Label
+from aidl_lang.names import nearest
+from aidl_lang.resolving.resolution import WORDS
+from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind, word_meant
+from aidl_lang.source import Span
+from aidl_lang.types import Signature
+
+if TYPE_CHECKING:
+    from aidl_lang.resolve import Resolver
+
+
+def no_declaration(resolver: Resolver, name: ast.Name) -> None:
+    """`h = …` among constraints compares; who writes it with a new name meant to declare one."""
+    start = Span(name.span.source, name.span.start, name.span.start)
+    resolver.report(
+        "E0201",
+        f"there is no `{name.text}` here; among constraints `=` compares",
+        name,
+        label="not declared",
+        hints=(f"`let {name.text} = …` names an expression; geometry is made outside",),
+        fix=Fix("declare it with `let`", (Edit(start, "let "),)),
+    )
+
+
+def unknown_name(resolver: Resolver, node: ast.Name, scope: Scope) -> None:
+    """A bare name that no scope has as a value."""
+    name = node.text
+    if scope.may_be_missing(name):
+        return
+    if resolver.argument is not None and word_meant(name, WORDS) is not None:
+        resolver.resolution.uses[node] = Symbol(name, SymbolKind.WORD)
+        return
+    called = scope.called(name)
+    if called is not None:
+        kind = kind_of(called[1][0])
+        resolver.report(
+            "E0206",
+            f"`{name}` is a {kind} and has to be called: `{name}(…)`",
+            node,
+            label="a name alone means a value",
+        )
+        return
+    like = scope.near_values(name)
+    hints: tuple[str, ...] = ()
+    if not like:
+        hints = ("names are declared with `param`, `let` or `name = …`",)
+    declared = scope.value(like[0]) if like else None
+    secondary = (
+        (Label(declared.declarations[0].span, "declared here"),) if declared and declared.declarations else ()
+    )
+    resolver.report(
+        "E0201",
+        f"there is no `{name}` here" + did_you_mean(like),
+        node,
+        label="not declared",
+        secondary=secondary,
+        hints=hints,
+        fix=respell(node, like),
+    )
+
+
+def unknown_callable(resolver: Resolver, node: ast.Call, scope: Scope) -> None:
+    name = node.callee.text
+    if scope.may_be_missing(name):
+        return
+    value = scope.value(name)
+    if value is not None and value.kind is not SymbolKind.BUILTIN:
+        declared = (Label(value.declarations[0].span, "declared here"),) if value.declarations else ()
+        hint = f"`{name}` alone names it"
+        if isinstance(value.node, ast.Structure):
+            hint = (
+                f"with a parameter list, `{value.node.kind} {name}() {{ … }}`, it is a template to be called"
+            )
+        resolver.report(
+            "E0206",
+            f"`{name}` is {value.kind.with_article} and cannot be called",
+            node.callee,
+            secondary=declared,
+            hints=(hint,),
+        )
+        return
+    like = nearest(name, scope.callable_names())
+    hints = () if like else ("define it with `fn`, `shape`, `constraint` or as a template",)
+    resolver.report(
+        "E0203",
+        f"there is no function, shape or constraint `{name}`" + did_you_mean(like),
+        node.callee,
+        hints=hints,
+        fix=respell(node.callee, like),
+    )
+
+
+def declared_twice(resolver: Resolver, name: ast.Identifier, earlier: Symbol) -> None:
+    resolver.report(
+        "E0209",
+        f"`{name.text}` is declared twice",
+        name,
+        secondary=(Label(earlier.declarations[0].span, "declared here"),),
+        hints=(
+            "give one of them another name, or give both an index to make an array: "
+            f"`{name.text}[0]`, `{name.text}[1]`",
+        ),
+    )
+
+
+def check_aliases(resolver: Resolver, scope: Scope) -> None:
+    """An alias has to lead to something that can be called."""
+    for symbol in scope.aliases.values():
+        assert isinstance(symbol.node, ast.Alias)
+        target = symbol.node.target
+        if symbol.owner is not scope.owner or scope.called(symbol.name) is not None:
+            continue
+        trail = [symbol.name]
+        while (step := scope.aliases.get(trail[-1])) is not None and isinstance(step.node, ast.Alias):
+            trail.append(step.node.target.text)
+            if trail[-1] in trail[:-1]:
+                break
+        if len(trail) > 1 and trail[-1] in trail[:-1]:
+            resolver.report(
+                "E0207",
+                f"the alias `{symbol.name}` stands for itself: {' → '.join(trail)}",
+                target,
+                hints=("let one of them name a function, shape, constraint or template",),
+            )
+            continue
+        like = nearest(target.text, [n for n in scope.callable_names() if n != symbol.name])
+        resolver.report(
+            "E0203",
+            f"there is no function, shape or constraint `{target.text}`" + did_you_mean(like),
+            target,
+            fix=respell(target, like),
+        )
+
+
+def check_order(resolver: Resolver, node: ast.Name, symbol: Symbol, scope: Scope) -> None:
+    """Geometry and unknowns exist from their line on. What another structure declares is judged by validity."""
+    if symbol.scope is None or symbol.scope.homes != scope.homes or symbol.is_array:
+        return
+    assert symbol.node is not None
+    here, place = node.span, symbol.node.span
+    if here.source is place.source and here.start < place.end:
+        inside = here.start >= place.start
+        resolver.report(
+            "E0205",
+            f"`{symbol.name}` is used in its own definition"
+            if inside
+            else f"`{symbol.name}` is used above the line that makes it",
+            node,
+            label="not there yet",
+            secondary=() if inside else (Label(symbol.declarations[0].span, "made here"),),
+            hints=(
+                "write a first guess here, and the relation in `constrain`, which is read after the rest",
+            ),
+        )
+
+
+def kind_of(signature: Signature) -> SymbolKind:
+    match signature.node:
+        case ast.FunctionDefinition():
+            return SymbolKind.FUNCTION
+        case ast.ShapeDefinition():
+            return SymbolKind.SHAPE
+        case ast.ConstraintDefinition():
+            return SymbolKind.CONSTRAINT
+        case ast.Structure():
+            return SymbolKind.TEMPLATE
+        case _:
+            return SymbolKind.FUNCTION
+
+
+def did_you_mean(like: Sequence[str], mark: str = "") -> str:
+    return f"; did you mean `{mark}{like[0]}`?" if like else ""
+
+
+def respell(node: ast.Node, like: Sequence[str]) -> Fix | None:
+    return Fix(f"write `{like[0]}`", (Edit(node.span, like[0]),)) if like else None
+
+
+def list_of(start: str, names: Sequence[str], mark: str = "") -> str:
+    shown = ", ".join(f"`{mark}{name}`" for name in names[:8])
+    return start + (shown + (", …" if len(names) > 8 else "") if names else "nothing")

@@ -1,0 +1,104 @@
+"""After an error reading goes on: every error is told once, and what is sound stays."""
+
+from __future__ import annotations
+
+import pytest
+
+from aidl_lang import ast
+from aidl_lang.parser import Limits, parse
+from aidl_lang.source import SourceFile
+
+
+def codes(text: str) -> list[str]:
+    return [d.code for d in parse(SourceFile("", text)).diagnostics]
+
+
+def names(text: str) -> list[str]:
+    """The names defined anywhere in what was understood."""
+    module = parse(SourceFile("", text)).module
+    return [
+        node.name.text for node in ast.walk(module) if isinstance(node, ast.Let | ast.Structure | ast.Assign)
+    ]
+
+
+def test_three_errors_are_three_diagnostics() -> None:
+    text = """
+solid a {
+    let one == 1
+    let two = 2
+    c = circle(center: (0, 0) radius: 5)
+    d.e
+    let three = 3
+}
+let four = 4
+"""
+    assert codes(text) == ["E0111", "E0112", "E0117"]
+    assert names(text) == ["a", "one", "two", "c", "three", "four"]
+
+
+def test_the_inside_of_a_broken_head_is_kept() -> None:
+    text = "let a = 1\nfor 3 in x {\n  let b = 2\n  if q { let c = 3 }\n}\nlet d = 4\n"
+    assert codes(text) == ["E0101"]
+    assert names(text) == ["a", "b", "c", "d"]
+
+
+def test_errors_in_inner_blocks_leave_the_outer_alone() -> None:
+    text = "solid a {\n  hole b {\n    let x = \n  }\n  let y = 2\n}\nsolid c { let z = 3 }\n"
+    assert codes(text) == ["E0103"]
+    assert names(text) == ["a", "b", "y", "c", "z"]
+
+
+def test_what_does_not_belong_into_constrain_is_left_out_with_its_block() -> None:
+    text = "constrain {\n  a == b\n  solid c { let x = 3 }\n  param w = 5\n  d == e\n}\nlet f = 1\n"
+    assert codes(text) == ["E0119", "E0119"]
+    constrain = parse(SourceFile("", text)).module.statements[0]
+    assert isinstance(constrain, ast.Constrain)
+    assert len(constrain.items.statements) == 2
+
+
+def test_a_missing_brace_is_placed_by_indentation() -> None:
+    text = "solid a {\n    hole b {\n        let x = 3\n\n    let y = 4\n}\n"
+    (diagnostic,) = parse(SourceFile("", text)).diagnostics
+    assert diagnostic.code == "E0102"
+    assert diagnostic.span is not None
+    assert (diagnostic.span.line, diagnostic.fix is not None) == (2, True)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "x = f(a\ny = 3",
+        "x = f(g(a, [1, 2\ny = 3",
+        "x = circle(\n    center: (0, 0),\n    radius: 5\ny = 3",
+        "x = f(a]\ny = 3",
+    ],
+)
+def test_an_open_bracket_takes_nothing_with_it(text: str) -> None:
+    assert set(codes(text)) == {"E0102"}
+    assert names(text) == ["x", "y"]
+
+
+def test_a_word_that_is_reserved_is_told_once() -> None:
+    text = "let step = 3\nlet a = 2 * step\nlet b = f(step, step)\nparam c = 3 in 1..9 step 2\n"
+    (diagnostic,) = parse(SourceFile("", text)).diagnostics
+    assert diagnostic.code == "E0104"
+    assert diagnostic.fix is not None
+    assert len(diagnostic.fix.edits) == 4
+
+
+def test_limits() -> None:
+    assert codes("x" * 2_000_001) == ["E0801"]
+    assert codes("let a = " + "(" * 100_000) == ["E0802"]
+    assert codes("let a = " + "1 + " * 1000 + "1") == ["E0802"]
+    assert codes("let a = " + "-" * 100_000 + "1") == ["E0802"]
+    assert codes("let a = " + "(" * 90 + "1" + ")" * 90) == []
+    assert codes("solid a { " * 10_000)[-1] == "E0802"
+    assert codes("let = 3\n" * 1000)[-1] == "E0104"
+    assert codes("}\n" * 1000)[-1] == "E0803"
+    source = SourceFile("", "let a = [[[[1]]]]")
+    assert [d.code for d in parse(source, Limits(max_nesting=5)).diagnostics] == ["E0802"]
+
+
+def test_much_text_is_read() -> None:
+    text = "let a = [" + "1, " * 20_000 + "]\n"
+    assert codes(text) == []

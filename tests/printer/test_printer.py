@@ -1,0 +1,150 @@
+"""The canonical form: layout, comments, blank lines, one-line blocks, long lines."""
+
+from __future__ import annotations
+
+import textwrap
+
+import pytest
+
+from aidl_lang import ast
+from aidl_lang.parser import parse
+from aidl_lang.printer import format_module
+from aidl_lang.source import SourceFile
+
+
+def form(text: str) -> str:
+    parsed = parse(SourceFile("", text))
+    assert not [d.message for d in parsed.diagnostics if d.is_error]
+    once = format_module(parsed)
+    assert format_module(parse(SourceFile("", once))) == once
+    return once
+
+
+def check(written: str, canonical: str) -> None:
+    assert form(textwrap.dedent(written)) == textwrap.dedent(canonical).lstrip("\n")
+
+
+def test_blank_lines_are_at_most_one() -> None:
+    check("\n\nlet a = 3\n\n\n\nlet b = 4\nlet c = 5\n\n\n", "let a = 3\n\nlet b = 4\nlet c = 5\n")
+    check("solid a {\n\n\n  let b = 3\n\n}\n", "solid a {\n    let b = 3\n}\n")
+
+
+def test_comments_stay_where_they_are() -> None:
+    check(
+        """
+        // head
+        /* block */
+
+        solid a {   // about a
+        // first
+           let b = 3   # trailing
+           let longer = 4;  // too
+
+           // before the end
+        }  // after
+        // last
+        """,
+        """
+        // head
+        /* block */
+
+        solid a {  // about a
+            // first
+            let b = 3       # trailing
+            let longer = 4  // too
+
+            // before the end
+        }  // after
+        // last
+        """,
+    )
+
+
+def test_comments_inside_a_statement_move_in_front_of_it() -> None:
+    check(
+        "x = circle(\n  center: (0, 0),  // here\n  radius: 5\n)\n",
+        "// here\nx = circle(center: (0, 0), radius: 5)\n",
+    )
+    check("if a { // one\n b = c\n} else { // two\n d = e\n}", """
+        if a {  // one
+            b = c
+        } else {  // two
+            d = e
+        }
+        """)  # fmt: skip
+
+
+def test_docs_and_attributes() -> None:
+    check(
+        "/// Doc.\n@thickness(3mm)  @color('red') solid a { @layer('b') c = circle(radius: 1) }",
+        """
+        /// Doc.
+        @thickness(3mm)
+        @color("red")
+        solid a { @layer("b") c = circle(radius: 1) }
+        """,
+    )
+
+
+def test_short_blocks_stay_on_one_line() -> None:
+    check(
+        "hole h { r = circle(radius: 1); constrain r.width == 9 }",
+        "hole h { r = circle(radius: 1); constrain r.width == 9 }\n",
+    )
+    check("hole h {\n r = circle(radius: 1) }", "hole h {\n    r = circle(radius: 1)\n}\n")
+    long = "hole h { " + "; ".join(f"radius_{i} = circle(radius: {i})" for i in range(4)) + " }"
+    assert form(long).count("\n") == 6
+
+
+def test_long_lists_are_broken() -> None:
+    check(
+        "outline = polygon([(-100, -100), (100, -100), (100, 100), (-100, 100), (-9, 0)], rotatable: true, turn: 5deg)",
+        """
+        outline = polygon(
+            [(-100, -100), (100, -100), (100, 100), (-100, 100), (-9, 0)],
+            rotatable: true,
+            turn: 5deg
+        )
+        """,
+    )
+    check(
+        'assert distance(frame_hole[i].rim.center, slot[i].center) >= m5 / 2 + min_wall, "too little material here"',
+        """
+        assert distance(frame_hole[i].rim.center, slot[i].center) >= m5 / 2 + min_wall,
+            "too little material here"
+        """,
+    )
+
+
+def test_else_if_is_a_chain() -> None:
+    check(
+        "if a {\n b = c } else if d { e = f } else {\n if g { h = i } }",
+        """
+        if a {
+            b = c
+        } else if d {
+            e = f
+        } else {
+            if g { h = i }
+        }
+        """,
+    )
+
+
+def test_names_are_spelled_as_asked() -> None:
+    module = parse(SourceFile("", "CenteredIn(hole_a, Plate)\nx = Circle(radius: 5)\n")).module
+    names = {
+        node: {"CenteredIn": "centered_in", "Circle": "circle"}[node.text]
+        for node in ast.walk(module)
+        if isinstance(node, ast.Identifier) and node.text in ("CenteredIn", "Circle")
+    }
+    assert format_module(module, names) == "centered_in(hole_a, Plate)\nx = circle(radius: 5)\n"
+
+
+@pytest.mark.parametrize("text", ["", "\n\n", "// only\n", "/* a\n   b */\n"])
+def test_files_without_statements(text: str) -> None:
+    assert form(text) == text.strip("\n") + ("\n" if text.strip() else "")
+
+
+def test_carriage_returns_go() -> None:
+    assert form("let a = 3\r\n\r\nlet b = 4 // c\r\n") == "let a = 3\n\nlet b = 4  // c\n"

@@ -1,0 +1,112 @@
+"""Properties of parser and printer over made-up trees and texts."""
+
+from __future__ import annotations
+
+import string
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.lark import from_lark
+from lark import Lark
+
+from aidl_lang import ast
+from aidl_lang.diagnostics import apply_fixes
+from aidl_lang.expression_printer import format_expression
+from aidl_lang.parser import parse
+from aidl_lang.printer import format_module
+from aidl_lang.resources import resource
+from aidl_lang.source import SourceFile
+from tests import strategies as aidl
+
+FEW = settings(max_examples=60, deadline=None)
+
+
+def _errors(text: str) -> list[str]:
+    return [f"{d.code}: {d.message}" for d in parse(SourceFile("", text)).diagnostics if d.is_error]
+
+
+@FEW
+@given(aidl.expressions)
+def test_an_expression_reads_as_it_was_printed(expression: ast.Expression) -> None:
+    text = format_expression(expression)
+    parsed = parse(SourceFile("", f"let _ = {text}"))
+    assert not parsed.diagnostics, text
+    (let,) = parsed.module.statements
+    assert isinstance(let, ast.Let)
+    assert ast.same(let.value, expression), text
+
+
+@FEW
+@given(aidl.modules)
+def test_a_program_reads_as_it_was_printed(module: ast.Module) -> None:
+    text = format_module(module)
+    parsed = parse(SourceFile("", text))
+    assert not [d for d in parsed.diagnostics if d.is_error], text
+    assert ast.same(parsed.module, module), text
+    assert format_module(parsed) == text
+
+
+_GRAMMAR = Lark(
+    resource("grammar/aidl.lark").read_text(encoding="utf-8"),
+    parser="lalr",
+    start="module",
+    maybe_placeholders=False,
+)
+_TERMINALS = {
+    "NAME": st.sampled_from([" a ", " width ", " hole ", " b2 "]),
+    "CALL": st.sampled_from([" circle(", " f("]),
+    "NUMBER": st.sampled_from([" 5 ", " 0.5mm ", " 30deg "]),
+    "STRING": st.sampled_from([' "s" ', ' "" ']),
+}
+_WORDS = {
+    terminal.name: st.just(f" {terminal.pattern.value} ")
+    for terminal in _GRAMMAR.terminals
+    if terminal.pattern.type == "str"
+}
+_LAYOUT = st.sampled_from([" ", "\n", " // note\n", " /* note */ ", "\n\n\n"])
+_IGNORED = dict.fromkeys(_GRAMMAR.ignore_tokens, _LAYOUT)
+
+
+@settings(FEW, max_examples=10, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])
+@given(from_lark(_GRAMMAR, start="module", explicit=_TERMINALS | _WORDS | _IGNORED))
+def test_what_the_grammar_makes_formats_the_same_twice(text: str) -> None:
+    parsed = parse(SourceFile("", text))
+    if any(d.is_error for d in parsed.diagnostics):
+        return  # an unknown kind, as `width a { }`
+    once = format_module(parsed)
+    again = parse(SourceFile("", once))
+    assert not [d for d in again.diagnostics if d.is_error], once
+    assert format_module(again) == once
+    assert len(again.module.comments) == len(parsed.module.comments)
+
+
+_PIECES = st.sampled_from(
+    [*string.punctuation, *"“”≤°é\0\r", "\n", "\n\n", " ", "  ", "5", "5mm", "0..3", "a", "solid", "circle(",
+     "if", "else", "then", "for", "in", "let", "param", "constrain", "at", "rotated", "and", "not", "import",
+     "from", "true", "step", "weight", "todo", "fn f(", "shape", "/*", "*/", "//", '"s"', "(1, 2)", "{ }"]
+)  # fmt: skip
+
+
+@FEW
+@given(st.lists(_PIECES, max_size=30).map("".join) | st.text(max_size=40))
+def test_any_text_is_answered_with_diagnostics(text: str) -> None:
+    source = SourceFile("", text)
+    parsed = parse(source)
+    for diagnostic in parsed.diagnostics:
+        assert diagnostic.span is not None
+        assert 0 <= diagnostic.span.start <= diagnostic.span.end <= len(text)
+        assert diagnostic.message
+    apply_fixes(source, parsed.diagnostics)
+    format_module(parsed)
+
+
+@pytest.mark.parametrize("kind", ["E0102", "E0112", "E0105", "E0106", "E0111"])
+def test_a_fix_leaves_less_to_mend(kind: str) -> None:
+    text = "solid a {\n  let w == 5\n  c = circle(center: (0, 0) radius: 5 mm)\n  d = circle(radius: 3px\n}\n"
+    source = SourceFile("", text)
+    found = parse(source).diagnostics
+    assert kind in [d.code for d in found]
+    mended, applied = apply_fixes(source, found)
+    assert applied >= 4
+    assert len(_errors(mended)) < len(found)

@@ -1,0 +1,223 @@
+"""Runs the cases of a spec: what differs from what is written, and the text that would agree."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import aidl_lang
+from aidl_lang import pipeline
+from aidl_lang.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.source import SourceFile
+from aidl_lang.world import MemoryWorld
+from tests.spec.parts import Case, Expectation, Line, Program
+from tests.spec.readings import Missing, Reader, shown
+
+WIDTH = 110
+"""Columns beyond which an accepted expectation is written below its line."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What differs, and the line of the file it is about."""
+
+    line: int
+    text: str
+
+
+@dataclass
+class Outcome:
+    """What came of a case. `accepted` replaces ranges of lines (from 1, end excluded) of the file."""
+
+    problems: list[Problem] = field(default_factory=list)
+    accepted: dict[tuple[int, int], list[str]] = field(default_factory=dict)
+
+    def differs(self, line: int, text: str) -> None:
+        self.problems.append(Problem(line, text))
+
+
+def run(case: Case) -> Outcome:
+    """Compile the program of a case and compare everything that is written about it."""
+    outcome = Outcome()
+    source = SourceFile("spec.aidl", case.program.text)
+    if case.fixes is not None and not _check_fix(case, outcome):
+        return outcome
+    if case.formatted is not None:
+        _check_format(case, outcome)
+    plain = pipeline.compile(source, MemoryWorld(case.files))
+    own = [e for e in case.expectations if not e.is_variant]
+    _check_diagnostics(case, own, plain.diagnostics, source, outcome)
+    if not _status_is_said(own) and not plain.ok and not any(d.is_error for d in plain.diagnostics):
+        outcome.differs(case.program.at, f"the status is {plain.status}")
+    for expectation in case.expectations:
+        compiled = _variant(case, expectation, source) if expectation.is_variant else plain
+        if expectation.is_variant:
+            _check_variant(expectation, compiled.diagnostics, outcome)
+        for claim in expectation.claims:
+            _check_claim(claim, compiled, outcome)
+    return outcome
+
+
+def _variant(case: Case, expectation: Expectation, source: SourceFile) -> pipeline.Compiled:
+    limits = {name: int(value) for name, value in expectation.settings("limit").items()}
+    settings = pipeline.Settings()
+    settings = replace(settings, building=replace(settings.building, **limits))
+    return pipeline.compile(source, MemoryWorld(case.files), dict(expectation.settings("set")), settings)
+
+
+def _status_is_said(expectations: Sequence[Expectation]) -> bool:
+    return any(claim.text.startswith("status:") for e in expectations for claim in e.claims)
+
+
+# --- Diagnostics -----------------------------------------------------------------------------------
+
+
+def headline(d: Diagnostic) -> str:
+    return f"{d.severity}[{d.code}]: {d.message}"
+
+
+def _check_diagnostics(
+    case: Case,
+    expectations: Sequence[Expectation],
+    found: Sequence[Diagnostic],
+    source: SourceFile,
+    outcome: Outcome,
+) -> None:
+    """Those with a place against the comments of the program, those without against the `expect` blocks."""
+    program = case.program
+    placed: dict[int, list[str]] = {}
+    loose: list[str] = []
+    for d in found:
+        if d.span is not None and d.span.source is source:
+            placed.setdefault(_owner(program, d.span.line), []).append(headline(d))
+        else:
+            loose.append(headline(d))
+    written = {n: texts for n, texts in program.expected.items() if texts}
+    for n in sorted(placed.keys() | written.keys()):
+        _compare(written.get(n, []), placed.get(n, []), program.at + n - 1, outcome)
+    if placed != written:
+        outcome.accepted[program.at, program.at + len(program.lines)] = list(_annotated(program, placed))
+    lines = [line for e in expectations for line in e.diagnostics]
+    _compare([line.text for line in lines], loose, lines[0].number if lines else program.at, outcome)
+    _accept_list(lines, loose, outcome)
+
+
+def _owner(program: Program, number: int) -> int:
+    """A line that held an expectation alone counts to the one above it."""
+    while -number in program.expected and number > 1:
+        number -= 1
+    return number
+
+
+def _compare(written: Sequence[str], found: Sequence[str], line: int, outcome: Outcome) -> None:
+    rest = list(found)
+    for text in written:
+        if text in rest:
+            rest.remove(text)
+        else:
+            outcome.differs(line, f"does not come: {text}")
+    for text in rest:
+        outcome.differs(line, f"comes unexpected: {text}")
+
+
+def _annotated(program: Program, placed: dict[int, list[str]]) -> Iterator[str]:
+    """The program with the diagnostics that come, beside their lines or, where that is too wide, below."""
+    for n, line in enumerate(program.lines, 1):
+        if -n in program.expected:
+            continue
+        rest = list(placed.get(n, ()))
+        if len(rest) == 1 and len(line) + len(rest[0]) + 5 <= WIDTH:
+            line = f"{line}  // {rest.pop()}"
+        yield line
+        indent = line[: len(line) - len(line.lstrip())]
+        yield from (f"{indent}// {text}" for text in rest)
+
+
+def _check_variant(expectation: Expectation, found: Sequence[Diagnostic], outcome: Outcome) -> None:
+    """All diagnostics of a variant are written in its block."""
+    lines = expectation.diagnostics
+    texts = [headline(d) for d in found]
+    _compare([line.text for line in lines], texts, expectation.lines[0].number, outcome)
+    _accept_list(
+        lines or expectation.lines[:1], texts if lines else [expectation.lines[0].text, *texts], outcome
+    )
+
+
+def _accept_list(lines: Sequence[Line], texts: Sequence[str], outcome: Outcome) -> None:
+    """Lines that stand one below the other become the texts."""
+    if lines and [line.text for line in lines] != list(texts):
+        for line in lines[1:]:
+            outcome.accepted[line.number, line.number + 1] = []
+        outcome.accepted[lines[0].number, lines[0].number + 1] = list(texts)
+
+
+# --- Claims ----------------------------------------------------------------------------------------
+
+
+def _check_claim(claim: Line, compiled: pipeline.Compiled, outcome: Outcome) -> None:
+    word, colon, rest = claim.text.partition(":")
+    if colon and word in ("status", "dof", "free", "changed"):
+        found = _summary(word, compiled)
+        if rest.strip() != found:
+            outcome.differs(claim.number, f"`{claim.text}`, but it is `{found}`")
+            outcome.accepted[claim.number, claim.number + 1] = [f"{word}: {found}"]
+        return
+    left, equals, right = claim.text.partition(" == ")
+    try:
+        if equals and right == "?":
+            value = shown(Reader(compiled).value(_parsed(left)))
+            holds = False
+        else:
+            holds, value = Reader(compiled).holds(claim.text)
+    except (Missing, SyntaxError) as reason:
+        outcome.differs(claim.number, f"`{claim.text}`: {reason}")
+        return
+    if not holds:
+        outcome.differs(claim.number, f"`{claim.text}`, but it is {value}")
+        if equals:
+            outcome.accepted[claim.number, claim.number + 1] = [f"{left} == {value}"]
+
+
+def _parsed(text: str) -> ast.expr:
+    return ast.parse(text, mode="eval").body
+
+
+def _summary(word: str, compiled: pipeline.Compiled) -> str:
+    if word == "status" or compiled.model is None:
+        return compiled.status
+    model = compiled.model
+    match word:
+        case "dof":
+            return str(model.degrees)
+        case "free":
+            return ", ".join(model.free) or "nothing"
+        case _:
+            changes = [f"{c.path} {shown(c.written)} -> {shown(c.solved)}" for c in model.changed]
+            return ", ".join(changes) or "nothing"
+
+
+# --- Fixes and the canonical form --------------------------------------------------------------------
+
+
+def _check_fix(case: Case, outcome: Outcome) -> bool:
+    """The program of a `fixed` block is the one above it with all fixes applied."""
+    assert case.fixes is not None
+    source = SourceFile("spec.aidl", case.fixes.code)
+    found = pipeline.compile(source, MemoryWorld(case.files))
+    mended, applied = apply_fixes(source, found.diagnostics)
+    if not applied:
+        outcome.differs(case.program.at, "the program above offers no fix")
+    elif mended != case.program.code:
+        outcome.differs(case.program.at, f"the fixes of the program above give:\n{mended}")
+        outcome.accepted[case.program.at, case.program.at + len(case.program.lines)] = mended.splitlines()
+    return not outcome.problems
+
+
+def _check_format(case: Case, outcome: Outcome) -> None:
+    assert case.formatted is not None
+    at, written = case.formatted
+    found = aidl_lang.format(case.program.code)
+    if found != written:
+        outcome.differs(at, f"the canonical form is:\n{found}")
+        outcome.accepted[at, at + len(written.splitlines())] = found.splitlines()

@@ -1,0 +1,78 @@
+"""Files are read below the root of a project, and nowhere else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aidl_lang.world import DiskWorld, FileError, MemoryWorld, Reason, World, normalize, relative_to
+
+
+@pytest.fixture(params=["disk", "memory"])
+def world(request: pytest.FixtureRequest, tmp_path: Path) -> World:
+    files = {"main.aidl": "main", "parts/bolt.aidl": "bolt"}
+    if request.param == "memory":
+        return MemoryWorld(files)
+    for path, text in files.items():
+        (tmp_path / "root" / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "root" / path).write_text(text)
+    (tmp_path / "secret").write_text("secret")
+    return DiskWorld(tmp_path / "root")
+
+
+def test_files_are_read(world: World) -> None:
+    assert world.read("main.aidl") == "main"
+    assert world.read("parts/bolt.aidl") == "bolt"
+    assert world.read("./parts/../parts/bolt.aidl") == "bolt"
+
+
+@pytest.mark.parametrize(
+    ("path", "reason"),
+    [
+        ("nut.aidl", Reason.MISSING),
+        ("../secret", Reason.OUTSIDE),
+        ("parts/../../secret", Reason.OUTSIDE),
+        ("/etc/passwd", Reason.OUTSIDE),
+        ("..\\secret", Reason.OUTSIDE),
+        ("C:\\secret", Reason.OUTSIDE),
+        ("", Reason.MISSING),
+    ],
+)
+def test_what_cannot_be_read(world: World, path: str, reason: Reason) -> None:
+    with pytest.raises(FileError) as caught:
+        world.read(path)
+    assert caught.value.reason is reason
+    assert caught.value.path == path
+
+
+def test_links_lead_nowhere_else(tmp_path: Path) -> None:
+    root = tmp_path / "root"
+    root.mkdir()
+    (tmp_path / "secret").write_text("secret")
+    (root / "link").symlink_to(tmp_path / "secret")
+    (root / "folder").symlink_to(tmp_path)
+    (root / "loop").symlink_to(root / "loop")
+    world = DiskWorld(root)
+    for path in ("link", "folder/secret"):
+        with pytest.raises(FileError) as caught:
+            world.read(path)
+        assert caught.value.reason is Reason.OUTSIDE
+    for path in ("loop", "a\0b"):
+        with pytest.raises(FileError):
+            world.read(path)
+
+
+def test_only_text_is_read(tmp_path: Path) -> None:
+    (tmp_path / "bytes").write_bytes(b"\xff\xfe")
+    with pytest.raises(FileError) as caught:
+        DiskWorld(tmp_path).read("bytes")
+    assert caught.value.reason is Reason.NOT_TEXT
+
+
+def test_paths_are_relative_to_the_importing_file() -> None:
+    assert relative_to("bolt.aidl", "parts/nut.aidl") == "parts/bolt.aidl"
+    assert relative_to("../main.aidl", "parts/nut.aidl") == "main.aidl"
+    assert normalize("a/./b/../c") == "a/c"
+    with pytest.raises(FileError):
+        relative_to("../../x", "parts/nut.aidl")
