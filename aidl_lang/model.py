@@ -154,9 +154,14 @@ class Structure:
 
 
 def own_geometry(named: dict[str, Value], container: Geometry | Structure) -> Iterator[Geometry]:
-    """Geometry among named values that belongs to the container, members of arrays and lists included."""
+    """Geometry among named values that belongs to the container, members of arrays and lists included; each
+    once, however many names it has."""
+    seen: set[int] = set()
     for value in named.values():
-        yield from _geometry_in(value, container)
+        for geometry in _geometry_in(value, container):
+            if id(geometry) not in seen:
+                seen.add(id(geometry))
+                yield geometry
 
 
 def _geometry_in(value: Value, container: Geometry | Structure) -> Iterator[Geometry]:

@@ -15,15 +15,17 @@ from aidl_lang.geometry.region import Region
 from aidl_lang.lower import Lowered
 from aidl_lang.model import Assertion, Comparison, Condition, Constraint, Geometry, Model, Structure
 from aidl_lang.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.solver.solution import Failure, GroupFailure, Solution
+from aidl_lang.solver.solution import Failure, GroupFailure, Solution, Status
 
 _TOLERANCE = 1e-6
 """How far an assertion may be off, relative to what it compares (and never less than this in mm)."""
 
 
 def solution_notes(lowered: Lowered, solution: Solution, model: SolvedModel) -> list[Diagnostic]:
-    """Failures as errors; changed sizes and redundant constraints as notes."""
+    """Failures as errors; for a model that solved, changed sizes and redundant constraints as notes."""
     found = [_failure(lowered, solution, failure) for failure in solution.failures]
+    if solution.status is not Status.SOLVED:
+        return found
     for change in model.changed:
         found.append(
             Diagnostic(

@@ -237,6 +237,10 @@ class Mismatch:
     argument: int | None = None
 
 
+_GATHERED = 20
+"""Collecting arguments into a list is the last reading: an overload that names them is meant before."""
+
+
 def bind(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch:
     """Match arguments to the parameters of one callable."""
     positional = [i for i, g in enumerate(given) if g.name is None]
@@ -265,7 +269,7 @@ def bind(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch:
         if target in arguments:
             return Mismatch(signature, f"gets `{target}` twice", index)
         arguments[target] = (index,)
-    total = 2 if gathered is not None else 0
+    total = _GATHERED if gathered is not None else 0
     defaulted = 0
     for name, kind, optional in parameters:
         if name not in arguments:

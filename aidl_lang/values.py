@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, TypeAlias
 
+from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression
 from aidl_lang.types import (
@@ -17,6 +18,7 @@ from aidl_lang.types import (
     NumberType,
     PointType,
     RangeType,
+    Signature,
     StructureType,
     TextType,
     TruthType,
@@ -27,7 +29,6 @@ from aidl_lang.units import LENGTH, PLAIN, MaybeDimension
 
 if TYPE_CHECKING:
     from aidl_lang.boxes import Box
-    from aidl_lang.building.templates import Instantiation
     from aidl_lang.model import Condition, Geometry, Structure
 
 
@@ -86,6 +87,17 @@ class RangeVal:
 @dataclass(frozen=True, slots=True)
 class ListVal:
     items: tuple[Value, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Instantiation:
+    """A call of a template, waiting for the name it is assigned to. `scope` is what its body sees."""
+
+    signature: Signature
+    scope: object
+    definition: ast.Structure
+    arguments: Mapping[str, Value]
+    node: ast.Call
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,10 +3,10 @@
 @material("stainless steel")
 solid bottle_opener {
     param length = 130mm in 90..180
-    param mouth  = 28mm in 26..32         // a crown cap is 26 mm wide below its teeth
+    param mouth = 28mm in 26..32  // a crown cap is 26 mm wide below its teeth
 
     handle = rounded_rectangle(width: length, height: 28, radius: 14)
-    head   = circle(radius: 26)
+    head = circle(radius: 26)
 
     hole hook {
         rim = circle(diameter: 10)

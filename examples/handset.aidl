@@ -4,16 +4,16 @@ solid handset {
     base = rectangle(center: (0, 0), width: 100, height: 20)
 
     // The left ear hangs on points of the base, so it cannot come off.
-    left_round  = arc(center: (-50, -4), start: base.top_left, end: (-64, -4))
-    left_line   = line(left_round.end, (-64, -20))
+    left_round = arc(center: (-50, -4), start: base.top_left, end: (-64, -4))
+    left_line = line(left_round.end, (-64, -20))
     left_fillet = arc(center: (-57, -20), start: left_line.end, end: (-50, -20))
-    left_inner  = line(left_fillet.end, base.bottom_left)
+    left_inner = line(left_fillet.end, base.bottom_left)
 
     // The right ear was written by eye.
-    right_round  = arc(center: (54, -5), start: (68, -5), end: (54, 9))
-    right_line   = line(right_round.start, (67, -18))
+    right_round = arc(center: (54, -5), start: (68, -5), end: (54, 9))
+    right_line = line(right_round.start, (67, -18))
     right_fillet = arc(center: (58, -19), start: (51, -20), end: right_line.end)
-    right_inner  = line(right_fillet.start, base.bottom_right)
+    right_inner = line(right_fillet.start, base.bottom_right)
 
     constrain {
         coincident(right_round.end, base.top_right)

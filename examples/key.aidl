@@ -1,11 +1,11 @@
 /// A door key: a round bow with a hole, a shank, and a bit whose cuts are listed from the tip.
 solid key {
     param shank_length = 40mm in 25..60
-    param pitch        = 5mm in 3..6
+    param pitch = 5mm in 3..6
 
-    let cuts = [3, 5.5, 2, 4.5, 3.5]        // depth of each cut from the back of the blade
+    let cuts = [3, 5.5, 2, 4.5, 3.5]  // depth of each cut from the back of the blade
 
-    bow   = circle(radius: 13)
+    bow = circle(radius: 13)
     shank = rectangle(width: shank_length, height: 9)
 
     hole eye {
@@ -29,7 +29,7 @@ solid key {
     }
 
     // The point of the key.
-    point_top    = line(shank.top_right, (50, 1))
+    point_top = line(shank.top_right, (50, 1))
     point_bottom = line(point_top.end, shank.bottom_right)
 
     constrain {

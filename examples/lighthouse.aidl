@@ -1,9 +1,9 @@
 /// A lighthouse on a rock: stacked parts, each only as tall or wide as it says, placed by how they stand on each other.
 assembly lighthouse {
     param tower_height = 120mm in 60..200
-    param stripes      = 3 in 1..5
-    let foot           = 56mm
-    let head           = 36mm
+    param stripes = 3 in 1..5
+    let foot = 56mm
+    let head = 36mm
 
     @color("slategray")
     solid rock {
@@ -14,9 +14,14 @@ assembly lighthouse {
     solid tower {
         walls = trapezoid(bottom_width: foot, top_width: head, height: tower_height)
         hole door {
-            arch  = arc(center: (0, 10), radius: 6, start_angle: fixed(0deg), end_angle: fixed(180deg))
-            left  = line(arch.end, (-6, 0))
-            sill  = line(left.end, (6, 0))
+            arch = arc(
+                center: (0, 10),
+                radius: 6,
+                start_angle: fixed(0deg),
+                end_angle: fixed(180deg)
+            )
+            left = line(arch.end, (-6, 0))
+            sill = line(left.end, (6, 0))
             right = line(sill.end, arch.start)
             constrain {
                 vertical(left)
@@ -44,7 +49,7 @@ assembly lighthouse {
     @color("firebrick")
     drawing bands {
         for i in 0..<stripes {
-            let low  = (i + 0.55) / (stripes + 0.4) * tower_height
+            let low = (i + 0.55) / (stripes + 0.4) * tower_height
             let half = foot / 2 - (foot - head) / 2 * low / tower_height
             edge[i] = line(fixed((-half, low)), fixed((half, low)))
         }

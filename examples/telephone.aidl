@@ -9,12 +9,12 @@ assembly telephone {
 
     @color("crimson")
     solid receiver {
-        grip      = rectangle(center: (0, 70), width: 0.85 * width, height: 18)
-        left_ear  = circle(center: (-60, 62), radius: 16)
-        right_ear = circle(center: (55, 60), radius: guess(15))   // a little off: constraints mend it
+        grip = rectangle(center: (0, 70), width: 0.85 * width, height: 18)
+        left_ear = circle(center: (-60, 62), radius: 16)
+        right_ear = circle(center: (55, 60), radius: guess(15))  // a little off: constraints mend it
         constrain {
             equal(right_ear, left_ear)
-            left_ear.center  == grip.bottom_left + (16, 0)
+            left_ear.center == grip.bottom_left + (16, 0)
             right_ear.center == grip.bottom_right - (16, 0)
         }
     }

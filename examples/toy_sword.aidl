@@ -1,12 +1,12 @@
 /// A toy sword in four parts that fit on each other: pommel, grip, guard and blade.
 assembly toy_sword {
     param blade_length = 260mm in 150..400
-    param blade_width  = 36mm in 20..60
+    param blade_width = 36mm in 20..60
 
     @color("silver")
     solid blade {
         body = rectangle(width: blade_width, height: blade_length - blade_width)
-        tip  = triangle(base: blade_width, height: blade_width)
+        tip = triangle(base: blade_width, height: blade_width)
         constrain {
             tip.bottom_left == body.top_left
         }

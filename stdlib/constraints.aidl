@@ -50,30 +50,53 @@ constraint concentric(things: list) {
 }
 
 /// They touch without crossing: at the end they share, if there is one.
-constraint tangent(l: line, c: circle) { offset_from(c.center, l) == nearest(offset_from(c.center, l), [c.radius, -c.radius]) }
+constraint tangent(l: line, c: circle) {
+    offset_from(c.center, l) == nearest(offset_from(c.center, l), [c.radius, -c.radius])
+}
 constraint tangent(c: circle, l: line) { tangent(l, c) }
-constraint tangent(a: circle, b: circle) { norm(b.center - a.center) == touching_distance(norm(b.center - a.center), a.radius, b.radius) }
-constraint tangent(a: circle, b: circle, inside: bool) { norm(b.center - a.center) == if inside then abs(a.radius - b.radius) else a.radius + b.radius }
-constraint tangent(a: arc, c: circle) { norm(c.center - a.center) == touching_distance(norm(c.center - a.center), a.radius, c.radius) }
+constraint tangent(a: circle, b: circle) {
+    norm(b.center - a.center) == touching_distance(norm(b.center - a.center), a.radius, b.radius)
+}
+constraint tangent(a: circle, b: circle, inside: bool) {
+    norm(b.center - a.center) == (if inside then abs(a.radius - b.radius) else a.radius + b.radius)
+}
+constraint tangent(a: arc, c: circle) {
+    norm(c.center - a.center) == touching_distance(norm(c.center - a.center), a.radius, c.radius)
+}
 constraint tangent(c: circle, a: arc) { tangent(a, c) }
 constraint tangent(l: line, a: arc) {
     let joint = shared_end([l.start, l.end], [a.start, a.end])
-    if len(joint) > 0 { dot(vector(l), joint[0] - a.center) / l.length == 0 }
-    else { offset_from(a.center, l) == nearest(offset_from(a.center, l), [a.radius, -a.radius]) }
+    if len(joint) > 0 {
+        dot(vector(l), joint[0] - a.center) / l.length == 0
+    } else {
+        offset_from(a.center, l) == nearest(offset_from(a.center, l), [a.radius, -a.radius])
+    }
 }
 constraint tangent(a: arc, l: line) {
     let joint = shared_end([l.start, l.end], [a.start, a.end])
-    if len(joint) > 0 { dot(vector(l), joint[0] - a.center) / l.length == 0 }
-    else { offset_from(a.center, l) == nearest(offset_from(a.center, l), [a.radius, -a.radius]) }
+    if len(joint) > 0 {
+        dot(vector(l), joint[0] - a.center) / l.length == 0
+    } else {
+        offset_from(a.center, l) == nearest(offset_from(a.center, l), [a.radius, -a.radius])
+    }
 }
 constraint tangent(a: arc, b: arc) {
     let joint = shared_end([a.start, a.end], [b.start, b.end])
-    if len(joint) > 0 { cross(joint[0] - a.center, joint[0] - b.center) / a.radius == 0 }
-    else { norm(b.center - a.center) == touching_distance(norm(b.center - a.center), a.radius, b.radius) }
+    if len(joint) > 0 {
+        cross(joint[0] - a.center, joint[0] - b.center) / a.radius == 0
+    } else {
+        norm(b.center - a.center) == touching_distance(
+            norm(b.center - a.center),
+            a.radius,
+            b.radius
+        )
+    }
 }
 constraint tangent(a: bezier, b: bezier) {
     let joint = shared_end([a.p0, a.p3], [b.p0, b.p3])
-    let from = if norm(written(joint[0] - a.p3)) <= norm(written(joint[0] - a.p0)) then a.p2 else a.p1
+    let from = if norm(written(joint[0] - a.p3)) <= norm(
+        written(joint[0] - a.p0)
+    ) then a.p2 else a.p1
     let to = if norm(written(joint[0] - b.p0)) <= norm(written(joint[0] - b.p3)) then b.p1 else b.p2
     cross(joint[0] - from, to - joint[0]) / norm(joint[0] - from) == 0
 }
@@ -88,7 +111,9 @@ constraint tangent(b: bezier, l: line) { tangent(l, b) }
 fn touching_distance(now: length, a: length, b: length) = nearest(now, [a + b, a - b, b - a])
 
 /// The ends that two curves share as they were written; an empty list when they share none.
-fn shared_end(a: list, b: list) = [p for p in a if min([norm(written(p - q)) for q in b]) < 0.000001]
+fn shared_end(a: list, b: list) = [p for p in a if min(
+    [norm(written(p - q)) for q in b]
+) < 0.000001]
 
 /// The same size: lengths of lines, radii of round things, sides of rectangles, values of numbers.
 constraint equal(a: line, b: line) { a.length == b.length }
@@ -100,9 +125,9 @@ constraint equal(a: rectangle, b: rectangle) {
     a.width == b.width
     a.height == b.height
 }
-constraint equal(a: point, b: point) { a == b }
+constraint equal(a, b) { a == b }
 constraint equal(things: list) {
-    for i in 0..<len(things) - 1 { things[i] == things[-1] }
+    for i in 0..<len(things) - 1 { equal(things[i], things[-1]) }
 }
 
 constraint equal_length(things: list) {
@@ -133,15 +158,21 @@ constraint symmetric(a: line, b: line, about: line) {
 
 /// Set a measure: the same as `distance(a, b) == value`.
 constraint distance(a, b, value: length) { distance(a, b) == value }
-constraint horizontal_distance(a: point, b: point, value: length) { horizontal_distance(a, b) == value }
+constraint horizontal_distance(a: point, b: point, value: length) {
+    horizontal_distance(a, b) == value
+}
 constraint vertical_distance(a: point, b: point, value: length) { vertical_distance(a, b) == value }
 constraint length(l, value: length) { l.length == value }
 constraint radius(c, value: length) { c.radius == value }
 constraint diameter(c, value: length) { c.diameter == value }
 
 /// The angle between two lines, in the reading nearest to the first guesses; `ccw` states it from a to b.
-constraint angle(a: line, b: line, value: angle) { angle(a, b) == nearest(angle(a, b), [value, -value, 180deg - value, value - 180deg]) }
-constraint angle(a: line, b: line, value: angle, ccw: bool) { angle(a, b) == if ccw then value else -value }
+constraint angle(a: line, b: line, value: angle) {
+    angle(a, b) == nearest(angle(a, b), [value, -value, 180deg - value, value - 180deg])
+}
+constraint angle(a: line, b: line, value: angle, ccw: bool) {
+    angle(a, b) == (if ccw then value else -value)
+}
 
 alias orthogonal = perpendicular
 alias square_to = perpendicular

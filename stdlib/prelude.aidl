@@ -31,7 +31,9 @@ fn midpoint(a: point, b: point) = (a + b) / 2
 fn midpoint(l: line) = l.midpoint
 
 /// A vector turned counter-clockwise about the origin.
-fn turned(v: point, angle: angle) = (v.x * cos(angle) - v.y * sin(angle), v.x * sin(angle) + v.y * cos(angle))
+fn turned(v: point, angle: angle) = (v.x * cos(angle) - v.y * sin(angle), v.x * sin(
+    angle
+) + v.y * cos(angle))
 
 /// The vector from the start of a line to its end, and the same 1 mm long.
 fn vector(l: line) = l.end - l.start
@@ -42,19 +44,25 @@ fn radians(angle: angle) = angle / 1deg * pi / 180
 
 /// The centre of the circle through three points.
 fn circumcenter(a: point, b: point, c: point) = a + circumcenter_from(b - a, c - a)
-fn circumcenter_from(b: point, c: point) = (
-    (c.y * dot(b, b) - b.y * dot(c, c)) / (2 * cross(b, c)),
-    (b.x * dot(c, c) - c.x * dot(b, b)) / (2 * cross(b, c))
-)
+fn circumcenter_from(b: point, c: point) = ((c.y * dot(b, b) - b.y * dot(c, c)) / (2 * cross(
+    b,
+    c
+)), (b.x * dot(c, c) - c.x * dot(b, b)) / (2 * cross(b, c)))
 
 // --- Primitives by other means -------------------------------------------------------------------
 
 /// The circle through three points.
-fn circle(a: point, b: point, c: point) = circle(center: circumcenter(a, b, c), radius: norm(a - circumcenter(a, b, c)))
+fn circle(a: point, b: point, c: point) = circle(
+    center: circumcenter(a, b, c),
+    radius: norm(a - circumcenter(a, b, c))
+)
 
 /// The arc through three points, in the order given.
 fn arc(start: point, mid: point, end: point) = arc(
-    center: circumcenter(start, mid, end), start: start, end: end, clockwise: cross(mid - start, end - start) < 0
+    center: circumcenter(start, mid, end),
+    start: start,
+    end: end,
+    clockwise: cross(mid - start, end - start) < 0
 )
 
 // --- Measures ------------------------------------------------------------------------------------
@@ -80,7 +88,8 @@ fn vertical_distance(a: point, b: point) = abs(b.y - a.y)
 
 /// The room between two boxes: 0 when they touch or overlap.
 fn gap(a: box, b: box) = hypot(
-    max(0, a.left - b.right, b.left - a.right), max(0, a.bottom - b.top, b.bottom - a.top)
+    max(0, a.left - b.right, b.left - a.right),
+    max(0, a.bottom - b.top, b.bottom - a.top)
 )
 
 /// The angle from the direction of one line to that of another, counter-clockwise.

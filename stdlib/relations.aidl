@@ -31,7 +31,13 @@ constraint on_top_of(a: box, b: box) {
 }
 constraint on_top_of(a: box, b: box, align: text) {
     a.bottom == b.top
-    if align == "left" { a.left == b.left } else if align == "right" { a.right == b.right } else { a.center_x == b.center_x }
+    if align == "left" {
+        a.left == b.left
+    } else if align == "right" {
+        a.right == b.right
+    } else {
+        a.center_x == b.center_x
+    }
 }
 
 /// a stands on b, both centred.
@@ -104,9 +110,13 @@ constraint row(things: list, gap: length) {
 constraint row(things: list, gap: length, align: text) {
     for i in 1..<len(things) {
         box(things[i]).left == box(things[i - 1]).right + gap
-        if align == "top" { box(things[i]).top == box(things[i - 1]).top }
-        else if align == "bottom" { box(things[i]).bottom == box(things[i - 1]).bottom }
-        else { box(things[i]).center_y == box(things[i - 1]).center_y }
+        if align == "top" {
+            box(things[i]).top == box(things[i - 1]).top
+        } else if align == "bottom" {
+            box(things[i]).bottom == box(things[i - 1]).bottom
+        } else {
+            box(things[i]).center_y == box(things[i - 1]).center_y
+        }
     }
 }
 constraint column(things: list, gap: length) {
@@ -115,29 +125,39 @@ constraint column(things: list, gap: length) {
 constraint column(things: list, gap: length, align: text) {
     for i in 1..<len(things) {
         box(things[i]).top == box(things[i - 1]).bottom - gap
-        if align == "left" { box(things[i]).left == box(things[i - 1]).left }
-        else if align == "right" { box(things[i]).right == box(things[i - 1]).right }
-        else { box(things[i]).center_x == box(things[i - 1]).center_x }
+        if align == "left" {
+            box(things[i]).left == box(things[i - 1]).left
+        } else if align == "right" {
+            box(things[i]).right == box(things[i - 1]).right
+        } else {
+            box(things[i]).center_x == box(things[i - 1]).center_x
+        }
     }
 }
 
 /// Equal gaps in the order written; along the axis in which the first guesses spread most, unless it is said.
-constraint evenly_spaced(things: list) { evenly_spaced(things, axis: spread_axis(things)) }
+constraint evenly_spaced(things: list) { evenly_spaced(things, axis: longer_spread(things)) }
 constraint evenly_spaced(things: list, axis: text) {
-    let forward = len(things) < 2 or written(place_along(things[-1], axis) - place_along(things[0], axis)) >= 0
+    let up = len(things) < 2 or spread(things, axis) >= 0
     for i in 2..<len(things) {
-        room_between(things[i - 1], things[i], axis, forward) == room_between(things[i - 2], things[i - 1], axis, forward)
+        let one = room_between(things[i - 2], things[i - 1], axis, up)
+        let next = room_between(things[i - 1], things[i], axis, up)
+        next == one
     }
 }
 
-/// Where the centre of a thing is along an axis, and the gap from one to the next in either direction.
-fn place_along(a: box, axis: text) = if axis == "x" then a.center_x else a.center_y
-fn room_between(a: box, b: box, axis: text, forward: bool) = (
-    if not forward then room_between(b, a, axis, true)
-    else if axis == "x" then b.left - a.right
-    else b.bottom - a.top
+/// How far it is from the first thing of a list to the last, as written, and along which axis it is further.
+fn spread(things: list, axis: text) = written(along(things[-1], axis) - along(things[0], axis))
+fn along(a: box, axis: text) = if axis == "x" then a.center_x else a.center_y
+fn longer_spread(a: list) = if len(a) > 1 and abs(spread(a, x)) < abs(spread(a, y)) then y else x
+
+/// The gap from one thing to the next, which lies beyond it (`up`) or before it along the axis.
+fn room_between(a: box, b: box, axis: text, up: bool) = if up then room(a, b, axis) else room(
+    b,
+    a,
+    axis
 )
-fn spread_axis(things: list) = if len(things) < 2 then "x" else if abs(written(box(things[-1]).center_x - box(things[0]).center_x)) >= abs(written(box(things[-1]).center_y - box(things[0]).center_y)) then "x" else "y"
+fn room(a: box, b: box, axis: text) = if axis == "x" then b.left - a.right else b.bottom - a.top
 
 /// The boxes share a border: the nearest pair of sides meets.
 constraint touching(a: box, b: box) {
@@ -146,10 +166,15 @@ constraint touching(a: box, b: box) {
     let beyond = written(a.left - b.right)
     let before = written(b.left - a.right)
     let most = max(over, under, beyond, before)
-    if over == most { a.bottom == b.top }
-    else if under == most { a.top == b.bottom }
-    else if beyond == most { a.left == b.right }
-    else { a.right == b.left }
+    if over == most {
+        a.bottom == b.top
+    } else if under == most {
+        a.top == b.bottom
+    } else if beyond == most {
+        a.left == b.right
+    } else {
+        a.right == b.left
+    }
     if over == most or under == most {
         a.left <= b.right
         a.right >= b.left
@@ -160,7 +185,9 @@ constraint touching(a: box, b: box) {
 }
 
 /// The boxes are apart (share a part): along the direction in which the first guesses are furthest apart.
-constraint no_overlap(a: box, b: box) { max(a.bottom - b.top, b.bottom - a.top, a.left - b.right, b.left - a.right) >= 0 }
+constraint no_overlap(a: box, b: box) {
+    max(a.bottom - b.top, b.bottom - a.top, a.left - b.right, b.left - a.right) >= 0
+}
 constraint overlapping(a: box, b: box) {
     a.left <= b.right
     a.right >= b.left

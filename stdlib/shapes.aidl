@@ -2,7 +2,13 @@
 
 /// A rectangle about its centre. It stays parallel to the axes until something asks it to turn: `angle`,
 /// `rotatable: true`, or a constraint on its angle.
-shape rectangle(center: point = (0, 0), width: length, height: length, angle: turn = 0deg, rotatable: bool = false) {
+shape rectangle(
+    center: point = (0, 0),
+    width: length,
+    height: length,
+    angle: turn = 0deg,
+    rotatable: bool = false
+) {
     let along = (width / 2 * cos(angle), width / 2 * sin(angle))
     let across = (-(height / 2 * sin(angle)), height / 2 * cos(angle))
     bottom_left = center - along - across
@@ -43,13 +49,33 @@ shape rounded_rectangle(center: point = (0, 0), width: length, height: length, r
     top_right = center + (w, h)
     top_left = center + (-w, h)
     bottom = line(center + (-w + r, -h), center + (w - r, -h))
-    corner_bottom_right = arc(center: center + (w - r, -h + r), radius: r, start_angle: fixed(270deg), end_angle: fixed(360deg))
+    corner_bottom_right = arc(
+        center: center + (w - r, -h + r),
+        radius: r,
+        start_angle: fixed(270deg),
+        end_angle: fixed(360deg)
+    )
     right = line(center + (w, -h + r), center + (w, h - r))
-    corner_top_right = arc(center: center + (w - r, h - r), radius: r, start_angle: fixed(0deg), end_angle: fixed(90deg))
+    corner_top_right = arc(
+        center: center + (w - r, h - r),
+        radius: r,
+        start_angle: fixed(0deg),
+        end_angle: fixed(90deg)
+    )
     top = line(center + (w - r, h), center + (-w + r, h))
-    corner_top_left = arc(center: center + (-w + r, h - r), radius: r, start_angle: fixed(90deg), end_angle: fixed(180deg))
+    corner_top_left = arc(
+        center: center + (-w + r, h - r),
+        radius: r,
+        start_angle: fixed(90deg),
+        end_angle: fixed(180deg)
+    )
     left = line(center + (-w, h - r), center + (-w, -h + r))
-    corner_bottom_left = arc(center: center + (-w + r, -h + r), radius: r, start_angle: fixed(180deg), end_angle: fixed(270deg))
+    corner_bottom_left = arc(
+        center: center + (-w + r, -h + r),
+        radius: r,
+        start_angle: fixed(180deg),
+        end_angle: fixed(270deg)
+    )
 }
 
 /// A trapezoid: two level sides, symmetric about its vertical axis.
@@ -122,7 +148,13 @@ shape polyline(points: list) {
 }
 
 /// A polygon of equal sides with its corners on a circle; the first corner is at `angle`.
-shape regular_polygon(center: point = (0, 0), radius: length, sides: integer, angle: turn = 0deg, rotatable: bool = false) {
+shape regular_polygon(
+    center: point = (0, 0),
+    radius: length,
+    sides: integer,
+    angle: turn = 0deg,
+    rotatable: bool = false
+) {
     for i in 0..<sides {
         corner[i] = center + polar(radius, angle + 360deg / sides * i)
     }
@@ -132,7 +164,13 @@ shape regular_polygon(center: point = (0, 0), radius: length, sides: integer, an
 }
 
 /// A star with `points` tips; the first tip is at `angle`.
-shape star(center: point = (0, 0), outer_radius: length, inner_radius: length, points: integer = 5, angle: turn = 90deg) {
+shape star(
+    center: point = (0, 0),
+    outer_radius: length,
+    inner_radius: length,
+    points: integer = 5,
+    angle: turn = 90deg
+) {
     for i in 0..<points {
         tip[i] = center + polar(outer_radius, angle + 360deg / points * i)
         notch[i] = center + polar(inner_radius, angle + 360deg / points * (i + 0.5))
@@ -150,18 +188,39 @@ shape slot(start: point, end: point, width: length) {
     right = line(start - side, end - side)
     end_cap = arc(center: end, radius: width / 2, start_angle: way - 90deg, end_angle: way + 90deg)
     left = line(end + side, start + side)
-    start_cap = arc(center: start, radius: width / 2, start_angle: way + 90deg, end_angle: way + 270deg)
+    start_cap = arc(
+        center: start,
+        radius: width / 2,
+        start_angle: way + 90deg,
+        end_angle: way + 270deg
+    )
     let center = (start + end) / 2
     let length = norm(end - start) + width
 }
-shape slot(center: point = (0, 0), length: length, width: length, angle: turn = 0deg, rotatable: bool = false) {
+shape slot(
+    center: point = (0, 0),
+    length: length,
+    width: length,
+    angle: turn = 0deg,
+    rotatable: bool = false
+) {
     start = center - polar((length - width) / 2, angle)
     end = center + polar((length - width) / 2, angle)
     let side = polar(width / 2, angle + 90deg)
     right = line(start - side, end - side)
-    end_cap = arc(center: end, radius: width / 2, start_angle: angle - 90deg, end_angle: angle + 90deg)
+    end_cap = arc(
+        center: end,
+        radius: width / 2,
+        start_angle: angle - 90deg,
+        end_angle: angle + 90deg
+    )
     left = line(end + side, start + side)
-    start_cap = arc(center: start, radius: width / 2, start_angle: angle + 90deg, end_angle: angle + 270deg)
+    start_cap = arc(
+        center: start,
+        radius: width / 2,
+        start_angle: angle + 90deg,
+        end_angle: angle + 270deg
+    )
 }
 
 /// A ring: the area between two circles about one centre.
@@ -187,10 +246,22 @@ shape segment(center: point = (0, 0), radius: length, start_angle: angle, end_an
 shape cross_shape(center: point = (0, 0), size: length, width: length) {
     let a = size / 2
     let b = width / 2
-    outline = polygon([
-        center + (b, b), center + (b, a), center + (-b, a), center + (-b, b), center + (-a, b), center + (-a, -b),
-        center + (-b, -b), center + (-b, -a), center + (b, -a), center + (b, -b), center + (a, -b), center + (a, b)
-    ])
+    outline = polygon(
+        [
+            center + (b, b),
+            center + (b, a),
+            center + (-b, a),
+            center + (-b, b),
+            center + (-a, b),
+            center + (-a, -b),
+            center + (-b, -b),
+            center + (-b, -a),
+            center + (b, -a),
+            center + (b, -b),
+            center + (a, -b),
+            center + (a, b)
+        ]
+    )
 }
 
 alias rect = rectangle

@@ -13,7 +13,6 @@ from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.templates import Instantiation
 from aidl_lang.model import Condition, Geometry
 from aidl_lang.names import nearest
 from aidl_lang.types import (
@@ -30,6 +29,8 @@ from aidl_lang.types import (
 )
 from aidl_lang.values import (
     NOTHING,
+    Array,
+    Instantiation,
     ListVal,
     Namespace,
     Nothing,
@@ -158,6 +159,8 @@ def _as_kind(it: Interpreter, value: Value, kind: object, node: ast.Node, env: E
                 return Num(value.expression, dimension, value.status)
         case BoxType():
             return box_of(value, env.here)
+        case ListType() if isinstance(value, Array):
+            return ListVal(tuple(value.items()))
         case ListType() if isinstance(value, RangeVal):
             from aidl_lang.building.evaluate import range_items
 
@@ -192,7 +195,7 @@ def invoke(
         case ast.ShapeDefinition():
             return _shape(it, candidate, definition, arguments, node, env)
         case ast.Structure():
-            return Instantiation(candidate, definition, dict(arguments), node)
+            return Instantiation(candidate.signature, candidate.scope, definition, arguments, node)
 
 
 def _body_scope(

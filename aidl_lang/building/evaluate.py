@@ -12,6 +12,7 @@ from aidl_lang.building.coerce import as_point, as_written, constant, coordinate
 from aidl_lang.building.conditions import compare, conjunction, holds, negation
 from aidl_lang.building.scopes import Binding, LetBinding, ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.diagnostics import Label
 from aidl_lang.model import Condition, Geometry, Structure
 from aidl_lang.names import find, nearest
 from aidl_lang.units import UNITS
@@ -159,6 +160,9 @@ def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
     if found is not None:
         name, scope = found
         return read(it, scope.values[name], node, env)
+    for scope in env.scope.chain():
+        if (branch := scope.unbuilt.get(node.text)) is not None:
+            return _not_built(it, node, branch)
     known: set[str] = set()
     for scope in env.scope.chain():
         known |= scope.values.keys()
@@ -166,6 +170,19 @@ def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
     hint = f"did you mean `{like[0]}`?" if like else "names are declared with `let`, `param` or `name = …`"
     it.report(
         "E0201", f"there is no `{node.text}` here", node, label="not declared, or not built", hints=[hint]
+    )
+    return NOTHING
+
+
+def _not_built(it: Interpreter, node: ast.Name, branch: ast.If) -> Value:
+    test = " ".join(branch.test.span.text.split())
+    it.report(
+        "E0514",
+        f"`{node.text}` was not built, because of `if {test}`",
+        node,
+        label="mentioned here",
+        hints=[f"mention it only where it is built: under the same `if {test}`"],
+        secondary=[Label(branch.test.span, "this branch was not taken")],
     )
     return NOTHING
 
@@ -285,7 +302,11 @@ def member_names(value: Value) -> list[str]:
 def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, env: Env) -> Value | None:
     assert isinstance(s.scope, Scope)
     if (key := find(name, s.scope.values)) is not None:
-        return read(it, s.scope.values[key], node, env)
+        binding = s.scope.values[key]
+        value = read(it, binding, node, env)
+        # Points kept as they are (`origin`, an argument) are in the structure's own frame.
+        is_own = isinstance(binding, PointVal | PassedBinding)
+        return primitives.translate(key, value, s, env.here) if is_own else value
     box = boxes.box_of(s, env.here)
     return _box_field(it, box, name, node, env) if box else None
 

@@ -191,7 +191,7 @@ def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     if items is None:
         it.report("E0302", f"`len` counts the members of a list, and this is {kind_of(a['values'])}", node)
         return NOTHING
-    return number(float(len(items)), PLAIN)
+    return number(float(len(items)))
 
 
 def _mark(status: Status) -> Function:

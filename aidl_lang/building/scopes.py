@@ -80,6 +80,7 @@ class Scope:
     container  what declarations in it become members of: a structure, a compound shape, or None
     turn       one turn of a `for`: its lets are its own, what it declares goes to the container
     labels     loop variables of the turns around, for messages
+    unbuilt    names that an `if` did not build, and that `if`
     """
 
     parent: Scope | None
@@ -89,6 +90,7 @@ class Scope:
     values: dict[str, Binding] = field(default_factory=dict)
     callables: dict[str, list[Candidate]] = field(default_factory=dict)
     aliases: dict[str, str] = field(default_factory=dict)
+    unbuilt: dict[str, ast.If] = field(default_factory=dict)
     supply: Callable[[str], Iterable[Candidate]] | None = None
     """looks up callables that are kept elsewhere (the library's)"""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import PurePath
 
 from aidl_lang import ast
@@ -16,13 +16,14 @@ from aidl_lang.building.impose import impose, record_assertion
 from aidl_lang.building.params import read_param, report_unused
 from aidl_lang.building.scopes import Candidate, LetBinding, ParamBinding, Scope, VarBinding
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.templates import Instantiation, passed
+from aidl_lang.building.templates import passed
 from aidl_lang.library import signature
 from aidl_lang.model import Frame, Geometry, Structure
 from aidl_lang.units import ANGLE, LENGTH
 from aidl_lang.values import (
     NOTHING,
     Array,
+    Instantiation,
     ListVal,
     Namespace,
     Nothing,
@@ -190,6 +191,8 @@ def _var(it: Interpreter, node: ast.Var, scope: Scope, here: Structure) -> None:
 
 
 def _for(it: Interpreter, node: ast.For, scope: Scope, here: Structure) -> None:
+    for name in _declared(node.body, indexed=True):
+        scope.declaring().values.setdefault(name, Array(name))  # also when there is no turn
     for item in iterate(it, node.iterable, Env(scope, here, Reach.OWN)) or ():
         it.count_turn(node)
         run_block(it, node.body.statements, turn_scope(it, scope, node.variables, item, node), here)
@@ -199,9 +202,30 @@ def _if(it: Interpreter, node: ast.If, scope: Scope, here: Structure) -> None:
     test = evaluate(it, node.test, Env(scope, here, Reach.OWN))
     if isinstance(test, Nothing):
         return
-    chosen = node.then if truth(it, test, node.test) else node.otherwise
-    if chosen is not None:
-        run_block(it, chosen.statements, scope, here)
+    taken, left_out = (
+        (node.then, node.otherwise) if truth(it, test, node.test) else (node.otherwise, node.then)
+    )
+    if left_out is not None:
+        scope.unbuilt |= dict.fromkeys(_declared(left_out), node)
+    if taken is not None:
+        run_block(it, taken.statements, scope, here)
+
+
+def _declared(block: ast.Block, *, indexed: bool = False) -> Iterator[str]:
+    """Names that a block gives to geometry and structures, only those with an index if `indexed`."""
+    for node in block.statements:
+        match node:
+            case ast.Assign() | ast.Structure(parameters=None):
+                if node.indices or not indexed:
+                    yield node.name.text
+            case ast.Var() if not indexed:
+                yield node.name.text
+            case ast.For(body=body):
+                yield from _declared(body, indexed=indexed)
+            case ast.If(then=then, otherwise=otherwise):
+                for branch in (then, otherwise):
+                    if branch is not None:
+                        yield from _declared(branch, indexed=indexed)
 
 
 def _todo(it: Interpreter, node: ast.Todo, scope: Scope, here: Structure) -> None:
@@ -382,14 +406,14 @@ def _instantiate(
         structure = _new(it, definition.kind, name, here, node)
         structure.doc = definition.doc
         _place(it, structure, node.placement, scope)
-        assert template.candidate.scope is not None
-        body = Scope(template.candidate.scope, structure, labels=scope.labels)
+        assert isinstance(template.scope, Scope)
+        body = Scope(template.scope, structure, labels=scope.labels)
         structure.scope = body
         _attributes(it, structure, (*definition.attributes, *node.attributes), body)
         _own_names(body, structure)
         body.values[definition.name.text] = structure
         for parameter, (key, kind, _) in zip(
-            definition.parameters or (), template.candidate.signature.parameters, strict=True
+            definition.parameters or (), template.signature.parameters, strict=True
         ):
             value = template.arguments.get(key)
             if value is None:

@@ -7,26 +7,14 @@ structure holds.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from aidl_lang import ast
 from aidl_lang.building.coerce import as_written
 from aidl_lang.building.conditions import compare_numbers
 from aidl_lang.building.construct import positions
-from aidl_lang.building.scopes import Candidate, PassedBinding
+from aidl_lang.building.scopes import PassedBinding
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.model import Condition, Constraint, Geometry, Structure, convert_point
 from aidl_lang.values import Num, PointVal, Status, Value, kind_of
-
-
-@dataclass(frozen=True, eq=False)
-class Instantiation:
-    """A call of a template, waiting for the name it is assigned to."""
-
-    candidate: Candidate
-    definition: ast.Structure
-    arguments: dict[str, Value]
-    node: ast.Call
 
 
 def passed(

@@ -44,8 +44,8 @@ def _dependences(infer: Inference) -> dict[Symbol, list[tuple[Symbol, ast.Name]]
 
 
 def _names(node: ast.Node) -> Iterator[ast.Name]:
-    assert isinstance(node, ast.Let | ast.Assign | ast.Param)
-    return (n for n in ast.walk(node.value) if isinstance(n, ast.Name))
+    if isinstance(node, ast.Let | ast.Assign | ast.Param):
+        yield from (n for n in ast.walk(node.value) if isinstance(n, ast.Name))
 
 
 def _report(infer: Inference, circle: list[str], name: ast.Name) -> None:

@@ -31,6 +31,9 @@ from aidl_lang.types import (
 )
 from aidl_lang.units import ANGLE, LENGTH, UNITS, MaybeDimension
 
+_DEEPEST = 120
+"""How deep expressions and the names in them are followed: within the interpreter's usual limit on frames."""
+
 
 class Inference:
     """Facts about the expressions of one program, and the diagnostics that finding them gave."""
@@ -43,6 +46,7 @@ class Inference:
         self.homes: tuple[ast.Node, ...] = (resolution.main,)
         self._library = frozenset(resolution.library.sources)
         self._running: set[ast.Node] = set()
+        self._depth = 0
         self._served: dict[Symbol, tuple[MaybeDimension, ast.Node]] = {}
 
     # --- Reporting -----------------------------------------------------------------------------
@@ -57,7 +61,7 @@ class Inference:
         secondary: Sequence[Label] = (),
         fix: Fix | None = None,
     ) -> Fact:
-        """Say what is wrong in a program (the library has tests of its own); nothing is known of the result."""
+        """Say what is wrong in a program (the library has its own tests); nothing is known of the result."""
         if node.span.source not in self._library:
             self.diagnostics.append(
                 Diagnostic(code, message, node.span, label, tuple(secondary), tuple(hints), fix)
@@ -101,9 +105,15 @@ class Inference:
     # --- Expressions ---------------------------------------------------------------------------
 
     def fact(self, node: ast.Node) -> Fact:
+        """What is known of an expression; nothing of one that only a very long chain of names leads to."""
         known = self.facts.get(node)
-        if known is None:
-            known = self.facts[node] = _INFER[type(node)](self, node)
+        if known is not None:
+            return known
+        if self._depth >= _DEEPEST:
+            return UNKNOWN
+        self._depth += 1
+        known = self.facts[node] = _INFER[type(node)](self, node)
+        self._depth -= 1
         return known
 
     def _number(self, node: ast.Number) -> Fact:

@@ -66,7 +66,7 @@ class Move:
         return all(isinstance(n, ast.Structure) and n.parameters is None for n in self.between)
 
     def path(self, to: ast.Node | None = None) -> str:
-        """The path of the site's structure (or of one around it) from the ancestor; empty for the ancestor."""
+        """The path from the ancestor to the site's structure, or to one around it; empty for itself."""
         steps: list[str] = []
         for node in self.between:
             assert isinstance(node, ast.Structure)

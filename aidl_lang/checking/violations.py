@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from aidl_lang import ast
-from aidl_lang.checking.facts import Place
+from aidl_lang.checking.facts import Place, is_point
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.relocate import Move, Site, insertion_after, removal
 from aidl_lang.checking.wording import shown
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.resolving.symbols import SymbolKind
+from aidl_lang.types import NumberType
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +50,33 @@ class Violation:
     def nodes(self) -> tuple[ast.Node, ...]:
         """The expressions whose written values the diagnostic wants to know."""
         node = self.target.node
-        return (node,) if self.rule == 1 else tuple(c for c in ast.children(node) if c in self.infer.facts)
+        if self.rule == 2:
+            return tuple(c for c in ast.children(node) if c in self.infer.facts)
+        return self._references() or (node,)
+
+    def _references(self) -> tuple[ast.Node, ...]:
+        """In a loop, the references alone: the rest of the expression tells the turns apart, and stays.
+
+        Empty where the expression is the same in every turn, or is not made of numbers and points.
+        """
+        uses = self.infer.resolution.uses
+        names = (uses.get(n) for n in ast.walk(self.target.node))
+        if not any(s is not None and s.kind is SymbolKind.LOOP for s in names):
+            return ()
+        found = tuple(self._far(self.target.node))
+        kinds = [self.infer.facts[node].type for node in found]
+        return found if all(isinstance(k, NumberType) or is_point(k) for k in kinds) else ()
+
+    def _far(self, node: ast.Node) -> Iterator[ast.Node]:
+        """The outermost names, with their members, that lead too far."""
+        fact = self.infer.facts.get(node)
+        if fact is not None and not fact.reads & set(self.far):
+            return
+        if isinstance(node, ast.Name | ast.Member | ast.Index):
+            yield node
+        else:
+            for child in ast.children(node):
+                yield from self._far(child)
 
     @property
     def ancestor(self) -> ast.Node | None:
@@ -86,12 +114,7 @@ class Violation:
 
     def _culprit(self) -> ast.Node:
         """The name that leads too far, with all its members."""
-        far = set(self.far)
-        for node in ast.walk(self.target.node):
-            fact = self.infer.facts.get(node)
-            if isinstance(node, ast.Name | ast.Member | ast.Index) and fact is not None and fact.reads & far:
-                return node
-        return self.target.node
+        return next(self._far(self.target.node), self.target.node)
 
     def _owner(self, culprit: ast.Node) -> str:
         fact = self.infer.facts.get(culprit)
@@ -174,13 +197,31 @@ class Violation:
         )
 
     def _guess(self, written: Mapping[ast.Node, tuple[float, float] | float]) -> str:
-        value = written.get(self.target.node)
-        if self.target.is_point:
-            x, y = value if isinstance(value, tuple) else (0.0, 0.0)
-            return f"({_digits(x, 0.0)}, {_digits(y, 0.0)})"
-        fallback = 10.0 if self.target.is_size else 0.0
-        digits = _digits(value if isinstance(value, float | int) else fallback, fallback)
-        return f"guess({digits})" if self.target.is_size else digits
+        """What is written instead: the value, or in a loop the expression with values for its references."""
+        target = self.target.node
+        places = self._references()
+        if not places:
+            return self._marked(_literal(written.get(target), self.target.is_point, self._fallback))
+        text, start = target.span.text, target.span.start
+        for node in reversed(places):
+            value = _literal(written.get(node), is_point(self.infer.facts[node].type), self._fallback)
+            text = text[: node.span.start - start] + value + text[node.span.end - start :]
+        return self._marked(text)
+
+    @property
+    def _fallback(self) -> float:
+        return 10.0 if self.target.is_size else 0.0
+
+    def _marked(self, text: str) -> str:
+        return f"guess({text})" if self.target.is_size and not self.target.is_point else text
+
+
+def _literal(value: tuple[float, float] | float | None, pair: bool, fallback: float) -> str:
+    """A number or a point as it was written, where that is known."""
+    if pair:
+        x, y = value if isinstance(value, tuple) else (0.0, 0.0)
+        return f"({_digits(x, 0.0)}, {_digits(y, 0.0)})"
+    return _digits(value if isinstance(value, float | int) else fallback, fallback)
 
 
 def _digits(value: float, fallback: float) -> str:

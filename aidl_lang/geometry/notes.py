@@ -245,9 +245,9 @@ def detached_notes(root: SolvedStructure, paths: Sequence[str], pairs: Iterable[
         for one, other in ((pair.a, pair.b), (pair.b, pair.a)):
             candidate = (pair.gap or 0.0, other)
             nearest[one] = min(nearest.get(one, candidate), candidate, key=lambda c: c[0])
-    if len(paths) < 2:
-        return []
     free = _marked_detached(root)
+    if sum(path not in free for path in paths) < 2:
+        return []  # there is nothing that a part could touch
     lonely = [p for p in paths if p not in held and p not in free]
     structures = {s.path: s for s in root.walk()}
     return [_detached(structures[p], nearest.get(p)) for p in lonely]

@@ -141,7 +141,7 @@ def check_aliases(resolver: Resolver, scope: Scope) -> None:
 
 
 def check_order(resolver: Resolver, node: ast.Name, symbol: Symbol, scope: Scope) -> None:
-    """Geometry and unknowns exist from their line on. What another structure declares is judged by validity."""
+    """Geometry and unknowns exist from their line on; those of other structures are judged by validity."""
     if symbol.scope is None or symbol.scope.homes != scope.homes or symbol.is_array:
         return
     assert symbol.node is not None

@@ -35,7 +35,7 @@ RESTARTS = (1e-3, 0.03, 0.3, 1.0, 3.0)
 """Sizes of the perturbations tried from a singular start, relative to the greatest residual."""
 CONVINCING = 2
 SAME = 1e-6
-"""So many restarts that end with the same violation (relatively) are taken for proof that there is no less."""
+"""So many restarts that end with the same violation, relatively, are taken to say that there is no less."""
 COSTLY = 40_000
 """Entries of the Jacobian above which one restart must do."""
 GOLDEN = 0.6180339887498949

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from aidl_lang.diagnostics import Diagnostic, Label
 from aidl_lang.source import SourceFile, Span
-from aidl_lang.syntax import missing, spelling
+from aidl_lang.syntax import brackets, missing, spelling
 from aidl_lang.syntax.tokens import END, Token
 from aidl_lang.syntax.trouble import Problem, Trouble, replaced
 from aidl_lang.syntax.words import describe
@@ -24,22 +24,24 @@ _QUESTIONS: tuple[Callable[[Trouble], Problem | None], ...] = (
     missing.out_of_place_in_constrain,
     spelling.reserved_word,
     missing.else_without_if,
-    missing.wrong_closer,
-    missing.unclosed_block,
+    brackets.wrong_closer,
+    brackets.unclosed_block,
     missing.equation_for_definition,
     missing.definition_for_equation,
     missing.colon_for_equals,
-    missing.unclosed_bracket,
-    missing.three_coordinates,
-    missing.missing_comma,
+    brackets.unclosed_bracket,
+    brackets.three_coordinates,
+    brackets.missing_comma,
     missing.missing_equals,
+    missing.typed_definition,
+    missing.choice_without_parentheses,
     missing.import_without_path,
     missing.missing_value,
     missing.missing_block,
     missing.bare_value,
     missing.attribute_out_of_place,
-    missing.stray_closer,
-    missing.stray_comma,
+    brackets.stray_closer,
+    brackets.stray_comma,
 )
 
 # What could come next, in words, in the order in which it is worth saying.
@@ -69,6 +71,8 @@ def explain(trouble: Trouble) -> Problem:
 
 def _unexpected(t: Trouble) -> Problem:
     possible = [words for words, kinds in _EXPECTED if t.accepts(*kinds)]
+    if "a name" in possible and "`then`" in possible:
+        possible.remove("`then`")  # which would be a name here
     if t.between:
         message = f"a statement cannot begin with {describe(t.token)}"
         possible = []

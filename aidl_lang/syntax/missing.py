@@ -1,185 +1,15 @@
-"""What is missing, left over or in the wrong place: brackets, commas, values, names, statements."""
+"""What is missing, left over or in the wrong place: equals signs, values, names, blocks, statements."""
 
 from __future__ import annotations
 
 from aidl_lang.diagnostics import Diagnostic, Label
 from aidl_lang.kinds import kind_of
 from aidl_lang.source import Span
-from aidl_lang.syntax.tokens import END, Token, begins_line
+from aidl_lang.syntax.tokens import END
 from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
-from aidl_lang.syntax.words import STATEMENT_WORDS, describe
+from aidl_lang.syntax.words import STATEMENT_WORDS, VALUE_STARTS, describe
 
-_CLOSER = {"(": ")", "CALL": ")", "[": "]", "{": "}"}
-_BRACKET = {"(": "the parenthesis", "CALL": "the call", "[": "the bracket", "{": "the block"}
-_VALUE_STARTS = frozenset(
-    ["NAME", "NUMBER", "STRING", "CALL", "(", "[", "true", "false", "True", "False", "if", "not"]
-)
 _EXAMPLE_VALUE = {"param": "80", "var": "5", "let": "w / 2"}
-
-
-# --- Brackets -------------------------------------------------------------------------------------
-
-
-def wrong_closer(t: Trouble) -> Problem | None:
-    """A closing bracket of another kind than the one that is open."""
-    if t.token.kind not in (")", "]") or not t.open or _CLOSER[t.open[-1].kind] == t.token.kind:
-        return None
-    opener = t.open[-1]
-    right = _CLOSER[opener.kind]
-    if not t.accepts(right):
-        return None
-    return Problem(
-        Diagnostic(
-            "E0102",
-            f"expected `{right}` to close {_BRACKET[opener.kind]} that begins here, not `{t.token.text}`",
-            t.span(opener),
-            "opened here",
-            (Label(t.span(), f"`{right}` belongs here"),),
-            fix=replaced(f"write `{right}`", t.span(), right),
-        ),
-        Repair(t.position, t.position + 1, (t.token._replace(kind=right, text=right),)),
-    )
-
-
-def unclosed_bracket(t: Trouble) -> Problem | None:
-    """The statement ends, or another begins, inside an open bracket."""
-    if not t.open or not (t.begins_statement() or t.token.kind in (";", "{", "at", "rotated")):
-        return None
-    closers = [_CLOSER[opener.kind] for opener in reversed(t.open)]
-    if not t.accepts(*closers):
-        return None
-    opener = t.open[-1]
-    text = "".join(closers)
-    return Problem(
-        Diagnostic(
-            "E0102",
-            f"expected `{text}` to close {_BRACKET[opener.kind]} that begins here",
-            t.span(opener),
-            "opened here and not closed",
-            (Label(t.gap(), f"`{text}` is missing"),),
-            fix=replaced(f"put in `{text}`", t.gap(), text),
-        ),
-        Repair(t.position, t.position, tuple(t.token_here(c) for c in closers)),
-    )
-
-
-def unclosed_block(t: Trouble) -> Problem | None:
-    """The file ends inside a block; indentation tells which one was meant to end, and where."""
-    if t.token.kind != END or not t.between:
-        return None
-    blocks = [token for token in t.automaton.open_brackets() if token.kind == "{"]
-    if not blocks:
-        return None
-    opener = _misindented(t, blocks[0]) or blocks[-1]
-    place = _place_for_brace(t, opener)
-    indent = " " * t.indentation(opener.start)
-    closer = f"\n{indent}}}"
-    return Problem(
-        Diagnostic(
-            "E0102",
-            "expected `}` to close the block that begins here",
-            t.span(opener),
-            "opened here and not closed",
-            (Label(place, "`}` is missing"),),
-            fix=replaced("close the block", place, closer),
-        ),
-        Repair(t.position, t.position, (t.token_here("}"),)),
-    )
-
-
-def _misindented(t: Trouble, outermost: Token) -> Token | None:
-    """The first block that ends with a brace indented less than the line on which it begins."""
-    opened: list[Token] = []
-    for token in t.tokens:
-        if token.kind == "{" and token.start >= outermost.start:
-            opened.append(token)
-        elif token.kind == "}" and opened:
-            opener = opened.pop()
-            if begins_line(t.source.text, token.start) and t.indentation(token.start) < t.indentation(
-                opener.start
-            ):
-                return opener
-    return None
-
-
-def _place_for_brace(t: Trouble, opener: Token) -> Span:
-    """The end of the last line in a block before one that is indented no deeper than its head."""
-    head = t.indentation(opener.start)
-    last = opener
-    for token in t.tokens:
-        if token.start <= opener.start:
-            continue
-        if (
-            begins_line(t.source.text, token.start) and t.indentation(token.start) <= head
-        ) or token.kind == END:
-            break
-        last = token
-    return Span(t.source, last.end, last.end)
-
-
-def stray_closer(t: Trouble) -> Problem | None:
-    if t.token.kind not in (")", "]", "}") or t.open or not (t.between or t.accepts(";")):
-        return None
-    return Problem(
-        Diagnostic(
-            "E0118",
-            f"`{t.token.text}` closes nothing",
-            t.span(),
-            "no bracket is open here",
-            fix=replaced("remove it", t.span(), ""),
-        ),
-        Repair(t.position, t.position + 1),
-    )
-
-
-def missing_comma(t: Trouble) -> Problem | None:
-    if not t.open or t.token.kind not in _VALUE_STARTS or not t.accepts(",", t.token.kind):
-        return None
-    opener = t.open[-1]
-    inside = {"CALL": "arguments", "[": "items", "(": "coordinates"}[opener.kind]
-    return Problem(
-        Diagnostic(
-            "E0112",
-            f"expected `,` between two {inside}",
-            t.gap(),
-            "a comma is missing here",
-            (Label(t.span(opener), f"in {_BRACKET[opener.kind]} that begins here"),),
-            fix=replaced("put in `,`", t.gap(), ","),
-        ),
-        Repair(t.position, t.position, (t.token_here(","),)),
-    )
-
-
-def three_coordinates(t: Trouble) -> Problem | None:
-    if not t.open or t.open[-1].kind != "(" or t.token.kind in (")", END) or t.before is None:
-        return None
-    if t.before.kind != "," or not t.accepts(")"):
-        return None
-    return Problem(
-        Diagnostic(
-            "E0123",
-            "a point has two coordinates: `(x, y)`",
-            t.span(t.open[-1], t.token),
-            "this has a third",
-            hints=("drawings are flat: leave z out; thickness is an attribute, `@thickness(3mm)`",),
-        )
-    )
-
-
-def stray_comma(t: Trouble) -> Problem | None:
-    if t.token.kind != "," or t.open or not t.accepts(";"):
-        return None
-    return Problem(
-        Diagnostic(
-            "E0122",
-            "statements are not separated by commas",
-            t.span(),
-            "a new line or `;` does",
-            hints=("commas stand between arguments, and between constraints inside `constrain { }`",),
-            fix=replaced("write `;`", t.span(), ";"),
-        ),
-        Repair(t.position, t.position + 1, (t.token._replace(kind=";", text=";"),)),
-    )
 
 
 # --- Equals signs ---------------------------------------------------------------------------------
@@ -252,7 +82,7 @@ def missing_equals(t: Trouble) -> Problem | None:
     """`param w 80`"""
     if t.first.kind not in ("param", "var", "let", "fn", "alias") or t.on_new_line:
         return None
-    if t.token.kind not in _VALUE_STARTS or not t.accepts("=", t.token.kind):
+    if t.token.kind not in VALUE_STARTS or not t.accepts("=", t.token.kind):
         return None
     return Problem(
         Diagnostic(
@@ -294,6 +124,40 @@ def missing_value(t: Trouble) -> Problem | None:
 
 def _lacking(t: Trouble, message: str) -> Problem:
     return Problem(Diagnostic("E0103", message, t.span(t.before), "nothing follows"))
+
+
+def choice_without_parentheses(t: Trouble) -> Problem | None:
+    """`a == if c then b else d`"""
+    if t.token.kind != "if" or t.between or t.complete or not t.accepts("(", "if"):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0101",
+            f"a choice stands in parentheses behind {describe(t.before or t.first)}",
+            t.span(),
+            "this begins a choice",
+            hints=("write `(if c then a else b)`",),
+        )
+    )
+
+
+def typed_definition(t: Trouble) -> Problem | None:
+    """`circle rim = circle(…)`"""
+    if len(t.statement) != 2 or t.token.kind != "=" or not t.accepts("{"):
+        return None
+    kind, name = t.statement
+    if kind.kind != "NAME" or name.kind != "NAME":
+        return None
+    return Problem(
+        Diagnostic(
+            "E0113",
+            f"a definition has no type before its name: `{name.text} = …`",
+            t.span(kind),
+            "the value tells what it is",
+            fix=replaced(f"remove `{kind.text}`", Span(t.source, kind.start, name.start), ""),
+        ),
+        Repair(t.begin, t.begin + 1),
+    )
 
 
 def import_without_path(t: Trouble) -> Problem | None:

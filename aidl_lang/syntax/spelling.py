@@ -106,7 +106,7 @@ def foreign_character(t: Trouble) -> Problem | None:
         fix = replaced(f"write `{sign}`", t.span(), sign if not sign.isalpha() else f" {sign} ")
     stand_in = (t.token._replace(kind=sign, text=sign),) if sign else ()
     hints = (words,) if words else ()
-    repair = Repair(t.position, t.position + 1, stand_in)
+    repair: Repair | None = Repair(t.position, t.position + 1, stand_in)
     if not stand_in and t.complete and t.following.kind != END:
         repair = None  # it stood for something, and what follows makes no sense without
     return Problem(Diagnostic("E0108", message, t.span(), hints=hints, fix=fix), repair)

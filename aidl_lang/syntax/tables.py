@@ -17,8 +17,12 @@ import tempfile
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from aidl_lang.resources import resource
+
+if TYPE_CHECKING:
+    from lark.grammar import Rule as LarkRule
 
 _FORMAT = 3  # of the cached data: to be raised when the classes below change
 
@@ -152,16 +156,14 @@ def build_tables(grammar: str) -> Tables:
     )
 
 
-def _plain_rule(rule: object) -> Rule:
+def _plain_rule(rule: LarkRule) -> Rule:
     """What Lark's own tree builder would make of a rule: `?`, `!`, `_` and `->` mean what they mean there."""
-    origin = str(rule.origin.name)  # type: ignore[attr-defined]
-    options, alias = rule.options, rule.alias  # type: ignore[attr-defined]
-    expansion = rule.expansion  # type: ignore[attr-defined]
-    kept = tuple(
-        i
-        for i, symbol in enumerate(expansion)
-        if not (symbol.is_term and symbol.filter_out and not options.keep_all_tokens)
-    )
+    from lark.grammar import Terminal
+
+    origin, expansion = str(rule.origin.name), rule.expansion
+    options, alias = rule.options, rule.alias
+    dropped = [isinstance(symbol, Terminal) and symbol.filter_out for symbol in expansion]
+    kept = tuple(i for i, drop in enumerate(dropped) if options.keep_all_tokens or not drop)
     gathers = origin.startswith("_")
     passes = kept[0] if len(kept) == 1 and not gathers and options.expand1 and not alias else None
     action = None if gathers or passes is not None else str(alias or origin)

@@ -40,6 +40,11 @@ STATEMENT_WORDS = frozenset(
     ]
 )
 
+# The tokens that may begin a value.
+VALUE_STARTS = frozenset(
+    ["NAME", "NUMBER", "STRING", "CALL", "(", "[", "true", "false", "True", "False", "if", "not"]
+)
+
 # A sign of other languages or of typography, the sign it stands for here, and a word about it.
 SIGNS: dict[str, tuple[str | None, str]] = {
     "≤": ("<=", ""), "≥": (">=", ""), "≠": ("!=", ""), "×": ("*", ""), "·": ("*", ""), "÷": ("/", ""),

@@ -33,6 +33,13 @@ PAGES = [
         ("let", "E0103", (1, 1), "`let` needs a name and a value: `let w = w / 2`"),
         ("let a = 3 +\n", "E0103", (1, 11), "expected a value after `+`"),
         ("let a 3", "E0103", (1, 7), "expected `=` between the name and its value: `let a = …`"),
+        (
+            "circle c = circle(radius: 1)",
+            "E0113",
+            (1, 1),
+            "a definition has no type before its name: `c = …`",
+        ),
+        ("constrain a == if b then c else d", "E0101", (1, 16), "a choice stands in parentheses behind `==`"),
         ("import gears\n", "E0103", (1, 1), "`import gears` does not say from which file"),
         ("let a = if b then c\n", "E0103", (1, 19), None),
         (

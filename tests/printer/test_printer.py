@@ -98,20 +98,25 @@ def test_short_blocks_stay_on_one_line() -> None:
 
 def test_long_lists_are_broken() -> None:
     check(
-        "outline = polygon([(-100, -100), (100, -100), (100, 100), (-100, 100), (-9, 0)], rotatable: true, turn: 5deg)",
+        "edge = polygon([(-100, -100), (100, -100), (100, 100), (-100, 100), (-150, 0)], "
+        "rotatable: true, angle: 45deg)",
         """
-        outline = polygon(
-            [(-100, -100), (100, -100), (100, 100), (-100, 100), (-9, 0)],
+        edge = polygon(
+            [(-100, -100), (100, -100), (100, 100), (-100, 100), (-150, 0)],
             rotatable: true,
-            turn: 5deg
+            angle: 45deg
         )
         """,
     )
+
+
+def test_a_long_reason_stands_below_its_test() -> None:
     check(
-        'assert distance(frame_hole[i].rim.center, slot[i].center) >= m5 / 2 + min_wall, "too little material here"',
+        "assert distance(frame[i].rim.center, slot[i].center) >= bolt / 2 + slot_width / 2 + min_wall, "
+        '"too little material"',
         """
-        assert distance(frame_hole[i].rim.center, slot[i].center) >= m5 / 2 + min_wall,
-            "too little material here"
+        assert distance(frame[i].rim.center, slot[i].center) >= bolt / 2 + slot_width / 2 + min_wall,
+            "too little material"
         """,
     )
 

@@ -46,7 +46,7 @@ CASES = {
         """,
         """
         for i in 0..3 {
-            hole h[i] { rim = circle(center: (0, 0), radius: 4) }  // four
+            hole h[i] { rim = circle(center: (0, 0) + (i, 0), radius: 4) }  // four
             constrain h[i].rim.center == plate.center + (i, 0)
         }
         """,
@@ -64,7 +64,7 @@ CASES = {
         hole h {
             let pitch = 3
             for i in 0..3 {
-                rim[i] = circle(center: (0, 0), radius: 1)
+                rim[i] = circle(center: (0, 0) + (i * pitch, 0), radius: 1)
             }
         }
         for i in 0..3 { constrain h.rim[i].center == plate.center + (i * h.pitch, 0) }

@@ -1,0 +1,174 @@
+"""Brackets and blocks that are not closed, or closed without being open; commas between what they hold."""
+
+from __future__ import annotations
+
+from aidl_lang.diagnostics import Diagnostic, Label
+from aidl_lang.source import Span
+from aidl_lang.syntax.tokens import END, Token, begins_line
+from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
+from aidl_lang.syntax.words import VALUE_STARTS
+
+_CLOSER = {"(": ")", "CALL": ")", "[": "]", "{": "}"}
+_BRACKET = {"(": "the parenthesis", "CALL": "the call", "[": "the bracket", "{": "the block"}
+
+
+def wrong_closer(t: Trouble) -> Problem | None:
+    """A closing bracket of another kind than the one that is open."""
+    if t.token.kind not in (")", "]") or not t.open or _CLOSER[t.open[-1].kind] == t.token.kind:
+        return None
+    opener = t.open[-1]
+    right = _CLOSER[opener.kind]
+    if not t.accepts(right):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0102",
+            f"expected `{right}` to close {_BRACKET[opener.kind]} that begins here, not `{t.token.text}`",
+            t.span(opener),
+            "opened here",
+            (Label(t.span(), f"`{right}` belongs here"),),
+            fix=replaced(f"write `{right}`", t.span(), right),
+        ),
+        Repair(t.position, t.position + 1, (t.token._replace(kind=right, text=right),)),
+    )
+
+
+def unclosed_bracket(t: Trouble) -> Problem | None:
+    """The statement ends, or another begins, inside an open bracket."""
+    if not t.open or not (t.begins_statement() or t.token.kind in (";", "{", "at", "rotated")):
+        return None
+    closers = [_CLOSER[opener.kind] for opener in reversed(t.open)]
+    if not t.accepts(*closers):
+        return None
+    opener = t.open[-1]
+    text = "".join(closers)
+    return Problem(
+        Diagnostic(
+            "E0102",
+            f"expected `{text}` to close {_BRACKET[opener.kind]} that begins here",
+            t.span(opener),
+            "opened here and not closed",
+            (Label(t.gap(), f"`{text}` is missing"),),
+            fix=replaced(f"put in `{text}`", t.gap(), text),
+        ),
+        Repair(t.position, t.position, tuple(t.token_here(c) for c in closers)),
+    )
+
+
+def unclosed_block(t: Trouble) -> Problem | None:
+    """The file ends inside a block; indentation tells which one was meant to end, and where."""
+    if t.token.kind != END or not t.between:
+        return None
+    blocks = [token for token in t.automaton.open_brackets() if token.kind == "{"]
+    if not blocks:
+        return None
+    opener = _misindented(t, blocks[0]) or blocks[-1]
+    place = _place_for_brace(t, opener)
+    indent = " " * t.indentation(opener.start)
+    closer = f"\n{indent}}}"
+    return Problem(
+        Diagnostic(
+            "E0102",
+            "expected `}` to close the block that begins here",
+            t.span(opener),
+            "opened here and not closed",
+            (Label(place, "`}` is missing"),),
+            fix=replaced("close the block", place, closer),
+        ),
+        Repair(t.position, t.position, (t.token_here("}"),)),
+    )
+
+
+def _misindented(t: Trouble, outermost: Token) -> Token | None:
+    """The first block that ends with a brace indented less than the line on which it begins."""
+    opened: list[Token] = []
+    for token in t.tokens:
+        if token.kind == "{" and token.start >= outermost.start:
+            opened.append(token)
+        elif token.kind == "}" and opened:
+            opener = opened.pop()
+            if begins_line(t.source.text, token.start) and t.indentation(token.start) < t.indentation(
+                opener.start
+            ):
+                return opener
+    return None
+
+
+def _place_for_brace(t: Trouble, opener: Token) -> Span:
+    """The end of the last line in a block before one that is indented no deeper than its head."""
+    head = t.indentation(opener.start)
+    last = opener
+    for token in t.tokens:
+        if token.start <= opener.start:
+            continue
+        if (
+            begins_line(t.source.text, token.start) and t.indentation(token.start) <= head
+        ) or token.kind == END:
+            break
+        last = token
+    return Span(t.source, last.end, last.end)
+
+
+def stray_closer(t: Trouble) -> Problem | None:
+    if t.token.kind not in (")", "]", "}") or t.open or not (t.between or t.accepts(";")):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0118",
+            f"`{t.token.text}` closes nothing",
+            t.span(),
+            "no bracket is open here",
+            fix=replaced("remove it", t.span(), ""),
+        ),
+        Repair(t.position, t.position + 1),
+    )
+
+
+def missing_comma(t: Trouble) -> Problem | None:
+    if not t.open or t.token.kind not in VALUE_STARTS or not t.accepts(",", t.token.kind):
+        return None
+    opener = t.open[-1]
+    inside = {"CALL": "arguments", "[": "items", "(": "coordinates"}[opener.kind]
+    return Problem(
+        Diagnostic(
+            "E0112",
+            f"expected `,` between two {inside}",
+            t.gap(),
+            "a comma is missing here",
+            (Label(t.span(opener), f"in {_BRACKET[opener.kind]} that begins here"),),
+            fix=replaced("put in `,`", t.gap(), ","),
+        ),
+        Repair(t.position, t.position, (t.token_here(","),)),
+    )
+
+
+def three_coordinates(t: Trouble) -> Problem | None:
+    if not t.open or t.open[-1].kind != "(" or t.token.kind in (")", END) or t.before is None:
+        return None
+    if t.before.kind != "," or not t.accepts(")"):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0123",
+            "a point has two coordinates: `(x, y)`",
+            t.span(t.open[-1], t.token),
+            "this has a third",
+            hints=("drawings are flat: leave z out; thickness is an attribute, `@thickness(3mm)`",),
+        )
+    )
+
+
+def stray_comma(t: Trouble) -> Problem | None:
+    if t.token.kind != "," or t.open or not t.accepts(";"):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0122",
+            "statements are not separated by commas",
+            t.span(),
+            "a new line or `;` does",
+            hints=("commas stand between arguments, and between constraints inside `constrain { }`",),
+            fix=replaced("write `;`", t.span(), ";"),
+        ),
+        Repair(t.position, t.position + 1, (t.token._replace(kind=";", text=";"),)),
+    )
