@@ -136,9 +136,9 @@ def _result(
 
 def _function(check: Inference, definition: ast.FunctionDefinition, reads: frozenset[Place]) -> Fact:
     """A function gives what its expression gives; it reads what its arguments and its expression read."""
-    if definition in check._running:
+    if definition in check.running:
         return UNKNOWN
-    check._running.add(definition)
+    check.running.add(definition)
     before = check.homes
     scope = check.resolution.scope_of(definition)
     check.homes = scope.homes
@@ -146,7 +146,7 @@ def _function(check: Inference, definition: ast.FunctionDefinition, reads: froze
         fact = check.fact(definition.value)
     finally:
         check.homes = before
-        check._running.discard(definition)
+        check.running.discard(definition)
     return replace(fact, reads=fact.reads | reads, bare=None)
 
 

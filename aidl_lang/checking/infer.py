@@ -45,7 +45,7 @@ class Inference:
         self.rejected: list[ast.Call] = []
         self.homes: tuple[ast.Node, ...] = (resolution.main,)
         self._library = frozenset(resolution.library.sources)
-        self._running: set[ast.Node] = set()
+        self.running: set[ast.Node] = set()
         self._depth = 0
         self._served: dict[Symbol, tuple[MaybeDimension, ast.Node]] = {}
 

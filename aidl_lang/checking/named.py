@@ -89,16 +89,16 @@ def _declared(check: Inference, symbol: Symbol) -> Fact:
 
 
 def _declaration(check: Inference, symbol: Symbol, node: ast.Node) -> Fact:
-    if node in check._running:
+    if node in check.running:
         return UNKNOWN  # a cycle, which is reported when its names are checked
-    check._running.add(node)
+    check.running.add(node)
     assert symbol.scope is not None
     before, check.homes = check.homes, symbol.scope.homes
     try:
         return _value_of(check, symbol, node)
     finally:
         check.homes = before
-        check._running.discard(node)
+        check.running.discard(node)
 
 
 def _value_of(check: Inference, symbol: Symbol, node: ast.Node) -> Fact:

@@ -6,16 +6,13 @@ program and all below it. What is wrong inside an imported file is reported at i
 
 from __future__ import annotations
 
-import posixpath
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from pathlib import PurePosixPath
 
 from aidl_lang import ast
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.source import SourceFile
-
-if TYPE_CHECKING:
-    from aidl_lang.world import World
+from aidl_lang.world import FileError, World, relative_to
 
 SUFFIX = ".aidl"
 MAX_FILES = 200
@@ -38,7 +35,7 @@ class ImportedModules:
 def load_imports(main: ast.Module, world: World | None) -> ImportedModules:
     """Read what a program imports, directly or by way of other files."""
     loader = _Loader(world)
-    loader.visit(main, posixpath.basename(main.source.name.replace("\\", "/")))
+    loader.visit(main, PurePosixPath(main.source.name.replace("\\", "/")).name)
     loader.result.modules = tuple(loader.order)
     return loader.result
 
@@ -64,8 +61,9 @@ class _Loader:
 
     def _import(self, statement: ast.Import, importer: str) -> None:
         written = statement.path.value
-        path = posixpath.normpath(posixpath.join(posixpath.dirname(importer), written.replace("\\", "/")))
-        if written.startswith("/") or ":" in written or path == ".." or path.startswith("../"):
+        try:
+            path = relative_to(written, importer)
+        except FileError:
             self._report(
                 "E0212",
                 f"`{written}` lies outside the project",
@@ -114,11 +112,11 @@ class _Loader:
             return None
         try:
             return self.world.read(path)
-        except (OSError, UnicodeDecodeError, ValueError):
+        except FileError as error:
             hint = "paths are relative to the file that imports"
             if not path.endswith(SUFFIX):
                 hint = f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`"
-            self._report("E0210", f"there is no file `{path}` that could be imported", statement.path, hint)
+            self._report("E0210", f"`{path}` cannot be imported: {error.reason}", statement.path, hint)
             return None
 
     def _report(self, code: str, message: str, node: ast.Node, *hints: str) -> None:

@@ -37,6 +37,10 @@ Tier: TypeAlias = tuple[int, int]
 OWN: Tier = (2, 0)
 POSITIONS: Tier = (5, -1)
 """Before the first tier of kept sizes."""
+FIRM = 1e-3
+"""How much shorter a change of a kept size is that counts as much as one of a position."""
+IDLE = 1e-3
+"""A kept size that moved less than this, in units of its scale, was only dragged along."""
 CHANGED = 1e-9
 """A kept size that moved less than this, in units of its scale, did not change."""
 LAST_RESTARTS = 5
@@ -151,10 +155,29 @@ class Hierarchy:
         )
 
     def attempt(self, scope: Scope, restarts: int, clock: Clock | None = None) -> Verdict:
-        """Tries to satisfy the constraints of `scope` as hard ones; leaves `values` at what was reached."""
+        """Tries to satisfy the constraints of `scope` as hard ones; leaves `values` at what was reached.
+
+        A kept size is dearer than any position: first as few and as little of them change as will do, and
+        among the positions that these allow the nearest is taken.
+        """
         rows = self.rows(scope.constraints)
+        sizes = [unknown for unknown in scope.free if self._kept[unknown]]
+        scale = self.problem.scale
+        if sizes:
+            scale = scale.copy()
+            scale[sizes] *= FIRM
+        before = self.save(scope.free)
         task = Task(rows, [0.0] * len(rows), scope.free, restarts)
-        return attempt(task, self.values, self.problem.scale, self.settings, clock or self.clock)
+        verdict = attempt(task, self.values, scale, self.settings, clock or self.clock)
+        idle = {u for u in sizes if abs(self.values.unknowns[u] - before[u]) < IDLE * self.problem.scale[u]}
+        if verdict.satisfied and idle:
+            reached = self.save(scope.free)
+            self.values.assign(before.items())
+            fewer = Task(rows, [0.0] * len(rows), scope.free - idle, restarts)
+            again = attempt(fewer, self.values, scale, self.settings, clock or self.clock)
+            if not again.satisfied:
+                self.values.assign(reached.items())
+        return verdict
 
     def save(self, unknowns: Iterable[int]) -> dict[int, float]:
         return {unknown: self.values.unknowns[unknown] for unknown in unknowns}
@@ -173,17 +196,42 @@ class _Group:
         self._tiers: dict[int, Tier] = {}
 
     def solve(self) -> None:
-        """Satisfies the constraints; of a conflict the last one written is left out, and the rest solved."""
+        """Satisfies the constraints. Those that share nothing that could ever move are problems of their own:
+        what one needs does not loosen the other."""
+        reached: Tier = (0, 0)
+        for part in self._independent():
+            tier = self._solve_part(part)
+            if tier is None:
+                return
+            reached = max(reached, tier)
+        self._weigh_preferences(reached)
+
+    def _independent(self) -> list[list[int]]:
+        """The hard constraints by what they share, in order of writing."""
+        hierarchy = self.hierarchy
+        parts: list[list[int]] = []
+        left = list(self.hard)
+        while left:
+            linked = set(self.scope((9, 0), left[:1]).constraints)
+            parts.append([index for index in left if index in linked])
+            left = [index for index in left if index not in linked]
+        return [part for part in parts if not all(map(hierarchy.satisfied, part))]
+
+    def _solve_part(self, part: list[int]) -> Tier | None:
+        """The stage that satisfied everything; of a conflict the last one written is left out, and the rest
+        solved. None when it is not known what to leave out."""
         hierarchy = self.hierarchy
         while True:
-            violated = [index for index in self.hard if not hierarchy.satisfied(index)]
-            reached = self._deepen(violated) if violated else (0, 0)
+            violated = [index for index in part if not hierarchy.satisfied(index)]
+            if not violated:
+                return (0, 0)
+            reached = self._deepen(part, violated)
             if reached is not None:
-                self._weigh_preferences(reached)
-                return
+                return reached
             left_out = self._leave_out()
             if left_out is None:
-                return
+                return None
+            part.remove(left_out)
             self.hard.remove(left_out)
             hierarchy.give_up([left_out])
 
@@ -218,10 +266,10 @@ class _Group:
 
     # -- stages
 
-    def _deepen(self, violated: list[int]) -> Tier | None:
+    def _deepen(self, part: list[int], violated: list[int]) -> Tier | None:
         """The tier of the first stage that satisfies everything, None if there is none."""
         hierarchy = self.hierarchy
-        everything = self.scope((9, 0), self.hard)
+        everything = self.scope((9, 0), part)
         before = hierarchy.save(everything.free)
         best: tuple[float, dict[int, float]] = (np.inf, before)
         tiers = sorted({self.tier(unknown) for unknown in everything.free})
@@ -229,7 +277,7 @@ class _Group:
         for tier in tiers:
             if not self._promising(violated, tier):
                 continue
-            scope = self.scope(tier, self.hard)
+            scope = self.scope(tier, part)
             if scope.free == tried:
                 continue
             tried = scope.free

@@ -76,7 +76,7 @@ def test_errors_are_shown_in_the_file_they_are_in() -> None:
 
 
 def test_missing_files_and_no_world() -> None:
-    assert messages('import "a"') == ["E0210 1: there is no file `a` that could be imported"]
+    assert messages('import "a"') == ["E0210 1: `a` cannot be imported: there is no such file"]
     module = parser.parse(SourceFile("<stdin>", 'import "a.aidl"')).module
     assert [d.code for d in resolve(module, None, library.load()).diagnostics] == ["E0210"]
 

@@ -24,7 +24,8 @@ PLATE = "solid s {{\n r = rectangle(width: 60, height: 20)\n c = circle(radius: 
         ("constrain r.width", "E0321 4: `r.width` is a length and constrains nothing"),
         ("r.width", None),
         ("constrain r", "E0321 4: `r` is a rectangle and constrains nothing"),
-        ("constrain not r.width == 4", "E0322 4: `not` does not constrain: there are many ways to satisfy it"),
+        ("constrain not r.width == 4",
+         "E0322 4: `not` does not constrain: there are many ways to satisfy it"),
         ("constrain r.width != 4", "E0322 4: `!=` does not constrain: there are many ways to satisfy it"),
         ("constrain true or false", None),
         ("constrain fixed(r)", None),
@@ -34,7 +35,8 @@ PLATE = "solid s {{\n r = rectangle(width: 60, height: 20)\n c = circle(radius: 
         ("if r.width > 4 { p = point(0, 0) }", "E0502 4: `r.width > 4` is decided by the solver, so it "
          "cannot choose what is built"),
         ("if 4 { p = point(0, 0) }", "E0302 4: a condition is needed here, and this is a number"),
-        ("for i in 0..r.width { p[i] = point(i, 0) }", "E0501 4: the ends of a range that is run through must "
+        ("for i in 0..r.width { p[i] = point(i, 0) }",
+         "E0501 4: the ends of a range that is run through must "
          "be known before solving, and `0..r.width` is found by the solver"),
         ("for i in [1, 2] { p[i] = point(i, 0) }", None),
         ("for i in len([r, c])..4 { p[i] = point(i, 0) }", None),
@@ -42,7 +44,8 @@ PLATE = "solid s {{\n r = rectangle(width: 60, height: 20)\n c = circle(radius: 
          "found by the solver"),
         ("let x = round(written(r.width))", None),
         ("p = polygon([(0, 0), (3, 4), c.center])", None),
-        ("q = [c, c]\n let x = q[r.width]", "E0306 5: an index must be a whole number, and this is `r.width`"),
+        ("q = [c, c]\n let x = q[r.width]",
+         "E0306 5: an index must be a whole number, and this is `r.width`"),
         ("q = [c, c]\n let x = q[1].radus", "E0202 5: `q[1]` has no `radus`; did you mean `radius`?"),
         ("q = [c, c]\n let x = q.radius", None),
         ("let x = c[0]", "E0305 4: `c` is a circle and has no members by number"),
@@ -54,14 +57,16 @@ PLATE = "solid s {{\n r = rectangle(width: 60, height: 20)\n c = circle(radius: 
         ("hole h at [3, 4] rotated 30 {}", None),
         ("param n = 4 in 2mm..30deg", "E0308 4: a range does not join a length and an angle"),
         ("param n = 4 in 2..9 step 30deg", None),
-        ("param n = 4mm in 2..9 step 30deg", "E0308 4: the step does not fit the value: a length and an angle"),
+        ("param n = 4mm in 2..9 step 30deg",
+         "E0308 4: the step does not fit the value: a length and an angle"),
         ('param n = "a" in ["a", "b"]', None),
         ('param n = "a" in 1..2', "E0314 4: a range fits a number, and `n` is a text"),
         ("d = circle(radius: 30deg)", "E0311 4: `circle` needs `radius` to be a length, not an angle"),
         ("d = circle(centre: (0, 0), radius: 4)", "E0324 4: `circle` has no parameter `centre`; did you mean "
          "`center`?"),
         ("d = circle(center: (10 * cos(30deg), 10 * sin(30)), radius: 4)", None),
-        ("d = circle(center: (30deg, 0), radius: 4)", "E0301 4: a coordinate must be a length, and `30deg` is "
+        ("d = circle(center: (30deg, 0), radius: 4)",
+         "E0301 4: a coordinate must be a length, and `30deg` is "
          "an angle"),
         ("d = regular_polygon(radius: 4, sides: 6 / 2)", None),
         ("circle(radius: 3)", "E0323 4: this `circle` has no name, so nothing could refer to it"),

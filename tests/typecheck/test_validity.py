@@ -145,7 +145,8 @@ CASES = {
         """,
     ),
     "the nearest common ancestor": (
-        "solid a { solid b { r = square(size: 4) }\n    hole h { rim = circle(center: b.r.center, radius: 1) } }",
+        "solid a { solid b { r = square(size: 4) }\n"
+        "    hole h { rim = circle(center: b.r.center, radius: 1) } }",
         """
         solid a { solid b { r = square(size: 4) }
             hole h { rim = circle(center: (0, 0), radius: 1) } constrain h.rim.center == b.r.center; }
@@ -224,7 +225,8 @@ def test_what_is_said() -> None:
         "param w = 3\nlet d = 2 * w\nhole h { rim = circle(radius: d); constrain rim.radius <= w }",
         "hole h { rim = circle(center: origin, radius: 4); constrain rim.center == self.origin }",
         "mid = plate.center\nk = circle(center: mid, radius: 4)",
-        "for i in 0..2 { hole h[i] { rim = circle(radius: 1 + i) }\n constrain h[i].rim.center == plate.center }",
+        "for i in 0..2 { hole h[i] { rim = circle(radius: 1 + i) }\n"
+        "constrain h[i].rim.center == plate.center }",
     ],
 )
 def test_what_is_allowed(body: str) -> None:
@@ -240,5 +242,6 @@ def test_a_template_that_reads_its_surroundings_cannot_be_mended_by_itself() -> 
 def test_the_file_may_be_the_common_ancestor() -> None:
     text = "p = point(3, 4)\nsolid s {\n    c = circle(center: p, radius: 4)\n}\n"
     assert mended(text) == (
-        "p = point(3, 4)\nsolid s {\n    c = circle(center: (0, 0), radius: 4)\n}\nconstrain s.c.center == p\n"
+        "p = point(3, 4)\nsolid s {\n    c = circle(center: (0, 0), radius: 4)\n}\n"
+        "constrain s.c.center == p\n"
     )

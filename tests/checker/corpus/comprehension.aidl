@@ -10,7 +10,7 @@ drawing towers {
         roof.start.y == max([t.top.midpoint.y for t in tower]) + 3
         horizontal(roof)
         roof.start.x == min([t.bb.left for t in tower])
-        roof.end.x == max([t.bb.right for t in tower if t.height > 10])
+        roof.end.x == max([tower[i].bb.right for i in 0..3 if heights[i] > 10])
     }
     assert sum([t.height for t in tower]) == sum(heights)
     assert min(heights) == 8 and max(heights) == 20
