@@ -282,7 +282,7 @@ class ExpressionStatement(Node):
 class Constrain(Node):
     """`constrain EXPR` (one item, no block) or `constrain { … }`.
 
-    Items are ExpressionStatement, Assign (`a.x = b` is understood as `==`, see Equation), For, If, Let, Prefer.
+    Items are ExpressionStatement, Equation (`a.x = b`, understood as `==`), Assign, For, If, Let, Prefer.
     """
 
     items: Block

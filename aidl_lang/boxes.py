@@ -109,9 +109,10 @@ def source_unknowns(source: object, here: Structure) -> Iterator[Unknown]:
                 break
             frame = structure.frame
             yield from ex.unknowns([frame.x, frame.y, frame.rotation])
-        yield from ex.unknowns(source.plan or ())
-        for geometry in source.own():
-            yield from ex.unknowns(defining(geometry, source))
+        for structure in source.walk():
+            yield from ex.unknowns(structure.plan or ())
+            for geometry in structure.own():
+                yield from ex.unknowns(defining(geometry, structure))
 
 
 def spelled_out(*roots: Expression) -> tuple[Expression, ...]:

@@ -13,15 +13,12 @@ import numpy as np
 
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
-from aidl_lang.model import Comparison, Constraint, Geometry, Model, Structure, convert, own_geometry
+from aidl_lang.model import SIZES, Comparison, Constraint, Geometry, Model, Structure, convert, own_geometry
 from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Row
 from aidl_lang.solver.expression import TapeBuilder
 from aidl_lang.units import ANGLE, LENGTH, MaybeDimension
 from aidl_lang.values import Num, PointVal
-
-_SIZES = frozenset({"radius", "diameter", "width", "height", "length", "rx", "ry"})
-"""Sizes that must not become negative."""
 
 _RADIAN = 180.0 / np.pi
 
@@ -173,7 +170,7 @@ class _Lowering:
 
     def _never_negative(self) -> Iterator[SolverConstraint]:
         for unknown, number in self.numbers.items():
-            if unknown.field.rpartition(".")[2] in _SIZES and unknown.guess >= 0:
+            if unknown.field.rpartition(".")[2] in SIZES and unknown.guess >= 0:
                 expression = self.tape.neg(self.tape.unknown(number))
                 row = Row(expression, Relation.AT_MOST, self.size)
                 yield SolverConstraint(self.groups[unknown.owner], (row,), frozenset())

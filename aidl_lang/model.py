@@ -20,6 +20,9 @@ from aidl_lang.values import Array, ListVal, Num, PointVal, members
 if TYPE_CHECKING:
     from aidl_lang.values import Value
 
+SIZES = frozenset({"radius", "diameter", "width", "height", "length", "rx", "ry"})
+"""Names of sizes, which are never negative."""
+
 KINDS = ("assembly", "solid", "hole", "drawing")
 
 
@@ -155,7 +158,8 @@ class Structure:
 
 def own_geometry(named: dict[str, Value], container: Geometry | Structure) -> Iterator[Geometry]:
     """Geometry among named values that belongs to the container, members of arrays and lists included; each
-    once, however many names it has."""
+    once, however many names it has.
+    """
     seen: set[int] = set()
     for value in named.values():
         for geometry in _geometry_in(value, container):

@@ -1,4 +1,4 @@
-"""Names as people and models spell them: lookup without regard to case and underscores, and "did you mean"."""
+"""Names as people and models spell them: lookup without regard to case and underscores, and suggestions."""
 
 from __future__ import annotations
 

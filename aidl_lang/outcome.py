@@ -78,8 +78,11 @@ def _failure(lowered: Lowered, solution: Solution, failure: GroupFailure) -> Dia
     hints.append(
         "`prefer` states a wish that gives way; `guess(…)` frees a size; a `param` or `fixed(…)` never moves"
     )
+    if len(conflict) < len(failure.conflict):
+        hints.insert(0, "radii, widths, heights and lengths are never negative")
     off = solution.residuals[worst[0]]
-    return Diagnostic(code, headline, worst[1].span, f"off by {_short(off)}", others, tuple(hints))
+    label = f"off by {_short(off)}" if off > _TOLERANCE else "against the others"
+    return Diagnostic(code, headline, worst[1].span, label, others, tuple(hints))
 
 
 def _short(value: float) -> str:

@@ -34,6 +34,11 @@ _RECURSION = 20_000
 """Python frames for deeply nested programs; the limits on nesting and calls end sooner."""
 
 
+_IMPORT_FAILURES = frozenset({"E0210", "E0211", "E0212", "E0213", "E0804"})
+_CIRCLE = "E0207"
+_MISSING_NAMES = frozenset({"E0201", "E0203"})
+
+
 @dataclass(frozen=True)
 class Settings:
     """Limits for programs that are not trusted, and the solver's settings."""
@@ -94,7 +99,8 @@ class _Stopwatch:
 @contextmanager
 def _working() -> Iterator[None]:
     """What a run needs of the interpreter: room for nested programs, and no pauses to look for cycles in a
-    heap that only grows until the run ends."""
+    heap that only grows until the run ends.
+    """
     recursion, collecting = sys.getrecursionlimit(), gc.isenabled()
     sys.setrecursionlimit(max(recursion, _RECURSION))
     gc.disable()
@@ -146,7 +152,12 @@ def _build(
 def _new(found: Sequence[Diagnostic], known: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
     """Findings of a later stage whose place an earlier one has not already complained about."""
     places = [d.span for d in known if d.is_error and d.span is not None]
+    is_missing_file = any(d.code in _IMPORT_FAILURES for d in known)
     for d in found:
+        if is_missing_file and d.code in _MISSING_NAMES:
+            continue  # the name may be in the file that could not be imported
+        if d.code == _CIRCLE and any(k.code == _CIRCLE for k in known):
+            continue  # the same circle, entered elsewhere
         if not (d.is_error and d.span is not None and any(d.span.overlaps(p) for p in places)):
             yield d
 

@@ -144,39 +144,60 @@ def parameter_type(parameter: ast.Parameter, shapes: Iterable[str] = ()) -> Type
 
 
 def accepts(wanted: Type, given: Type) -> int | None:
-    """How far `given` is from what a place wants: 0 exact, more for a conversion, None when it does not fit."""
+    """How far `given` is from what a place wants: 0 exact, more for a conversion, None if it does not fit."""
     if isinstance(wanted, AnyType):
         return 4
     if isinstance(given, AnyType):
         return 3
-    match wanted, given:
-        case NumberType(dimension, whole), NumberType(other, is_whole):
-            if whole and not is_whole:
-                return None
-            return 0 if dimension == other else 1 if other is None else None
-        case NumberType(), GeometryType("line"):
-            return 2 if wanted.dimension == LENGTH else None
-        case PointType(), PointType() | GeometryType("point"):
-            return 0
-        case PointType(), ListType(element, length):
-            fits = length in (2, None) and isinstance(element, NumberType | AnyType)
-            return 2 if fits else None
-        case GeometryType(kind), GeometryType(other):
-            return 0 if kind == other else 1 if kind == "" else None
-        case GeometryType(""), PointType():
-            return 1
-        case BoxType(), BoxType():
-            return 0
-        case BoxType(), StructureType() | GeometryType() | PointType():
-            return 1
-        case BoxType(), ListType(element):
-            return None if isinstance(element, NumberType | TextType | TruthType) else 2
-        case ListType(element), ListType(other):
-            return 0 if accepts(element, other) is not None else None
-        case ListType(), RangeType():
-            return 1
+    match wanted:
+        case NumberType():
+            return _accepts_number(wanted, given)
+        case PointType():
+            return _accepts_point(given)
+        case GeometryType():
+            return _accepts_geometry(wanted, given)
+        case BoxType():
+            return _accepts_box(given)
+        case ListType(element):
+            if isinstance(given, ListType):
+                return 0 if accepts(element, given.element) is not None else None
+            return 1 if isinstance(given, RangeType) else None
         case _:
-            return 0 if type(wanted) is type(given) and not isinstance(wanted, NumberType) else None
+            return 0 if type(wanted) is type(given) else None
+
+
+def _accepts_number(wanted: NumberType, given: Type) -> int | None:
+    if isinstance(given, NumberType):
+        if wanted.whole and not given.whole:
+            return None
+        return 0 if wanted.dimension == given.dimension else 1 if given.dimension is None else None
+    # An edge stands for its coordinate.
+    return 2 if given == GeometryType("line") and wanted.dimension == LENGTH else None
+
+
+def _accepts_point(given: Type) -> int | None:
+    if isinstance(given, ListType):
+        is_pair = given.length in (2, None) and isinstance(given.element, NumberType | AnyType)
+        return 2 if is_pair else None
+    return 0 if given in (PointType(), GeometryType("point")) else None
+
+
+def _accepts_geometry(wanted: GeometryType, given: Type) -> int | None:
+    if isinstance(given, GeometryType):
+        return 0 if wanted.kind == given.kind else 1 if wanted.kind == "" else None
+    return 1 if wanted.kind == "" and isinstance(given, PointType) else None
+
+
+def _accepts_box(given: Type) -> int | None:
+    match given:
+        case BoxType():
+            return 0
+        case StructureType() | GeometryType() | PointType():
+            return 1
+        case ListType(element):
+            return None if isinstance(element, NumberType | TextType | TruthType) else 2
+        case _:
+            return None
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Dimensions and units.
 
-Values are kept in millimetres, degrees and their products. A dimension counts powers of length and of
-angle; a number written without a unit is *bare*: it takes the dimension its place asks for, unchanged in value.
+Values are kept in millimetres, degrees and their products. A dimension counts powers of length and of angle;
+a number written without a unit is *bare*: it takes the dimension its place asks for, unchanged in value.
 """
 
 from __future__ import annotations

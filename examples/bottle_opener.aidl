@@ -14,8 +14,8 @@ solid bottle_opener {
 
     hole opening {
         cap = circle(diameter: mouth)
-        solid tooth {
-            lip = trapezoid(bottom_width: 14, top_width: 10, height: 7)
+        solid tooth rotated -90deg {
+            lip = trapezoid(bottom_width: 16, top_width: 10, height: 8)
         }
         constrain {
             tooth.center_x == cap.center.x - 0.5 * mouth + 4

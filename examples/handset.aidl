@@ -9,10 +9,10 @@ solid handset {
     left_fillet = arc(center: (-57, -20), start: left_line.end, end: (-50, -20))
     left_inner = line(left_fillet.end, base.bottom_left)
 
-    // The right ear was written by eye.
-    right_round = arc(center: (54, -5), start: (68, -5), end: (54, 9))
+    // The right ear was written by eye: `guess` says that not even the shape of an arc is meant as written.
+    right_round = arc(center: (54, -5), start: guess((68, -6)), end: guess((54, 9)))
     right_line = line(right_round.start, (67, -18))
-    right_fillet = arc(center: (58, -19), start: (51, -20), end: right_line.end)
+    right_fillet = arc(center: (58, -19), start: guess((51, -20)), end: right_line.end)
     right_inner = line(right_fillet.start, base.bottom_right)
 
     constrain {
@@ -21,8 +21,8 @@ solid handset {
         vertical(right_line)
         vertical(left_inner)
         vertical(right_inner)
-        left_line.length == right_line.length
-        left_fillet.diameter == right_fillet.diameter
+        right_line.length == left_line.length
+        right_fillet.diameter == left_fillet.diameter
         tangent(left_line, left_fillet)
         tangent(right_line, right_fillet)
         tangent(right_round, right_line)

@@ -15,7 +15,7 @@ solid key {
     // Each cut takes a notch out of the lower edge.
     for i in 0..<len(cuts) {
         hole notch[i] {
-            v = triangle(a: (-2.2, -1), b: (2.2, -1), c: (0, 3))
+            v = triangle(a: (-3.3, -2), b: (3.3, -2), c: (0, 4))
         }
         constrain {
             notch[i].center_x == shank.bb.right - pitch * (i + 0.8)
@@ -25,7 +25,7 @@ solid key {
 
     // A groove along the blade.
     drawing groove {
-        upper = line((0, 2), (30, 2))
+        upper = line((0, 2), guess((30, 2)))
     }
 
     // The point of the key.

@@ -8,6 +8,7 @@ assembly telephone {
     }
 
     @color("crimson")
+    @detached
     solid receiver {
         grip = rectangle(center: (0, 70), width: 0.85 * width, height: 18)
         left_ear = circle(center: (-60, 62), radius: 16)

@@ -79,7 +79,8 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
     arguments = bound(it, chosen, values, nodes, env)
     if arguments is None:
         return NOTHING
-    it.enter(node)
+    if not it.enter(node, candidate.signature.node):
+        return NOTHING
     try:
         return invoke(it, candidate, arguments, chosen, values, node, env)
     finally:
@@ -113,6 +114,8 @@ def _unknown_callable(it: Interpreter, node: ast.Call, env: Env) -> None:
 def _no_overload(
     it: Interpreter, node: ast.Call, misses: Sequence[Mismatch], nodes: Sequence[ast.Node]
 ) -> None:
+    if node in it.program.rejected:
+        return  # the checker has said so
     name = node.callee.text
     closest = max(misses, key=lambda m: m.argument is not None)
     at = nodes[closest.argument] if len(misses) == 1 and closest.argument is not None else node

@@ -14,7 +14,7 @@ from aidl_lang import expression as ex
 from aidl_lang.building.conditions import all_of, compare_numbers
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.expression import Expression
-from aidl_lang.model import Constraint, Geometry, Structure
+from aidl_lang.model import SIZES, Constraint, Geometry, Structure
 from aidl_lang.primitives import direction, distance, polar
 from aidl_lang.units import ANGLE, LENGTH, MaybeDimension
 from aidl_lang.values import Nothing, Num, PointVal, Status, Value, length, point
@@ -25,6 +25,13 @@ Arguments = Mapping[str, Value]
 def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: MaybeDimension = LENGTH) -> Num:
     """A number given as a size: kept if literal, exact if a param is in it, derived from unknowns."""
     expression = value.expression
+    if name in SIZES and expression.is_constant and value.value < 0:
+        it.report(
+            "E0515",
+            f"the {name} of this {holder.type} is {value.value:g}, and sizes are never negative",
+            holder.span,
+            hints=[f"write {-value.value:g}; directions belong to angles and positions"],
+        )
     if expression.is_constant and value.status in (Status.NUMBER, Status.GUESS):
         expression = it.unknown(
             value.value,

@@ -98,7 +98,7 @@ def range_items(it: Interpreter, value: RangeVal, node: ast.Node) -> list[Value]
     )
     if start is None or end is None:
         return None
-    tolerance = 1e-9 * max(1.0, abs(start), abs(end))
+    tolerance = min(1e-9 * max(1.0, abs(start), abs(end)), 0.01)
     count = math.ceil(end - start - tolerance) if value.exclusive else math.floor(end - start + tolerance) + 1
     if count > it.limits.items:
         it.report("E0805", f"this range has {count} members; at most {it.limits.items} are allowed", node)

@@ -72,6 +72,7 @@ class Interpreter:
     used_overrides: set[str] = field(default_factory=set)
     call_sites: list[ast.Node] = field(default_factory=list)
     hidden: list[tuple[Geometry, tuple[Comparison, ...]]] = field(default_factory=list)
+    runaway: set[ast.Node] = field(default_factory=set)
     root: Structure | None = None
     entities: int = 0
     turns: int = 0
@@ -121,11 +122,18 @@ class Interpreter:
         if len(self.constraints) > self.limits.constraints:
             self._stop(None, f"this program states more than {self.limits.constraints} constraints")
 
-    def enter(self, node: ast.Node) -> None:
-        """A call is entered; `leave` ends it."""
+    def enter(self, node: ast.Node, definition: ast.Node | None) -> bool:
+        """Whether a call may be entered; `leave` ends it. A definition that ran too deep is not again."""
+        if definition in self.runaway:
+            return False
+        if len(self.call_sites) >= self.limits.depth:
+            hint = "a definition that calls itself has to end: let an `if … then … else` choose when"
+            self.report("E0806", f"calls are nested more than {self.limits.depth} deep", node, hints=[hint])
+            if definition is not None:
+                self.runaway.add(definition)
+            return False
         self.call_sites.append(node)
-        if len(self.call_sites) > self.limits.depth:
-            self._stop(node, f"calls are nested more than {self.limits.depth} deep")
+        return True
 
     def leave(self) -> None:
         self.call_sites.pop()

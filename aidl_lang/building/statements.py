@@ -397,11 +397,12 @@ def _instantiate(
     scope: Scope,
     here: Structure,
     indices: tuple[int, ...],
-) -> Structure:
+) -> Structure | Nothing:
     """An instance of a template under the name it is assigned to."""
     definition = template.definition
     name = node.name.text + "".join(f"[{i}]" for i in indices)
-    it.enter(template.node)
+    if not it.enter(template.node, definition):
+        return NOTHING
     try:
         structure = _new(it, definition.kind, name, here, node)
         structure.doc = definition.doc

@@ -14,7 +14,7 @@ from aidl_lang.geometry.bodies import Bodies, IdleHole, LooseCurves, Mass
 from aidl_lang.geometry.colors import css_color
 from aidl_lang.geometry.contacts import Contact, Solid, contacts
 from aidl_lang.geometry.curves import Arc, Circle, Curve, Ellipse, Line, Piece
-from aidl_lang.geometry.evaluate import Bounds, bounds
+from aidl_lang.geometry.evaluate import LARGEST, Bounds, bounds
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import CHORD, FINE_CHORD, Network, union_bounds
@@ -197,7 +197,7 @@ def _usable(curve: Curve) -> Curve | None:
     if isinstance(curve, Circle | Arc) and not (curve.radius > 0 and math.isfinite(curve.radius)):
         return None
     box = bounds(curve)
-    if not all(map(math.isfinite, box)) or max(map(abs, box)) > 1e12:
+    if not all(map(math.isfinite, box)) or max(map(abs, box)) > LARGEST:
         return None
     if isinstance(curve, Line) and curve.start == curve.end:
         return None

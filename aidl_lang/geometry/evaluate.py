@@ -18,6 +18,9 @@ TAU = 2 * math.pi
 _SAMPLES = 32
 Bounds = tuple[float, float, float, float]
 
+LARGEST = 1e12
+"""Coordinates beyond this, in mm, are a mistake and are not drawn."""
+
 
 def is_closed(curve: Piece) -> bool:
     """Whether the curve is a loop by itself."""

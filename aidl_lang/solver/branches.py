@@ -11,7 +11,7 @@ Inequalities join the system when they are violated; those that hold all along h
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,7 +28,7 @@ TIGHTER = 0.5
 """Newton's tolerance relative to that of the check: both round differently."""
 LAZY_ROUNDS = 4
 """Rounds of adding violated inequalities before all of them are taken into account."""
-NEIGHBOURS = 6
+NEIGHBOURS = 12
 """Combinations of other branches tried as a last resort, for each perturbed start that the stage is worth."""
 
 
@@ -160,13 +160,21 @@ class _Attempt:
         return (0.0 if a == ZERO else nodes[a]) - nodes[b]
 
     def _try_neighbours(self, verdict: Verdict) -> Verdict:
-        """The last resort: one branching node takes its other branch, or two of them do."""
+        """The last resort: one branching node takes its other branch, or two of them do. Those that decide
+        most about a row that could not be met (the outermost) come first.
+        """
         reached = self._current()
+        tolerance = self.settings.tolerance
+        unmet = [row.expression for row in self.task.rows if not holds(row, self.values, tolerance)]
         self._move_to(self.origin)
-        branches = freeze(self.values, [row.expression for row in self.task.rows], self.free).branches
-        nodes = [node for node, _ in branches if self._can_flip(node)]
-        pairs = itertools.chain(itertools.combinations(nodes, 1), itertools.combinations(nodes, 2))
-        for flipped in itertools.islice(pairs, NEIGHBOURS * max(1, self.task.restarts)):
+        nodes = self._branching(unmet)
+        others = self._branching(row.expression for row in self.task.rows)
+        flips = itertools.chain(
+            itertools.combinations(nodes, 1),
+            itertools.combinations(nodes[:NEIGHBOURS], 2),
+            itertools.combinations([node for node in others if node not in nodes], 1),
+        )
+        for flipped in itertools.islice(flips, NEIGHBOURS * max(1, self.task.restarts)):
             if self.clock.expired:
                 break
             other, _, _ = self._solve_in_branch(self.origin, frozenset(flipped))
@@ -174,6 +182,11 @@ class _Attempt:
                 return other
         self._move_to(reached)
         return verdict
+
+    def _branching(self, roots: Iterable[int]) -> list[int]:
+        """The nodes below that choose a branch which the free unknowns decide, outermost first."""
+        branches = freeze(self.values, list(roots), self.free).branches
+        return sorted((node for node, _ in branches if self._can_flip(node)), reverse=True)
 
     def _can_flip(self, node: int) -> bool:
         if self.values.tape.op_list[node] == Op.MOD:

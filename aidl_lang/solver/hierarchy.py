@@ -6,7 +6,7 @@ At a group every unknown of its subtree has a tier, which says at which stage it
     (2, 0)  own position, or translation of a child's frame (owned by the group, too)
     (3, d)  translation of a frame, owned by a group d levels below
     (4, d)  other position of a group d levels below
-    (5, 0)  own kept size that a constraint places
+    (5, 0)  kept size that a constraint places, at any level
     (5, 1)  own kept size
     (5, 1 + d)  kept size of a group d levels below
 
@@ -26,6 +26,7 @@ import numpy as np
 
 from aidl_lang.solver import conflicts
 from aidl_lang.solver.branches import Task, Verdict, attempt, holds, violation_of
+from aidl_lang.solver.gradients import gradients
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.problem import Problem, Row, Settings
@@ -33,14 +34,19 @@ from aidl_lang.solver.solution import GroupFailure, StageReport
 from aidl_lang.solver.valuation import Cone, Valuation
 
 Tier: TypeAlias = tuple[int, int]
+Best: TypeAlias = tuple[float, dict[int, float]]
+"""The least violation reached so far, and the values there."""
 
 OWN: Tier = (2, 0)
 POSITIONS: Tier = (5, -1)
 """Before the first tier of kept sizes."""
+SIZES: Tier = (5, 0)
 FIRM = 1e-3
 """How much shorter a change of a kept size is that counts as much as one of a position."""
 IDLE = 1e-3
 """A kept size that moved less than this, in units of its scale, was only dragged along."""
+FLAT = 1e-9
+"""A slope below this is none: coordinates that cancel, as in the width of a box."""
 CHANGED = 1e-9
 """A kept size that moved less than this, in units of its scale, did not change."""
 LAST_RESTARTS = 5
@@ -120,7 +126,7 @@ class Hierarchy:
         """When `unknown` becomes free at `group`, whose constraints place `placed`."""
         level = self._depth[self._group[unknown]] - self._depth[group]
         if self._kept[unknown]:
-            return (5, (0 if unknown in placed else 1) if level == 0 else 1 + level)
+            return (5, 0 if unknown in placed else 1 + level)
         if level == 0:
             return (1, 0) if unknown in placed else (2, 0)
         return (3, level) if self._frame[unknown] else (4, level)
@@ -189,15 +195,20 @@ class _Group:
     def __init__(self, hierarchy: Hierarchy, group: int) -> None:
         self.hierarchy, self.group = hierarchy, group
         held = hierarchy.held_by(group)
-        constraints = hierarchy.problem.constraints
         self.hard = [index for index in held if hierarchy.is_hard(index)]
         self.soft = [index for index in held if not hierarchy.is_hard(index)]
-        self.placed = frozenset().union(*(constraints[index].placed for index in self.hard))
+        self.placed = frozenset().union(*(self._placed_by(index) for index in self.hard))
         self._tiers: dict[int, Tier] = {}
+
+    def _placed_by(self, index: int) -> frozenset[int]:
+        """What a constraint places, as far as it depends on it."""
+        hierarchy = self.hierarchy
+        return hierarchy.problem.constraints[index].placed & hierarchy.cones[index].unknowns
 
     def solve(self) -> None:
         """Satisfies the constraints. Those that share nothing that could ever move are problems of their own:
-        what one needs does not loosen the other."""
+        what one needs does not loosen the other.
+        """
         reached: Tier = (0, 0)
         for part in self._independent():
             tier = self._solve_part(part)
@@ -219,7 +230,8 @@ class _Group:
 
     def _solve_part(self, part: list[int]) -> Tier | None:
         """The stage that satisfied everything; of a conflict the last one written is left out, and the rest
-        solved. None when it is not known what to leave out."""
+        solved. None when it is not known what to leave out.
+        """
         hierarchy = self.hierarchy
         while True:
             violated = [index for index in part if not hierarchy.satisfied(index)]
@@ -271,27 +283,97 @@ class _Group:
         hierarchy = self.hierarchy
         everything = self.scope((9, 0), part)
         before = hierarchy.save(everything.free)
-        best: tuple[float, dict[int, float]] = (np.inf, before)
+        best: Best = (np.inf, before)
         tiers = sorted({self.tier(unknown) for unknown in everything.free})
+        rigid = self._beyond_positions(part)
+        if not set(rigid).isdisjoint(violated):
+            broken = self._settle_sizes(rigid, part)
+            if broken is not None:
+                seeds = sorted({*part, *broken})
+                positions = [tier for tier in tiers if tier <= POSITIONS]
+                if all(map(hierarchy.satisfied, seeds)):
+                    return SIZES
+                reached, best = self._climb(positions, seeds, best)
+                if reached is not None:
+                    return SIZES
+                hierarchy.values.assign(before.items())
+            tiers = [tier for tier in tiers if tier > POSITIONS]
+        reached, best = self._climb(tiers, part, best)
+        if reached is None:
+            self._fail(violated, everything, before, best[1])
+        return reached
+
+    def _climb(self, tiers: list[Tier], seeds: list[int], best: Best) -> tuple[Tier | None, Best]:
+        """Tries the stages in order; the first that satisfies `seeds` and all that binds what it moves, or
+        None and the values that came nearest.
+        """
+        hierarchy = self.hierarchy
+        everything = self.scope((9, 0), seeds).free
+        before = hierarchy.save(everything)
+        violated = [index for index in seeds if not hierarchy.satisfied(index)]
         tried: frozenset[int] = frozenset()
         for tier in tiers:
             if not self._promising(violated, tier):
                 continue
-            scope = self.scope(tier, part)
+            scope = self.scope(tier, seeds)
             if scope.free == tried:
                 continue
             tried = scope.free
             verdict = hierarchy.attempt(scope, LAST_RESTARTS if tier == tiers[-1] else 1)
-            self._report(tier, scope, verdict.satisfied)
+            self._report(stage_name(tier), scope, verdict.satisfied)
             if verdict.satisfied:
-                return tier
+                return tier, best
             if verdict.violation < 0.99 * best[0]:
-                best = (verdict.violation, hierarchy.save(everything.free))
+                best = (verdict.violation, hierarchy.save(everything))
             hierarchy.values.assign(before.items())
             if hierarchy.clock.expired:
                 hierarchy.timed_out = True
                 break
-        self._fail(violated, everything, before, best[1])
+        return None, best
+
+    # -- sizes that no position can help
+
+    def _beyond_positions(self, constraints: list[int]) -> list[int]:
+        """The constraints among these that hang on kept sizes alone, as `same_width` does."""
+        hierarchy = self.hierarchy
+        found: list[int] = []
+        for index in constraints:
+            roots = [row.expression for row in hierarchy.rows([index])]
+            hierarchy.values.refresh(hierarchy.cones[index])
+            for gradient in gradients(hierarchy.values, roots).values():
+                sizes = [u for u, slope in gradient.items() if abs(slope) > FLAT and self.tier(u) > POSITIONS]
+                others = [
+                    u for u, slope in gradient.items() if abs(slope) > FLAT and self.tier(u) <= POSITIONS
+                ]
+                if sizes and not others:
+                    found.append(index)
+                    break
+        return found
+
+    def _settle_sizes(self, rigid: list[int], part: list[int]) -> list[int] | None:
+        """Changes the sizes that `rigid` need: those they place, then as in the stages for sizes. Returns the
+        constraints outside `part` that this broke and positions may mend; None if no sizes will do.
+        """
+        hierarchy = self.hierarchy
+        mentioned = frozenset().union(*(hierarchy.cones[index].unknowns for index in rigid))
+        sizes = frozenset(unknown for unknown in mentioned if self.tier(unknown) > POSITIONS)
+        placed = sizes & frozenset().union(*(self._placed_by(index) for index in rigid))
+        levels = sorted({self.tier(unknown) for unknown in sizes})
+        stages = [(level, frozenset(u for u in sizes if self.tier(u) <= level)) for level in levels]
+        tried: frozenset[int] = frozenset()
+        for level, free in ((SIZES, placed), *stages):
+            if free <= tried:
+                continue
+            tried = free
+            before = hierarchy.save(free)
+            scope = Scope(free, tuple(sorted(rigid)))
+            satisfied = hierarchy.attempt(scope, 1).satisfied
+            self._report(stage_name(level), scope, satisfied)
+            if satisfied:
+                moved = [u for u in free if hierarchy.values.unknowns[u] != before[u]]
+                touched = {i for u in moved for i in hierarchy.solved_mentioning(u, self.group)} - set(part)
+                return [i for i in sorted(touched) if hierarchy.is_hard(i) and not hierarchy.satisfied(i)]
+            hierarchy.values.assign(before.items())
         return None
 
     def _promising(self, violated: list[int], tier: Tier) -> bool:
@@ -299,9 +381,9 @@ class _Group:
         cones = self.hierarchy.cones
         return all(any(self.tier(unknown) <= tier for unknown in cones[index].unknowns) for index in violated)
 
-    def _report(self, tier: Tier, scope: Scope, succeeded: bool) -> None:
+    def _report(self, stage: str, scope: Scope, succeeded: bool) -> None:
         rows = len(self.hierarchy.rows(scope.constraints))
-        report = StageReport(self.group, stage_name(tier), len(scope.free), rows, succeeded)
+        report = StageReport(self.group, stage, len(scope.free), rows, succeeded)
         self.hierarchy.stages.append(report)
 
     def _fail(
@@ -321,7 +403,6 @@ class _Group:
     def _weigh_preferences(self, reached: Tier) -> None:
         """Satisfies preferences as well as possible within what the winning stage had free."""
         hierarchy = self.hierarchy
-        constraints = hierarchy.problem.constraints
         limit = min(max(reached, OWN), POSITIONS)
         soft = set(self.soft)
         if reached > (0, 0):
@@ -334,7 +415,7 @@ class _Group:
         if all(hierarchy.satisfied(index) for index in soft):
             return
         preferences = tuple(sorted(soft))
-        self.placed = self.placed.union(*(constraints[index].placed for index in preferences))
+        self.placed = self.placed.union(*(self._placed_by(index) for index in preferences))
         self._tiers.clear()
         for tier in sorted({min(max(reached, (1, 0)), POSITIONS), limit}):
             if self._prefer(preferences, tier):

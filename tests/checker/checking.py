@@ -16,7 +16,8 @@ from tests.checker.definitions import expected, frame
 from tests.checker.evaluate import Evaluator
 from tests.checker.program import Program, stated, walk
 from tests.checker.tree import Geo, Node, Transform, read
-from tests.checker.values import Scope, UnavailableError
+from tests.checker.fields import compound
+from tests.checker.values import Point, Scope, UnavailableError, fold
 
 TOLERANCE = 1e-6
 
@@ -51,7 +52,8 @@ def check(text: str, document: dict[str, Any]) -> list[Finding]:
         *_constraints(program),
         *_assertions(program),
         *_definitions(program, changed),
-        *_arcs(root),
+        *_arcs(root, {geo.path: task.statement.span.line for task, geo in program.definitions}),
+        *_params(root),
         *_boxes(root),
     ]
 
@@ -108,7 +110,7 @@ def _definitions(program: Program, changed: list[str]) -> Iterator[Finding]:
             yield Finding("frame", f"{child.path}.{e.name}", child.name, 0, e.residual)
 
 
-def _arcs(root: Node) -> Iterator[Finding]:
+def _arcs(root: Node, lines: dict[str, int]) -> Iterator[Finding]:
     """Both ends of an arc lie on its circle."""
     for node in root.walk():
         for geo in node.geometry.values():
@@ -116,7 +118,21 @@ def _arcs(root: Node) -> Iterator[Finding]:
                 if curve.type == "arc":
                     center, radius = curve.data["center"], curve.data["radius"]
                     away = [abs(math.dist(center, curve.data[e]) - radius) for e in ("start", "end")]
-                    yield Finding("arc", curve.path, "equal radii", 0, _worst(away))
+                    line = lines.get(geo.path, 0)
+                    yield Finding("arc", curve.path, "equal radii", line, _worst(away))
+
+
+def _params(root: Node) -> Iterator[Finding]:
+    """The numbers told of a compound shape are those of its parts."""
+    ev = Evaluator(root)
+    for node in root.walk():
+        for geo in node.geometry.values():
+            for name, told in geo.data.get("params", {}).items():
+                derived = compound(ev, geo, fold(name))
+                if isinstance(derived, Point):
+                    yield Finding("params", geo.path, name, 0, math.dist(derived.xy, told))
+                elif derived is not None and name != "angle":
+                    yield Finding("params", geo.path, name, 0, abs(derived.value - told))
 
 
 def _all(geo: Geo) -> Iterator[Geo]:

@@ -97,9 +97,12 @@ def of_geometry(ev: Evaluator, geo: Geo, name: str) -> Any:
     part = _named(geo.members(), name)
     if part is not None:
         return part
-    derived = _FIELDS.get(geo.type, _compound)(ev, geo, fold(name))
+    derived = _FIELDS.get(geo.type, compound)(ev, geo, fold(name))
     if derived is not None:
         return derived
+    if name in geo.data.get("params", {}):
+        told = geo.data["params"][name]
+        return seen(ev, told) if isinstance(told, list) else reference(told)
     if geo.source is not None:
         value = _named(geo.source.names, name)
         if value is not None:
@@ -221,7 +224,7 @@ def _bezier(ev: Evaluator, geo: Geo, name: str) -> Any:
 # --- Compound shapes -------------------------------------------------------------------------------
 
 
-def _compound(ev: Evaluator, geo: Geo, name: str) -> Any:
+def compound(ev: Evaluator, geo: Geo, name: str) -> Any:
     """What a library shape can be asked for besides its parts, worked out from the parts."""
     corners = [geo.parts.get(n) for n in ("bottom_left", "bottom_right", "top_right", "top_left")]
     known = [ev.point(c).xy for c in corners if c is not None]
@@ -239,7 +242,8 @@ def _compound(ev: Evaluator, geo: Geo, name: str) -> Any:
     if name == "radius" and geo.type == "rounded_rectangle":
         return reference(geo.parts["corner_top_left"].data["radius"])
     if name == "height" and geo.type == "trapezoid":
-        return reference(abs(known[2][1] - known[0][1]))
+        (ax, ay), (bx, by), (cx, cy), (dx, dy) = known
+        return reference(math.hypot(cx + dx - ax - bx, cy + dy - ay - by) / 2)
     if name == "bottomwidth" and geo.type == "trapezoid":
         return reference(math.dist(known[0], known[1]))
     if name == "topwidth" and geo.type == "trapezoid":

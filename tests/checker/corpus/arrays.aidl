@@ -26,5 +26,5 @@ assembly board {
         }
     }
     constrain marks.below(panel, gap: sum([1, 2, 3]))
-    assert len(panel.peg) == rows
+    assert len(panel.peg[0]) == columns
 }

@@ -6,6 +6,7 @@ assembly yard {
     solid pond { water = ellipse(center: (1, 1), rx: 9, ry: 5) }
     drawing fence { line_around = rectangle(center: (0, 0), width: 150, height: 120) }
     solid well { rim = circle(center: (0, 0), radius: 2) }
+    solid bench { seat = rectangle(center: (0, -20), width: 10, height: 4) }
     constrain {
         tree.left_of(house, gap: 5)
         tree.align_center_y(house)
@@ -18,6 +19,6 @@ assembly yard {
         shed.within(fence)
         well.centered_in(tree)
         well.overlapping(tree)
-        touching(pond, shed)
+        touching(bench, house)
     }
 }

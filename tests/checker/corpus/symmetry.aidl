@@ -1,4 +1,5 @@
 /// Symmetry about lines, points and axes.
+// changes: right_wing.end.dx, right_wing.end.dy
 solid butterfly {
     construction axis = line(origin, (1, 20))
     left_eye  = circle(center: (-4, 16), radius: 2)

@@ -1,0 +1,125 @@
+"""Random small programs that are well-formed, and random texts that are not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from hypothesis import strategies as st
+
+SIZES = st.integers(2, 40)
+PLACES = st.integers(-60, 60)
+
+
+@dataclass(frozen=True)
+class Part:
+    """A structure of a random program: its name, kind, geometry and constraints, one statement each."""
+
+    name: str
+    kind: str
+    geometry: tuple[str, ...]
+    constraints: tuple[str, ...]
+    placement: str = ""
+
+    def text(self, geometry: Sequence[str] | None = None, constraints: Sequence[str] | None = None) -> str:
+        inside = [*(self.geometry if geometry is None else geometry)]
+        held = self.constraints if constraints is None else constraints
+        if held:
+            inside.append("constrain { " + ", ".join(held) + " }")
+        return f"{self.kind} {self.name}{self.placement} {{\n    " + "\n    ".join(inside) + "\n}"
+
+
+@dataclass(frozen=True)
+class Sketch:
+    """A random program: an assembly of parts with relations between them."""
+
+    parts: tuple[Part, ...]
+    relations: tuple[str, ...]
+
+    def text(self, parts: Sequence[str] | None = None, relations: Sequence[str] | None = None) -> str:
+        body = "\n".join(parts if parts is not None else [p.text() for p in self.parts])
+        held = self.relations if relations is None else relations
+        return "assembly model {\nparam unit = 3 in 1..9\n" + body + "\nconstrain {\n" + "\n".join(held) + "\n}\n}\n"
+
+
+@st.composite
+def geometry(draw: st.DrawFn, name: str) -> tuple[str, ...]:
+    """One to three statements that draw something named `name`, and its parts for constraints."""
+    x, y, a, b = draw(PLACES), draw(PLACES), draw(SIZES), draw(SIZES)
+    kind = draw(st.sampled_from(("rectangle", "circle", "trapezoid", "triangle", "outline", "row", "bow")))
+    match kind:
+        case "rectangle":
+            return (f"{name} = rectangle(center: ({x}, {y}), width: {a}, height: {b})",)
+        case "circle":
+            return (f"{name} = circle(center: ({x}, {y}), radius: {a} + unit)",)
+        case "trapezoid":
+            return (
+                f"{name} = trapezoid(center: ({x}, {y}), bottom_width: {a}, top_width: {b}, height: {a})",
+            )
+        case "triangle":
+            return (f"{name} = triangle(center: ({x}, {y}), base: {a}, height: {b})",)
+        case "outline":
+            return (
+                f"{name} = line(({x}, {y}), ({x + a}, {y}))",
+                f"{name}_up = line({name}.end, ({x + a}, {y + b}))",
+                f"{name}_back = line({name}_up.end, {name}.start)",
+            )
+        case "row":
+            return (f"for i in 0..2 {{ {name}[i] = circle(center: ({x} + {3 * a} * i, {y}), radius: {a}) }}",)
+        case _:
+            return (
+                f"{name} = arc(center: ({x}, {y}), radius: {a}, start_angle: 0deg, end_angle: 180deg)",
+                f"{name}_chord = line({name}.end, {name}.start)",
+            )
+
+
+@st.composite
+def part(draw: st.DrawFn, name: str) -> Part:
+    first = draw(geometry("edge"))
+    second = draw(st.one_of(st.just(()), geometry("mark")))
+    constraints = []
+    if second:
+        constraints = [draw(st.sampled_from(RELATIONS)).format(a="mark", b="edge", g=draw(SIZES))]
+    turn = draw(st.sampled_from(("", "", " rotated 30deg", " at (5, 5)")))
+    return Part(name, draw(st.sampled_from(("solid", "drawing"))), first + second, tuple(constraints), turn)
+
+
+RELATIONS = (
+    "{a}.above({b})",
+    "{a}.below({b}, gap: {g})",
+    "{a}.left_of({b}, gap: {g} - unit)",
+    "{a}.right_of({b}, at_least: {g})",
+    "{a}.centered_in({b})",
+    "centered_horizontally({a}, {b})",
+    "align_bottom({a}, {b})",
+    "align_left({a}, {b}, inset: {g})",
+    "{a}.stacked_on({b})",
+    "{a}.center_x >= {b}.bb.right + {g}",
+    "{a}.bb.top == {b}.bb.bottom",
+)
+
+
+@st.composite
+def sketches(draw: st.DrawFn, least: int = 2, most: int = 3) -> Sketch:
+    """Each part is related at most once to those before it, so that positions alone satisfy everything."""
+    count = draw(st.integers(least, most))
+    parts = tuple(draw(part(f"part_{i}")) for i in range(count))
+    relations = []
+    for i in range(1, count):
+        other = draw(st.integers(0, i - 1))
+        relation = draw(st.sampled_from(RELATIONS))
+        relations.append(relation.format(a=f"part_{i}", b=f"part_{other}", g=draw(SIZES)))
+    return Sketch(parts, tuple(relations))
+
+
+WORDS = (
+    "assembly solid hole drawing part param var let constrain prefer assert for in if else then import shape fn "
+    "constraint alias template construction step weight todo at rotated and or not true false self origin "
+    "x_axis rectangle( circle( line( arc( polygon( above( tangent( inside( fixed( guess( len( min( ( ) [ ] { } "
+    ", ; : . .. ..< = == <= >= != < > + - * / % ^ @ @color( \" ' // /* */ # a b c a.b a[0] a[-1] r.top 0 1 2.5 1e300 "
+    "10mm 30deg 1turn 0..9 é 名 \\ \n"
+).split(" ")
+
+TOKEN_SOUP = st.lists(st.sampled_from(WORDS), max_size=40).map(" ".join)
+STRUCTURED_SOUP = TOKEN_SOUP.map(lambda soup: f"solid s {{ r = rectangle(width: 3, height: 4)\n{soup}\n}}")
+ANY_TEXT = st.text(max_size=80)
