@@ -6,9 +6,11 @@ of a number, the primitives, the marks of exactness, and measurements of the fin
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
-from aidl_lang.types import PARAMETER_TYPES, Signature
+from aidl_lang import ast
+from aidl_lang.names import fold
+from aidl_lang.types import PARAMETER_TYPES, Signature, TextType
 
 _DECLARATIONS = """
 sin(angle: angle)
@@ -29,6 +31,7 @@ floor(value)
 ceil(value)
 round(value)
 len(values: list)
+choice(word: text, words: list)
 fixed(value)
 guess(value)
 written(value)
@@ -71,3 +74,20 @@ def _table() -> dict[str, tuple[Signature, ...]]:
 
 
 SIGNATURES: Mapping[str, tuple[Signature, ...]] = _table()
+
+WORDS = frozenset(
+    ("x", "y", "left", "right", "center", "top", "bottom", "middle", "horizontal", "vertical", "both")
+)
+"""Words that may stand bare as an argument, as in `axis: x` and `align: left`."""
+
+
+def is_word(argument: ast.Argument, candidates: Iterable[Signature]) -> bool:
+    """Whether a bare name is the word itself: given by name to a parameter that takes a text."""
+    if argument.name is None or not isinstance(argument.value, ast.Name) or argument.value.text not in WORDS:
+        return False
+    wanted = fold(argument.name.text)
+    return any(
+        fold(name) == wanted and isinstance(kind, TextType)
+        for candidate in candidates
+        for name, kind, _ in candidate.parameters
+    )

@@ -50,6 +50,7 @@ class _Lowering:
         self.node_of: dict[int, int] = {}
         self.numbers: dict[Unknown, int] = {}
         self.variables: set[Unknown] = set()
+        self.holders = {c.holder for c in model.constraints}
         self.size = model_size(self.structures)
 
     def run(self) -> Lowered:
@@ -73,8 +74,8 @@ class _Lowering:
             initial=np.array([u.guess for u in found], dtype=np.float64),
             scale=np.array([self._scale(u) for u in found], dtype=np.float64),
             kept=np.array([u.kept for u in found], dtype=np.bool_),
-            group=np.array([self.groups[u.owner] for u in found], dtype=np.int64),
-            frame_of=np.array([self.groups[u.frame_of] if u.frame_of else -1 for u in found], dtype=np.int64),
+            group=np.array([self.groups[self._placer(u)] for u in found], dtype=np.int64),
+            frame_of=np.array([self._frame_of(u) for u in found], dtype=np.int64),
             parent=np.array(parents, dtype=np.int64),
             constraints=tuple(constraints),
             observables=observables,
@@ -99,6 +100,20 @@ class _Lowering:
             live = unknown in mentioned or unknown in drawn or unknown in variables
             if live and not unknown.exact and unknown.owner in self.groups:
                 self.numbers[unknown] = len(self.numbers)
+
+    def _placer(self, unknown: Unknown) -> Structure:
+        """The structure at whose turn an unknown is placed: for the box of an empty structure that says nothing
+        of itself, the parent, as if the box were its frame.
+        """
+        parent = unknown.owner.parent
+        return parent if parent is not None and self._is_outline(unknown) else unknown.owner
+
+    def _is_outline(self, unknown: Unknown) -> bool:
+        return unknown.holder is unknown.owner and unknown.owner.is_empty and unknown.owner not in self.holders
+
+    def _frame_of(self, unknown: Unknown) -> int:
+        moved = unknown.owner if self._is_outline(unknown) else unknown.frame_of
+        return self.groups[moved] if moved is not None else -1
 
     def _scale(self, unknown: Unknown) -> float:
         """One millimetre, or the turn that moves a point at the size of the model by as much."""

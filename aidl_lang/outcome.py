@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 
 from aidl_lang.building.conditions import holds
@@ -82,11 +83,13 @@ def _failure(lowered: Lowered, solution: Solution, failure: GroupFailure) -> Dia
         hints.insert(0, "radii, widths, heights and lengths are never negative")
     off = solution.residuals[worst[0]]
     label = f"off by {_short(off)}" if off > _TOLERANCE else "against the others"
+    if not math.isfinite(off):
+        label = "this has no value where the solver stopped"
     return Diagnostic(code, headline, worst[1].span, label, others, tuple(hints))
 
 
 def _short(value: float) -> str:
-    return f"{round(value, 6):.6g}"
+    return f"{round(value, 6) + 0.0:.6g}"
 
 
 # --- Assertions ----------------------------------------------------------------------------------

@@ -101,9 +101,10 @@ class _Reader:
     def _params(self, s: Structure) -> Iterator[tuple[str, Scalar]]:
         """Every named number of a structure itself: its params, variables and arguments."""
         assert isinstance(s.scope, Scope)
-        around = s.scope.parent if s is self.model.root else None
-        for scope in (around, s.scope):
-            for name, binding in scope.values.items() if scope else ():
+        # The root shows the params of the file, too.
+        scopes = list(s.scope.chain()) if s is self.model.root else [s.scope]
+        for scope in reversed(scopes):
+            for name, binding in scope.values.items():
                 value: Value | None = None
                 match binding:
                     case ParamBinding(known=known):

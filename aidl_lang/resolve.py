@@ -20,6 +20,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from aidl_lang import ast
+from aidl_lang.builtins import is_word
 from aidl_lang.diagnostics import Diagnostic, Fix, Label, ordered
 from aidl_lang.library import Library
 from aidl_lang.names import nearest
@@ -304,8 +305,10 @@ class Resolver:
             if name != callee.text:
                 self.resolution.canonical[callee] = name
         before, self.argument = self.argument, node
+        candidates = self.resolution.candidates.get(node, ())
         for argument in node.arguments:
-            self.expression(argument.value, scope)
+            if not is_word(argument, candidates):
+                self.expression(argument.value, scope)
         self.argument = before
 
     def _callable(self, signature: Signature) -> Symbol:

@@ -113,7 +113,14 @@ class Array:
         self.members: dict[tuple[int, ...], Value] = {}
 
     def items(self) -> list[Value]:
-        return [self.members[index] for index in sorted(self.members)]
+        """The members in index order; of a many-index array its rows."""
+        firsts = sorted({index[0] for index in self.members})
+        return [self.members[(i,)] if (i,) in self.members else self._row(i) for i in firsts]
+
+    def _row(self, index: int) -> Array:
+        row = self.row(index)
+        assert row is not None
+        return row
 
     def row(self, index: int) -> Array | None:
         """The members of a many-index array whose first index is `index`."""

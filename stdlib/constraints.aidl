@@ -141,6 +141,10 @@ constraint equal_radius(things: list) {
 constraint midpoint(p: point, l: line) { p == l.midpoint }
 constraint midpoint(p: point, a: point, b: point) { p == (a + b) / 2 }
 
+/// The endless level and upright lines through a point.
+fn level_through(p: point) = line(fixed(p), fixed(p + (1, 0)))
+fn upright_through(p: point) = line(fixed(p), fixed(p + (0, 1)))
+
 /// Mirror images of each other: about a line, a point, an axis or a coordinate.
 constraint symmetric(a: point, b: point, about: line) {
     offset_from((a + b) / 2, about) == 0
@@ -151,6 +155,21 @@ constraint symmetric(a: circle, b: circle, about: line) {
     symmetric(a.center, b.center, about: about)
     a.radius == b.radius
 }
+constraint symmetric(a: box, b: box, about: line) {
+    symmetric(a.center, b.center, about: about)
+    a.width == b.width
+    a.height == b.height
+}
+constraint symmetric(a, b, axis: text) {
+    symmetric(
+        a,
+        b,
+        about: if choice(axis, ["x", "y"]) == "x" then level_through((0, 0)) else upright_through(
+            (0, 0)
+        )
+    )
+}
+constraint symmetric(a, b, axis: length) { symmetric(a, b, about: upright_through((axis, 0))) }
 constraint symmetric(a: line, b: line, about: line) {
     symmetric(a.start, b.start, about: about)
     symmetric(a.end, b.end, about: about)

@@ -2,10 +2,6 @@
 
 let pi = 3.141592653589793
 
-/// The words for the two axes, as in `evenly_spaced(pins, axis: x)`.
-let x = "x"
-let y = "y"
-
 // --- Points as vectors ---------------------------------------------------------------------------
 
 /// The point at a distance and a direction from the origin.

@@ -30,10 +30,11 @@ constraint on_top_of(a: box, b: box) {
     a.center_x <= b.right
 }
 constraint on_top_of(a: box, b: box, align: text) {
+    let side = choice(align, ["left", "center", "right"])
     a.bottom == b.top
-    if align == "left" {
+    if side == "left" {
         a.left == b.left
-    } else if align == "right" {
+    } else if side == "right" {
         a.right == b.right
     } else {
         a.center_x == b.center_x
@@ -108,11 +109,12 @@ constraint row(things: list, gap: length) {
     for i in 1..<len(things) { box(things[i]).left == box(things[i - 1]).right + gap }
 }
 constraint row(things: list, gap: length, align: text) {
+    let side = choice(align, ["top", "center", "bottom"])
     for i in 1..<len(things) {
         box(things[i]).left == box(things[i - 1]).right + gap
-        if align == "top" {
+        if side == "top" {
             box(things[i]).top == box(things[i - 1]).top
-        } else if align == "bottom" {
+        } else if side == "bottom" {
             box(things[i]).bottom == box(things[i - 1]).bottom
         } else {
             box(things[i]).center_y == box(things[i - 1]).center_y
@@ -123,11 +125,12 @@ constraint column(things: list, gap: length) {
     for i in 1..<len(things) { box(things[i]).top == box(things[i - 1]).bottom - gap }
 }
 constraint column(things: list, gap: length, align: text) {
+    let side = choice(align, ["left", "center", "right"])
     for i in 1..<len(things) {
         box(things[i]).top == box(things[i - 1]).bottom - gap
-        if align == "left" {
+        if side == "left" {
             box(things[i]).left == box(things[i - 1]).left
-        } else if align == "right" {
+        } else if side == "right" {
             box(things[i]).right == box(things[i - 1]).right
         } else {
             box(things[i]).center_x == box(things[i - 1]).center_x
@@ -138,10 +141,11 @@ constraint column(things: list, gap: length, align: text) {
 /// Equal gaps in the order written; along the axis in which the first guesses spread most, unless it is said.
 constraint evenly_spaced(things: list) { evenly_spaced(things, axis: longer_spread(things)) }
 constraint evenly_spaced(things: list, axis: text) {
-    let up = len(things) < 2 or spread(things, axis) >= 0
+    let way = choice(axis, ["x", "y"])
+    let up = len(things) < 2 or spread(things, way) >= 0
     for i in 2..<len(things) {
-        let one = room_between(things[i - 2], things[i - 1], axis, up)
-        let next = room_between(things[i - 1], things[i], axis, up)
+        let one = room_between(things[i - 2], things[i - 1], way, up)
+        let next = room_between(things[i - 1], things[i], way, up)
         next == one
     }
 }
@@ -149,7 +153,9 @@ constraint evenly_spaced(things: list, axis: text) {
 /// How far it is from the first thing of a list to the last, as written, and along which axis it is further.
 fn spread(things: list, axis: text) = written(along(things[-1], axis) - along(things[0], axis))
 fn along(a: box, axis: text) = if axis == "x" then a.center_x else a.center_y
-fn longer_spread(a: list) = if len(a) > 1 and abs(spread(a, x)) < abs(spread(a, y)) then y else x
+fn longer_spread(a: list) = if len(a) > 1 and abs(spread(a, "x")) < abs(
+    spread(a, "y")
+) then "y" else "x"
 
 /// The gap from one thing to the next, which lies beyond it (`up`) or before it along the axis.
 fn room_between(a: box, b: box, axis: text, up: bool) = if up then room(a, b, axis) else room(

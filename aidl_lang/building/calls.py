@@ -13,6 +13,7 @@ from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.builtins import is_word
 from aidl_lang.model import Condition, Geometry
 from aidl_lang.names import nearest
 from aidl_lang.types import (
@@ -37,6 +38,7 @@ from aidl_lang.values import (
     Num,
     PointVal,
     RangeVal,
+    Text,
     Value,
     members,
     type_of,
@@ -60,7 +62,11 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
         env = Env(env.scope, env.here, Reach.SUBTREE if env.reach is Reach.OWN else env.reach)
     values: list[Value] = [] if receiver is None or isinstance(receiver, Namespace) else [receiver]
     first = len(values)
-    values += [evaluate(it, a.value, env) for a in node.arguments]
+    signatures = [c.signature for c in candidates]
+    values += [
+        Text(a.value.span.text) if is_word(a, signatures) else evaluate(it, a.value, env)
+        for a in node.arguments
+    ]
     given = [Given(None, type_of(v)) for v in values[:first]]
     given += [
         Given(a.name.text if a.name else None, type_of(v))
@@ -68,7 +74,7 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
     ]
     nodes: list[ast.Node] = [node.receiver] if first and node.receiver is not None else []
     nodes += [a.value for a in node.arguments]
-    chosen = select([c.signature for c in candidates], given)
+    chosen = select(signatures, given)
     if isinstance(chosen, list):
         if not any(isinstance(v, Nothing) for v in values):
             _no_overload(it, node, chosen, nodes)

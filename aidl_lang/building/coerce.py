@@ -9,9 +9,12 @@ import math
 
 from aidl_lang import ast, primitives, units
 from aidl_lang import expression as ex
+from aidl_lang.boxes import SIDES
 from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.model import Geometry, Structure, common_ancestor
-from aidl_lang.units import LENGTH
+from aidl_lang.source import Span
+from aidl_lang.units import LENGTH, PLAIN
 from aidl_lang.values import ListVal, Nothing, Num, PointVal, Value, kind_of, length, number
 
 
@@ -69,7 +72,7 @@ def coordinate(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num |
     found = numeric(it, value, node, env)
     if found is None:
         return None
-    if found.dimension not in (None, LENGTH):
+    if found.dimension not in (None, PLAIN, LENGTH):
         it.report("E0301", f"a coordinate must be a length, not a {units.describe(found.dimension)}", node)
         return None
     return Num(found.expression, LENGTH, found.status)
@@ -90,9 +93,18 @@ def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -
         f"`{node.span.text}` is not parallel to an axis, so it stands for no coordinate",
         node,
         label="a slanted edge",
+        fix=_side_of_box(node),
         hints=["name a side of the box (`.bb.left`) or a point of the edge (`.start.x`, `.midpoint.y`)"],
     )
     return None
+
+
+def _side_of_box(node: ast.Node) -> Fix | None:
+    """`plate.left` → `plate.bb.left`"""
+    if not isinstance(node, ast.Member) or node.name.text not in SIDES:
+        return None
+    at = node.name.span
+    return Fix("take the side of the box", (Edit(Span(at.source, at.start, at.start), "bb."),))
 
 
 def as_point(it: Interpreter, value: Value, node: ast.Node, env: Env) -> PointVal | None:

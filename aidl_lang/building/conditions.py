@@ -108,11 +108,14 @@ def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.No
         return NOTHING
     left, right = spelled_out(a.expression, b.expression)
     if left.is_constant and right.is_constant:
-        return _relates(relation, left.value, right.value, dimension == ANGLE, _EXACT)
+        return _relates(relation, left.value, right.value, dimension == ANGLE, _EXACT, strict=True)
     return Condition("and", (Comparison(relation, left, right, dimension),))
 
 
-def _relates(relation: str, a: float, b: float, is_angle: bool, tolerance: float) -> bool:
+def _relates(
+    relation: str, a: float, b: float, is_angle: bool, tolerance: float, *, strict: bool = False
+) -> bool:
+    """Whether a relation holds within a tolerance; `strict` keeps `<` and `>` from holding for equals."""
     difference = a - b
     if is_angle and relation in ("==", "!="):
         difference = (difference + 180.0) % 360.0 - 180.0
@@ -122,8 +125,12 @@ def _relates(relation: str, a: float, b: float, is_angle: bool, tolerance: float
             return near
         case "!=":
             return not near
-        case "<=" | "<":
+        case "<=":
             return near or difference < 0
+        case "<":
+            return not strict if near else difference < 0
+        case ">":
+            return not strict if near else difference > 0
         case _:
             return near or difference > 0
 

@@ -12,6 +12,7 @@ from aidl_lang.building.coerce import as_point, as_written, constant, coordinate
 from aidl_lang.building.conditions import compare, conjunction, holds, negation
 from aidl_lang.building.scopes import Binding, LetBinding, ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.builtins import WORDS
 from aidl_lang.diagnostics import Label
 from aidl_lang.model import Condition, Geometry, Structure
 from aidl_lang.names import find, nearest
@@ -163,6 +164,8 @@ def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
     for scope in env.scope.chain():
         if (branch := scope.unbuilt.get(node.text)) is not None:
             return _not_built(it, node, branch)
+    if node.text in WORDS:
+        return Text(node.text)
     known: set[str] = set()
     for scope in env.scope.chain():
         known |= scope.values.keys()

@@ -13,6 +13,7 @@ from aidl_lang.building.coerce import as_written, constant, numeric
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.expression import DEGREE, Expression
 from aidl_lang.model import Geometry, Structure
+from aidl_lang.names import find, nearest
 from aidl_lang.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension
 from aidl_lang.values import (
     NOTHING,
@@ -20,6 +21,7 @@ from aidl_lang.values import (
     Num,
     PointVal,
     Status,
+    Text,
     Value,
     kind_of,
     members,
@@ -194,6 +196,27 @@ def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     return number(float(len(items)))
 
 
+def _choice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """A word, checked to be one of those that are allowed."""
+    word = a["word"]
+    words = [w.value for w in members(a["words"]) or () if isinstance(w, Text)]
+    assert isinstance(word, Text)
+    meant = find(word.value, dict.fromkeys(words)) or find(
+        _SAME_WORD.get(word.value, ""), dict.fromkeys(words)
+    )
+    if meant is None:
+        like = nearest(word.value, words)
+        hints = [f'did you mean `"{like[0]}"`?'] if like else []
+        allowed = ", ".join(f'`"{w}"`' for w in words)
+        message = f'"{word.value}" is not one of the words that are meant here'
+        it.report("E0516", message, node, hints=[*hints, f"it is one of {allowed}"])
+        return NOTHING
+    return Text(meant)
+
+
+_SAME_WORD = {"middle": "center", "centre": "center", "horizontal": "x", "vertical": "y"}
+
+
 def _mark(status: Status) -> Function:
     """`fixed(x)` and `guess(x)`: the value with another status, points and lists by member."""
 
@@ -291,6 +314,7 @@ FUNCTIONS: dict[str, Function] = {
     "ceil": _rounded(math.ceil),
     "round": _rounded(_half_up),
     "len": _len,
+    "choice": _choice,
     "fixed": _mark(Status.FIXED),
     "guess": _mark(Status.GUESS),
     "written": _written,

@@ -29,7 +29,7 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
             return
         case False:
             if weight is None:
-                _never(it, node)
+                _never(it, node, env)
         case Condition():
             _impose_condition(it, value, node, env, weight)
         case Geometry():
@@ -48,10 +48,11 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
             )
 
 
-def _never(it: Interpreter, node: ast.Expression) -> None:
+def _never(it: Interpreter, node: ast.Expression, env: Env) -> None:
+    turn = f" [{', '.join(env.scope.labels)}]" if env.scope.labels else ""
     it.report(
         "E0513",
-        f"`{one_line(node.span.text)}` can never hold: both sides are constants",
+        f"`{one_line(node.span.text)}` can never hold: both sides are constants{turn}",
         node,
         label="false as written",
         hints=["a number or `param` does not move; make one side a `var`, a `guess(…)` or a reference"],
@@ -64,7 +65,7 @@ def _impose_condition(
     comparisons: list[Comparison] = []
     for part in condition.parts if condition.operator == "and" else (condition,):
         if part is False:
-            _never(it, node)
+            _never(it, node, env)
             return
         if isinstance(part, Condition) or (isinstance(part, Comparison) and part.relation not in RELATIONS):
             word = part.operator if isinstance(part, Condition) else part.relation

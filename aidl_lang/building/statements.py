@@ -381,10 +381,9 @@ def build_structure(
     structure.doc = node.doc
     _place(it, structure, node.placement, scope)
     _attributes(it, structure, node.attributes, scope)
-    body = Scope(scope, structure, labels=scope.labels)
+    body = Scope(_around(scope, node.name.text, structure), structure, labels=scope.labels)
     structure.scope = body
     _own_names(body, structure)
-    body.values[node.name.text] = structure
     run_block(it, node.body.statements, body, structure)
     _finish(it, structure)
     return structure
@@ -408,11 +407,11 @@ def _instantiate(
         structure.doc = definition.doc
         _place(it, structure, node.placement, scope)
         assert isinstance(template.scope, Scope)
-        body = Scope(template.scope, structure, labels=scope.labels)
+        around = _around(template.scope, definition.name.text, structure)
+        body = Scope(around, structure, labels=scope.labels)
         structure.scope = body
         _attributes(it, structure, (*definition.attributes, *node.attributes), body)
         _own_names(body, structure)
-        body.values[definition.name.text] = structure
         for parameter, (key, kind, _) in zip(
             definition.parameters or (), template.signature.parameters, strict=True
         ):
@@ -442,6 +441,13 @@ def _new(it: Interpreter, kind: str, name: str, parent: Structure | None, node: 
     else:
         parent.children.append(structure)
     return structure
+
+
+def _around(scope: Scope, name: str, structure: Structure) -> Scope:
+    """What a body sees around it: its structure by name, which is no member of it."""
+    around = Scope(scope)
+    around.values[name] = structure
+    return around
 
 
 def _own_names(scope: Scope, structure: Structure) -> None:

@@ -29,7 +29,7 @@ from aidl_lang.types import (
     TruthType,
     Type,
 )
-from aidl_lang.units import ANGLE, LENGTH, UNITS, MaybeDimension
+from aidl_lang.units import ANGLE, LENGTH, PLAIN, UNITS, MaybeDimension
 
 _DEEPEST = 120
 """How deep expressions and the names in them are followed: within the interpreter's usual limit on frames."""
@@ -131,7 +131,7 @@ class Inference:
             reads |= fact.reads
             if isinstance(fact.type, NumberType):
                 self.serves(fact, LENGTH, part)
-                if fact.type.dimension not in (None, LENGTH):
+                if fact.type.dimension not in (None, PLAIN, LENGTH):
                     self.report(
                         "E0301",
                         f"a coordinate must be a length, and `{shown(part)}` is {a(fact.type)}",

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from aidl_lang import ast
+from aidl_lang.builtins import WORDS
 from aidl_lang.diagnostics import Edit, Fix, Label
 from aidl_lang.names import nearest
-from aidl_lang.resolving.resolution import WORDS
 from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind, word_meant
 from aidl_lang.source import Span
 from aidl_lang.types import Signature

@@ -17,11 +17,6 @@ _NOWHERE = ast.Module(SourceFile("built in", ""), (), (), span=Span(SourceFile("
 
 BUILTIN_NAMES = ("self", "origin", "x_axis", "y_axis", "pi")
 
-WORDS = frozenset(
-    ("x", "y", "left", "right", "center", "top", "bottom", "middle", "horizontal", "vertical", "both")
-)
-"""Words that may stand bare as an argument (`axis: x`, `align: left`) where no value has the name."""
-
 ATTRIBUTES = ("orientation", "color", "colour", "layer", "thickness", "material", "detached", "note")
 """What may stand behind `@` before a definition."""
 

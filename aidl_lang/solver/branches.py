@@ -243,7 +243,9 @@ class _Attempt:
         return outcome.end
 
     def _constants_hold(self, frozen: Frozen) -> bool:
-        rows = [self.task.rows[self.considered[i]] for i in frozen.constant if i < len(self.considered)]
+        """Whether the hard rows that no free unknown moves hold as they are."""
+        indices = [self.considered[i] for i in frozen.constant if i < len(self.considered)]
+        rows = [self.task.rows[i] for i in indices if not self.task.softness[i]]
         return all(holds(row, self.values, self.settings.tolerance) for row in rows)
 
     def _judge(self, end: End) -> Verdict:

@@ -357,7 +357,8 @@ class _Group:
         hierarchy = self.hierarchy
         mentioned = frozenset().union(*(hierarchy.cones[index].unknowns for index in rigid))
         sizes = frozenset(unknown for unknown in mentioned if self.tier(unknown) > POSITIONS)
-        placed = sizes & frozenset().union(*(self._placed_by(index) for index in rigid))
+        unmet = [index for index in rigid if not hierarchy.satisfied(index)]
+        placed = sizes & frozenset().union(*(self._placed_by(index) for index in unmet))
         levels = sorted({self.tier(unknown) for unknown in sizes})
         stages = [(level, frozenset(u for u in sizes if self.tier(u) <= level)) for level in levels]
         tried: frozenset[int] = frozenset()

@@ -80,7 +80,9 @@ def _assertions(program: Program) -> Iterator[Finding]:
         calls = [n.callee.text for n in ast.walk(test) if isinstance(n, ast.Call)]
         if not any(c in _MEASURED for c in calls):
             holds = Evaluator(task.node).truth(test, task.scope)
-            yield Finding("assertion", task.node.path, test.span.text, test.span.line, 0.0 if holds else math.inf)
+            yield Finding(
+                "assertion", task.node.path, test.span.text, test.span.line, 0.0 if holds else math.inf
+            )
 
 
 def _evaluated(kind: str, node: Node, e: ast.Expression, scope: Scope) -> Finding:

@@ -137,9 +137,7 @@ def items(ev: Evaluator, body: ast.Block, scope: Scope) -> Iterator[list[float]]
         yield residuals(ev, expression, inner)
 
 
-def expressions(
-    ev: Evaluator, body: ast.Block, scope: Scope
-) -> Iterator[tuple[ast.Expression, Scope]]:
+def expressions(ev: Evaluator, body: ast.Block, scope: Scope) -> Iterator[tuple[ast.Expression, Scope]]:
     """The constraining expressions of a block, loops and branches taken, each with the names it sees."""
     for item in body.statements:
         match item:

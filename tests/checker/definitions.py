@@ -47,7 +47,9 @@ class Expected:
     residual: float
 
 
-def expected(ev: Evaluator, s: ast.Assign, geo: Geo, scope: Scope, changed: Collection[str]) -> list[Expected]:
+def expected(
+    ev: Evaluator, s: ast.Assign, geo: Geo, scope: Scope, changed: Collection[str]
+) -> list[Expected]:
     """The fields of a geometry that had no freedom, with how far they are from what was written."""
     if not isinstance(s.value, ast.Call):
         return list(_shared_point(ev, s.value, geo, scope))
@@ -118,9 +120,7 @@ def _position(ev: Evaluator, geo: Geo, word: str, written: Point) -> Iterator[Ex
             yield Expected(f"{word}.{axis}", abs(number.value - getattr(actual, axis).value))
 
 
-def _size(
-    ev: Evaluator, geo: Geo, word: str, value: Any, changed: Collection[str]
-) -> Iterator[Expected]:
+def _size(ev: Evaluator, geo: Geo, word: str, value: Any, changed: Collection[str]) -> Iterator[Expected]:
     """Exact when it says so; kept otherwise, unless the document tells that it changed."""
     number = ev.number(value)
     if number.exact == Exact.GUESS or geo.type == "arc" and "angle" in word:
@@ -158,9 +158,7 @@ def _told(geo: Geo, changed: Collection[str]) -> bool:
     return any(c.startswith(f"{geo.path}.") for c in changed)
 
 
-def frame(
-    ev: Evaluator, child: Node, placement: ast.Placement | None, scope: Scope
-) -> Iterator[Expected]:
+def frame(ev: Evaluator, child: Node, placement: ast.Placement | None, scope: Scope) -> Iterator[Expected]:
     """`at` and `rotated` where they are exact; rotation is exact unless it is a guess."""
     local = child.local
     if placement is not None and placement.at is not None:

@@ -130,9 +130,7 @@ class Evaluator:
 
     def _comprehension(self, e: ast.Comprehension, scope: Scope) -> list[Any]:
         inner = [self.bound(e.variables, item, scope) for item in self.items(self.value(e.iterable, scope))]
-        return [
-            self.value(e.element, s) for s in inner if e.condition is None or self.truth(e.condition, s)
-        ]
+        return [self.value(e.element, s) for s in inner if e.condition is None or self.truth(e.condition, s)]
 
     def bound(self, variables: tuple[ast.Identifier, ...], item: Any, scope: Scope) -> Scope:
         names = [v.text for v in variables]

@@ -297,4 +297,3 @@ _FIELDS = {
     "ellipse": _ellipse,
     "bezier": _bezier,
 }
-

@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 Function = Callable[..., Any]
 
 
-def _of_numbers(compute: Callable[..., float], *, gives_angle: bool = False, keeps_angle: bool = False) -> Function:
+def _of_numbers(
+    compute: Callable[..., float], *, gives_angle: bool = False, keeps_angle: bool = False
+) -> Function:
     def function(ev: Evaluator, *arguments: Any, **named: Any) -> Num:
         values = [ev.number(a) for a in (*arguments, *named.values())]
         exact = max((v.exact for v in values), default=Exact.NUMBER)
@@ -112,9 +114,7 @@ def _midpoint(ev: Evaluator, a: Any, b: Any = None) -> Any:
 
 def _turned(ev: Evaluator, v: Any, angle: Any) -> Point:
     (x, y), t = ev.point(v).xy, math.radians(ev.number(angle).value)
-    return Point(
-        reference(x * math.cos(t) - y * math.sin(t)), reference(x * math.sin(t) + y * math.cos(t))
-    )
+    return Point(reference(x * math.cos(t) - y * math.sin(t)), reference(x * math.sin(t) + y * math.cos(t)))
 
 
 # --- Measures --------------------------------------------------------------------------------------
@@ -230,4 +230,3 @@ FUNCTIONS: dict[str, Function] = {
     "angle": lambda ev, a, b: reference(between(ev, a, b), is_angle=True),
     "gap": lambda ev, a, b: reference(ev.together(lambda: room(ev.box(a), ev.box(b)))),
 }
-

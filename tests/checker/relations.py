@@ -28,10 +28,11 @@ Relation = Callable[..., list[float]]
 
 
 def listed(ev: Evaluator, things: tuple[Any, ...]) -> list[Any]:
-    """`f(a, b, c)` and `f([a, b, c])` alike."""
-    if len(things) == 1 and isinstance(things[0], Array | list):
-        return ev.items(things[0])
-    return list(things)
+    """`f(a, b, c)` and `f([a, b, c])` alike; a list stands for its members."""
+    found: list[Any] = []
+    for thing in things:
+        found += listed(ev, tuple(ev.items(thing))) if isinstance(thing, Array | list) else [thing]
+    return found
 
 
 def _is_round(thing: Any) -> bool:
@@ -87,7 +88,9 @@ def _collinear(ev: Evaluator, *things: Any) -> list[float]:
     things = tuple(listed(ev, things))
     line = next((t for t in things if is_line(t)), None)
     if line is not None:
-        points = [p for t in things if t is not line for p in (ends(ev, t) if is_line(t) else [ev.point(t).xy])]
+        points = [
+            p for t in things if t is not line for p in (ends(ev, t) if is_line(t) else [ev.point(t).xy])
+        ]
         return [abs(offset(ev, p, line)) for p in points]
     a, b, *others = (ev.point(t).xy for t in things)
     return [abs(cross(minus(b, a), minus(p, a))) / math.dist(a, b) for p in others]
@@ -259,4 +262,3 @@ RELATIONS: dict[str, Relation] = {
     **{fold(name): relation for name, relation in _CANONICAL.items()},
     **{fold(word): _CANONICAL[name] for name, words in SYNONYMS.items() for word in words.split()},
 }
-

@@ -41,9 +41,11 @@ SYNONYMS = {
 
 
 def _members(ev: Evaluator, things: tuple[Any, ...]) -> list[Any]:
-    if len(things) == 1 and isinstance(things[0], Array | list):
-        return ev.items(things[0])
-    return list(things)
+    """`f(a, b, c)` and `f([a, b, c])` alike; a list stands for its members."""
+    found: list[Any] = []
+    for thing in things:
+        found += _members(ev, tuple(ev.items(thing))) if isinstance(thing, Array | list) else [thing]
+    return found
 
 
 def _pair(ev: Evaluator, a: Any, b: Any, residual: Callable[[Box, Box], list[float]]) -> list[float]:
@@ -184,8 +186,6 @@ def _no_overlap(ev: Evaluator, a: Any, b: Any) -> list[float]:
 
 def _overlapping(ev: Evaluator, a: Any, b: Any) -> list[float]:
     return _pair(ev, a, b, lambda p, q: [max(0.0, *_separations(p, q))])
-
-
 
 
 _ROW_ACROSS = {"top": "top", "bottom": "bottom", "center": "center_y", "middle": "center_y"}

@@ -64,7 +64,14 @@ def _scene() -> dict[str, Any]:
         "slant": _line([0, 20], [10, 30]),
         "dot": {"type": "point", "at": [5, 0]},
         "round": _circle([5, 4], 4),
-        "bend": {"type": "arc", "center": [9, 5], "radius": 1, "start": [10, 5], "end": [9, 6], "clockwise": False},
+        "bend": {
+            "type": "arc",
+            "center": [9, 5],
+            "radius": 1,
+            "start": [10, 5],
+            "end": [9, 6],
+            "clockwise": False,
+        },
     }
     root = _structure(
         "scene",

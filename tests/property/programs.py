@@ -39,15 +39,41 @@ class Sketch:
     def text(self, parts: Sequence[str] | None = None, relations: Sequence[str] | None = None) -> str:
         body = "\n".join(parts if parts is not None else [p.text() for p in self.parts])
         held = self.relations if relations is None else relations
-        return "assembly model {\nparam unit = 3 in 1..9\n" + body + "\nconstrain {\n" + "\n".join(held) + "\n}\n}\n"
+        return (
+            "assembly model {\nparam unit = 3 in 1..9\n"
+            + body
+            + "\nconstrain {\n"
+            + "\n".join(held)
+            + "\n}\n}\n"
+        )
+
+
+KINDS = ("rectangle", "circle", "trapezoid", "triangle", "outline", "bow", "row")
+
+RELATIONS = (
+    "{a}.above({b})",
+    "{a}.below({b}, gap: {g})",
+    "{a}.left_of({b}, gap: {g} - unit)",
+    "{a}.right_of({b}, at_least: {g})",
+    "{a}.centered_in({b})",
+    "centered_horizontally({a}, {b})",
+    "align_bottom({a}, {b})",
+    "align_left({a}, {b}, inset: {g})",
+    "{a}.stacked_on({b})",
+)
+
+COMPARISONS = (
+    "{a}.bb.center_x >= {b}.bb.right + {g}",
+    "{a}.bb.top == {b}.bb.bottom",
+    "{a}.left == -{b}.right",
+)
 
 
 @st.composite
-def geometry(draw: st.DrawFn, name: str) -> tuple[str, ...]:
-    """One to three statements that draw something named `name`, and its parts for constraints."""
+def geometry(draw: st.DrawFn, name: str, kinds: tuple[str, ...]) -> tuple[str, ...]:
+    """One to three statements that draw something named `name`."""
     x, y, a, b = draw(PLACES), draw(PLACES), draw(SIZES), draw(SIZES)
-    kind = draw(st.sampled_from(("rectangle", "circle", "trapezoid", "triangle", "outline", "row", "bow")))
-    match kind:
+    match draw(st.sampled_from(kinds)):
         case "rectangle":
             return (f"{name} = rectangle(center: ({x}, {y}), width: {a}, height: {b})",)
         case "circle":
@@ -75,28 +101,14 @@ def geometry(draw: st.DrawFn, name: str) -> tuple[str, ...]:
 
 @st.composite
 def part(draw: st.DrawFn, name: str) -> Part:
-    first = draw(geometry("edge"))
-    second = draw(st.one_of(st.just(()), geometry("mark")))
-    constraints = []
-    if second:
-        constraints = [draw(st.sampled_from(RELATIONS)).format(a="mark", b="edge", g=draw(SIZES))]
+    first = draw(geometry("edge", KINDS))
+    second = draw(st.one_of(st.just(()), geometry("mark", KINDS[:-1])))
+    relations = [r for r in RELATIONS if not (first[0].startswith("for") and "align" in r)]
+    constraints = (
+        [draw(st.sampled_from(relations)).format(a="mark", b="edge", g=draw(SIZES))] if second else []
+    )
     turn = draw(st.sampled_from(("", "", " rotated 30deg", " at (5, 5)")))
     return Part(name, draw(st.sampled_from(("solid", "drawing"))), first + second, tuple(constraints), turn)
-
-
-RELATIONS = (
-    "{a}.above({b})",
-    "{a}.below({b}, gap: {g})",
-    "{a}.left_of({b}, gap: {g} - unit)",
-    "{a}.right_of({b}, at_least: {g})",
-    "{a}.centered_in({b})",
-    "centered_horizontally({a}, {b})",
-    "align_bottom({a}, {b})",
-    "align_left({a}, {b}, inset: {g})",
-    "{a}.stacked_on({b})",
-    "{a}.center_x >= {b}.bb.right + {g}",
-    "{a}.bb.top == {b}.bb.bottom",
-)
 
 
 @st.composite
@@ -107,16 +119,16 @@ def sketches(draw: st.DrawFn, least: int = 2, most: int = 3) -> Sketch:
     relations = []
     for i in range(1, count):
         other = draw(st.integers(0, i - 1))
-        relation = draw(st.sampled_from(RELATIONS))
+        relation = draw(st.sampled_from(RELATIONS + COMPARISONS))
         relations.append(relation.format(a=f"part_{i}", b=f"part_{other}", g=draw(SIZES)))
     return Sketch(parts, tuple(relations))
 
 
 WORDS = (
     "assembly solid hole drawing part param var let constrain prefer assert for in if else then import shape fn "
-    "constraint alias template construction step weight todo at rotated and or not true false self origin "
-    "x_axis rectangle( circle( line( arc( polygon( above( tangent( inside( fixed( guess( len( min( ( ) [ ] { } "
-    ", ; : . .. ..< = == <= >= != < > + - * / % ^ @ @color( \" ' // /* */ # a b c a.b a[0] a[-1] r.top 0 1 2.5 1e300 "
+    "constraint alias template construction step weight todo at rotated and or not true false self origin x_axis "
+    "rectangle( circle( line( arc( polygon( above( tangent( inside( fixed( guess( len( min( ( ) [ ] { } , ; : . "
+    ".. ..< = == <= >= != < > + - * / % ^ @ @color( \" ' // /* */ # a b c a.b a[0] a[-1] r.top 0 1 2.5 1e300 1e999 "
     "10mm 30deg 1turn 0..9 é 名 \\ \n"
 ).split(" ")
 

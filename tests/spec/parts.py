@@ -116,7 +116,9 @@ def read(path: Path) -> list[Case]:
             case "fixed", "":
                 broken = cases[-1]
                 mended = _program(number + 1, body)
-                cases.append(Case(path, heading, mended, broken.files, broken.pending, fixes=broken.program))
+                mark = pending or broken.pending
+                cases.append(Case(path, heading, mended, broken.files, mark, fixes=broken.program))
+                pending = None
             case "formatted", "":
                 cases[-1].formatted = number + 1, "".join(f"{text}\n" for text in body)
             case _, _:

@@ -1,0 +1,163 @@
+"""What each stage makes of each example, against the files in `expected/`.
+
+`make accept` (AIDL_ACCEPT=1) takes the present results as the new ones. Numbers are rounded, so that the last
+digits of a machine's arithmetic make no difference.
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+import math
+import os
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import aidl_lang
+from aidl_lang import pipeline
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.lower import lower
+from aidl_lang.model import Structure
+from aidl_lang.source import SourceFile
+
+ROOT = Path(__file__).resolve().parents[2]
+EXPECTED = Path(__file__).parent / "expected"
+EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
+ACCEPT = bool(os.environ.get("AIDL_ACCEPT"))
+_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?")
+_MOST_LINES = 60
+
+
+def rounded(value: float) -> float:
+    """Six significant digits; what is nothing but rounding error is 0."""
+    if not math.isfinite(value) or abs(value) < 1e-7:
+        return 0.0 if math.isfinite(value) else value
+    return float(f"{value:.6g}")
+
+
+def rounded_text(text: str) -> str:
+    return _NUMBER.sub(lambda m: f"{rounded(float(m[0])):g}", text)
+
+
+def rounded_document(value: Any) -> Any:
+    match value:
+        case float():
+            return rounded(value)
+        case dict():
+            return {k: rounded_document(v) for k, v in value.items() if k != "residual"}
+        case list():
+            return [rounded_document(v) for v in value]
+        case _:
+            return value
+
+
+# --- Stages ----------------------------------------------------------------------------------------
+
+
+def canonical(text: str) -> str:
+    return aidl_lang.format(text)
+
+
+def checked(text: str) -> str:
+    return "".join(f"{_line(d)}\n" for d in aidl_lang.check(text)) or "nothing to say\n"
+
+
+def _line(d: Diagnostic) -> str:
+    place = "" if d.span is None else f"{d.span.line}:{d.span.column} "
+    return rounded_text(f"{place}{d.severity} {d.code}: {d.message}" + (f" ({d.label})" if d.label else ""))
+
+
+def problem(text: str) -> str:
+    """The structure tree with its geometry, and what the solver is asked."""
+    program, _ = pipeline.front(SourceFile("<text>", text))
+    model = pipeline.interpret(program).model
+    asked = lower(model).problem
+    free = Counter(asked.group[~asked.kept].tolist())
+    kept = Counter(asked.group[asked.kept].tolist())
+    rows = Counter(c.group for c in asked.constraints for _ in c.rows if c.weight is None)
+    lines = [
+        f"{indent}{s.kind} {s.name}: {free[i]} free, {kept[i]} kept, {rows[i]} rows; {_geometry(s)}"
+        for i, (s, indent) in enumerate(_tree(model.root, ""))
+    ]
+    total = f"{len(asked.parent)} groups, {len(asked.initial)} unknowns, {rows.total()} rows"
+    return "\n".join([*lines, total]) + "\n"
+
+
+def _tree(s: Structure, indent: str) -> Iterator[tuple[Structure, str]]:
+    yield s, indent
+    for child in s.children:
+        yield from _tree(child, indent + "    ")
+
+
+def _geometry(s: Structure) -> str:
+    counts = Counter(g.type for g in s.own())
+    return ", ".join(f"{n} {kind}" for kind, n in counts.items()) or "nothing drawn"
+
+
+def solved(text: str) -> str:
+    document = rounded_document(json.loads(aidl_lang.compile(text).to_json()))
+    return _compact(json.dumps(document, indent=1, ensure_ascii=False)) + "\n"
+
+
+def _compact(text: str) -> str:
+    """Points on one line."""
+    return re.sub(r"\[\s+(-?[\d.e+-]+),\s+(-?[\d.e+-]+)\s+\]", r"[\1, \2]", text)
+
+
+def drawn(text: str) -> str:
+    return rounded_text(aidl_lang.compile(text).to_svg())
+
+
+STAGES: dict[str, Callable[[str], str]] = {
+    "canonical.aidl": canonical,
+    "check.txt": checked,
+    "problem.txt": problem,
+    "solved.json": solved,
+    "drawing.svg": drawn,
+}
+
+# --- Tests -----------------------------------------------------------------------------------------
+
+
+def difference(expected: str, actual: str, name: str) -> str:
+    """A readable difference, not the whole of both."""
+    lines = list(
+        difflib.unified_diff(
+            expected.splitlines(), actual.splitlines(), f"expected {name}", "now", lineterm="", n=2
+        )
+    )
+    more = [f"… and {len(lines) - _MOST_LINES} more lines"] if len(lines) > _MOST_LINES else []
+    return "\n".join(lines[:_MOST_LINES] + more)
+
+
+@pytest.mark.parametrize("stage", STAGES)
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+def test_stage(path: Path, stage: str) -> None:
+    golden = EXPECTED / path.stem / stage
+    actual = STAGES[stage](path.read_text("utf-8"))
+    if ACCEPT:
+        golden.parent.mkdir(parents=True, exist_ok=True)
+        golden.write_text(actual, "utf-8")
+        return
+    assert golden.exists(), f"no golden {golden.relative_to(ROOT)}: `make accept` writes it"
+    expected = golden.read_text("utf-8")
+    if expected != actual:
+        pytest.fail(
+            f"{difference(expected, actual, f'{path.stem}/{stage}')}\n\n`make accept` takes it", pytrace=False
+        )
+
+
+def test_no_golden_is_left_of_an_example_that_is_gone() -> None:
+    known = {path.stem for path in EXAMPLES}
+    assert {folder.name for folder in EXPECTED.iterdir()} <= known
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+def test_the_canonical_form_means_the_same_drawing(path: Path) -> None:
+    text = path.read_text("utf-8")
+    assert drawn(aidl_lang.format(text)) == drawn(text)
