@@ -122,15 +122,15 @@ def spelled_out(*roots: Expression) -> tuple[Expression, ...]:
     if not sides:
         return roots
     used = {s for side in sides for s in side.box.sources if isinstance(s, Structure)}
-    replaced: dict[int, Expression] = {}
+    replaced: dict[Expression, Expression] = {}
     for node in order:
         if isinstance(node.payload, _Side):
             tops = [s for s in node.payload.box.sources if isinstance(s, Structure)]
             ignored = frozenset(u for u in used for t in tops if u is not t and u.is_within(t))
-            replaced[id(node)] = extent(node.payload, ignored)
-        elif any(id(a) in replaced for a in node.args):
-            replaced[id(node)] = ex.apply(node.op, *[replaced.get(id(a), a) for a in node.args])
-    return tuple(replaced.get(id(root), root) for root in roots)
+            replaced[node] = extent(node.payload, ignored)
+        elif any(a in replaced for a in node.args):
+            replaced[node] = ex.apply(node.op, *[replaced.get(a, a) for a in node.args])
+    return tuple(replaced.get(root, root) for root in roots)
 
 
 def extent(side: _Side, ignored: frozenset[Structure]) -> Expression:

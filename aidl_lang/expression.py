@@ -223,18 +223,18 @@ def exact_turn(degrees: float) -> tuple[float, float]:
 
 def nodes(roots: Iterable[Expression]) -> Iterator[Expression]:
     """Every node below the roots once, arguments before those that use them."""
-    seen: set[int] = set()
+    seen: set[Expression] = set()
     for root in roots:
         stack = [(root, False)]
         while stack:
             node, done = stack.pop()
             if done:
                 yield node
-            elif id(node) not in seen:
-                seen.add(id(node))
+            elif node not in seen:
+                seen.add(node)
                 if node.args:
                     stack.append((node, True))
-                    stack.extend((a, False) for a in node.args if id(a) not in seen)
+                    stack.extend((a, False) for a in node.args if a not in seen)
                 else:
                     yield node
 
@@ -258,23 +258,21 @@ class Evaluator:
 
     values: Mapping[Unknown, float]
     measure: Callable[[object], float] | None = None
-    _memo: dict[int, float] = field(default_factory=dict)
-    _alive: list[Expression] = field(default_factory=list)
+    _memo: dict[Expression, float] = field(default_factory=dict)
 
     def __call__(self, root: Expression) -> float:
         memo = self._memo
         stack = [root]
         while stack:
             node = stack[-1]
-            if id(node) in memo:
+            if node in memo:
                 stack.pop()
-            elif missing := [a for a in node.args if id(a) not in memo]:
+            elif missing := [a for a in node.args if a not in memo]:
                 stack.extend(missing)
             else:
-                memo[id(node)] = self._node(node)
-                self._alive.append(node)  # an id stays unique only as long as its node lives
+                memo[node] = self._node(node)
                 stack.pop()
-        return memo[id(root)]
+        return memo[root]
 
     def _node(self, node: Expression) -> float:
         match node.op:
@@ -286,4 +284,4 @@ class Evaluator:
             case "measure":
                 return self.measure(node.payload) if self.measure else math.nan
             case _:
-                return EVALUATE[node.op](*[self._memo[id(a)] for a in node.args])
+                return EVALUATE[node.op](*[self._memo[a] for a in node.args])

@@ -47,9 +47,9 @@ class _Lowering:
         self.structures = list(model.root.walk())
         self.groups = {s: i for i, s in enumerate(self.structures)}
         self.tape = TapeBuilder()
-        self.node_of: dict[int, int] = {}
+        self.node_of: dict[Expression, int] = {}
         self.numbers: dict[Unknown, int] = {}
-        self.variables: set[Unknown] = set()
+        self.variables: list[Unknown] = []
         self.holders = {c.holder for c in model.constraints}
         self.size = model_size(self.structures)
 
@@ -93,23 +93,25 @@ class _Lowering:
             )
         )
         drawn = {u for u in ex.unknowns(observed) if u.frame_of is None}
-        variables = self.variables = {
-            u for u in self.model.unknowns if isinstance(u.holder, Structure) and u.frame_of is None
-        }
         for unknown in self.model.unknowns:
-            live = unknown in mentioned or unknown in drawn or unknown in variables
+            is_variable = isinstance(unknown.holder, Structure) and unknown.frame_of is None
+            if is_variable:
+                self.variables.append(unknown)
+            live = is_variable or unknown in mentioned or unknown in drawn
             if live and not unknown.exact and unknown.owner in self.groups:
                 self.numbers[unknown] = len(self.numbers)
 
     def _placer(self, unknown: Unknown) -> Structure:
-        """The structure at whose turn an unknown is placed: for the box of an empty structure that says nothing
-        of itself, the parent, as if the box were its frame.
+        """The structure at whose turn an unknown is placed: for the box of an empty structure that says
+        nothing of itself, the parent, as if the box were its frame.
         """
         parent = unknown.owner.parent
         return parent if parent is not None and self._is_outline(unknown) else unknown.owner
 
     def _is_outline(self, unknown: Unknown) -> bool:
-        return unknown.holder is unknown.owner and unknown.owner.is_empty and unknown.owner not in self.holders
+        return (
+            unknown.holder is unknown.owner and unknown.owner.is_empty and unknown.owner not in self.holders
+        )
 
     def _frame_of(self, unknown: Unknown) -> int:
         moved = unknown.owner if self._is_outline(unknown) else unknown.frame_of
@@ -127,14 +129,14 @@ class _Lowering:
         stack = [root]
         while stack:
             node = stack[-1]
-            if id(node) in known:
+            if node in known:
                 stack.pop()
-            elif missing := [a for a in node.args if id(a) not in known]:
+            elif missing := [a for a in node.args if a not in known]:
                 stack.extend(missing)
             else:
-                known[id(node)] = self._make(tape, node)
+                known[node] = self._make(tape, node)
                 stack.pop()
-        return known[id(root)]
+        return known[root]
 
     def _make(self, tape: TapeBuilder, node: Expression) -> int:
         if node.op == "constant":
@@ -143,7 +145,7 @@ class _Lowering:
             assert isinstance(node.payload, Unknown)
             number = self.numbers.get(node.payload)
             return tape.constant(node.payload.guess) if number is None else tape.unknown(number)
-        made: int = getattr(tape, node.op)(*[self.node_of[id(a)] for a in node.args])
+        made: int = getattr(tape, node.op)(*[self.node_of[a] for a in node.args])
         return made
 
     def _in_root(self, s: Structure) -> Iterator[Expression]:

@@ -160,11 +160,11 @@ def own_geometry(named: dict[str, Value], container: Geometry | Structure) -> It
     """Geometry among named values that belongs to the container, members of arrays and lists included; each
     once, however many names it has.
     """
-    seen: set[int] = set()
+    seen: set[Geometry] = set()
     for value in named.values():
         for geometry in _geometry_in(value, container):
-            if id(geometry) not in seen:
-                seen.add(id(geometry))
+            if geometry not in seen:
+                seen.add(geometry)
                 yield geometry
 
 
@@ -186,8 +186,8 @@ def chain(structure: Structure) -> list[Structure]:
 
 
 def common_ancestor(a: Structure, b: Structure) -> Structure:
-    above = set(map(id, chain(a)))
-    return next(s for s in chain(b) if id(s) in above)
+    above = set(chain(a))
+    return next(s for s in chain(b) if s in above)
 
 
 def convert(

@@ -75,9 +75,10 @@ def _failure(lowered: Lowered, solution: Solution, failure: GroupFailure) -> Dia
         if index != worst[0]
     )
     named = ", ".join(f"`{stated.text}`" for _, stated in conflict[:6])
-    hints = [f"any one of them given up, the rest would hold: {named}"] if failure.minimal and others else []
+    hints = [f"were any one looser, the rest would hold: {named}"] if failure.minimal and others else []
     hints.append(
-        "`prefer` states a wish that gives way; `guess(…)` frees a size; a `param` or `fixed(…)` never moves"
+        "let one number follow from the others: `guess(…)` frees it, `prefer` states a wish; "
+        "a `param` or `fixed(…)` never moves"
     )
     if len(conflict) < len(failure.conflict):
         hints.insert(0, "radii, widths, heights and lengths are never negative")

@@ -48,6 +48,8 @@ def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
 
 
 def _number(it: Interpreter, node: ast.Number, env: Env) -> Value:
+    if not math.isfinite(node.value):
+        return _undefined(it, node)
     if node.unit is None:
         return number(node.value)
     factor, dimension = UNITS[node.unit]

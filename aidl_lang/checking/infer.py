@@ -118,7 +118,7 @@ class Inference:
 
     def _number(self, node: ast.Number) -> Fact:
         dimension = UNITS[node.unit][1] if node.unit else None
-        return Fact(NumberType(dimension, whole=dimension is None and node.value == int(node.value)))
+        return Fact(NumberType(dimension, whole=dimension is None and node.value.is_integer()))
 
     def _name(self, node: ast.Name) -> Fact:
         symbol = self.resolution.uses.get(node)
@@ -227,7 +227,7 @@ class Inference:
             case AnyType():
                 self.known(node, what)
             case NumberType(dimension):
-                is_fraction = isinstance(node, ast.Number) and node.value != int(node.value)
+                is_fraction = isinstance(node, ast.Number) and not node.value.is_integer()
                 if dimension not in (None, units.PLAIN) or is_fraction:
                     self.report("E0306", f"{what} must be a whole number, and this is `{shown(node)}`", node)
                 else:

@@ -35,7 +35,8 @@ def unknown_name(resolver: Resolver, node: ast.Name, scope: Scope) -> None:
     name = node.text
     if scope.may_be_missing(name):
         return
-    if resolver.argument is not None and word_meant(name, WORDS) is not None:
+    given = resolver.argument.arguments if resolver.argument is not None else ()
+    if any(a.value is node for a in given) and word_meant(name, WORDS) is not None:
         resolver.resolution.uses[node] = Symbol(name, SymbolKind.WORD)
         return
     called = scope.called(name)

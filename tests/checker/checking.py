@@ -14,9 +14,9 @@ from tests.checker import boxes
 from tests.checker.conditions import residuals
 from tests.checker.definitions import expected, frame
 from tests.checker.evaluate import Evaluator
+from tests.checker.fields import compound
 from tests.checker.program import Program, stated, walk
 from tests.checker.tree import Geo, Node, Transform, read
-from tests.checker.fields import compound
 from tests.checker.values import Point, Scope, UnavailableError, fold
 
 TOLERANCE = 1e-6

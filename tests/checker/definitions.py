@@ -1,4 +1,4 @@
-"""Definitions against the document: what a program wrote exactly must be there exactly, kept sizes be kept."""
+"""Definitions against the document: what was written exactly is there exactly, kept sizes are kept."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def _position(ev: Evaluator, geo: Geo, word: str, written: Point) -> Iterator[Ex
 def _size(ev: Evaluator, geo: Geo, word: str, value: Any, changed: Collection[str]) -> Iterator[Expected]:
     """Exact when it says so; kept otherwise, unless the document tells that it changed."""
     number = ev.number(value)
-    if number.exact == Exact.GUESS or geo.type == "arc" and "angle" in word:
+    if number.exact == Exact.GUESS or (geo.type == "arc" and "angle" in word):
         return
     if number.exact == Exact.NUMBER and _told(geo, changed):
         return

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from aidl_lang import ast
 from tests.checker import fields, functions
 from tests.checker.boxes import Box, around, extremes, structure_extremes
-from tests.checker.tree import Array, Geo, Node, Transform
+from tests.checker.tree import Array, Geo, Node, Transform, Vec
 from tests.checker.values import (
     Boxed,
     Exact,
@@ -192,7 +192,7 @@ class Evaluator:
 
     def box(self, value: Any) -> Box:
         """Measured here and now, without the structures that this comparison ignores."""
-        points = []
+        points: list[Vec] = []
         for source in self.sources(value):
             if isinstance(source, Node):
                 self.used_nodes.append(source)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from tests.checker.boxes import Box
@@ -148,7 +149,7 @@ def _sequence(before: str, after: str, sign: int, across: dict[str, str]) -> Rel
             aligned = [] if align is None else _agree(p, q, across[align])
             return [abs(room - ev.number(gap).value), *aligned]
 
-        return [r for a, b in zip(found, found[1:], strict=False) for r in _pair(ev, a, b, residual)]
+        return [r for a, b in pairwise(found) for r in _pair(ev, a, b, residual)]
 
     return relation
 
@@ -167,7 +168,7 @@ def _uneven(boxes: list[Box], axis: str) -> list[float]:
     low, high = ("left", "right") if axis == "x" else ("bottom", "top")
     first, last = (getattr(b, low) + getattr(b, high) for b in (boxes[0], boxes[-1]))
     ordered = boxes if first <= last else boxes[::-1]
-    gaps = [getattr(b, low) - getattr(a, high) for a, b in zip(ordered, ordered[1:], strict=False)]
+    gaps = [getattr(b, low) - getattr(a, high) for a, b in pairwise(ordered)]
     return [abs(g - gaps[0]) for g in gaps[1:]]
 
 

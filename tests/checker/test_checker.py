@@ -56,7 +56,7 @@ def _structure(name: str, geometry: dict[str, Any], *children: dict[str, Any], *
 
 
 def _scene() -> dict[str, Any]:
-    """low: 0…20 × 0…10; high: 5…15 × 12…18 and a hole below it; ball about (30, 5) of radius 5, its frame turned."""
+    """low: 0…20 × 0…10; high: 5…15 × 12…18, a hole below; ball about (30, 5), radius 5, its frame turned."""
     cut = _structure("cut", {"c": _circle([10, 0], 3)}, kind="hole")
     geometry = {
         "flat": _line([0, 0], [10, 0]),
@@ -94,40 +94,42 @@ TRUE = """
 high.above(low); high.above(low, gap: 2); high.above(low, at_least: 1); high.above(low, gap: gap_wanted)
 low.below(high, gap: 2); low.left_of(ball, gap: 5); ball.right_of(low, at_least: 5); over(high, low)
 centered_horizontally(high, low); centered_vertically(ball, low); same_height(plan, ball, low)
-align_bottom(ball, low, plan); align_top([ball, low]); align_center_y(ball, plan); align_left(high, low, inset: 5)
-wider(low, high); taller(low, high); narrower(high, low); shorter(high, low); no_overlap(high, low)
-row(low, ball, gap: 5, align: "bottom"); row([low, ball, plan], gap: 5); evenly_spaced(low, ball, plan, axis: x)
+align_bottom(ball, low, plan); align_top([ball, low]); align_center_y(ball, plan)
+align_left(high, low, inset: 5); wider(low, high); taller(low, high); narrower(high, low)
+shorter(high, low); no_overlap(high, low); row(low, ball, gap: 5, align: "bottom")
+row([low, ball, plan], gap: 5); evenly_spaced(low, ball, plan, axis: x)
 column(high, low, gap: 2, align: "center"); touching(flat, low); overlapping(low, self); ball.within(self)
 horizontal(flat); vertical(up); perpendicular(flat, up); parallel(flat, flat); tangent(round, flat)
 coincident(dot, flat); coincident(flat.end, up.start); midpoint(dot, flat); dot == flat.midpoint
 tangent(up, bend); bend.start == up.end; bend.radius == 1; bend.sweep == 90deg; bend.end_angle == 90
 distance(dot, up) == 5; distance(flat, up.end, 5); horizontal_distance(dot, up.end) == 5
 angle(flat, slant, 45deg); angle(flat, slant) == 45; angle(slant, flat, 135deg); slant.angle == 0.125turn
-angle(flat, slant, 45deg, ccw: true)
-equal(flat.length, 10); equal_length(flat, flat); radius(round, 4); round.diameter == 8; length(up, 5)
-low.width == 2 * high.width; 1 <= gap_wanted <= 2; gap_wanted in 2..3; high.bottom >= low.top and up.length == 5
-bend.bb.top == 6; bend.bb.left == 9; high.top - high.bottom == 6; low.top_right == (20, 10); up == 10; flat <= 0
-symmetric(flat.start, flat.end, about: up.start - (5, 0)); if len([1, 2]) == 2 { horizontal(flat) }
-for i in 1..3 { flat.length >= i }; ball.origin == origin; max(low.top, high.top) == 18; hypot(3, 4) == flat.length / 2
+angle(flat, slant, 45deg, ccw: true); equal(flat.length, 10); equal_length(flat, flat); radius(round, 4)
+round.diameter == 8; length(up, 5); low.width == 2 * high.width; 1 <= gap_wanted <= 2; gap_wanted in 2..3
+high.bottom >= low.top and up.length == 5; bend.bb.top == 6; bend.bb.left == 9; high.top - high.bottom == 6
+low.top_right == (20, 10); up == 10; flat <= 0; symmetric(flat.start, flat.end, about: up.start - (5, 0))
+if len([1, 2]) == 2 { horizontal(flat) }; for i in 1..3 { flat.length >= i }; ball.origin == origin
+max(low.top, high.top) == 18; hypot(3, 4) == flat.length / 2
 """
 
 FALSE = """
 low.above(high); high.above(low, gap: 1); high.above(low, at_least: 3); high.above(low, gap: 2 * gap_wanted)
 low.below(high, gap: 2.001); low.left_of(ball, gap: 4); ball.right_of(low, at_least: 6); over(low, high)
-centered_horizontally(ball, low); centered_vertically(high, low); same_height(high, low); same_width(low, high)
-align_bottom(high, low); align_top([ball, high]); align_center_x(ball, plan); align_left(high, low)
-wider(high, low); taller(high, low); narrower(low, high); shorter(low, high); no_overlap(low, self)
-row(low, ball, gap: 4); row(low, high, gap: 5); evenly_spaced(low, high, plan, axis: x); touching(low, high)
-column(high, low, gap: 2, align: "left"); overlapping(low, high); low.within(high); inside(low, self, margin: 1)
-horizontal(up); vertical(flat); perpendicular(flat, slant); parallel(flat, slant); tangent(round, up)
-coincident(dot, up); coincident(flat.start, up.start); midpoint(dot, slant); dot == flat.start; concentric(round, bend)
+centered_horizontally(ball, low); centered_vertically(high, low); same_height(high, low)
+same_width(low, high); align_bottom(high, low); align_top([ball, high]); align_center_x(ball, plan)
+align_left(high, low); wider(high, low); taller(high, low); narrower(low, high); shorter(low, high)
+no_overlap(low, self); row(low, ball, gap: 4); row(low, high, gap: 5)
+evenly_spaced(low, high, plan, axis: x); touching(low, high); column(high, low, gap: 2, align: "left")
+overlapping(low, high); low.within(high); inside(low, self, margin: 1); horizontal(up); vertical(flat)
+perpendicular(flat, slant); parallel(flat, slant); tangent(round, up); coincident(dot, up)
+coincident(flat.start, up.start); midpoint(dot, slant); dot == flat.start; concentric(round, bend)
 tangent(slant, bend); bend.start == up.start; bend.radius == 2; bend.sweep == 270deg; collinear(flat, slant)
 distance(dot, up) == 4; distance(flat, up.end, 4); vertical_distance(dot, up.end) == 4
-angle(flat, slant, 44deg); angle(flat, slant) == 46; angle(flat, slant, 45deg, ccw: false)
-equal(flat, up); equal_length(flat, slant); radius(round, 5); length(up, 4)
-low.width == high.width; 1 <= gap_wanted <= 1.5; gap_wanted in 3..4; high.bottom >= low.top and up.length == 4
-bend.bb.top == 5; bend.bb.right == 9; low.top_right == (20, 11); up == 9; flat >= 1; low.left == 0.00001
-for i in 1..11 { flat.length >= i }; min(low.top, high.top) == 18; 2 == 3
+angle(flat, slant, 44deg); angle(flat, slant) == 46; angle(flat, slant, 45deg, ccw: false); equal(flat, up)
+equal_length(flat, slant); radius(round, 5); length(up, 4); low.width == high.width; 1 <= gap_wanted <= 1.5
+gap_wanted in 3..4; high.bottom >= low.top and up.length == 4; bend.bb.top == 5; bend.bb.right == 9
+low.top_right == (20, 11); up == 9; flat >= 1; low.left == 0.00001; for i in 1..11 { flat.length >= i }
+min(low.top, high.top) == 18; 2 == 3
 """
 
 

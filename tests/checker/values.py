@@ -142,10 +142,12 @@ class Scope:
 
     def candidates(self, name: str) -> list[tuple[Any, Scope]]:
         """User-defined callables of a name, innermost first."""
-        wanted, here, found = fold(self.canonical(name)), self, []
+        wanted = fold(self.canonical(name))
+        found: list[tuple[Any, Scope]] = []
+        here: Scope | None = self
         while here is not None:
             found += [c for n, cs in here.functions.items() if fold(n) == wanted for c in cs]
-            here = here.parent  # type: ignore[assignment]
+            here = here.parent
         return found
 
     def canonical(self, name: str) -> str:

@@ -150,8 +150,8 @@ def test_the_fix_marks_the_part():
     a = structure(
         "solid", "a", circle("c", 0, 0, 1), span=span_of(source, "solid a { c = circle(radius: 1) }")
     )
-    b = structure("solid", "b", circle("c", 9, 0, 1), detached=())
-    text, _ = apply_fixes(source, notes(structure("assembly", "m", a, b)))
+    b, c = (structure("solid", name, circle("c", 9, y, 1)) for name, y in (("b", 0), ("c", 1)))
+    text, _ = apply_fixes(source, notes(structure("assembly", "m", a, b, c)))
     assert "@detached solid a {" in text
 
 

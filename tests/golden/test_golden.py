@@ -21,6 +21,7 @@ import pytest
 import aidl_lang
 from aidl_lang import pipeline
 from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.interp import interpret
 from aidl_lang.lower import lower
 from aidl_lang.model import Structure
 from aidl_lang.source import SourceFile
@@ -75,7 +76,7 @@ def _line(d: Diagnostic) -> str:
 def problem(text: str) -> str:
     """The structure tree with its geometry, and what the solver is asked."""
     program, _ = pipeline.front(SourceFile("<text>", text))
-    model = pipeline.interpret(program).model
+    model = interpret(program).model
     asked = lower(model).problem
     free = Counter(asked.group[~asked.kept].tolist())
     kept = Counter(asked.group[asked.kept].tolist())

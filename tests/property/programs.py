@@ -124,14 +124,54 @@ def sketches(draw: st.DrawFn, least: int = 2, most: int = 3) -> Sketch:
     return Sketch(parts, tuple(relations))
 
 
-WORDS = (
-    "assembly solid hole drawing part param var let constrain prefer assert for in if else then import shape fn "
-    "constraint alias template construction step weight todo at rotated and or not true false self origin x_axis "
-    "rectangle( circle( line( arc( polygon( above( tangent( inside( fixed( guess( len( min( ( ) [ ] { } , ; : . "
-    ".. ..< = == <= >= != < > + - * / % ^ @ @color( \" ' // /* */ # a b c a.b a[0] a[-1] r.top 0 1 2.5 1e300 1e999 "
-    "10mm 30deg 1turn 0..9 é 名 \\ \n"
-).split(" ")
+WORDS = r"""
+assembly solid hole drawing part param var let constrain prefer assert for in if else then import shape fn
+constraint alias template construction step weight todo at rotated and or not true false self origin x_axis
+rectangle( circle( line( arc( polygon( above( tangent( inside( fixed( guess( len( min( ( ) [ ] { } , ; : . ..
+..< = == <= >= != < > + - * / % ^ @ @color( " ' // /* */ # a b c a.b a[0] a[-1] r.top 0 1 2.5 1e300 1e999
+10mm 30deg 1turn 0..9 é 名 \
+"""
 
-TOKEN_SOUP = st.lists(st.sampled_from(WORDS), max_size=40).map(" ".join)
+TOKEN_SOUP = st.lists(st.sampled_from([*WORDS.split(), "\n"]), max_size=40).map(" ".join)
 STRUCTURED_SOUP = TOKEN_SOUP.map(lambda soup: f"solid s {{ r = rectangle(width: 3, height: 4)\n{soup}\n}}")
 ANY_TEXT = st.text(max_size=80)
+
+
+GEOMETRIC = (
+    "horizontal({a})",
+    "vertical({a})",
+    "parallel({a}, {b})",
+    "perpendicular({a}, {b})",
+    "equal_length({a}, {b})",
+    "{a}.length == {g}",
+    "distance({a}.start, {b}.end) >= {g}",
+    "{a}.midpoint.y == {b}.start.y",
+    "angle({a}, {b}, {g}deg)",
+    "coincident({a}.midpoint, {b})",
+    "tangent({a}, ring)",
+    "ring.center == {a}.midpoint",
+    "distance(ring, {a}) == {g}",
+    "{a}.dx <= -{b}.dy",
+)
+
+
+@st.composite
+def outlines(draw: st.DrawFn) -> tuple[list[str], list[str]]:
+    """A closed outline of shared points and a circle, and relations that may contradict each other."""
+    count = draw(st.integers(3, 5))
+    points = [(20 * i + draw(st.integers(-8, 8)), draw(st.integers(-40, 40))) for i in range(count)]
+    drawing = [f"p{i} = ({x}, {y})" for i, (x, y) in enumerate(points)]
+    drawing += [f"edge{i} = line(p{i}, p{(i + 1) % count})" for i in range(count)]
+    drawing.append(f"ring = circle(center: ({draw(PLACES)}, {draw(PLACES)}), radius: guess({draw(SIZES)}))")
+    constraints = []
+    for _ in range(draw(st.integers(1, 4))):
+        i, shift = draw(st.integers(0, count - 1)), draw(st.integers(1, count - 1))
+        relation = draw(st.sampled_from(GEOMETRIC))
+        constraints.append(
+            relation.format(a=f"edge{i}", b=f"edge{(i + shift) % count}", g=draw(st.integers(5, 60)))
+        )
+    return drawing, constraints
+
+
+def outline_text(drawing: Sequence[str], constraints: Sequence[str]) -> str:
+    return "\n".join(["drawing d {", *drawing, "constrain {", *constraints, "}", "}"]) + "\n"
