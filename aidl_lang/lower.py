@@ -22,6 +22,12 @@ from aidl_lang.values import Num, PointVal
 
 _RADIAN = 180.0 / np.pi
 
+_LONGEST_TURN = 60.0
+"""Degrees that an angle may turn in one step of the solver."""
+
+LEAST_SHARE = 1e-3
+"""A kept size may give way, but not vanish: what is left is at least this share of what was written."""
+
 
 @dataclass(frozen=True)
 class Lowered:
@@ -57,11 +63,12 @@ class _Lowering:
         self._number_unknowns(e for s in self.structures for e in _observed(s))
         stated: list[Constraint | None] = []
         constraints: list[SolverConstraint] = []
-        for constraint in self.model.constraints:
+        # In an order of their own, so that the order of writing cannot show in the last digits.
+        for constraint in sorted(self.model.constraints, key=lambda c: (c.text, c.label, c.span.start)):
             if constraint.holder in self.groups:
                 constraints.append(self._constraint(constraint))
                 stated.append(constraint)
-        for never in self._never_negative():
+        for never in self._never_vanishing():
             constraints.append(never)
             stated.append(None)
         observables = tuple(
@@ -76,6 +83,7 @@ class _Lowering:
             kept=np.array([u.kept for u in found], dtype=np.bool_),
             group=np.array([self.groups[self._placer(u)] for u in found], dtype=np.int64),
             frame_of=np.array([self._frame_of(u) for u in found], dtype=np.int64),
+            longest=np.array([_LONGEST_TURN if u.angular else np.inf for u in found], dtype=np.float64),
             parent=np.array(parents, dtype=np.int64),
             constraints=tuple(constraints),
             observables=observables,
@@ -172,9 +180,11 @@ class _Lowering:
         if comparison.relation == "==":
             difference = tape.sub(left, right)
             if comparison.dimension == ANGLE:
-                # Angles agree modulo a turn: the difference brought into -180..180.
-                half = tape.constant(180.0)
-                difference = tape.sub(tape.mod(tape.add(difference, half), tape.constant(360.0)), half)
+                # Angles agree modulo a turn: the difference as a direction, smooth except at half a turn.
+                radians = tape.mul(difference, tape.constant(1 / _RADIAN))
+                difference = tape.mul(
+                    tape.atan2(tape.sin(radians), tape.cos(radians)), tape.constant(_RADIAN)
+                )
             return Row(difference, Relation.EQUAL, scale)
         if comparison.relation in (">=", ">"):
             left, right = right, left
@@ -185,10 +195,11 @@ class _Lowering:
         length, angle = dimension or LENGTH
         return float(self.size**length * _RADIAN**angle)
 
-    def _never_negative(self) -> Iterator[SolverConstraint]:
+    def _never_vanishing(self) -> Iterator[SolverConstraint]:
         for unknown, number in self.numbers.items():
             if unknown.field.rpartition(".")[2] in SIZES and unknown.guess >= 0:
-                expression = self.tape.neg(self.tape.unknown(number))
+                least = LEAST_SHARE * unknown.guess if unknown.kept else 0.0
+                expression = self.tape.sub(self.tape.constant(least), self.tape.unknown(number))
                 row = Row(expression, Relation.AT_MOST, self.size)
                 yield SolverConstraint(self.groups[unknown.owner], (row,), frozenset())
 

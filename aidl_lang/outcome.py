@@ -28,6 +28,8 @@ def solution_notes(lowered: Lowered, solution: Solution, model: SolvedModel) -> 
     if solution.status is not Status.SOLVED:
         return found
     for change in model.changed:
+        if _short(change.written) == _short(change.solved):
+            continue
         found.append(
             Diagnostic(
                 "N0601",
@@ -74,19 +76,23 @@ def _failure(lowered: Lowered, solution: Solution, failure: GroupFailure) -> Dia
         for index, stated in conflict
         if index != worst[0]
     )
-    named = ", ".join(f"`{stated.text}`" for _, stated in conflict[:6])
+    named = ", ".join(f"`{_named(stated)}`" for _, stated in conflict[:6])
     hints = [f"were any one looser, the rest would hold: {named}"] if failure.minimal and others else []
     hints.append(
         "let one number follow from the others: `guess(…)` frees it, `prefer` states a wish; "
         "a `param` or `fixed(…)` never moves"
     )
     if len(conflict) < len(failure.conflict):
-        hints.insert(0, "radii, widths, heights and lengths are never negative")
+        hints.insert(0, "a size that was written may change, but it does not vanish")
     off = solution.residuals[worst[0]]
     label = f"off by {_short(off)}" if off > _TOLERANCE else "against the others"
     if not math.isfinite(off):
         label = "this has no value where the solver stopped"
     return Diagnostic(code, headline, worst[1].span, label, others, tuple(hints))
+
+
+def _named(stated: Constraint) -> str:
+    return f"{stated.text} [{stated.label}]" if stated.label else stated.text
 
 
 def _short(value: float) -> str:

@@ -263,51 +263,65 @@ _GATHERED = 20
 
 
 def bind(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch:
-    """Match arguments to the parameters of one callable."""
+    """Match arguments to the parameters of one callable.
+
+    Where the first parameter is a list and the arguments do not fit as they stand, all positional ones are
+    its members: `align_left(a, b, c)`, `row(windows, door, gap: 3)`.
+    """
+    plain = _bind(signature, given, gather=False)
+    if isinstance(plain, Binding) or not signature.gathers or not any(g.name is None for g in given):
+        return plain
+    gathered = _bind(signature, given, gather=True)
+    return gathered if isinstance(gathered, Binding) or plain.argument != gathered.argument else plain
+
+
+def _bind(signature: Signature, given: Sequence[Given], *, gather: bool) -> Binding | Mismatch:
     positional = [i for i, g in enumerate(given) if g.name is None]
-    named = [(i, g.name) for i, g in enumerate(given) if g.name is not None]
-    arguments: dict[str, tuple[int, ...]] = {}
-    gathered: str | None = None
     parameters = signature.parameters
-    single_list = positional and isinstance(given[positional[0]].type, ListType | AnyType)
-    if signature.gathers and positional and not (single_list and len(positional) <= len(parameters)):
-        gathered = parameters[0][0]
+    arguments: dict[str, tuple[int, ...]] = {}
+    gathered = parameters[0][0] if gather else None
+    if gathered is not None:
         arguments[gathered] = tuple(positional)
+    elif len(positional) > len(parameters):
+        count = len(parameters)
+        reason = f"takes at most {count} argument{'s' * (count != 1)}"
+        return Mismatch(signature, reason, positional[count])
     else:
-        if len(positional) > len(parameters):
-            count = len(parameters)
-            return Mismatch(
-                signature, f"takes at most {count} argument{'s' * (count != 1)}", positional[count]
-            )
-        for (name, _, _), index in zip(parameters, positional, strict=False):
-            arguments[name] = (index,)
-    by_fold = signature.by_fold
-    for index, written in named:
-        assert written is not None
-        target = by_fold.get(fold(written))
+        arguments |= {name: (i,) for (name, _, _), i in zip(parameters, positional, strict=False)}
+    for index, argument in enumerate(given):
+        if argument.name is None:
+            continue
+        target = signature.by_fold.get(fold(argument.name))
         if target is None:
-            return Mismatch(signature, f"has no parameter `{written}`", index)
+            return Mismatch(signature, f"has no parameter `{argument.name}`", index)
         if target in arguments:
             return Mismatch(signature, f"gets `{target}` twice", index)
         arguments[target] = (index,)
-    total = _GATHERED if gathered is not None else 0
-    defaulted = 0
-    for name, kind, optional in parameters:
+    return _fitted(signature, given, arguments, gathered, tuple(positional))
+
+
+def _fitted(
+    signature: Signature,
+    given: Sequence[Given],
+    arguments: Mapping[str, tuple[int, ...]],
+    gathered: str | None,
+    positional: tuple[int, ...],
+) -> Binding | Mismatch:
+    """Whether every parameter is given something that fits, and how far it is from what it wants."""
+    distance, defaulted = (_GATHERED if gathered is not None else 0), 0
+    for name, kind, optional in signature.parameters:
         if name not in arguments:
             if not optional:
                 return Mismatch(signature, f"needs `{name}`")
             defaulted += 1
         elif name != gathered:
             index = arguments[name][0]
-            distance = accepts(kind, given[index].type)
-            if distance is None:
-                return Mismatch(
-                    signature,
-                    f"needs `{name}` to be {with_article(kind)}, not {with_article(given[index].type)}",
-                    index,
-                )
-            total += distance
-    return Binding(signature, arguments, gathered, (total, defaulted), tuple(positional))
+            step = accepts(kind, given[index].type)
+            if step is None:
+                wanted, got = with_article(kind), with_article(given[index].type)
+                return Mismatch(signature, f"needs `{name}` to be {wanted}, not {got}", index)
+            distance += step
+    return Binding(signature, arguments, gathered, (distance, defaulted), positional)
 
 
 def select(candidates: Sequence[Signature], given: Sequence[Given]) -> Binding | list[Mismatch]:

@@ -82,5 +82,5 @@ def power(a: MaybeDimension, exponent: float) -> MaybeDimension:
         return a
     length, angle = a.length * exponent, a.angle * exponent
     if length != int(length) or angle != int(angle):
-        raise ValueError(f"{describe(a)} to the power {exponent:g}")
+        raise ValueError(f"{describe(a)} taken to the power {exponent:g}")
     return Dimension(int(length), int(angle))

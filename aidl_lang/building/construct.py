@@ -7,6 +7,7 @@ one: the first is the position, the differences to it are kept sizes.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 
 from aidl_lang import ast
@@ -62,40 +63,80 @@ def positions(
     names: Sequence[str],
     owner: Structure,
 ) -> list[PointVal]:
-    """Points given as positions to one constructor; literal ones move as one."""
-    placed: list[list[Expression]] = []
-    for axis in ("x", "y"):
-        coordinates: list[Num] = [getattr(p, axis) for p in points]
-        placed.append(_along(it, coordinates, holder, [f"{n}.{axis}" for n in names], owner))
-    return [point(x, y) for x, y in zip(*placed, strict=True)]
+    """Points given as positions to one constructor; literal ones move as one.
 
-
-def _along(
-    it: Interpreter,
-    numbers: Sequence[Num],
-    holder: Geometry | Structure,
-    names: Sequence[str],
-    owner: Structure,
-) -> list[Expression]:
-    anchor: tuple[Num, Expression] | None = None
-    found: list[Expression] = []
-    for number, name in zip(numbers, names, strict=True):
-        if number.status >= Status.FIXED:
-            found.append(number.expression)
-        elif anchor is None or number.status is Status.GUESS:
-            made = it.unknown(number.value, holder, name, owner=owner, dimension=LENGTH)
-            anchor = anchor or (number, made)
-            found.append(made)
+    From one literal point to the next the way is kept as a length and a direction, so that what turns an edge
+    does not shorten it.
+    """
+    placed: list[PointVal] = []
+    anchors: dict[str, tuple[Num, Expression]] = {}
+    before: tuple[PointVal, PointVal] | None = None
+    for at, name in zip(points, names, strict=True):
+        if _is_literal(at) and before is not None and _apart(before[0], at):
+            made = _beyond(it, before, at, holder, name, owner)
         else:
-            first, base = anchor
-            offset = number.value - first.value
-            if Status.PARAM in (number.status, first.status):
-                difference = ex.constant(offset)
-            else:
-                field = name.replace(".", ".d") if "." in name else name
-                difference = it.unknown(offset, holder, field, owner=owner, dimension=LENGTH, kept=True)
-            found.append(ex.add(base, difference))
-    return found
+            x = _coordinate(it, "x", at.x, anchors, holder, name, owner)
+            y = _coordinate(it, "y", at.y, anchors, holder, name, owner)
+            made = point(x, y)
+        if _is_literal(at):
+            before = (at, made)
+        placed.append(made)
+    return placed
+
+
+def _is_literal(at: PointVal) -> bool:
+    return at.x.status is at.y.status is Status.NUMBER
+
+
+def _apart(a: PointVal, b: PointVal) -> bool:
+    return a.x.value != b.x.value or a.y.value != b.y.value
+
+
+def _beyond(
+    it: Interpreter,
+    before: tuple[PointVal, PointVal],
+    at: PointVal,
+    holder: Geometry | Structure,
+    name: str,
+    owner: Structure,
+) -> PointVal:
+    """A literal point by its distance and direction from the literal point before it."""
+    written, base = before
+    way, angle = (
+        it.unknown(n.value, holder, f"{name}.{what}", owner=owner, dimension=n.dimension, kept=True)
+        for n, what in zip(_way(written, at), ("length", "angle"), strict=True)
+    )
+    return polar(base, way, angle)
+
+
+def _way(a: PointVal, b: PointVal) -> tuple[Num, Num]:
+    """The distance and the direction from one literal point to another."""
+    x, y = b.x.value - a.x.value, b.y.value - a.y.value
+    return Num(ex.constant(math.hypot(x, y)), LENGTH), Num(ex.constant(math.degrees(math.atan2(y, x))), ANGLE)
+
+
+def _coordinate(
+    it: Interpreter,
+    axis: str,
+    number: Num,
+    anchors: dict[str, tuple[Num, Expression]],
+    holder: Geometry | Structure,
+    name: str,
+    owner: Structure,
+) -> Expression:
+    """One coordinate: exact, a first guess, or a difference from the first guess before it."""
+    if number.status >= Status.FIXED:
+        return number.expression
+    if axis not in anchors or number.status is Status.GUESS:
+        made = it.unknown(number.value, holder, f"{name}.{axis}", owner=owner, dimension=LENGTH)
+        anchors.setdefault(axis, (number, made))
+        return made
+    first, base = anchors[axis]
+    offset = number.value - first.value
+    if Status.PARAM in (number.status, first.status):
+        return ex.add(base, ex.constant(offset))
+    kept = it.unknown(offset, holder, f"{name}.d{axis}", owner=owner, dimension=LENGTH, kept=True)
+    return ex.add(base, kept)
 
 
 # --- Primitives ----------------------------------------------------------------------------------
@@ -125,9 +166,14 @@ def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
 
 def _points(it: Interpreter, g: Geometry, a: Arguments, names: Sequence[str]) -> dict[str, Value]:
     """The named point arguments as positions of one geometry; a missing one is a guess at the origin."""
-    given = [a.get(name, _ORIGIN) for name in names]
-    found = positions(it, [p for p in given if isinstance(p, PointVal)], g, names, g.owner)
+    found = positions(it, [_written(a, name) for name in names], g, names, g.owner)
     return dict(zip(names, found, strict=True))
+
+
+def _written(a: Arguments, name: str) -> PointVal:
+    value = a.get(name, _ORIGIN)
+    assert isinstance(value, PointVal)
+    return value
 
 
 _ORIGIN = PointVal(Num(ex.ZERO, LENGTH), Num(ex.ZERO, LENGTH))
@@ -141,8 +187,11 @@ def _size(it: Interpreter, g: Geometry, a: Arguments, name: str, dimension: Mayb
 
 def _line(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     if "end" in a:
-        g.fields = _points(it, g, a, ("start", "end"))
-        return
+        start, end = _written(a, "start"), _written(a, "end")
+        if not (_is_literal(start) and _is_literal(end) and _apart(start, end)):
+            g.fields = _points(it, g, a, ("start", "end"))
+            return
+        a = dict(zip(("start", "length", "angle"), (start, *_way(start, end)), strict=True))
     g.fields = _points(it, g, a, ("start",))
     reach, angle = _size(it, g, a, "length"), _size(it, g, a, "angle", ANGLE)
     end = polar(g.fields["start"], reach.expression, angle.expression)
@@ -160,6 +209,7 @@ def _circle(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     g.clockwise = a.get("clockwise") is True
+    a = _by_angles_if_round(a)
     if "start_angle" in a:
         _arc_by_angles(it, g, a)
     elif "radius" in a:
@@ -174,6 +224,17 @@ def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
         radius = g.fields["radius"]
         assert isinstance(radius, Num)
         hold(it, g, [(length(h), radius) for h in hidden])
+
+
+def _by_angles_if_round(a: Arguments) -> Arguments:
+    """Three literal points of one circle are a radius and two angles: nothing is left to be held equal."""
+    if not all(name in a and _is_literal(_written(a, name)) for name in ("center", "start", "end")):
+        return a
+    center = _written(a, "center")
+    (radius, first), (other, last) = (_way(center, _written(a, name)) for name in ("start", "end"))
+    if abs(radius.value - other.value) > 1e-9 * radius.value:
+        return a
+    return {"center": center, "radius": radius, "start_angle": first, "end_angle": last}
 
 
 def _arc_by_angles(it: Interpreter, g: Geometry, a: Arguments) -> None:

@@ -215,6 +215,8 @@ def read(it: Interpreter, binding: Binding, node: ast.Node, env: Env) -> Value:
 def _read_let(it: Interpreter, let: LetBinding, node: ast.Node, env: Env) -> Value:
     if let.known is not None:
         return let.known
+    if (seen := let.seen.get((env.here, env.reach))) is not None:
+        return seen
     if let.running:
         it.report("E0207", f"`{node.span.text}` is defined by way of itself", node)
         return NOTHING
@@ -225,6 +227,8 @@ def _read_let(it: Interpreter, let: LetBinding, node: ast.Node, env: Env) -> Val
         let.running = False
     if is_same_everywhere(value):
         let.known = value
+    else:
+        let.seen[env.here, env.reach] = value
     return value
 
 
@@ -265,6 +269,8 @@ def member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env)
         case Namespace():
             key = find(name, value.values)
             found = read(it, value.values[key], node, env) if key else None  # type: ignore[arg-type]
+        case ListVal() | Array() if name in ("bb", "box"):
+            found = boxes.box_of(value, env.here)
         case ListVal() | Array():
             items = [member(it, item, name, node, env) for item in members(value) or ()]
             return NOTHING if any(isinstance(i, Nothing) for i in items) else ListVal(tuple(items))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from aidl_lang import ast, units
 from aidl_lang import expression as ex
 from aidl_lang.boxes import spelled_out
-from aidl_lang.building.coerce import as_written, constant, numeric
+from aidl_lang.building.coerce import as_point, as_written, constant, numeric
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.expression import DEGREE, Expression
 from aidl_lang.model import Geometry, Structure
@@ -100,7 +100,7 @@ def _of_one(op: str, dimension: Callable[[MaybeDimension], MaybeDimension]) -> F
         try:
             result = dimension(value.dimension)
         except ValueError as reason:
-            it.report("E0308", f"`{node.callee.text}` has no meaning for an {reason}", node)
+            it.report("E0308", f"`{node.callee.text}` has no meaning here: a {reason}", node)
             return NOTHING
         return _checked(it, Num(ex.apply(op, value.expression), result, value.status), node)
 
@@ -235,6 +235,7 @@ def _mark(status: Status) -> Function:
 
     def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         value = a["value"]
+        value = as_point(it, value, node, env) or value if isinstance(value, Geometry) else value
         if isinstance(value, Num | PointVal | ListVal):
             return mark(as_written(value) if status is Status.GUESS else value)
         it.report(

@@ -22,11 +22,16 @@ if TYPE_CHECKING:
 
 @dataclass(eq=False)
 class LetBinding:
-    """A name for an expression, evaluated where it is used; what is the same everywhere is kept."""
+    """A name for an expression, evaluated where it is used.
+
+    known  what is the same everywhere
+    seen   what it is for one frame and reach
+    """
 
     node: ast.Expression
     scope: Scope
     known: Value | None = None
+    seen: dict[object, Value] = field(default_factory=dict)
     running: bool = False
 
 

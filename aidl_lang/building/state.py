@@ -97,6 +97,9 @@ class Interpreter:
         secondary: Sequence[Label] = (),
     ) -> None:
         span = self.place(node)
+        written = node.span if isinstance(node, ast.Node) else node
+        if span is not None and written is not None and span.source is not written.source:
+            message = f"`{' '.join(span.text.split())}` does not work out: in the library, {message}"
         self.diagnostics.append(Diagnostic(code, message, span, label, tuple(secondary), tuple(hints), fix))
 
     @property

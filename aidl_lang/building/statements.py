@@ -172,7 +172,14 @@ def _defer(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) 
 
 def _param(it: Interpreter, node: ast.Param, scope: Scope, here: Structure) -> None:
     binding = scope.values.get(node.name.text)
-    if isinstance(binding, ParamBinding):
+    if scope.turn:
+        it.report(
+            "E0208",
+            f"`param {node.name.text}` would be made in every turn of the loop",
+            node.name,
+            hints=["put the `param` before the loop, or use a `let` of the loop variable"],
+        )
+    elif isinstance(binding, ParamBinding):
         read_param(it, binding, node)
 
 
@@ -182,6 +189,7 @@ def _var(it: Interpreter, node: ast.Var, scope: Scope, here: Structure) -> None:
         return
     found = numeric(it, value, node.value, Env(scope, here, Reach.OWN))
     if found is None:
+        _declare(it, scope, node.name, (), NOTHING, node)
         return
     holder = scope.declaring().container or here
     made = it.unknown(found.value, holder, node.name.text, owner=here, dimension=found.dimension)
@@ -330,6 +338,14 @@ def _declare(
 ) -> None:
     """Give a value a name in the structure or shape whose body this is."""
     target = scope.declaring()
+    if name.text in _EVERYWHERE:
+        it.report(
+            "E0209",
+            f"`{name.text}` belongs to every structure and cannot be declared",
+            name,
+            hints=["choose another name"],
+        )
+        return
     if not indices:
         if scope.turn and name.text in target.values and not isinstance(target.values[name.text], LetBinding):
             it.report(
@@ -448,6 +464,9 @@ def _around(scope: Scope, name: str, structure: Structure) -> Scope:
     around = Scope(scope)
     around.values[name] = structure
     return around
+
+
+_EVERYWHERE = frozenset({"self", "origin", "x_axis", "y_axis"})
 
 
 def _own_names(scope: Scope, structure: Structure) -> None:

@@ -70,16 +70,30 @@ def holds(row: Row, values: Valuation, tolerance: float) -> bool:
     return violation_of(row, values) <= tolerance * row.scale
 
 
-def attempt(task: Task, values: Valuation, scale: Floats, settings: Settings, clock: Clock) -> Verdict:
+@dataclass(frozen=True)
+class Metric:
+    """How changes are measured, each (n,).
+
+    scale    length of a change that counts as one
+    unit     the same without regard to what is kept
+    longest  the largest change in one Newton step, if there is one
+    """
+
+    scale: Floats
+    unit: Floats
+    longest: Floats | None
+
+
+def attempt(task: Task, values: Valuation, metric: Metric, settings: Settings, clock: Clock) -> Verdict:
     """Tries to satisfy `task`, moving its free unknowns the least; leaves `values` at what was reached."""
-    return _Attempt(task, values, scale, settings, clock).run()
+    return _Attempt(task, values, metric, settings, clock).run()
 
 
 class _Attempt:
     def __init__(
-        self, task: Task, values: Valuation, scale: Floats, settings: Settings, clock: Clock
+        self, task: Task, values: Valuation, metric: Metric, settings: Settings, clock: Clock
     ) -> None:
-        self.task, self.values, self.scale, self.settings, self.clock = task, values, scale, settings, clock
+        self.task, self.values, self.metric, self.settings, self.clock = task, values, metric, settings, clock
         self.cone: Cone = values.cone(row.expression for row in task.rows)
         self.free = sorted(task.free & self.cone.unknowns)
         self.origin = [values.unknowns[unknown] for unknown in self.free]
@@ -217,7 +231,8 @@ class _Attempt:
             self.task.softness[self.considered[i]] if row else 0.0
             for i, row in zip(program.rows, rows, strict=True)
         ]
-        scale = self.scale[program.columns]
+        metric, columns = self.metric, program.columns
+        scale = metric.scale[columns]
         anchor = np.array([origin[unknown] for unknown in program.columns])
         system = System(
             program,
@@ -226,6 +241,8 @@ class _Attempt:
             np.array([row.scale if row else 1.0 for row in rows]),
             np.array([row is None or row.relation is Relation.AT_MOST for row in rows]),
             np.array(softness) if any(softness) else None,
+            None if metric.longest is None else metric.longest[columns],
+            metric.unit[columns],
         )
         z = np.zeros(system.size)
         z[: len(scale)] = (np.array([start[unknown] for unknown in program.columns]) - anchor) / scale

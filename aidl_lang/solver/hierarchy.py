@@ -25,7 +25,7 @@ from typing import TypeAlias
 import numpy as np
 
 from aidl_lang.solver import conflicts
-from aidl_lang.solver.branches import Task, Verdict, attempt, holds, violation_of
+from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
 from aidl_lang.solver.gradients import gradients
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Floats
@@ -84,6 +84,9 @@ class Hierarchy:
     def __init__(self, problem: Problem, settings: Settings, clock: Clock) -> None:
         self.problem, self.settings, self.clock = problem, settings, clock
         self.values = Valuation(problem.tape, problem.initial.tolist())
+        scale, longest = problem.scale, problem.longest
+        self.metric = Metric(scale, scale, longest)
+        self.firm = Metric(np.where(problem.kept, FIRM, 1.0) * scale, scale, longest)
         self.failures: list[GroupFailure] = []
         self.stages: list[StageReport] = []
         self.timed_out = False
@@ -168,19 +171,16 @@ class Hierarchy:
         """
         rows = self.rows(scope.constraints)
         sizes = [unknown for unknown in scope.free if self._kept[unknown]]
-        scale = self.problem.scale
-        if sizes:
-            scale = scale.copy()
-            scale[sizes] *= FIRM
+        metric = self.firm if sizes else self.metric
         before = self.save(scope.free)
         task = Task(rows, [0.0] * len(rows), scope.free, restarts)
-        verdict = attempt(task, self.values, scale, self.settings, clock or self.clock)
+        verdict = attempt(task, self.values, metric, self.settings, clock or self.clock)
         idle = {u for u in sizes if abs(self.values.unknowns[u] - before[u]) < IDLE * self.problem.scale[u]}
         if verdict.satisfied and idle:
             reached = self.save(scope.free)
             self.values.assign(before.items())
             fewer = Task(rows, [0.0] * len(rows), scope.free - idle, restarts)
-            again = attempt(fewer, self.values, scale, self.settings, clock or self.clock)
+            again = attempt(fewer, self.values, metric, self.settings, clock or self.clock)
             if not again.satisfied:
                 self.values.assign(reached.items())
         return verdict
@@ -439,9 +439,7 @@ class _Group:
                 softness.append(FIRMNESS / float(np.sqrt(weight)))
         cost = self._cost(soft)
         task = Task(rows, softness, scope.free)
-        verdict = attempt(
-            task, hierarchy.values, hierarchy.problem.scale, hierarchy.settings, hierarchy.clock
-        )
+        verdict = attempt(task, hierarchy.values, hierarchy.metric, hierarchy.settings, hierarchy.clock)
         if not verdict.satisfied or not self._cost(soft) < cost:
             hierarchy.values.assign(before.items())
         else:

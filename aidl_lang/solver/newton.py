@@ -103,7 +103,14 @@ class System:
         row_scale: Floats,
         inequality: NDArray[np.bool_],
         softness: Floats | None = None,
+        longest: Floats | None = None,
+        unit: Floats | None = None,
     ) -> None:
+        slacks = 0 if softness is None else int(np.count_nonzero(softness > 0.0))
+        self.longest = None if longest is None else np.append(longest / scale, np.full(slacks, np.inf))
+        self.stretch = (
+            np.ones(len(scale) + slacks) if unit is None else np.append(unit / scale, np.ones(slacks))
+        )
         self.program, self.origin, self.scale, self.inequality = program, origin, scale, inequality
         self.linear = program.linear
         self._has_inequalities = bool(inequality.any())
@@ -161,7 +168,7 @@ def solve(
     for turn, amplitude in enumerate(RESTARTS[:restarts]):
         if clock.expired or agreeing == CONVINCING:
             break
-        again = solver.run(perturbation(system.size, turn) * amplitude * solver.reach)
+        again = solver.run(perturbation(system.size, turn) * amplitude * solver.reach * system.stretch)
         if again.converged:
             return again
         agreeing += again.end is best.end and abs(again.violation - best.violation) <= SAME * best.violation
@@ -246,8 +253,11 @@ class _Newton:
         merit = _squares(system.violations(residuals))
         if damping == 0.0:
             shortest = nearest(jacobian, -residuals, system.inequality)
-            if shortest.feasible and (taken := self._try(z, shortest.point, merit, 0.0)):
-                return *taken, 0.0
+            if shortest.feasible:
+                step, share = self._bounded(shortest.point)
+                left = (1.0 - share) ** 2 * merit
+                if taken := self._try(z, step, merit, left):
+                    return *taken, 0.0
         rows = ~system.inequality | (residuals > 0.0)
         damped = DampedSteps(jacobian[rows], residuals[rows])
         largest = damped.largest
@@ -255,7 +265,7 @@ class _Newton:
             return None
         mu = max(damping, 1e-12) * largest
         while mu <= 1e8 * largest:
-            step = damped.step(mu)
+            step, _ = self._bounded(damped.step(mu))
             predicted = _squares(residuals[rows] + jacobian[rows] @ step)
             if np.abs(step).max() <= STILL * (1.0 + np.abs(z).max()) or merit - predicted <= 1e-14 * merit:
                 return None
@@ -263,6 +273,14 @@ class _Newton:
                 return *taken, (mu / largest / 10.0 if mu > 1e-7 * largest else 0.0)
             mu = max(10.0 * mu, 1e-4 * largest)
         return None
+
+    def _bounded(self, step: Floats) -> tuple[Floats, float]:
+        """The step, or the share of it in which no unknown moves further than it may at once."""
+        longest = self.system.longest
+        if longest is None:
+            return step, 1.0
+        excess = float((np.abs(step) / longest).max(initial=0.0))
+        return (step, 1.0) if excess <= 1.0 else (step / excess, 1.0 / excess)
 
     def _try(self, z: Floats, step: Floats, merit: float, predicted: float) -> tuple[Floats, Floats] | None:
         trial = z + step

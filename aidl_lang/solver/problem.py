@@ -62,6 +62,8 @@ class Problem:
     group    (n,) the group that owns each unknown
     frame_of (n,) for a translation of a group's frame, that group; else -1. A frame's unknowns are owned by
              the parent of the group they move.
+    longest  (n,) the largest change of each unknown in one Newton step, so that near a singular place an
+             angle does not spin; None for no limit
     parent   (g,) parent of each group, -1 for the root, which is group 0; parents come before children
     observables: (group, tape node) for each coordinate that a reader of the drawing could see move, in the
              root's frame: degrees of freedom are counted on these, so that a frame and its contents moving
@@ -76,6 +78,7 @@ class Problem:
     frame_of: NDArray[np.int64]
     parent: NDArray[np.int64]
     constraints: tuple[Constraint, ...]
+    longest: Floats | None = None
     observables: tuple[tuple[int, int], ...] = ()
     names: tuple[str, ...] = field(default=(), repr=False)
 

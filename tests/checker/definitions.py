@@ -48,11 +48,19 @@ class Expected:
 
 
 def expected(
-    ev: Evaluator, s: ast.Assign, geo: Geo, scope: Scope, changed: Collection[str]
+    ev: Evaluator,
+    s: ast.Assign,
+    geo: Geo,
+    scope: Scope,
+    changed: Collection[str],
+    least: Exact = Exact.FIXED,
 ) -> list[Expected]:
-    """The fields of a geometry that had no freedom, with how far they are from what was written."""
+    """The fields of a geometry that had no freedom, with how far they are from what was written.
+
+    `least` is the exactness from which a position is exact: a constraint may hold what is written less so.
+    """
     if not isinstance(s.value, ast.Call):
-        return list(_shared_point(ev, s.value, geo, scope))
+        return list(_shared_point(ev, s.value, geo, scope, least))
     name = scope.canonical(s.value.callee.text)
     kinds = next((c for n, c in _CONSTRUCTORS.items() if fold(n) == fold(name)), ())
     if any(isinstance(c, ast.ShapeDefinition) for c, _ in scope.candidates(name)):
@@ -63,13 +71,15 @@ def expected(
         if kind == "through":
             continue
         if kind == _P:
-            found += _position(ev, geo, word, ev.point(value))
+            found += _position(ev, geo, word, ev.point(value), least)
         elif kind != "coordinate":
             found += _size(ev, geo, word, value, changed)
     return found + _rigid(ev, geo, written, changed)
 
 
-def _shared_point(ev: Evaluator, value: ast.Expression, geo: Geo, scope: Scope) -> Iterator[Expected]:
+def _shared_point(
+    ev: Evaluator, value: ast.Expression, geo: Geo, scope: Scope, least: Exact
+) -> Iterator[Expected]:
     """`p = (10, 20)`, or a point that follows others."""
     if geo.type == "point":
         at = ev.point(geo)
@@ -79,7 +89,7 @@ def _shared_point(ev: Evaluator, value: ast.Expression, geo: Geo, scope: Scope) 
             return
         for axis in ("x", "y"):
             number: Num = getattr(written, axis)
-            if number.exact >= Exact.FIXED:
+            if number.exact >= least:
                 yield Expected(axis, abs(number.value - getattr(at, axis).value))
 
 
@@ -112,11 +122,11 @@ def _fits(ev: Evaluator, kind: str, value: Any) -> bool:
     return True
 
 
-def _position(ev: Evaluator, geo: Geo, word: str, written: Point) -> Iterator[Expected]:
+def _position(ev: Evaluator, geo: Geo, word: str, written: Point, least: Exact) -> Iterator[Expected]:
     actual: Point = ev.point(ev.member(geo, word))
     for axis in ("x", "y"):
         number: Num = getattr(written, axis)
-        if number.exact >= Exact.FIXED:
+        if number.exact >= least:
             yield Expected(f"{word}.{axis}", abs(number.value - getattr(actual, axis).value))
 
 
@@ -158,18 +168,42 @@ def _told(geo: Geo, changed: Collection[str]) -> bool:
     return any(c.startswith(f"{geo.path}.") for c in changed)
 
 
-def frame(ev: Evaluator, child: Node, placement: ast.Placement | None, scope: Scope) -> Iterator[Expected]:
+def frame(
+    ev: Evaluator,
+    child: Node,
+    placement: ast.Placement | None,
+    scope: Scope,
+    least: Exact = Exact.FIXED,
+) -> Iterator[Expected]:
     """`at` and `rotated` where they are exact; rotation is exact unless it is a guess."""
     local = child.local
     if placement is not None and placement.at is not None:
         at = ev.point(ev.value(placement.at, scope))
         for axis, actual in (("x", local.x), ("y", local.y)):
             number: Num = getattr(at, axis)
-            if number.exact >= Exact.FIXED:
+            if number.exact >= least:
                 yield Expected(f"at.{axis}", abs(number.value - actual))
+    elif least < Exact.FIXED:
+        yield Expected("at", math.hypot(local.x, local.y))
     angle = Num(0.0)
     if placement is not None and placement.rotated is not None:
         angle = ev.number(ev.value(placement.rotated, scope))
     if angle.exact != Exact.GUESS:
         actual = math.degrees(math.atan2(-local.b, local.d))
         yield Expected("rotated", abs((actual - angle.value + 180) % 360 - 180))
+
+
+def held(here: Node, thing: Geo | Node) -> list[float]:
+    """How far a thing is from where it was written, its contents and the frames up to `here` included."""
+    found: list[Expected] = []
+    holder = thing if isinstance(thing, Node) else thing.written.node
+    while holder is not None and holder is not here:
+        if holder.placed is not None:
+            task = holder.placed
+            found += frame(Evaluator(task.node), holder, task.statement, task.scope, Exact.GUESS)
+        holder = holder.parent
+    geometry = [thing] if isinstance(thing, Geo) else [g for n in thing.walk() for g in n.geometry.values()]
+    for geo in geometry:
+        task = geo.written
+        found += expected(Evaluator(task.node), task.statement, geo, task.scope, (), Exact.GUESS)
+    return [e.residual for e in found]

@@ -139,7 +139,8 @@ class _Walker:
 
     def _geometry(self, s: ast.Assign, geo: Geo, scope: Scope) -> None:
         """Geometry: an instance of a user's shape can be asked for its arguments and `let`s."""
-        self.program.definitions.append((Task(self.node, s, scope), geo))
+        geo.written = Task(self.node, s, scope)
+        self.program.definitions.append((geo.written, geo))
         if not isinstance(s.value, ast.Call):
             return
         for candidate, home in scope.candidates(s.value.callee.text):
@@ -167,7 +168,8 @@ class _Walker:
         raise MistakeError(f"no template {s.value.callee.text}")
 
     def _place(self, child: Node, placement: ast.Placement | None, scope: Scope) -> None:
-        self.program.placements.append((Task(self.node, placement, scope), child))
+        child.placed = Task(self.node, placement, scope)
+        self.program.placements.append((child.placed, child))
 
     def _child(self, name: ast.Identifier, indices: tuple[ast.Expression, ...], scope: Scope) -> Node:
         key = self._key(name, indices, scope)

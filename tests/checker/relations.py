@@ -19,7 +19,7 @@ from tests.checker.functions import (
 )
 from tests.checker.structural import STRUCTURAL, SYNONYMS
 from tests.checker.tree import Array, Geo, Node, Vec
-from tests.checker.values import MistakeError, Num, fold
+from tests.checker.values import Num, fold
 
 if TYPE_CHECKING:
     from tests.checker.evaluate import Evaluator
@@ -188,7 +188,17 @@ def _mirrored(ev: Evaluator, p: Vec, about: Any) -> Vec:
     return 2 * foot[0] - p[0], 2 * foot[1] - p[1]
 
 
-def _symmetric(ev: Evaluator, a: Any, b: Any, about: Any) -> list[float]:
+def _axis(ev: Evaluator, axis: Any) -> Geo:
+    """`x`, `y`, or the upright line at a coordinate."""
+    x = 0.0 if isinstance(axis, str) else ev.number(axis).value
+    tip = (1.0, 0.0) if axis == "x" else (x, 1.0)
+    ends = {"start": ev.frame.outward((x, 0.0)), "end": ev.frame.outward(tip)}
+    return Geo("axis", "axis", "line", ends, {}, construction=True)
+
+
+def _symmetric(ev: Evaluator, a: Any, b: Any, about: Any = None, axis: Any = None) -> list[float]:
+    if axis is not None:
+        about = _axis(ev, axis)
     if is_line(a):
         pairs = list(zip(ends(ev, a), ends(ev, b), strict=True))
         straight = [r for p, q in pairs for r in _apart(_mirrored(ev, p, about), q)]
@@ -200,7 +210,9 @@ def _symmetric(ev: Evaluator, a: Any, b: Any, about: Any) -> list[float]:
         radii = abs(a.data["radius"] - b.data["radius"])
         return [*_apart(_mirrored(ev, centers[0], about), centers[1]), radii]
     if isinstance(a, Node):
-        raise MistakeError("symmetric structures")
+        p, q = ev.box(a), ev.box(b)
+        sizes = [abs(p.width - q.width), abs(p.height - q.height)]
+        return _apart(_mirrored(ev, p.center, about), q.center) + sizes
     return _apart(_mirrored(ev, ev.point(a).xy, about), ev.point(b).xy)
 
 
@@ -233,6 +245,12 @@ def _angle(ev: Evaluator, a: Any, b: Any, value: Num, ccw: bool | None = None) -
     return [turn_apart(between(ev, a, b), value.value if ccw else -value.value)]
 
 
+def _fixed(ev: Evaluator, *things: Any) -> list[float]:
+    from tests.checker.definitions import held
+
+    return [r for thing in listed(ev, things) for r in held(ev.here, thing)]
+
+
 _GEOMETRIC: dict[str, Relation] = {
     "coincident": _coincident,
     "horizontal": _all_agree(1),
@@ -254,6 +272,7 @@ _GEOMETRIC: dict[str, Relation] = {
     "radius": _field_is("radius"),
     "diameter": _field_is("diameter"),
     "angle": _angle,
+    "fixed": _fixed,
 }
 
 _CANONICAL: dict[str, Relation] = {**_GEOMETRIC, **STRUCTURAL}

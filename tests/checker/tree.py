@@ -58,7 +58,8 @@ class Transform:
 class Geo:
     """A geometry: `data` are its fields in the root frame; `parts` those of a compound shape.
 
-    `source` is set by the walk over the program: the call that made it and the names it was made among.
+    Set by the walk over the program: `source` are the names inside an instance of a program's own shape, and
+    `written` is the statement that defines it.
     """
 
     name: str
@@ -68,6 +69,7 @@ class Geo:
     parts: dict[str, Geo]
     construction: bool
     source: Any = None
+    written: Any = None
 
     def members(self) -> dict[str, Any]:
         return gathered(self.parts)
@@ -83,7 +85,10 @@ class Geo:
 
 @dataclass
 class Node:
-    """A structure. `world` leads from its frame to the root's; `env` is set by the walk over the program."""
+    """A structure. `world` leads from its frame to the root's, `local` to the parent's.
+
+    Set by the walk over the program: `env` are the names its body sees, `placed` is its placement.
+    """
 
     name: str
     path: str
@@ -95,6 +100,7 @@ class Node:
     geometry: dict[str, Geo] = field(default_factory=dict)
     children: dict[str, Node] = field(default_factory=dict)
     env: Any = None
+    placed: Any = None
 
     @property
     def is_empty(self) -> bool:

@@ -116,8 +116,8 @@ def read(path: Path) -> list[Case]:
             case "fixed", "":
                 broken = cases[-1]
                 mended = _program(number + 1, body)
-                mark = pending or broken.pending
-                cases.append(Case(path, heading, mended, broken.files, mark, fixes=broken.program))
+                reason = pending or broken.pending
+                cases.append(Case(path, heading, mended, broken.files, reason, fixes=broken.program))
                 pending = None
             case "formatted", "":
                 cases[-1].formatted = number + 1, "".join(f"{text}\n" for text in body)

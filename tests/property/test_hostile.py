@@ -1,0 +1,57 @@
+"""Programs that ask for trouble: each ends soon, with diagnostics or a drawing, never with an exception."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+
+import pytest
+
+import aidl_lang
+
+LONGEST = 8.0
+"""Seconds; generous for a busy machine, little for an endless loop."""
+
+DOUBLING = "\n".join(f"let a{i} = a{i - 1} + a{i - 1}" for i in range(1, 40))
+
+GENERATED = {
+    "parentheses": f"solid s {{ r = circle(radius: {'(' * 3000}1{')' * 3000}) }}",
+    "braces": "".join(f"solid s{i} {{ " for i in range(500)) + "}" * 500,
+    "signs": f"solid s {{ r = circle(radius: {'-' * 5000}1) }}",
+    "terms": f"solid s {{ r = circle(radius: {'+'.join(['1'] * 5000)}) }}",
+    "doubling constants": f"let a0 = 1\n{DOUBLING}\nsolid s {{ r = circle(radius: a39) }}",
+    "doubling unknowns": f"solid s {{ var v = 1 let a0 = v\n{DOUBLING}\n constrain a39 == 5 }}",
+    "long chain": f"solid s {{ r = circle(radius: 1) constrain {' <= '.join(['r.radius'] * 300)} }}",
+    "control characters": "solid s { r = circle(radius: 1) \x00 \ud7ff \u202e }",
+}
+
+
+def _written() -> dict[str, str]:
+    """The programs of `hostile.txt`, each under a line `=== name`."""
+    text = (Path(__file__).parent / "hostile.txt").read_text("utf-8")
+    found = (part.partition("\n") for part in text.split("=== ")[1:])
+    return {name: program for name, _, program in found}
+
+
+HOSTILE = _written() | GENERATED
+
+
+@pytest.mark.parametrize("text", HOSTILE.values(), ids=HOSTILE.keys())
+def test_ends_soon_without_an_exception(text: str) -> None:
+    start = time.monotonic()
+    model = aidl_lang.compile(text)
+    aidl_lang.check(text)
+    if model.status == "wrong":
+        assert any(d.is_error for d in model.diagnostics)
+    else:
+        json.loads(model.to_json())
+        assert model.to_svg().startswith(("<?xml", "<svg"))
+    assert time.monotonic() - start < LONGEST
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "-inf", "1e400", "", "x", "0/0", "1e-400", "-1", "999"])
+def test_odd_values_of_knobs_are_refused_or_taken(value: str) -> None:
+    model = aidl_lang.compile("param w = 5 in 1..9 solid s { r = circle(radius: w) }", params={"w": value})
+    assert model.status == "wrong"
+    assert any(d.is_error for d in model.diagnostics)
