@@ -81,6 +81,10 @@ WORDS = frozenset(
 """Words that may stand bare as an argument, as in `axis: x` and `align: left`."""
 
 
+WORDED = frozenset({"orientation", "color", "colour", "layer", "material", "note"})
+"""Attributes whose argument may be a bare word, as in `@orientation(front)` and `@color(red)`."""
+
+
 def is_word(argument: ast.Argument, candidates: Iterable[Signature]) -> bool:
     """Whether a bare name is the word itself: given by name to a parameter that takes a text."""
     if argument.name is None or not isinstance(argument.value, ast.Name) or argument.value.text not in WORDS:

@@ -20,7 +20,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from aidl_lang import ast
-from aidl_lang.builtins import is_word
+from aidl_lang.builtins import WORDED, is_word
 from aidl_lang.diagnostics import Diagnostic, Fix, Label, ordered
 from aidl_lang.library import Library
 from aidl_lang.names import nearest
@@ -248,9 +248,10 @@ class Resolver:
                     fix=complaints.respell(attribute.name, like),
                 )
             for argument in attribute.arguments:
-                is_word = isinstance(argument.value, ast.Name) and word_meant(name, ("orientation",))
-                if not is_word:  # `@orientation(front)`
-                    self._unordered(scope, argument.value)
+                value = argument.value
+                is_bare = isinstance(value, ast.Name) and scope.value(value.text) is None
+                if not (is_bare and word_meant(name, WORDED)):  # `@orientation(front)`
+                    self._unordered(scope, value)
 
     # --- Expressions ---------------------------------------------------------------------------
 

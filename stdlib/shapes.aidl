@@ -132,6 +132,7 @@ shape triangle(center: point = (0, 0), base: length, height: length) {
 
 /// A closed outline of straight edges through the points.
 shape polygon(points: list) {
+    assert len(points) >= 3, "a polygon has at least three corners"
     for i in 0..<len(points) {
         corner[i] = points[i]
         edges[i] = line(points[i], points[(i + 1) % len(points)])
@@ -140,6 +141,7 @@ shape polygon(points: list) {
 
 /// Straight edges through the points, not closed.
 shape polyline(points: list) {
+    assert len(points) >= 2, "a polyline has at least two points"
     for i in 0..<len(points) - 1 {
         edges[i] = line(points[i], points[i + 1])
     }
@@ -155,6 +157,7 @@ shape regular_polygon(
     angle: turn = 0deg,
     rotatable: bool = false
 ) {
+    assert sides >= 3, "a polygon has at least three sides"
     for i in 0..<sides {
         corner[i] = center + polar(radius, angle + 360deg / sides * i)
     }

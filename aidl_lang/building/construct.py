@@ -62,17 +62,19 @@ def positions(
     holder: Geometry | Structure,
     names: Sequence[str],
     owner: Structure,
+    *,
+    edges: bool = True,
 ) -> list[PointVal]:
     """Points given as positions to one constructor; literal ones move as one.
 
     From one literal point to the next the way is kept as a length and a direction, so that what turns an edge
-    does not shorten it.
+    does not shorten it; where points are no corners (`edges` is false), as differences from the first.
     """
     placed: list[PointVal] = []
     anchors: dict[str, tuple[Num, Expression]] = {}
     before: tuple[PointVal, PointVal] | None = None
     for at, name in zip(points, names, strict=True):
-        if _is_literal(at) and before is not None and _apart(before[0], at):
+        if edges and _is_literal(at) and before is not None and _apart(before[0], at):
             made = _beyond(it, before, at, holder, name, owner)
         else:
             x = _coordinate(it, "x", at.x, anchors, holder, name, owner)
@@ -279,7 +281,9 @@ def hold(it: Interpreter, g: Geometry, equations: Sequence[tuple[Num, Num]]) -> 
 
 
 def _bezier(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
-    g.fields = _points(it, g, a, ("p0", "p1", "p2", "p3"))
+    names = ("p0", "p1", "p2", "p3")
+    controls = positions(it, [_written(a, name) for name in names], g, names, g.owner, edges=False)
+    g.fields = dict(zip(names, controls, strict=True))
 
 
 def _ellipse(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:

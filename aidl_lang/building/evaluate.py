@@ -497,9 +497,8 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
 
 
 def _undefined(it: Interpreter, node: ast.Node) -> Nothing:
-    it.report(
-        "E0504", f"`{node.span.text}` has no value: it divides by zero or leaves the range of numbers", node
-    )
+    text = " ".join(node.span.text.split())
+    it.report("E0504", f"`{text}` has no value: it divides by zero or leaves the range of numbers", node)
     return NOTHING
 
 

@@ -23,7 +23,7 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
     if isinstance(node, ast.Call) and fold(node.callee.text) == "fixed":
         value = _held(it, node, env)
     else:
-        value = evaluate(it, node, env)
+        value = evaluate(it, _as_relation(node), env)
     match value:
         case Nothing() | True:
             return
@@ -48,11 +48,27 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
             )
 
 
+def _as_relation(node: ast.Expression) -> ast.Expression:
+    """`angle(a, b) == v` states what `angle(a, b, v)` does, in the same reading."""
+    match node:
+        case ast.Comparison(operands=(ast.Call() as call, value), operators=("==",)):
+            named = any(a.name is not None for a in call.arguments)
+            count = len(call.arguments) + (call.receiver is not None)
+            if fold(call.callee.text) == "angle" and count == 2 and not named:
+                given = ast.Argument(None, value, span=value.span)
+                return ast.Call(call.callee, call.receiver, (*call.arguments, given), span=node.span)
+    return node
+
+
+def _turn(env: Env) -> str:
+    """The turn of the loops around, for messages."""
+    return f" [{', '.join(env.scope.labels)}]" if env.scope.labels else ""
+
+
 def _never(it: Interpreter, node: ast.Expression, env: Env) -> None:
-    turn = f" [{', '.join(env.scope.labels)}]" if env.scope.labels else ""
     it.report(
         "E0513",
-        f"`{one_line(node.span.text)}` can never hold: both sides are constants{turn}",
+        f"`{one_line(node.span.text)}` can never hold: both sides are constants{_turn(env)}",
         node,
         label="false as written",
         hints=["a number or `param` does not move; make one side a `var`, a `guess(…)` or a reference"],
@@ -120,8 +136,8 @@ def one_line(text: str) -> str:
     return " ".join(text.split())
 
 
-def record_assertion(it: Interpreter, node: ast.Assert, env: Env) -> None:
-    """`assert`: kept to be checked on the solved model."""
+def record_assertion(it: Interpreter, node: ast.Assert, env: Env, *, at_once: bool = False) -> None:
+    """`assert`: kept to be checked on the solved model; `at_once` reports what is false whatever is solved."""
     value = evaluate(it, node.test, env)
     if isinstance(value, Nothing):
         return
@@ -129,6 +145,10 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env) -> None:
         it.report("E0321", f"`assert` wants a condition, and this is {kind_of(value)}", node.test)
         return
     message = evaluate(it, node.message, env) if node.message is not None else None
+    if value is False and at_once:
+        why = message.value if isinstance(message, Text) else f"`{one_line(node.test.span.text)}` is false"
+        it.report("E0604", f"assertion failed: {why}{_turn(env)}", node.test, label="false as written")
+        return
     it.assertions.append(
         Assertion(
             env.here,

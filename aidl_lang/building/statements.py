@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import PurePath
 
-from aidl_lang import ast
+from aidl_lang import ast, units
 from aidl_lang import expression as ex
 from aidl_lang.building.calls import default_of
 from aidl_lang.building.coerce import as_point, numeric, whole
@@ -17,6 +17,7 @@ from aidl_lang.building.params import read_param, report_unused
 from aidl_lang.building.scopes import Candidate, LetBinding, ParamBinding, Scope, VarBinding
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.templates import passed
+from aidl_lang.builtins import WORDED
 from aidl_lang.library import signature
 from aidl_lang.model import Frame, Geometry, Structure
 from aidl_lang.units import ANGLE, LENGTH
@@ -30,6 +31,7 @@ from aidl_lang.values import (
     Num,
     PointVal,
     Status,
+    Text,
     Value,
     kind_of,
     number,
@@ -168,6 +170,14 @@ def execute(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure)
 
 def _defer(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) -> None:
     it.pending.setdefault(here, []).append((node, scope))
+
+
+def _assert(it: Interpreter, node: ast.Assert, scope: Scope, here: Structure) -> None:
+    """In a shape an assertion is about its arguments, hence it is checked where the shape is made."""
+    if isinstance(scope.declaring().container, Geometry):
+        record_assertion(it, node, Env(scope, here, Reach.READ), at_once=True)
+    else:
+        _defer(it, node, scope, here)
 
 
 def _param(it: Interpreter, node: ast.Param, scope: Scope, here: Structure) -> None:
@@ -540,10 +550,39 @@ def _attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attribut
         values: list[Value] = []
         for argument in attribute.arguments:
             value = argument.value
-            if name == "orientation" and isinstance(value, ast.Name):
+            if name in WORDED and isinstance(value, ast.Name) and scope.find(value.text) is None:
                 value = ast.String(value.text, span=value.span)
             values.append(evaluate(it, value, Env(scope, s.parent or s, Reach.OWN)))
-        s.attributes["color" if name == "colour" else name] = tuple(values)
+        if _fits(it, name, values, attribute):
+            s.attributes["color" if name == "colour" else name] = tuple(values)
+
+
+_ORIENTATIONS = ("top", "front", "side")
+
+
+def _fits(it: Interpreter, name: str, values: Sequence[Value], attribute: ast.Attribute) -> bool:
+    """Whether an attribute is given what it takes."""
+    if any(isinstance(value, Nothing) for value in values):
+        return False
+    wanted = ""
+    match name, *values:
+        case ("orientation", Text(word)) if word in _ORIENTATIONS:
+            pass
+        case ("orientation", *_):
+            wanted = "one of `top`, `front` and `side`, as in `@orientation(front)`"
+        case ("thickness", Num() as thickness) if thickness.dimension in (None, units.LENGTH):
+            wanted = "" if thickness.value > 0 else "a thickness above 0"
+        case ("thickness", *_):
+            wanted = "a length above 0, as in `@thickness(3mm)`"
+        case ("layer" | "material" | "note", Text()) | ("detached",) | ("detached", bool()):
+            pass
+        case ("layer" | "material" | "note", *_):
+            wanted = f'a text, as in `@{name}("…")`'
+        case ("detached", *_):
+            wanted = "nothing, or true or false"
+    if wanted:
+        it.report("E0517", f"`@{attribute.name.text}` takes {wanted}", attribute)
+    return not wanted
 
 
 def _finish(it: Interpreter, structure: Structure) -> None:
@@ -629,6 +668,6 @@ _EXECUTE: dict[type, Callable[..., None]] = {
     ast.Constrain: _defer,
     ast.ExpressionStatement: _defer,
     ast.Prefer: _defer,
-    ast.Assert: _defer,
+    ast.Assert: _assert,
 }
 """Statements that do something when their line is reached; definitions were hoisted."""

@@ -18,6 +18,7 @@ from aidl_lang.types import (
     Binding,
     GeometryType,
     Given,
+    ListType,
     Mismatch,
     NumberType,
     Signature,
@@ -164,7 +165,7 @@ def _built_in(
             check.known(n, f"the argument of `{name}`")
         return Fact(ANY)
     if name in _SAME_AS_ARGUMENT:
-        kinds = {f.type for f in facts}
+        kinds = {f.type.element if isinstance(f.type, ListType) else f.type for f in facts}
         kind = kinds.pop() if len(kinds) == 1 else ANY
         one = len(facts) == 1
         return Fact(kind, reads, facts[0].of if one else None, bare=facts[0].bare if one else None)

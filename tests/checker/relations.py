@@ -210,9 +210,9 @@ def _symmetric(ev: Evaluator, a: Any, b: Any, about: Any = None, axis: Any = Non
         radii = abs(a.data["radius"] - b.data["radius"])
         return [*_apart(_mirrored(ev, centers[0], about), centers[1]), radii]
     if isinstance(a, Node):
-        p, q = ev.box(a), ev.box(b)
-        sizes = [abs(p.width - q.width), abs(p.height - q.height)]
-        return _apart(_mirrored(ev, p.center, about), q.center) + sizes
+        box, other = ev.box(a), ev.box(b)
+        sizes = [abs(box.width - other.width), abs(box.height - other.height)]
+        return _apart(_mirrored(ev, box.center, about), other.center) + sizes
     return _apart(_mirrored(ev, ev.point(a).xy, about), ev.point(b).xy)
 
 

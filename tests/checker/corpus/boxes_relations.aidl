@@ -1,5 +1,5 @@
 /// Every relation of boxes, on structures.
-// changes: right_leg.board.height
+// changes: right_leg.board
 assembly desk {
     solid top { board = rectangle(width: 120, height: 4) }
     solid left_leg { board = rectangle(width: 4, height: 70) }

@@ -1,5 +1,5 @@
 /// Lists, comprehensions, `min` and `max` over unknowns.
-// changes: roof.end.dy
+// changes: roof
 drawing towers {
     let heights = [12, 20, 8, 15]
     for i in 0..<len(heights) {

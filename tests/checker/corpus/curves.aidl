@@ -1,5 +1,5 @@
 /// Arcs by every constructor, beziers and ellipses, and their boxes.
-// changes: b.end.dx, b.start.dx
+// changes: b
 drawing curves {
     a = arc(center: (0, 0), start: (10, 0), end: (0, 10))
     b = arc(start: (20, 0), mid: (25, 5), end: (30, 0))

@@ -1,5 +1,5 @@
 /// What is held where it was written; structures that mirror each other.
-// changes: needle.end.dx, needle.end.dy
+// changes: needle
 assembly scale {
     solid post at (0, 5) { board = rectangle(center: (0, 20), width: 4, height: 40) }
     solid left_pan { dish = trapezoid(center: (-30, 12), bottom_width: 10, top_width: 20, height: 5) }

@@ -1,5 +1,5 @@
 /// Every relation of lines and points.
-// changes: a.end.dy, b.end.dx, b.end.dy, c.end.dx, d.end.dx, d.end.dy, e.end.dx, e.end.dy, f.end.dx, f.end.dy
+// changes: a, b, c, d, e, f
 drawing lines {
     a = line((0, 0), (30, 2))
     b = line((0, 10), (31, 13))

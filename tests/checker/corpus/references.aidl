@@ -1,5 +1,5 @@
 /// Shared and derived references: no unknowns of their own.
-// changes: foot.end.dx, foot.end.dy
+// changes: foot
 solid bracket {
     var reach = 30
     foot  = line((0, 0), (40, 1))

@@ -1,5 +1,5 @@
 /// Rows, columns, even spacing and groups.
-// changes: box[0].edge.width, pin[0].radius
+// changes: box[0].edge, pin[0]
 assembly tray {
     for i in 0..3 {
         solid cup[i] { rim = circle(center: (10 * i, i), radius: 3 + i) }

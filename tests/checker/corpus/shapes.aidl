@@ -1,5 +1,5 @@
 /// One of each shape, arranged in columns.
-// changes: a.s.radius, k.s.outer_radius
+// changes: a.s, k.s
 assembly shapes {
     solid a { s = rounded_rectangle(width: 30, height: 20, radius: 4) }
     solid b { s = triangle(base: 20, height: 15) }

@@ -1,5 +1,5 @@
 /// Symmetry about lines, points and axes.
-// changes: right_wing.end.dx, right_wing.end.dy
+// changes: right_wing
 solid butterfly {
     construction axis = line(origin, (1, 20))
     left_eye  = circle(center: (-4, 16), radius: 2)

@@ -1,5 +1,5 @@
 /// Tangency of lines, circles and arcs, with and without a shared end; concentric and equal circles.
-// changes: e.radius
+// changes: e
 drawing tangency {
     l = line((-20, 10), (40, 11))
     c = circle(center: (0, 0), radius: 9)

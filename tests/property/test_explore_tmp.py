@@ -1,0 +1,256 @@
+"""What holds for every program: no exceptions, the same bytes twice, constraints that hold in any order."""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+import re
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+from hypothesis import HealthCheck, Phase, assume, given, note, settings
+from hypothesis import strategies as st
+
+import aidl_lang
+from aidl_lang.pipeline import Settings
+from tests.checker.checking import broken
+from tests.property.programs import (
+    ANY_TEXT,
+    STRUCTURED_SOUP,
+    TOKEN_SOUP,
+    Sketch,
+    outline_text,
+    outlines,
+    sketches,
+)
+
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
+SCHEMA = json.loads((ROOT / "docs" / "model.schema.json").read_text("utf-8"))
+TOLERANCE = 1e-6
+SCALE = 14
+SMALL = Settings(building=replace(Settings().building, entities=400, turns=2000, constraints=400, items=2000))
+
+
+def profile(examples: int) -> settings:
+    """The same examples on every run; compiling is slow, so there is no deadline and no shrinking."""
+    return settings(
+        max_examples=examples,
+        derandomize=False,
+        deadline=None,
+        database=None,
+        phases=(Phase.explicit, Phase.generate),
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+    )
+
+
+def document(model: aidl_lang.Model) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(model.to_json())
+    return found
+
+
+def coordinates(value: Any) -> list[float]:
+    """All numbers of a document's structures in order of their names."""
+    if isinstance(value, dict):
+        return [c for k in sorted(value) if k not in ("dof", "attributes") for c in coordinates(value[k])]
+    if isinstance(value, list):
+        ordered = sorted(value, key=lambda v: v["name"]) if value and isinstance(value[0], dict) else value
+        return [c for v in ordered for c in coordinates(v)]
+    return [float(value)] if isinstance(value, int | float) and not isinstance(value, bool) else []
+
+
+def apart(a: dict[str, Any], b: dict[str, Any]) -> float:
+    """The largest difference of two documents' coordinates."""
+    p, q = coordinates(a["root"]), coordinates(b["root"])
+    assert len(p) == len(q)
+    return max((abs(x - y) for x, y in zip(p, q, strict=True)), default=0.0)
+
+
+def is_degenerate(found: dict[str, Any]) -> bool:
+    """Whether a line has no length, so that its direction means nothing, or all points lie on one line."""
+    points = [g["at"] for g in found["root"]["geometry"].values() if g["type"] == "point"]
+    (ax, ay), *others = points
+    areas = [abs((b[0] - ax) * (c[1] - ay) - (b[1] - ay) * (c[0] - ax)) for b in others for c in others]
+    return max(areas) < 1 or min(math.dist(p, q) for p, q in pairwise([*points, points[0]])) < 0.1
+
+
+# --- (a) well-formed programs ----------------------------------------------------------------------
+
+
+@given(sketches())
+@profile(30 * SCALE)
+def test_well_formed_programs_solve_and_their_constraints_hold(sketch: Sketch) -> None:
+    text = sketch.text()
+    note(text)
+    model = aidl_lang.compile(text)
+    assert [d.message for d in model.diagnostics if d.is_error] == []
+    assert model.status == "solved"
+    found = document(model)
+    assert [str(f) for f in broken(text, found)] == []
+    jsonschema.validate(found, SCHEMA)
+
+
+@given(outlines())
+@profile(25 * SCALE)
+def test_outlines_that_are_said_to_be_solved_are(outline: tuple[list[str], list[str]]) -> None:
+    text = outline_text(*outline)
+    note(text)
+    model = aidl_lang.compile(text)
+    assert model.status != "wrong"
+    found = document(model)
+    jsonschema.validate(found, SCHEMA)
+    assume(not is_degenerate(found))
+    complaints = [str(f) for f in broken(text, found)]
+    assert complaints == [] if model.status == "solved" else complaints != []
+
+
+@given(sketches())
+@profile(10 * SCALE)
+def test_the_same_program_gives_the_same_bytes(sketch: Sketch) -> None:
+    first, second = aidl_lang.compile(sketch.text()), aidl_lang.compile(sketch.text())
+    assert first.to_json() == second.to_json()
+    assert first.to_svg() == second.to_svg()
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+def test_examples_validate_against_the_schema(path: Path) -> None:
+    jsonschema.validate(document(aidl_lang.compile(path.read_text("utf-8"))), SCHEMA)
+
+
+# --- (b) order does not matter ---------------------------------------------------------------------
+
+
+@given(sketches(least=3), st.randoms(use_true_random=False))
+@profile(10 * SCALE)
+def test_the_order_of_constraints_does_not_matter(sketch: Sketch, chance: random.Random) -> None:
+    shuffled = chance.sample(sketch.relations, len(sketch.relations))
+    one, other = sketch.text(), sketch.text(relations=shuffled)
+    note(one)
+    note(other)
+    assert apart(document(aidl_lang.compile(one)), document(aidl_lang.compile(other))) < TOLERANCE
+
+
+@given(outlines(), st.randoms(use_true_random=False))
+@profile(15 * SCALE)
+def test_the_order_of_geometric_constraints_does_not_matter(
+    outline: tuple[list[str], list[str]], chance: random.Random
+) -> None:
+    drawing, constraints = outline
+    one = aidl_lang.compile(outline_text(drawing, constraints))
+    other = aidl_lang.compile(outline_text(drawing, chance.sample(constraints, len(constraints))))
+    note(outline_text(drawing, constraints))
+    assert one.status == other.status
+    if one.status == "solved" and not is_degenerate(document(one)):
+        assert apart(document(one), document(other)) < TOLERANCE
+
+
+@given(sketches(least=3), st.randoms(use_true_random=False))
+@profile(10 * SCALE)
+def test_the_order_of_independent_structures_does_not_matter(sketch: Sketch, chance: random.Random) -> None:
+    parts = [p.text() for p in sketch.parts]
+    one, other = sketch.text(), sketch.text(parts=chance.sample(parts, len(parts)))
+    note(other)
+    assert apart(document(aidl_lang.compile(one)), document(aidl_lang.compile(other))) < TOLERANCE
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+def test_the_order_of_constraints_of_an_example_does_not_matter(path: Path) -> None:
+    text = path.read_text("utf-8")
+    reversed_text = re.sub(r"constrain \{\n((?:(?!.*[{}]).*\n)+) *\}", _reversed_block, text)
+    one, other = document(aidl_lang.compile(text)), document(aidl_lang.compile(reversed_text))
+    assert apart(one, other) < TOLERANCE
+
+
+def _reversed_block(block: re.Match[str]) -> str:
+    return "constrain {\n" + "\n".join(reversed(block[1].splitlines())) + "\n}"
+
+
+# --- (c) no text raises ----------------------------------------------------------------------------
+
+
+def survives(text: str) -> None:
+    """Diagnostics, never an exception."""
+    note(text)
+    found = aidl_lang.check(text, SMALL)
+    assert all(d.message and d.code for d in found)
+    model = aidl_lang.compile(text, settings=SMALL)
+    assert model.status in ("solved", "partial", "failed", "wrong")
+    if model.status == "wrong":
+        assert any(d.is_error for d in model.diagnostics)
+    else:
+        jsonschema.validate(document(model), SCHEMA)
+        assert "nan" not in model.to_svg().lower()
+
+
+@given(st.one_of(ANY_TEXT, TOKEN_SOUP, STRUCTURED_SOUP))
+@profile(150 * SCALE)
+def test_any_text_gives_diagnostics(text: str) -> None:
+    survives(text)
+
+
+TOKEN = re.compile(r"\s+|\w+\(?|[^\w\s]")
+SEEDS = [p.read_text("utf-8") for p in EXAMPLES if p.stem in ("telephone", "key", "lighthouse", "wrench")]
+
+
+@st.composite
+def mutants(draw: st.DrawFn) -> str:
+    """An example with one or two tokens or lines deleted, doubled or exchanged."""
+    text = draw(st.sampled_from(SEEDS))
+    pieces = draw(st.sampled_from((TOKEN.findall(text), text.splitlines(keepends=True))))
+    for _ in range(draw(st.integers(1, 2))):
+        i, j = (draw(st.integers(0, len(pieces) - 1)) for _ in range(2))
+        match draw(st.sampled_from(("delete", "double", "exchange"))):
+            case "delete":
+                pieces = pieces[:i] + pieces[i + 1 :] or [" "]
+            case "double":
+                pieces = [*pieces[:i], pieces[i], *pieces[i:]]
+            case _:
+                pieces[i], pieces[j] = pieces[j], pieces[i]
+    return "".join(pieces)
+
+
+@given(mutants())
+@profile(25 * SCALE)
+def test_damaged_examples_give_diagnostics(text: str) -> None:
+    survives(text)
+
+
+# --- (d) rigid parts -------------------------------------------------------------------------------
+
+
+def _distances(structure: dict[str, Any]) -> list[float]:
+    """Distances between all points of a structure's own geometry, and its radii."""
+    points, sizes = _points(structure["geometry"])
+    return sizes + [math.dist(p, q) for i, p in enumerate(points) for q in points[:i]]
+
+
+def _points(value: Any) -> tuple[list[list[float]], list[float]]:
+    points: list[list[float]] = []
+    sizes: list[float] = []
+    for name, item in value.items():
+        if name in ("radius", "rx", "ry"):
+            sizes.append(item)
+        elif name in ("at", "start", "end", "center"):
+            points.append(item)
+        elif isinstance(item, dict) and name != "params":
+            below = _points(item)
+            points, sizes = points + below[0], sizes + below[1]
+    return points, sizes
+
+
+@given(sketches())
+@profile(15 * SCALE)
+def test_a_part_that_its_parent_moves_keeps_its_shape(sketch: Sketch) -> None:
+    """Only relations of boxes hold a part from outside, so it moves as a whole."""
+    loose, held = (
+        document(aidl_lang.compile(text)) for text in (sketch.text(relations=["1 == 1"]), sketch.text())
+    )
+    note(sketch.text())
+    for before, after in zip(loose["root"]["structures"], held["root"]["structures"], strict=True):
+        pairs = zip(_distances(before), _distances(after), strict=True)
+        assert max((abs(a - b) for a, b in pairs), default=0.0) < TOLERANCE
