@@ -148,11 +148,9 @@ def compile(
 
 def format(text: str) -> str:
     """The canonical form of a program. Raises ValueError when it does not parse."""
-    from aidl_lang.parser import parse
-    from aidl_lang.printer import format_module
+    from aidl_lang import pipeline
 
-    parsed = parse(SourceFile("<text>", text))
-    errors = [d for d in parsed.diagnostics if d.is_error]
-    if errors:
-        raise ValueError(errors[0].message)
-    return format_module(parsed)
+    printed, diagnostics = pipeline.formatted(SourceFile("<text>", text))
+    if printed is None:
+        raise ValueError(next(d.message for d in diagnostics if d.is_error))
+    return printed

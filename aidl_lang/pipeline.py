@@ -19,6 +19,7 @@ from aidl_lang.building.state import DEFAULT_LIMITS, Limits
 from aidl_lang.diagnostics import Diagnostic, has_errors, ordered
 from aidl_lang.interp import Interpretation, interpret
 from aidl_lang.model import Knob
+from aidl_lang.printer import format_module
 from aidl_lang.resolve import resolve
 from aidl_lang.solver.problem import Settings as SolverSettings
 from aidl_lang.source import SourceFile
@@ -170,6 +171,16 @@ def check(
         return _build(source, world, {}, settings, _Stopwatch())[1]
 
 
+def formatted(source: SourceFile, world: World | None = None) -> tuple[str | None, list[Diagnostic]]:
+    """The canonical form of a program, names spelled as they are defined; None if it does not parse."""
+    with _working():
+        parsed = parser.parse(source)
+        if has_errors(parsed.diagnostics):
+            return None, parsed.diagnostics
+        program = typecheck(resolve(parsed.module, world, library_module.load()))
+    return format_module(parsed, program.resolution.canonical), parsed.diagnostics
+
+
 def knobs(
     source: SourceFile, world: World | None = None, settings: Settings = Settings()
 ) -> tuple[tuple[Knob, ...], list[Diagnostic]]:
@@ -227,4 +238,4 @@ def _finish(
     return Compiled(model.status, everything, watch.seconds, known, model, drawing, show)
 
 
-__all__ = ["Compiled", "Knob", "Settings", "check", "compile", "front", "knobs"]
+__all__ = ["Compiled", "Knob", "Settings", "check", "compile", "formatted", "front", "knobs"]

@@ -137,7 +137,7 @@ def one_line(text: str) -> str:
 
 
 def record_assertion(it: Interpreter, node: ast.Assert, env: Env, *, at_once: bool = False) -> None:
-    """`assert`: kept to be checked on the solved model; `at_once` reports what is false whatever is solved."""
+    """`assert`: kept to be checked on the solved model; with `at_once`, a false one is told now."""
     value = evaluate(it, node.test, env)
     if isinstance(value, Nothing):
         return

@@ -60,6 +60,9 @@ def call(check: Inference, node: ast.Call) -> Fact:
             result = joined(result, other)
         return result
     chosen = fits[0].signature
+    for name in (a.name for a in node.arguments if a.name is not None):
+        if (spelling := chosen.by_fold.get(fold(name.text), name.text)) != name.text:
+            check.resolution.canonical[name] = spelling
     if chosen.node is not None and (symbol := check.resolution.of_definition.get(chosen.node)) is not None:
         check.resolution.uses[node] = symbol
     return _result(check, chosen, nodes, facts, reads)

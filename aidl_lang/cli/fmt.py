@@ -6,7 +6,6 @@ import argparse
 
 from aidl_lang.cli import files
 from aidl_lang.cli.report import UseError, exit_code, say, show
-from aidl_lang.diagnostics import has_errors
 from aidl_lang.source import SourceFile
 
 
@@ -26,16 +25,15 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _format(name: str, check: bool, diff: bool) -> int:
     """Format one file and return its exit code, so that one bad file does not keep the others from it."""
-    from aidl_lang.parser import parse
-    from aidl_lang.printer import format_module
+    from aidl_lang import pipeline
 
     try:
         source = files.read(name)
-        parsed = parse(source)
-        if has_errors(parsed.diagnostics):
-            show(parsed.diagnostics)
-            return exit_code(parsed.diagnostics)
-        return _deliver(name, source, format_module(parsed), check, diff)
+        text, diagnostics = pipeline.formatted(source, files.world(name))
+        if text is None:
+            show(diagnostics)
+            return exit_code(diagnostics)
+        return _deliver(name, source, text, check, diff)
     except UseError as reason:
         show([reason.diagnostic])
         return 2
