@@ -120,10 +120,19 @@ class _Attempt:
         base = self.origin
         while True:
             verdict, branches, crossed = self._solve_in_branch(base, frozenset())
+            if not verdict.satisfied and not crossed:
+                # No solution with these branches; where the search ended others may be active.
+                crossed = self._active() != branches
             if not crossed or branches in seen or len(seen) >= self.settings.branches:
                 return verdict
             seen.add(branches)
             base = self._current()
+
+    def _active(self) -> tuple[Branch, ...]:
+        """The branches active at the current values."""
+        return freeze(
+            self.values, [self.task.rows[i].expression for i in self.considered], self.free
+        ).branches
 
     def _solve_in_branch(
         self, base: list[float], flipped: frozenset[int]
