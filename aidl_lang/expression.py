@@ -31,6 +31,7 @@ class Unknown:
     frame_of  for a coordinate of a frame, the structure that frame places
     cell      stands for a number argument, and may still be read as a constant while building
     exact     a constant after all: read while building, or locked and named by no constraint
+    outline   a side of the box of an empty structure
     locked    an angle that stays zero until a constraint names it
     """
 
@@ -44,6 +45,7 @@ class Unknown:
     cell: bool = False
     exact: bool = False
     locked: bool = False
+    outline: bool = False
 
     @property
     def path(self) -> str:

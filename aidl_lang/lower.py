@@ -56,6 +56,7 @@ class _Lowering:
         self.node_of: dict[Expression, int] = {}
         self.numbers: dict[Unknown, int] = {}
         self.variables: list[Unknown] = []
+        self.mentioned: set[Unknown] = set()
         self.holders = {c.holder for c in model.constraints}
         self.size = model_size(self.structures)
 
@@ -95,14 +96,16 @@ class _Lowering:
 
     def _number_unknowns(self, observed: Iterable[Expression]) -> None:
         """Unknowns that can move: those of named geometry, and frames that a constraint mentions."""
-        mentioned = set(
+        mentioned = self.mentioned = set(
             ex.unknowns(
                 e for c in self.model.constraints for part in c.comparisons for e in (part.left, part.right)
             )
         )
         drawn = {u for u in ex.unknowns(observed) if u.frame_of is None}
         for unknown in self.model.unknowns:
-            is_variable = isinstance(unknown.holder, Structure) and unknown.frame_of is None
+            is_variable = (
+                isinstance(unknown.holder, Structure) and unknown.frame_of is None and not unknown.outline
+            )
             if is_variable:
                 self.variables.append(unknown)
             live = is_variable or unknown in mentioned or unknown in drawn
@@ -117,9 +120,7 @@ class _Lowering:
         return parent if parent is not None and self._is_outline(unknown) else unknown.owner
 
     def _is_outline(self, unknown: Unknown) -> bool:
-        return (
-            unknown.holder is unknown.owner and unknown.owner.is_empty and unknown.owner not in self.holders
-        )
+        return unknown.outline and unknown in self.mentioned and unknown.owner not in self.holders
 
     def _frame_of(self, unknown: Unknown) -> int:
         moved = unknown.owner if self._is_outline(unknown) else unknown.frame_of

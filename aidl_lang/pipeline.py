@@ -21,6 +21,7 @@ from aidl_lang.interp import Interpretation, interpret
 from aidl_lang.model import Knob
 from aidl_lang.printer import format_module
 from aidl_lang.resolve import resolve
+from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.solver.problem import Settings as SolverSettings
 from aidl_lang.source import SourceFile
 from aidl_lang.typecheck import Program
@@ -177,8 +178,9 @@ def formatted(source: SourceFile, world: World | None = None) -> tuple[str | Non
         parsed = parser.parse(source)
         if has_errors(parsed.diagnostics):
             return None, parsed.diagnostics
-        program = typecheck(resolve(parsed.module, world, library_module.load()))
-    return format_module(parsed, program.resolution.canonical), parsed.diagnostics
+        names = typecheck(resolve(parsed.module, world, library_module.load())).resolution
+    stated = {node for node, symbol in names.uses.items() if symbol.kind is SymbolKind.CONSTRAINT}
+    return format_module(parsed, names.canonical, stated), parsed.diagnostics
 
 
 def knobs(
@@ -219,7 +221,7 @@ def _finish(
     from aidl_lang.lower import lower
     from aidl_lang.outcome import assertion_notes, solution_notes
     from aidl_lang.readout import read_out
-    from aidl_lang.solver import solve
+    from aidl_lang.solver import Status, solve
 
     with watch("lower"):
         lowered = lower(built.model)
@@ -234,6 +236,8 @@ def _finish(
         found += assertion_notes(
             built.model, model, drawing, evaluator, solved_fully=solution.status.value == "solved"
         )
+    if solution.status is not Status.SOLVED:
+        notes = []  # the parts are not where they belong
     everything = ordered([*diagnostics, *found, *notes])
     return Compiled(model.status, everything, watch.seconds, known, model, drawing, show)
 

@@ -6,7 +6,7 @@ statements. Synonyms of the syntax become one spelling; numbers stay as they wer
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from aidl_lang import ast
@@ -30,14 +30,19 @@ from aidl_lang.parser import Parsed
 __all__ = ["format_expression", "format_module", "format_statement"]
 
 
-def format_module(parsed: Parsed | ast.Module, names: Mapping[ast.Node, str] | None = None) -> str:
+def format_module(
+    parsed: Parsed | ast.Module,
+    names: Mapping[ast.Node, str] | None = None,
+    stated: Collection[ast.Node] = (),
+) -> str:
     """The text of a program in canonical form.
 
+    `stated` are calls known to state a constraint, which get the keyword where they stand alone.
     `names` maps nodes (names, identifiers of members and callees) to the spelling to print in their place.
     What could not be parsed is not in the tree: do not write the text back over a program with syntax errors.
     """
     module = parsed if isinstance(parsed, ast.Module) else parsed.module
-    printer = _Printer(module, names)
+    printer = _Printer(module, names, stated)
     printer.statements(module.statements, 0, len(module.source.text), 0, constraints=False)
     return printer.text()
 
@@ -57,7 +62,10 @@ class _Line:
 
 
 class _Printer:
-    def __init__(self, module: ast.Module, names: Mapping[ast.Node, str] | None) -> None:
+    def __init__(
+        self, module: ast.Module, names: Mapping[ast.Node, str] | None, stated: Collection[ast.Node]
+    ) -> None:
+        self.stated = stated
         self.source = module.source.text
         self.comments = module.comments
         self.next_comment = 0
@@ -267,7 +275,8 @@ class _Printer:
             case ast.Let():
                 return doc(f"let {name(node.name)} = ", expression(node.value))
             case ast.ExpressionStatement():
-                bare = begins_statement(node.value) and (constraints or isinstance(node.value, ast.Call))
+                is_call = isinstance(node.value, ast.Call) and node.value not in self.stated
+                bare = begins_statement(node.value) and (constraints or is_call)
                 return doc("" if bare else "constrain ", expression(node.value))
             case ast.Equation():
                 equation = self._comparison(node)

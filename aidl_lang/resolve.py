@@ -239,7 +239,7 @@ class Resolver:
         for attribute in attributes:
             name = attribute.name.text
             if word_meant(name, ATTRIBUTES) is None:
-                like = nearest(name, ATTRIBUTES)
+                like = nearest(name, [a for a in ATTRIBUTES if a != "colour"])
                 self.report(
                     "E0204",
                     f"there is no attribute `@{name}`" + complaints.did_you_mean(like, "@"),

@@ -600,6 +600,9 @@ def _plan(it: Interpreter, s: Structure) -> None:
         it.unknown(guess, s, name, owner=s, dimension=LENGTH)
         for name, guess in (("left", -half), ("bottom", -half), ("width", _PLAN), ("height", _PLAN))
     )
+    for side in (left, bottom, width, height):
+        assert isinstance(side.payload, ex.Unknown)
+        side.payload.outline = True
     s.plan = (left, bottom, width, height)
 
 

@@ -189,6 +189,8 @@ def _no_overload(
     check.rejected.append(node)
     if _unknown_parameter(check, node, misses):
         return
+    if _not_together(check, node, misses):
+        return
     closest = max(misses, key=lambda m: _closeness(m, given))
     at: ast.Node = node.callee
     if closest.argument is not None and closest.argument < len(nodes):
@@ -197,6 +199,22 @@ def _no_overload(
     hints = [f"it is called as `{closest.signature}`"]
     hints += [f"or as `{signature}`" for signature in also[:4]]
     check.report("E0311", f"`{name}` {closest.reason}", at, label=f"in this call of `{name}`", hints=hints)
+
+
+def _not_together(check: Inference, node: ast.Call, misses: Sequence[Mismatch]) -> bool:
+    """Report named arguments that are known to some overloads, but never all to one; whether that is so."""
+    written = [a.name for a in node.arguments if a.name is not None]
+    if len(written) < 2 or any(all(fold(n.text) in m.signature.by_fold for n in written) for m in misses):
+        return False
+    name = node.callee.text
+    check.report(
+        "E0311",
+        f"`{name}` does not take {' and '.join(f'`{n.text}`' for n in written)} together",
+        written[-1],
+        label=f"in this call of `{name}`",
+        hints=[f"it is called as `{m.signature}`" for m in misses[:5]],
+    )
+    return True
 
 
 def _closeness(miss: Mismatch, given: Sequence[Given]) -> tuple[int, int, int]:

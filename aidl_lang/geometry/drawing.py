@@ -24,6 +24,9 @@ from aidl_lang.geometry.seams import visible_seams
 from aidl_lang.geometry.trace import Traced, trace_all
 from aidl_lang.solved import Scalar, SolvedGeometry, SolvedModel, SolvedStructure
 
+_NO_LENGTH = 1e-7
+"""Length of a line, in mm, that is none: its ends were made to meet."""
+
 
 @dataclass(frozen=True)
 class Style:
@@ -199,7 +202,7 @@ def _usable(curve: Curve) -> Curve | None:
     box = bounds(curve)
     if not all(map(math.isfinite, box)) or max(map(abs, box)) > LARGEST:
         return None
-    if isinstance(curve, Line) and curve.start == curve.end:
+    if isinstance(curve, Line) and math.dist(curve.start, curve.end) < _NO_LENGTH:
         return None
     return curve if max(box[2] - box[0], box[3] - box[1]) > 0 else None
 

@@ -238,6 +238,8 @@ class Builder(ExpressionBuilder):
     # --- Constraints ---
 
     def constrain(self, start: int, end: int, value: Any) -> Any:
+        if isinstance(value, ast.For | ast.If):
+            value = ast.Block((value,), span=value.span)
         if isinstance(value, ast.Block):
             return ast.Constrain(value, True, span=self.span(start, end))
 
