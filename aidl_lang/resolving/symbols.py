@@ -140,7 +140,7 @@ class Scope:
                 None,
             )
         found: list[Signature] = []
-        canonical = key
+        canonical: str | None = None
         seen: set[str] = set()
         while key is not None and key not in seen:
             seen.add(key)
@@ -151,7 +151,7 @@ class Scope:
                     assert isinstance(alias.node, ast.Alias)
                     target = alias.node.target.text
             if found and canonical == name:
-                canonical = key
+                canonical: str | None = None
             key = target
         return (canonical or name, found) if found else None
 
