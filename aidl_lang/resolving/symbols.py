@@ -150,8 +150,8 @@ class Scope:
                 if target is None and (alias := scope.aliases.get(key)) is not None:
                     assert isinstance(alias.node, ast.Alias)
                     target = alias.node.target.text
-            if found and canonical == name:
-                canonical: str | None = None
+            if found and canonical is None:
+                canonical = key
             key = target
         return (canonical or name, found) if found else None
 
