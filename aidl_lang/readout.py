@@ -40,7 +40,7 @@ def read_out(model: Model, lowered: Lowered, solution: Solution) -> tuple[Solved
     reader = _Reader(model, evaluator, dict(zip(_structures(model), solution.group_degrees, strict=False)))
     changed = tuple(_changes(lowered, solution))
     free = tuple(lowered.unknowns[i].path for i in solution.free)
-    reports = tuple(_reports(lowered, solution))
+    reports = tuple(_reports(model, lowered, solution))
     root = reader.structure(model.root)
     return SolvedModel(solution.status.value, root, reports, solution.degrees, free, changed), evaluator
 
@@ -56,9 +56,11 @@ def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:
         yield Change(unknown.path, unknown.guess, float(solution.values[index]), span)
 
 
-def _reports(lowered: Lowered, solution: Solution) -> Iterator[ConstraintReport]:
-    for index, stated in enumerate(lowered.stated):
-        if stated is not None:
+def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[ConstraintReport]:
+    """How well each constraint holds, in order of writing."""
+    number = {stated: index for index, stated in enumerate(lowered.stated)}
+    for stated in model.constraints:
+        if (index := number.get(stated)) is not None:
             yield report_of(stated, solution.residuals[index], solution.satisfied[index])
 
 

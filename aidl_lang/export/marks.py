@@ -46,11 +46,18 @@ class Text:
             looks["text_anchor"] = self.anchor
         if self.bold:
             looks["font_weight"] = "bold"
-        if self.halo:
-            looks |= {"stroke": "#ffffff", "stroke_width": fixed(0.22 * self.size), "paint_order": "stroke"}
-            looks |= {"stroke_linejoin": "round"}
         at = (fixed(self.at[0]), fixed(-self.at[1]))
-        return svg.text.Text(clean(self.text), insert=at, **looks, debug=False)
+        text = svg.text.Text(clean(self.text), insert=at, **looks, debug=False)
+        if not self.halo:
+            return text
+        # The halo is a text of its own below: not every renderer knows `paint-order`.
+        looks |= {"fill": "#ffffff", "stroke": "#ffffff", "stroke_width": fixed(0.22 * self.size)}
+        halo = svg.text.Text(clean(self.text), insert=at, stroke_linejoin="round", **looks, debug=False)
+        halo["aria-hidden"] = "true"
+        both = svg.container.Group(debug=False)
+        both.add(halo)
+        both.add(text)
+        return both
 
 
 @dataclass(frozen=True)

@@ -31,11 +31,12 @@ def of_model(m: SolvedModel, *show: str) -> ElementTree.Element:
 
 
 def groups(svg: ElementTree.Element) -> dict[str, ElementTree.Element]:
-    return {g.attrib["id"]: g for g in svg.iter(f"{SVG}g")}
+    return {g.attrib["id"]: g for g in svg.iter(f"{SVG}g") if "id" in g.attrib}
 
 
 def texts(svg: ElementTree.Element) -> list[str]:
-    return [t.text or "" for t in svg.iter(f"{SVG}text")]
+    """Every text once, the halos below them aside."""
+    return [t.text or "" for t in svg.iter(f"{SVG}text") if t.get("aria-hidden") is None]
 
 
 PLATE = structure(
