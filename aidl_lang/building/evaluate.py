@@ -39,6 +39,8 @@ def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
     """The value of an expression; NOTHING after an error, which has been reported."""
     value = _EVALUATE[type(node)](it, node, env)
     if node in it.watched:
+        if isinstance(value, Geometry):
+            value = as_point(it, value, node, env) or value
         it.watch(node, value)
         return as_written(value)
     return value

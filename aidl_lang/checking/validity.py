@@ -156,7 +156,7 @@ class _Walker:
         given = [Given(n, self.infer.fact(e).type) for n, e in zip(names, nodes, strict=True)]
         outcomes = [bind(s, given) for s in self.infer.resolution.candidates.get(call, ())]
         fits = sorted((o for o in outcomes if isinstance(o, Binding)), key=lambda b: b.cost)
-        return parameter_of(call, index, [f for f in fits if f.cost == fits[0].cost])
+        return parameter_of(call, index, fits[:1])
 
     def _is_field(self, call: ast.Call, name: str) -> bool:
         """Whether what a call makes can be asked for its parameter by name."""
