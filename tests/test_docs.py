@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from aidl_lang import pipeline
+from aidl_lang.diagnostics import Severity
 from aidl_lang.parser import parse
 from aidl_lang.render import render
 from aidl_lang.source import SourceFile
@@ -41,6 +42,13 @@ def test_example(path: Path) -> None:
         SourceFile(path.name, path.read_text(encoding="utf-8")), DiskWorld(path.parent)
     )
     assert compiled.ok, f"{compiled.status}\n" + "\n".join(map(render, compiled.diagnostics))
+    assert [d.message for d in compiled.diagnostics if d.severity is not Severity.NOTE] == []
+
+
+def test_the_picture_of_the_readme_is_the_telephone() -> None:
+    path = ROOT / "examples" / "telephone.aidl"
+    compiled = pipeline.compile(SourceFile(path.name, path.read_text(encoding="utf-8")))
+    assert compiled.export(".svg") == (ROOT / "docs" / "images" / "telephone.svg").read_bytes()
 
 
 def test_blocks_have_known_notes() -> None:
