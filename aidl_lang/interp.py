@@ -4,8 +4,9 @@ Running means: constants are computed, loops and branches taken, geometry made w
 arithmetic over unknowns kept as an expression. An error is reported and yields `NOTHING`, which everything it
 touches passes on in silence, so that one run reports all errors and still yields what can be drawn.
 
-The work is told in `building/`: `statements` (structures, geometry, loops), `evaluate` (expressions), `calls`
-(overloads and definitions), `construct` (geometry and the exactness of its numbers), `impose` (constraints).
+The work is told in `building/`: `modules` (files and roots), `structures`, `statements`, `evaluate`
+(expressions), `calls` (overloads and definitions), `construct` (geometry and the exactness of its numbers),
+`stated` and `impose` (constraints).
 """
 
 from __future__ import annotations
@@ -14,9 +15,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from aidl_lang import ast
+from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.modules import run_module
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import DEFAULT_LIMITS, Interpreter, Limits, Stop
-from aidl_lang.building.statements import run_module
+from aidl_lang.building.statements import EXECUTORS
 from aidl_lang.builtins import SIGNATURES
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.model import Model, Structure
@@ -38,7 +41,7 @@ def interpret(
     limits: Limits = DEFAULT_LIMITS,
 ) -> Interpretation:
     """Run a program. Never raises for what a program says; errors are among the diagnostics."""
-    it = Interpreter(program, overrides or {}, limits)
+    it = Interpreter(program, overrides or {}, limits, EXECUTORS, evaluate)
     it.watched = frozenset(node for violation in program.violations for node in violation.nodes)
     try:
         root = run_module(it, _library_scope(program))

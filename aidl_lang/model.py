@@ -127,7 +127,6 @@ class Structure:
     plan: tuple[Expression, Expression, Expression, Expression] | None = None
     extents: dict[object, Expression] = field(default_factory=dict, repr=False)
     doc: str | None = None
-    is_todo: bool = False
     is_complete: bool = False
 
     @property

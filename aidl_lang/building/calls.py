@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from aidl_lang import ast
 from aidl_lang.boxes import box_of
+from aidl_lang.building.blocks import run_block
 from aidl_lang.building.coerce import as_point, edge_coordinate
 from aidl_lang.building.conditions import all_of, replace_placed, value_unknowns
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, size, turn
@@ -305,8 +306,6 @@ def _shape(
     node: ast.Call,
     env: Env,
 ) -> Value:
-    from aidl_lang.building.statements import run_block
-
     it.count_entity(node)
     geometry = Geometry(definition.name.text, env.here, it.place(node))
     scope = Scope(candidate.scope, geometry)

@@ -6,7 +6,6 @@ import re
 
 from aidl_lang import ast, units
 from aidl_lang.building.coerce import constant
-from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.scopes import ParamBinding
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.model import Knob, Structure
@@ -50,15 +49,15 @@ def read_param(it: Interpreter, binding: ParamBinding, node: ast.Node) -> Value:
 def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
     node = binding.node
     env = Env(binding.scope, binding.structure, Reach.OWN)
-    written = evaluate(it, node.value, env)
+    written = it.evaluate(node.value, env)
     if isinstance(written, Num):
         known = constant(it, written, node.value, "the value of a `param`")
         written = number(known, written.dimension) if known is not None else NOTHING
     elif not isinstance(written, Text | bool | Nothing):
         it.report("E0314", f"a `param` is a number, a text or true/false, not {kind_of(written)}", node.value)
         return NOTHING
-    domain = evaluate(it, node.domain, env) if node.domain is not None else None
-    step = evaluate(it, node.step, env) if node.step is not None else None
+    domain = it.evaluate(node.domain, env) if node.domain is not None else None
+    step = it.evaluate(node.step, env) if node.step is not None else None
     if isinstance(written, Nothing) or isinstance(domain, Nothing):
         return NOTHING
     low, high, choices = _domain(it, domain, node)

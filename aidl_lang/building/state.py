@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -53,6 +53,10 @@ class Stop(Exception):  # noqa: N818 (not an error of ours: the program went ove
     """Building ends here; what there is so far is the result."""
 
 
+Executor = Callable[..., None]
+"""Does what a statement says: (interpreter, statement, scope, structure)."""
+
+
 @dataclass
 class Interpreter:
     """The state of one run."""
@@ -60,6 +64,8 @@ class Interpreter:
     program: Program
     overrides: Mapping[str, str | float | bool]
     limits: Limits
+    executors: Mapping[type, Executor]
+    evaluator: Callable[[Interpreter, ast.Expression, Env], Value]
     diagnostics: list[Diagnostic] = field(default_factory=list)
     unknowns: list[Unknown] = field(default_factory=list)
     constraints: list[Constraint] = field(default_factory=list)
@@ -109,6 +115,10 @@ class Interpreter:
     @property
     def library_sources(self) -> tuple[object, ...]:
         return self.program.library.sources
+
+    def evaluate(self, node: ast.Expression, env: Env) -> Value:
+        """The value of an expression, for code that `evaluate` itself stands on."""
+        return self.evaluator(self, node, env)
 
     # --- Limits --------------------------------------------------------------------------------
 

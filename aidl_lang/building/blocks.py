@@ -1,0 +1,62 @@
+"""Bodies: what they declare for the whole of themselves, and their statements one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from aidl_lang import ast
+from aidl_lang.building.scopes import Candidate, LetBinding, ParamBinding, Scope
+from aidl_lang.building.state import Interpreter
+from aidl_lang.library import signature
+from aidl_lang.model import Structure
+
+
+def run_block(it: Interpreter, statements: Sequence[ast.Statement], scope: Scope, here: Structure) -> None:
+    """Run the statements of a body. Callables and constants are visible in the whole of it."""
+    hoist_callables(scope, statements)
+    hoist_values(scope, statements, here)
+    for statement in statements:
+        execute(it, statement, scope, here)
+
+
+def hoist_callables(scope: Scope, statements: Iterable[ast.Statement]) -> None:
+    for node in statements:
+        match node:
+            case ast.FunctionDefinition() | ast.ShapeDefinition() | ast.ConstraintDefinition():
+                scope.callables.setdefault(node.name.text, []).append(Candidate(signature(node), scope))
+            case ast.Structure(parameters=parameters) if parameters is not None:
+                scope.callables.setdefault(node.name.text, []).append(Candidate(signature(node), scope))
+            case ast.Alias(name=name, target=target):
+                scope.aliases[name.text] = target.text
+
+
+def hoist_values(scope: Scope, statements: Iterable[ast.Statement], here: Structure) -> None:
+    for node in statements:
+        match node:
+            case ast.Let():
+                scope.values.setdefault(node.name.text, LetBinding(node.value, scope))
+            case ast.Param():
+                scope.values.setdefault(node.name.text, ParamBinding(node, scope, here))
+
+
+def execute(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) -> None:
+    """Do what a statement says; definitions were hoisted and say nothing here."""
+    if (run := it.executors.get(type(node))) is not None:
+        run(it, node, scope, here)
+
+
+def declared_names(block: ast.Block, *, indexed: bool = False) -> Iterator[str]:
+    """Names that a block gives to geometry and structures, only those with an index if `indexed`."""
+    for node in block.statements:
+        match node:
+            case ast.Assign() | ast.Structure(parameters=None):
+                if node.indices or not indexed:
+                    yield node.name.text
+            case ast.Var() if not indexed:
+                yield node.name.text
+            case ast.For(body=body):
+                yield from declared_names(body, indexed=indexed)
+            case ast.If(then=then, otherwise=otherwise):
+                for branch in (then, otherwise):
+                    if branch is not None:
+                        yield from declared_names(branch, indexed=indexed)

@@ -1,0 +1,215 @@
+"""Names and members: reading a binding from where it is asked for, and what stands behind a dot."""
+
+from __future__ import annotations
+
+from aidl_lang import ast, boxes, primitives
+from aidl_lang import expression as ex
+from aidl_lang.boxes import Box
+from aidl_lang.building.coerce import as_written, may_read
+from aidl_lang.building.params import read_param
+from aidl_lang.building.scopes import Binding, LetBinding, ParamBinding, PassedBinding, Scope, VarBinding
+from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.building.templates import read_passed
+from aidl_lang.diagnostics import Label
+from aidl_lang.model import Condition, Geometry, Structure
+from aidl_lang.names import find, nearest
+from aidl_lang.values import (
+    NOTHING,
+    Array,
+    ListVal,
+    Namespace,
+    Nothing,
+    Num,
+    PointVal,
+    Value,
+    kind_of,
+    members,
+)
+
+
+def not_built(it: Interpreter, node: ast.Name, branch: ast.If) -> Value:
+    test = " ".join(branch.test.span.text.split())
+    it.report(
+        "E0514",
+        f"`{node.text}` was not built, because of `if {test}`",
+        node,
+        label="mentioned here",
+        hints=[f"mention it only where it is built: under the same `if {test}`"],
+        secondary=[Label(branch.test.span, "this branch was not taken")],
+    )
+    return NOTHING
+
+
+def read(it: Interpreter, binding: Binding, node: ast.Node, env: Env) -> Value:
+    """The value of a name for the expression that reads it."""
+    match binding:
+        case LetBinding():
+            return _read_let(it, binding, node, env)
+        case ParamBinding():
+            return read_param(it, binding, node)
+        case VarBinding(value, unknown):
+            reached = may_read(it, unknown.owner, node, env)
+            return value if reached else as_written(value)
+        case PassedBinding():
+            return read_passed(it, binding, env)
+        case _:
+            return binding
+
+
+def _read_let(it: Interpreter, let: LetBinding, node: ast.Node, env: Env) -> Value:
+    if let.known is not None:
+        return let.known
+    if (seen := let.seen.get((env.here, env.reach))) is not None:
+        return seen
+    if let.running:
+        it.report("E0207", f"`{node.span.text}` is defined by way of itself", node)
+        return NOTHING
+    let.running = True
+    try:
+        value = it.evaluate(let.node, Env(let.scope, env.here, env.reach))
+    finally:
+        let.running = False
+    if is_same_everywhere(value):
+        let.known = value
+    else:
+        let.seen[env.here, env.reach] = value
+    return value
+
+
+def is_same_everywhere(value: Value) -> bool:
+    """Whether a value does not depend on the frame or the reach of the code that reads it."""
+    match value:
+        case Num(expression=e):
+            return e.is_constant
+        case PointVal(x, y):
+            return x.expression.is_constant and y.expression.is_constant
+        case ListVal(items):
+            return all(map(is_same_everywhere, items))
+        case Condition() | Box():
+            return False
+        case _:
+            return True
+
+
+def member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Value:
+    """`value.name`"""
+    found: Value | None = None
+    match value:
+        case Nothing():
+            return NOTHING
+        case PointVal(x, y):
+            found = {"x": x, "y": y}.get(name.casefold())
+        case Structure():
+            found = _structure_member(it, value, name, node, env)
+        case Geometry():
+            found = _geometry_member(it, value, name, node, env)
+        case Box():
+            found = _box_field(it, value, name, node, env)
+        case Namespace():
+            key = find(name, value.values)
+            found = read(it, value.values[key], node, env) if key else None  # type: ignore[arg-type]
+        case ListVal() | Array() if name in ("bb", "box"):
+            found = boxes.box_of(value, env.here)
+        case ListVal() | Array():
+            items = [member(it, item, name, node, env) for item in members(value) or ()]
+            return NOTHING if any(isinstance(i, Nothing) for i in items) else ListVal(tuple(items))
+    if found is None:
+        _no_member(it, value, name, node)
+        return NOTHING
+    return found
+
+
+def _no_member(it: Interpreter, value: Value, name: str, node: ast.Member) -> None:
+    known = member_names(value)
+    like = nearest(name, known)
+    if like:
+        hint = f"did you mean `{like[0]}`?"
+    elif known:
+        hint = "it has " + ", ".join(f"`{k}`" for k in known[:12])
+    else:
+        hint = "members belong to structures, geometry, boxes and points"
+    what = f"`{node.value.span.text}`"
+    it.report("E0202", f"{what} has no `{name}` (it is {kind_of(value)})", node.name, hints=[hint])
+
+
+def member_names(value: Value) -> list[str]:
+    """What may stand behind a dot, for messages."""
+    match value:
+        case PointVal():
+            return ["x", "y"]
+        case Box():
+            return list(boxes.FIELDS)
+        case Structure():
+            return [*value.members, "bb", *boxes.FIELDS]
+        case Geometry(scope=Scope() as scope):
+            return [*scope.values, "bb", *boxes.FIELDS]
+        case Geometry():
+            return [*primitives.FIELDS[value.type], "bb", *boxes.FIELDS]
+        case _:
+            return []
+
+
+def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, env: Env) -> Value | None:
+    assert isinstance(s.scope, Scope)
+    if (key := find(name, s.scope.values)) is not None:
+        binding = s.scope.values[key]
+        value = read(it, binding, node, env)
+        # Points kept as they are (`origin`, an argument) are in the structure's own frame.
+        is_own = isinstance(binding, PointVal | PassedBinding)
+        return primitives.translate(key, value, s, env.here) if is_own else value
+    box = boxes.box_of(s, env.here)
+    return _box_field(it, box, name, node, env) if box else None
+
+
+def _geometry_member(it: Interpreter, g: Geometry, name: str, node: ast.Node, env: Env) -> Value | None:
+    if isinstance(g.scope, Scope):
+        if (key := find(name, g.scope.values)) is not None:
+            return _shape_member(it, g, key, node, env)
+    else:
+        fields = dict.fromkeys(primitives.FIELDS[g.type])
+        key = find(name, fields) or name
+        reached = may_read(it, g.owner, node, env)
+        value = primitives.field(g, key, env.here)
+        if value is not None:
+            return value if reached else as_written(value)
+    box = boxes.box_of(g, env.here)
+    return _box_field(it, box, name, node, env) if box else None
+
+
+def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: Env) -> Value:
+    """A part, argument or let of a compound shape: read in the frame of its owner, then seen from here."""
+    assert isinstance(g.scope, Scope)
+    value = read(it, g.scope.values[key], node, Env(g.scope, g.owner, Reach.OWN))
+    value = primitives.translate(key, value, g.owner, env.here)
+    if isinstance(value, Num | PointVal) and not is_same_everywhere(value):
+        if not may_read(it, g.owner, node, env):
+            return as_written(value)
+        if env.reach is Reach.SUBTREE and isinstance(value, Num):
+            _unlock(value)
+    return value
+
+
+def _unlock(value: Num) -> None:
+    """A constraint names an angle that was exact only because nothing asked it to turn."""
+    payload = value.expression.payload
+    if isinstance(payload, ex.Unknown) and payload.locked:
+        payload.exact = False
+
+
+def _box_field(it: Interpreter, box: Box, name: str, node: ast.Node, env: Env) -> Value | None:
+    if name.casefold() in ("bb", "box", "boundingbox", "bounding_box"):
+        return box
+    key = find(name, dict.fromkeys(boxes.FIELDS))
+    if key is None:
+        return None
+    value = box.field(key)
+    owners = (s if isinstance(s, Structure) else getattr(s, "owner", None) for s in box.sources)
+    reached = all(may_read(it, owner, node, env) for owner in owners if owner is not None)
+    return value if reached or value is None else as_written(value)
+
+
+def no_index(it: Interpreter, node: ast.Index, known: list[int], wanted: int) -> Value:
+    name = node.value.span.text
+    has = f"its indices are {known[0]} to {known[-1]}" if known else "it is empty"
+    it.report("E0503", f"`{name}` has no member {wanted}: {has}", node.index)
+    return NOTHING

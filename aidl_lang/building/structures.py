@@ -1,0 +1,181 @@
+"""Structures: in place and from templates, with their frames and, when they are empty, their boxes."""
+
+from __future__ import annotations
+
+from aidl_lang import ast
+from aidl_lang import expression as ex
+from aidl_lang.building.attributes import read_attributes
+from aidl_lang.building.blocks import run_block
+from aidl_lang.building.calls import default_of
+from aidl_lang.building.coerce import as_point, numeric
+from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.scopes import Scope
+from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.building.stated import read_constraint
+from aidl_lang.building.templates import passed
+from aidl_lang.model import Frame, Geometry, Structure
+from aidl_lang.units import ANGLE, LENGTH
+from aidl_lang.values import (
+    NOTHING,
+    Instantiation,
+    Nothing,
+    PointVal,
+    Status,
+    kind_of,
+    number,
+    point,
+)
+
+_PLAN = 10.0
+"""Width and height at which the box of an empty structure starts, in mm."""
+
+
+def build_structure(
+    it: Interpreter, node: ast.Structure, scope: Scope, parent: Structure | None, indices: tuple[int, ...]
+) -> Structure:
+    """A structure from its definition in place."""
+    name = node.name.text + "".join(f"[{i}]" for i in indices)
+    structure = _new(it, node.kind, name, parent, node)
+    structure.doc = node.doc
+    _place(it, structure, node.placement, scope)
+    read_attributes(it, structure, node.attributes, scope)
+    body = Scope(_around(scope, node.name.text, structure), structure, labels=scope.labels)
+    structure.scope = body
+    own_names(body, structure)
+    run_block(it, node.body.statements, body, structure)
+    finish(it, structure)
+    return structure
+
+
+def instantiate(
+    it: Interpreter,
+    node: ast.Assign,
+    template: Instantiation,
+    scope: Scope,
+    here: Structure,
+    indices: tuple[int, ...],
+) -> Structure | Nothing:
+    """An instance of a template under the name it is assigned to."""
+    definition = template.definition
+    name = node.name.text + "".join(f"[{i}]" for i in indices)
+    if not it.enter(template.node, definition):
+        return NOTHING
+    try:
+        structure = _new(it, definition.kind, name, here, node)
+        structure.doc = definition.doc
+        _place(it, structure, node.placement, scope)
+        assert isinstance(template.scope, Scope)
+        around = _around(template.scope, definition.name.text, structure)
+        body = Scope(around, structure, labels=scope.labels)
+        structure.scope = body
+        read_attributes(it, structure, (*definition.attributes, *node.attributes), body)
+        own_names(body, structure)
+        for parameter, (key, kind, _) in zip(
+            definition.parameters or (), template.signature.parameters, strict=True
+        ):
+            value = template.arguments.get(key)
+            if value is None:
+                value = default_of(it, parameter, kind, Env(body, structure, Reach.OWN))
+            where = _argument_node(template.node, key) or parameter
+            body.values[key] = passed(it, key, value, structure, here, where)
+        if definition.placement is not None:
+            _place(it, structure, definition.placement, body)
+        run_block(it, definition.body.statements, body, structure)
+        finish(it, structure)
+    finally:
+        it.leave()
+    return structure
+
+
+def _argument_node(node: ast.Call, name: str) -> ast.Node | None:
+    return next((a.value for a in node.arguments if a.name is not None and a.name.text == name), None)
+
+
+def _new(it: Interpreter, kind: str, name: str, parent: Structure | None, node: ast.Node) -> Structure:
+    it.count_entity(node)
+    structure = Structure(kind, name, parent, it.place(node))
+    if parent is None:
+        it.root = structure
+    else:
+        parent.children.append(structure)
+    return structure
+
+
+def _around(scope: Scope, name: str, structure: Structure) -> Scope:
+    """What a body sees around it: its structure by name, which is no member of it."""
+    around = Scope(scope)
+    around.values[name] = structure
+    return around
+
+
+def own_names(scope: Scope, structure: Structure) -> None:
+    """`self`, `origin` and the axes, which every structure has."""
+    exact = [point(ex.constant(x), ex.constant(y), Status.FIXED) for x, y in ((0, 0), (1, 0), (0, 1))]
+    scope.values["self"] = structure
+    scope.values["origin"] = exact[0]
+    for name, end in zip(("x_axis", "y_axis"), exact[1:], strict=True):
+        axis = Geometry("line", structure, structure.span, {"start": exact[0], "end": end})
+        axis.name, axis.container, axis.construction = name, structure, True
+        scope.values[name] = axis
+
+
+def _place(it: Interpreter, s: Structure, placement: ast.Placement | None, scope: Scope) -> None:
+    """The frame: `at` is a position, `rotated` is exact unless it is a guess or an unknown."""
+    if s.parent is None:
+        if placement is not None:
+            it.report(
+                "W0502", "the root's frame is fixed, so `at` and `rotated` change nothing here", placement
+            )
+        return
+    env = Env(scope, s.parent, Reach.OWN)
+    at = None
+    if placement is not None and placement.at is not None:
+        value = evaluate(it, placement.at, env)
+        at = as_point(it, value, placement.at, env)
+        if at is None and not isinstance(value, Nothing):
+            it.report("E0302", f"`at` wants a point, not {kind_of(value)}", placement.at)
+    at = at or PointVal(number(0.0, LENGTH), number(0.0, LENGTH))
+    x, y = (
+        n.expression
+        if n.status >= Status.FIXED
+        else it.unknown(n.value, s, axis, owner=s.parent, dimension=LENGTH, frame_of=s)
+        for n, axis in ((at.x, "x"), (at.y, "y"))
+    )
+    s.frame = Frame(x, y, _rotation(it, s, placement, env))
+
+
+def _rotation(it: Interpreter, s: Structure, placement: ast.Placement | None, env: Env) -> ex.Expression:
+    if placement is None or placement.rotated is None:
+        return ex.ZERO
+    value = evaluate(it, placement.rotated, env)
+    found = numeric(it, value, placement.rotated, env)
+    if found is None:
+        return ex.ZERO
+    if found.dimension not in (None, ANGLE):
+        it.report("E0301", "`rotated` wants an angle", placement.rotated, hints=["as in `rotated 45deg`"])
+        return ex.ZERO
+    if found.status is Status.GUESS:
+        assert s.parent is not None
+        return it.unknown(found.value, s, "rotation", owner=s.parent, dimension=ANGLE, frame_of=s)
+    return found.expression
+
+
+def finish(it: Interpreter, structure: Structure) -> None:
+    """The body has been run: an empty structure gets its box, then constraints are read."""
+    if structure.is_empty and structure.parent is not None:
+        _plan(it, structure)
+    structure.is_complete = True
+    for node, scope in it.pending.pop(structure, []):
+        read_constraint(it, node, scope, structure)
+
+
+def _plan(it: Interpreter, s: Structure) -> None:
+    half = _PLAN / 2
+    left, bottom, width, height = (
+        it.unknown(guess, s, name, owner=s, dimension=LENGTH)
+        for name, guess in (("left", -half), ("bottom", -half), ("width", _PLAN), ("height", _PLAN))
+    )
+    for side in (left, bottom, width, height):
+        assert isinstance(side.payload, ex.Unknown)
+        side.payload.outline = True
+    s.plan = (left, bottom, width, height)
