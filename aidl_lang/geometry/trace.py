@@ -235,7 +235,12 @@ def _to_loop(network: Network, runs: list[Run]) -> Loop:
     pieces = _joined([_piece(network, r) for r in runs], lambda a, b: _fuse(a, b, network.tolerance))
     if len(pieces) == 1 and isinstance(arc := pieces[0], Arc) and abs(arc.sweep) > TAU - 1e-6:
         return Loop((Circle(arc.center, arc.radius),), reversed=arc.sweep < 0)
-    first = min(range(len(pieces)), key=lambda k: ends(pieces[k])[0])
+
+    # The leftmost point begins, the lowest of those: compared coarsely, so that rounding does not choose.
+    def begins(number: int) -> tuple[int, ...]:
+        return tuple(round(c / (2 * network.tolerance)) for c in ends(pieces[number])[0])
+
+    first = min(range(len(pieces)), key=begins)
     return Loop(tuple(pieces[first:] + pieces[:first]))
 
 

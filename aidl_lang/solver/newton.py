@@ -193,9 +193,21 @@ class _Newton:
     def run(self, start: Floats) -> Outcome:
         system = self.system
         if system.linear:
-            return self._project()
+            projected = self._project()
+            return self._refine(projected) if projected.converged else projected
         reached = self._approach(start, self.iterations)
-        return self._polish(reached) if reached.converged else reached
+        return self._refine(self._polish(reached)) if reached.converged else reached
+
+    def _refine(self, found: Outcome) -> Outcome:
+        """A last step for the last digits: a tolerance says when to stop, not what a drawing shall show."""
+        system = self.system
+        residuals = system.residuals(found.z)
+        step = nearest(system.jacobian(), -residuals, system.inequality)
+        if not step.feasible:
+            return found
+        z = found.z + step.point
+        violation = self._greatest(system.residuals(z))
+        return Outcome(z, found.end, violation) if violation < found.violation else found
 
     def _project(self) -> Outcome:
         """The solution of an affine system: one projection, and another for the rounding of the first."""
