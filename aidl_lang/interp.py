@@ -11,6 +11,7 @@ The work is told in `building/`: `modules` (files and roots), `structures`, `sta
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -42,6 +43,7 @@ def interpret(
 ) -> Interpretation:
     """Run a program. Never raises for what a program says; errors are among the diagnostics."""
     it = Interpreter(program, overrides or {}, limits, EXECUTORS, evaluate)
+    it.deadline = time.monotonic() + limits.seconds
     it.watched = frozenset(node for violation in program.violations for node in violation.nodes)
     try:
         root = run_module(it, _library_scope(program))

@@ -41,6 +41,9 @@ def solution_notes(lowered: Lowered, solution: Solution, model: SolvedModel) -> 
                 ),
             )
         )
+    if solution.degrees is None:
+        message = "the model is too large for its degrees of freedom to be counted"
+        found.append(Diagnostic("N0603", message, lowered.unknowns[0].owner.span))
     for index in solution.redundant:
         stated = lowered.stated[index]
         if stated is not None and stated.span is not None:

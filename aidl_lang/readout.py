@@ -37,16 +37,13 @@ def read_out(model: Model, lowered: Lowered, solution: Solution) -> tuple[Solved
         u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)
     }
     evaluator = Evaluator(values)
-    reader = _Reader(model, evaluator, dict(zip(_structures(model), solution.group_degrees, strict=False)))
+    counts = dict(zip(model.root.walk(), solution.group_degrees or (), strict=False))
+    reader = _Reader(model, evaluator, counts)
     changed = tuple(_changes(lowered, solution))
     free = tuple(lowered.unknowns[i].path for i in solution.free)
     reports = tuple(_reports(model, lowered, solution))
     root = reader.structure(model.root)
     return SolvedModel(solution.status.value, root, reports, solution.degrees, free, changed), evaluator
-
-
-def _structures(model: Model) -> Iterable[Structure]:
-    return model.root.walk()
 
 
 def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:
@@ -95,7 +92,7 @@ class _Reader:
             structures=children,
             box=self._box(s, geometry, children),
             is_empty=s.is_empty,
-            degrees=self.degrees.get(s, 0),
+            degrees=self.degrees.get(s),
             span=s.span,
             doc=s.doc,
         )

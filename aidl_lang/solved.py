@@ -73,7 +73,8 @@ class SolvedGeometry:
 @dataclass(frozen=True)
 class SolvedStructure:
     """`box` is None where there is nothing to bound. `attributes`: name → argument values (`color`, `layer`,
-    `thickness`, `material`, `detached`, `note`, `orientation`). `is_empty`: no geometry of its own and no
+    `thickness`, `material`, `detached`, `note`, `orientation`). `degrees` is None where they were not
+    counted. `is_empty`: no geometry of its own and no
     children, so that `box` is that of the plan.
     """
 
@@ -88,7 +89,7 @@ class SolvedStructure:
     structures: tuple[SolvedStructure, ...]
     box: Box | None
     is_empty: bool
-    degrees: int
+    degrees: int | None
     span: Span | None
     doc: str | None = None
 
@@ -130,6 +131,6 @@ class SolvedModel:
     status: str
     root: SolvedStructure
     constraints: tuple[ConstraintReport, ...]
-    degrees: int
+    degrees: int | None
     free: tuple[str, ...]
     changed: tuple[Change, ...]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
@@ -44,6 +46,7 @@ class Limits:
     depth: int = 60
     constraints: int = 50_000
     items: int = 100_000
+    seconds: float = 20.0
 
 
 DEFAULT_LIMITS = Limits()
@@ -82,6 +85,7 @@ class Interpreter:
     root: Structure | None = None
     entities: int = 0
     turns: int = 0
+    deadline: float = math.inf
 
     # --- Reporting -----------------------------------------------------------------------------
 
@@ -129,7 +133,13 @@ class Interpreter:
                 node, f"this program builds more than {self.limits.entities} structures and geometries"
             )
 
+    def check_time(self, node: ast.Node) -> None:
+        """Called wherever a program may go on for long."""
+        if time.monotonic() > self.deadline:
+            self._stop(node, f"building this program takes more than {self.limits.seconds:g} seconds")
+
     def count_turn(self, node: ast.Node) -> None:
+        self.check_time(node)
         self.turns += 1
         if self.turns > self.limits.turns:
             self._stop(node, f"the loops of this program take more than {self.limits.turns} turns")
@@ -141,6 +151,7 @@ class Interpreter:
 
     def enter(self, node: ast.Node, definition: ast.Node | None) -> bool:
         """Whether a call may be entered; `leave` ends it. A definition that ran too deep is not again."""
+        self.check_time(node)
         if definition in self.runaway:
             return False
         if len(self.call_sites) >= self.limits.depth:

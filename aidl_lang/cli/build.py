@@ -41,7 +41,9 @@ class Outcome:
     def line(self, program: str) -> str:
         """The outcome in a line."""
         model = self.compiled.model
-        freedom = f", {_count(model.degrees, 'degree')} of freedom" if model and self.compiled.ok else ""
+        freedom = ""
+        if model is not None and model.degrees is not None and self.compiled.ok:
+            freedom = f", {_count(model.degrees, 'degree')} of freedom"
         place, remark = (", ".join(self.written), "") if self.written else (program, ", nothing written")
         return f"{place}: {self.compiled.status}{freedom}{remark}, {self.seconds:.2f} s"
 

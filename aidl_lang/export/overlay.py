@@ -290,7 +290,8 @@ def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
         box = _bounds(structure)
         if box is not None and (structure.degrees or structure is at.model.root):
             marks.append(at.label(f"{structure.name}: {structure.degrees} dof", box, palette.FREE, size))
-    lines = [(0, f"{at.model.degrees} degrees of freedom")]
+    count = at.model.degrees
+    lines = [(0, "degrees of freedom not counted" if count is None else f"{count} degrees of freedom")]
     for structure in structures:
         if names := free.get(structure.path):
             lines.append((0, f"{structure.path}: {structure.degrees}"))

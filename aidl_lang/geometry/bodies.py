@@ -14,6 +14,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.sections import (
@@ -149,15 +151,20 @@ class Bodies:
 
     def _find_inner_loops(self, structure: SolvedStructure, faces: list[OwnFace]) -> None:
         """Faces that the others cover; of two alike the later one."""
-        kept = list(faces)
-        for face in reversed(faces):
-            others = [f for f in kept if f is not face]
-            around = [f for f in others if box_within(face.section, f.section)]
-            if not others or not (around or len(others) > 1):
+        kept = np.ones(len(faces), dtype=np.bool_)
+        boxes = np.array([face.section.bounds() for face in faces]).reshape(-1, 4)
+        low, high = boxes[:, :2], boxes[:, 2:]
+        for number in reversed(range(len(faces))):
+            face = faces[number]
+            meets = kept & (low < high[number]).all(axis=1) & (high > low[number]).all(axis=1)
+            meets[number] = False
+            near = [faces[i] for i in np.flatnonzero(meets)]
+            around = [f for f in near if box_within(face.section, f.section)]
+            if not near or not (around or len(near) > 1):
                 continue
-            if covers(union_of(others), face.section):
-                kept = others
-                names = tuple(g for f in around or others for g in f.geometries)
+            if covers(union_of(near), face.section):
+                kept[number] = False
+                names = tuple(g for f in around or near for g in f.geometries)
                 self.findings.append(InnerLoop(structure, face, names))
 
     def _united(

@@ -26,7 +26,9 @@ def solve(problem: Problem, settings: Settings = Settings()) -> Solution:
     for index, constraint in enumerate(problem.constraints):
         satisfied.append(hierarchy.satisfied(index))
         residuals.append(max((violation_of(row, values) for row in constraint.rows), default=0.0))
-    freedom = analysis.degrees_of_freedom(problem, values, satisfied, hierarchy.mentioned)
+    freedom = analysis.UNCOUNTED
+    if len(problem.observables) * len(problem.initial) <= settings.counted:
+        freedom = analysis.degrees_of_freedom(problem, values, satisfied, hierarchy.mentioned)
     return Solution(
         status=_status(hierarchy, satisfied),
         values=hierarchy.solution(),

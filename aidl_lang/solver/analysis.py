@@ -30,10 +30,13 @@ DEPENDENT = 1e-6
 class Freedom:
     """See the fields of the same names in `Solution`."""
 
-    degrees: int
-    group_degrees: tuple[int, ...]
+    degrees: int | None
+    group_degrees: tuple[int, ...] | None
     free: tuple[int, ...]
     redundant: tuple[int, ...]
+
+
+UNCOUNTED = Freedom(None, None, (), ())
 
 
 @dataclass(frozen=True)

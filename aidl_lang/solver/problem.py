@@ -89,12 +89,15 @@ class Settings:
 
     tolerance   residual at which a row counts as satisfied, relative to its scale
     iterations  Newton steps per attempt
+    counted     entries of the largest matrix whose rank may be taken for degrees of freedom; beyond that they
+                are not counted
     branches    re-choices of `min`/`max` branches per stage
     seconds     wall clock for the whole solve; reaching it ends with status `failed` and `timed_out`
     """
 
     tolerance: float = 1e-9
     iterations: int = 60
+    counted: int = 20_000_000
     branches: int = 12
     seconds: float = 20.0
     explain: bool = True

@@ -57,7 +57,8 @@ class Solution:
                    evaluated on the original expressions at `values`, in the units of the row
     satisfied      per constraint
     changed        unknowns of kept sizes that had to change
-    degrees        degrees of freedom left in the whole model (kept sizes held)
+    degrees        degrees of freedom left in the whole model (kept sizes held); None if the model is too
+                   large for them to be counted (`Settings.counted`), then `free` and `redundant` are empty
     group_degrees  the same for what each group itself draws
     free           unknowns that can still move (kept ones never do)
     redundant      equality constraints already implied by others
@@ -69,8 +70,8 @@ class Solution:
     residuals: tuple[float, ...]
     satisfied: tuple[bool, ...]
     changed: tuple[int, ...]
-    degrees: int
-    group_degrees: tuple[int, ...]
+    degrees: int | None
+    group_degrees: tuple[int, ...] | None
     free: tuple[int, ...]
     redundant: tuple[int, ...]
     failures: tuple[GroupFailure, ...]

@@ -169,3 +169,14 @@ def test_constraints_over_constants() -> None:
     assert solution.status == "failed"
     assert solution.failures[0].conflict == (bad,)
     assert np.isfinite(solution.values).all()
+
+
+def test_a_model_too_large_to_count_is_solved_all_the_same() -> None:
+    m = Model()
+    x = m.unknown(0.0)
+    m.equal(x - 3.0)
+    problem = m.problem()
+    solution = solve(problem, Settings(counted=len(problem.observables) * len(problem.initial) - 1))
+    assert solution.status == "solved"
+    assert solution.values.tolist() == [3.0]
+    assert (solution.degrees, solution.group_degrees, solution.free) == (None, None, ())
