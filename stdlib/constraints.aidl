@@ -145,6 +145,11 @@ constraint midpoint(p: point, a: point, b: point) { p == (a + b) / 2 }
 fn level_through(p: point) = line(fixed(p), fixed(p + (1, 0)))
 fn upright_through(p: point) = line(fixed(p), fixed(p + (0, 1)))
 
+/// The mirror image of a point, and how far another is from it as written.
+fn mirrored(p: point, about: line) = p - across(about) * (2 * offset_from(p, about))
+fn across(l: line) = turned(l.end - l.start, 90deg) / l.length
+fn mirror_error(a: point, b: point, about: line) = norm(written(mirrored(a, about) - b))
+
 /// Mirror images of each other: about a line, a point, an axis or a coordinate.
 constraint symmetric(a: point, b: point, about: line) {
     offset_from((a + b) / 2, about) == 0
@@ -171,8 +176,15 @@ constraint symmetric(a, b, axis: text) {
 }
 constraint symmetric(a, b, axis: length) { symmetric(a, b, about: upright_through((axis, 0))) }
 constraint symmetric(a: line, b: line, about: line) {
-    symmetric(a.start, b.start, about: about)
-    symmetric(a.end, b.end, about: about)
+    let along = mirror_error(a.start, b.start, about) + mirror_error(a.end, b.end, about)
+    let against = mirror_error(a.start, b.end, about) + mirror_error(a.end, b.start, about)
+    if along <= against {
+        symmetric(a.start, b.start, about: about)
+        symmetric(a.end, b.end, about: about)
+    } else {
+        symmetric(a.start, b.end, about: about)
+        symmetric(a.end, b.start, about: about)
+    }
 }
 
 /// Set a measure: the same as `distance(a, b) == value`.
