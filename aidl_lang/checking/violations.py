@@ -102,7 +102,7 @@ class Violation:
             secondary.append(Label(symbol.declarations[0].span, "declared here"))
         return Diagnostic(
             "E0401" if self.rule == 1 else "E0402",
-            f"{subject} cannot use `{shown(culprit)}`, which belongs to {owner}",
+            f"{subject} cannot use `{shown(culprit)}`, which {_whose(shown(culprit), owner)}",
             culprit.span,
             label=f"outside {home}",
             secondary=tuple(secondary),
@@ -240,3 +240,8 @@ def _root(node: ast.Node) -> ast.Node:
     while isinstance(node, ast.Member | ast.Index):
         node = node.value
     return node
+
+
+def _whose(written: str, owner: str) -> str:
+    """Where a reference leads; a structure named itself belongs to nothing but the structure around."""
+    return "lies outside it" if owner == f"`{written}`" else f"belongs to {owner}"
