@@ -81,6 +81,12 @@ WORDS = frozenset(
 """Words that may stand bare as an argument, as in `axis: x` and `align: left`."""
 
 
+EVERYWHERE = ("self", "origin", "x_axis", "y_axis")
+"""Names that every structure has."""
+
+ATTRIBUTES = ("orientation", "color", "colour", "layer", "thickness", "material", "detached", "note")
+"""What may stand behind `@` before a definition; `colour` is another spelling of `color`."""
+
 WORDED = frozenset({"orientation", "color", "colour", "layer", "material", "note"})
 """Attributes whose argument may be a bare word, as in `@orientation(front)` and `@color(red)`."""
 

@@ -13,7 +13,16 @@ import numpy as np
 
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
-from aidl_lang.model import SIZES, Comparison, Constraint, Geometry, Model, Structure, convert, own_geometry
+from aidl_lang.model import (
+    SIZES,
+    Comparison,
+    Constraint,
+    Geometry,
+    Model,
+    Structure,
+    convert,
+    own_geometry,
+)
 from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Row
 from aidl_lang.solver.expression import TapeBuilder
@@ -40,7 +49,6 @@ class Lowered:
     problem: Problem
     unknowns: tuple[Unknown, ...]
     stated: tuple[Constraint | None, ...]
-    size: float
 
 
 def lower(model: Model) -> Lowered:
@@ -55,13 +63,15 @@ class _Lowering:
         self.tape = TapeBuilder()
         self.node_of: dict[Expression, int] = {}
         self.numbers: dict[Unknown, int] = {}
-        self.variables: list[Unknown] = []
+        self.variables: dict[Structure, list[Unknown]] = {}
         self.mentioned: set[Unknown] = set()
         self.holders = {c.holder for c in model.constraints}
-        self.size = model_size(self.structures)
+        # Every number that defines what is drawn, in the root's frame, by the structure that draws it.
+        self.drawn = {s: [self._in_root(s, at) for at in _seen(s)] for s in self.structures}
+        self.size = _extent(at for drawn in self.drawn.values() for at in drawn)
 
     def run(self) -> Lowered:
-        self._number_unknowns(e for s in self.structures for e in _observed(s))
+        self._number_unknowns(e for drawn in self.drawn.values() for at in drawn for e in at)
         stated: list[Constraint | None] = []
         constraints: list[SolverConstraint] = []
         # In an order of their own, so that the order of writing cannot show in the last digits.
@@ -73,7 +83,7 @@ class _Lowering:
             constraints.append(never)
             stated.append(None)
         observables = tuple(
-            (self.groups[s], self._node(e)) for s in self.structures for e in self._in_root(s)
+            (self.groups[s], self._node(e)) for s in self.structures for e in self._observables(s)
         )
         found = tuple(self.numbers)
         parents = [self.groups[s.parent] if s.parent else -1 for s in self.structures]
@@ -90,12 +100,12 @@ class _Lowering:
             observables=observables,
             names=tuple(u.path for u in found),
         )
-        return Lowered(problem, found, tuple(stated), self.size)
+        return Lowered(problem, found, tuple(stated))
 
     # --- Unknowns ------------------------------------------------------------------------------
 
     def _number_unknowns(self, observed: Iterable[Expression]) -> None:
-        """Unknowns that can move: those of named geometry, and frames that a constraint mentions."""
+        """Unknowns that can move: those of what is drawn, and frames that a constraint mentions."""
         mentioned = self.mentioned = set(
             ex.unknowns(
                 e for c in self.model.constraints for part in c.comparisons for e in (part.left, part.right)
@@ -107,7 +117,7 @@ class _Lowering:
                 isinstance(unknown.holder, Structure) and unknown.frame_of is None and not unknown.outline
             )
             if is_variable:
-                self.variables.append(unknown)
+                self.variables.setdefault(unknown.owner, []).append(unknown)
             live = is_variable or unknown in mentioned or unknown in drawn
             if live and not unknown.exact and unknown.owner in self.groups:
                 self.numbers[unknown] = len(self.numbers)
@@ -157,13 +167,14 @@ class _Lowering:
         made: int = getattr(tape, node.op)(*[self.node_of[a] for a in node.args])
         return made
 
-    def _in_root(self, s: Structure) -> Iterator[Expression]:
+    def _in_root(self, s: Structure, at: _Seen) -> _Seen:
+        return convert(*at, s, self.structures[0]) if len(at) == 2 else at
+
+    def _observables(self, s: Structure) -> Iterator[Expression]:
         """What a reader of the drawing could see move of a structure, and its variables."""
-        for at in _seen(s):
-            yield from (at,) if isinstance(at, Expression) else convert(*at, s, self.structures[0])
-        for unknown in self.variables:
-            if unknown.owner is s:
-                yield ex.unknown(unknown)
+        for at in self.drawn[s]:
+            yield from at
+        yield from map(ex.unknown, self.variables.get(s, ()))
 
     # --- Constraints ---------------------------------------------------------------------------
 
@@ -205,16 +216,12 @@ class _Lowering:
                 yield SolverConstraint(self.groups[unknown.owner], (row,), frozenset())
 
 
-_Observed = Expression | tuple[Expression, Expression]
+_Seen = tuple[Expression, Expression] | tuple[Expression]
+"""A place, or a number."""
 
 
-def _observed(s: Structure) -> Iterator[Expression]:
-    """Every number that defines what a structure itself draws, in its own frame."""
-    for at in _seen(s):
-        yield from (at,) if isinstance(at, Expression) else at
-
-
-def _seen(s: Structure) -> Iterator[_Observed]:
+def _seen(s: Structure) -> Iterator[_Seen]:
+    """What defines the geometry of a structure itself, in its own frame."""
     for geometry in s.own():
         yield from _seen_geometry(geometry)
     if s.plan:
@@ -223,29 +230,21 @@ def _seen(s: Structure) -> Iterator[_Observed]:
         yield (ex.add(left, width), ex.add(bottom, height))
 
 
-def _seen_geometry(geometry: Geometry) -> Iterator[_Observed]:
+def _seen_geometry(geometry: Geometry) -> Iterator[_Seen]:
     for value in geometry.fields.values():
         if isinstance(value, PointVal):
             yield (value.x.expression, value.y.expression)
         elif isinstance(value, Num):
-            yield value.expression
+            yield (value.expression,)
     for part in own_geometry(geometry.parts, geometry):
         yield from _seen_geometry(part)
 
 
-def model_size(structures: Iterable[Structure]) -> float:
-    """The extent of the model at its first guesses in mm, at least 1."""
+def _extent(seen: Iterable[_Seen]) -> float:
+    """The extent of the places at the first guesses in mm, at least 1."""
     low, high = 0.0, 0.0
-    for s in structures:
-        for at in _seen(s):
-            if not isinstance(at, Expression):
-                for e in convert(*at, s, _root(s)):
-                    if e.value == e.value and abs(e.value) < 1e12:
-                        low, high = min(low, e.value), max(high, e.value)
+    for at in seen:
+        for e in at if len(at) == 2 else ():
+            if abs(e.value) < 1e12:
+                low, high = min(low, e.value), max(high, e.value)
     return max(high - low, 1.0)
-
-
-def _root(s: Structure) -> Structure:
-    while s.parent is not None:
-        s = s.parent
-    return s

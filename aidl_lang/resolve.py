@@ -20,14 +20,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from aidl_lang import ast
-from aidl_lang.builtins import WORDED, is_word
+from aidl_lang.builtins import ATTRIBUTES, WORDED, is_word
 from aidl_lang.diagnostics import Diagnostic, Fix, Label, ordered
 from aidl_lang.library import Library
 from aidl_lang.names import nearest
 from aidl_lang.resolving import complaints
 from aidl_lang.resolving.declare import Declarer, is_definition
 from aidl_lang.resolving.imports import ImportedModules, load_imports
-from aidl_lang.resolving.resolution import ATTRIBUTES, Resolution, library_scope
+from aidl_lang.resolving.resolution import Resolution, library_scope
 from aidl_lang.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind, word_meant
 from aidl_lang.types import Signature
 

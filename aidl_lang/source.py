@@ -48,6 +48,11 @@ class Span:
         return self.source.text[self.start : self.end]
 
     @property
+    def one_line(self) -> str:
+        """The text with every run of white space as one space."""
+        return " ".join(self.text.split())
+
+    @property
     def line(self) -> int:
         return self.source.position(self.start)[0]
 

@@ -8,9 +8,9 @@ from aidl_lang import ast, units
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.builtins import WORDED
+from aidl_lang.builtins import ATTRIBUTES, WORDED
 from aidl_lang.model import Structure
-from aidl_lang.names import find, nearest
+from aidl_lang.names import find
 from aidl_lang.values import (
     Nothing,
     Num,
@@ -18,19 +18,12 @@ from aidl_lang.values import (
     Value,
 )
 
-_ATTRIBUTES = ("color", "layer", "thickness", "material", "detached", "note", "orientation")
-
 
 def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attribute], scope: Scope) -> None:
+    """Read what the checker has found to be attributes."""
     for attribute in attributes:
-        name = find(attribute.name.text, dict.fromkeys((*_ATTRIBUTES, "colour")))
+        name = find(attribute.name.text, dict.fromkeys(ATTRIBUTES))
         if name is None:
-            like = nearest(attribute.name.text, _ATTRIBUTES)
-            known = ", ".join(f"`@{a}`" for a in _ATTRIBUTES)
-            hint = f"did you mean `@{like[0]}`?" if like else f"there are {known}"
-            it.report(
-                "E0204", f"there is no attribute `@{attribute.name.text}`", attribute.name, hints=[hint]
-            )
             continue
         values: list[Value] = []
         for argument in attribute.arguments:

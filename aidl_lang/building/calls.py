@@ -10,13 +10,13 @@ from aidl_lang.building.blocks import run_block
 from aidl_lang.building.coerce import as_point, edge_coordinate
 from aidl_lang.building.conditions import all_of, replace_placed, value_unknowns
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, size, turn
-from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
+from aidl_lang.building.evaluate import evaluate, iterate, range_items, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.builtins import is_word
+from aidl_lang.builtins import SIGNATURES, is_word
 from aidl_lang.model import Condition, Geometry
-from aidl_lang.names import nearest
+from aidl_lang.names import find, nearest
 from aidl_lang.types import (
     ANY,
     Binding,
@@ -96,24 +96,21 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
 
 def find_candidates(it: Interpreter, name: str, scope: Scope, receiver: Value | None) -> list[Candidate]:
     """The callables of a name: as written, else spelled alike."""
-    from aidl_lang.builtins import SIGNATURES
-    from aidl_lang.names import find
-
     if isinstance(receiver, Namespace):
         inner = receiver.values.get("")
         return inner.candidates(name) if isinstance(inner, Scope) else []
     if found := scope.candidates(name):
         return found
-    names = scope.callable_names(it.program.library.callables) | dict.fromkeys(SIGNATURES)
-    alike = find(name, names)
+    alike = find(name, _callable_names(it, scope))
     return scope.candidates(alike) if alike else []
 
 
-def _unknown_callable(it: Interpreter, node: ast.Call, env: Env) -> None:
-    from aidl_lang.builtins import SIGNATURES
+def _callable_names(it: Interpreter, scope: Scope) -> dict[str, None]:
+    return scope.callable_names(it.program.library.callables) | dict.fromkeys(SIGNATURES)
 
-    names = env.scope.callable_names(it.program.library.callables) | dict.fromkeys(SIGNATURES)
-    like = nearest(node.callee.text, names, 3)
+
+def _unknown_callable(it: Interpreter, node: ast.Call, env: Env) -> None:
+    like = nearest(node.callee.text, _callable_names(it, env.scope), 3)
     hints = [f"did you mean {' or '.join(f'`{n}`' for n in like)}?"] if like else []
     it.report("E0203", f"there is no `{node.callee.text}(…)`", node.callee, hints=hints)
 
@@ -172,8 +169,6 @@ def _as_kind(it: Interpreter, value: Value, kind: object, node: ast.Node, env: E
         case ListType() if isinstance(value, Array):
             return ListVal(tuple(value.items()))
         case ListType() if isinstance(value, RangeVal):
-            from aidl_lang.building.evaluate import range_items
-
             items = range_items(it, value, node)
             return ListVal(tuple(items)) if items is not None else None
     return value

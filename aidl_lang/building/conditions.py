@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 
 from aidl_lang import ast, units
 from aidl_lang import expression as ex
@@ -65,13 +66,8 @@ def compare(
 
 def _compare_plain(it: Interpreter, relation: str, left: Value, right: Value, node: ast.Node) -> Value:
     if relation in ("==", "!=") and type(left) is type(right):
-        return (
-            (left == right) == (relation == "==")
-            if not isinstance(left, Text)
-            else (
-                (left.value == right.value) == (relation == "==")  # type: ignore[union-attr]
-            )
-        )
+        a, b = (side.value if isinstance(side, Text) else side for side in (left, right))
+        return (a == b) == (relation == "==")
     it.report("E0309", f"`{relation}` does not compare {kind_of(left)} with {kind_of(right)}", node)
     return NOTHING
 
@@ -207,7 +203,7 @@ def holds(
 
 
 def placed_by(comparison: Comparison, placed: frozenset[Unknown]) -> Comparison:
-    return Comparison(comparison.relation, comparison.left, comparison.right, comparison.dimension, placed)
+    return replace(comparison, moved=placed)
 
 
 def replace_placed(condition: Condition, placed: frozenset[Unknown]) -> Condition:

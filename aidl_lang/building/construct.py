@@ -152,7 +152,7 @@ def _point(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
         assert isinstance(y, Num)
         at = PointVal(x, y)
     assert isinstance(at, PointVal)
-    g.fields = dict(zip(["at"], [loose_point(it, at, g)], strict=True))
+    g.fields = {"at": loose_point(it, at, g)}
 
 
 def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:

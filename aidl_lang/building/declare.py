@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from aidl_lang import ast
 from aidl_lang.building.coerce import whole
 from aidl_lang.building.evaluate import evaluate
-from aidl_lang.building.scopes import LetBinding, Scope, VarBinding
+from aidl_lang.building.scopes import LetBinding, Scope, VarBinding, indexed
 from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.builtins import EVERYWHERE
 from aidl_lang.model import Geometry, Structure
 from aidl_lang.values import (
     Array,
@@ -16,8 +17,6 @@ from aidl_lang.values import (
     Nothing,
     Value,
 )
-
-EVERYWHERE = frozenset({"self", "origin", "x_axis", "y_axis"})
 
 
 def declare(
@@ -54,8 +53,8 @@ def declare(
         if not isinstance(array, Array):
             array = target.values[name.text] = Array(name.text)
         if indices in array.members and not isinstance(value, Nothing):
-            shown = "".join(f"[{i}]" for i in indices)
-            it.report("E0208", f"`{name.text}{shown}` is declared twice", name, hints=["use another index"])
+            shown = indexed(name.text, indices)
+            it.report("E0208", f"`{shown}` is declared twice", name, hints=["use another index"])
             return
         array.members[indices] = value  # type: ignore[assignment]
         value = array
@@ -87,7 +86,7 @@ def give_name(
     container: Geometry | Structure,
     node: ast.Assign,
 ) -> None:
-    geometry.name = name + "".join(f"[{i}]" for i in indices)
+    geometry.name = indexed(name, indices)
     geometry.container = container
     geometry.construction = geometry.construction or node.construction
     if geometry.span is None or not isinstance(container, Geometry):

@@ -305,7 +305,7 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
 
 
 def _undefined(it: Interpreter, node: ast.Node) -> Nothing:
-    text = " ".join(node.span.text.split())
+    text = node.span.one_line
     it.report("E0504", f"`{text}` has no value: it divides by zero or leaves the range of numbers", node)
     return NOTHING
 

@@ -10,6 +10,7 @@ from aidl_lang import ast, units
 from aidl_lang import expression as ex
 from aidl_lang.boxes import spelled_out
 from aidl_lang.building.coerce import as_point, as_written, constant, numeric
+from aidl_lang.building.conditions import compare_numbers
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.expression import DEGREE, Expression
 from aidl_lang.model import Geometry, Structure
@@ -111,12 +112,8 @@ def _hypot(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     x, y = _num(it, a, "a", node, env), _num(it, a, "b", node, env)
     if x is None or y is None:
         return NOTHING
-    try:
-        dimension = units.add(x.dimension, y.dimension)
-    except ValueError as reason:
-        it.report("E0308", f"`hypot` does not join {reason}", node)
-        return NOTHING
-    return Num(ex.apply("hypot", x.expression, y.expression), dimension, max(x.status, y.status))
+    kind = _common(it, [x, y], node)
+    return Num(ex.apply("hypot", x.expression, y.expression), *kind) if kind is not None else NOTHING
 
 
 def _numbers(it: Interpreter, a: Arguments, name: str, node: ast.Call, env: Env) -> list[Num] | None:
@@ -274,6 +271,9 @@ def _nearest(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     return chosen
 
 
+_YES = number(1.0, PLAIN)
+
+
 def _measure(kind: str, dimension: Dimension) -> Function:
     def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         of = tuple(v for v in a.values() if isinstance(v, Structure | Geometry))
@@ -281,13 +281,10 @@ def _measure(kind: str, dimension: Dimension) -> Function:
             wrong = next(v for v in a.values() if not isinstance(v, Structure | Geometry))
             it.report("E0310", f"`{kind}` measures structures and geometry, not {kind_of(wrong)}", node)
             return NOTHING
-        value = Expression("measure", (), math.nan, Measurement(kind, of))
-        measured = Num(value, dimension, Status.REFERENCE)
-        if kind == "overlaps":
-            from aidl_lang.building.conditions import compare_numbers
-
-            return compare_numbers(it, "==", Num(value, PLAIN, Status.REFERENCE), number(1.0, PLAIN), node)
-        return measured
+        measured = Num(
+            Expression("measure", (), math.nan, Measurement(kind, of)), dimension, Status.REFERENCE
+        )
+        return compare_numbers(it, "==", measured, _YES, node) if kind == "overlaps" else measured
 
     return function
 

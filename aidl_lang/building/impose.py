@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from aidl_lang import ast
 from aidl_lang import expression as ex
-from aidl_lang.boxes import Box
+from aidl_lang.boxes import SIDES, Box
 from aidl_lang.building.coerce import as_point
-from aidl_lang.building.conditions import RELATIONS, all_of, compare_numbers, holds, placed_by, value_unknowns
+from aidl_lang.building.conditions import RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.model import Assertion, Comparison, Condition, Constraint, Geometry, Structure
@@ -68,7 +68,7 @@ def _turn(env: Env) -> str:
 def _never(it: Interpreter, node: ast.Expression, env: Env) -> None:
     it.report(
         "E0513",
-        f"`{one_line(node.span.text)}` can never hold: both sides are constants{_turn(env)}",
+        f"`{node.span.one_line}` can never hold: both sides are constants{_turn(env)}",
         node,
         label="false as written",
         hints=["a number or `param` does not move; make one side a `var`, a `guess(…)` or a reference"],
@@ -108,7 +108,7 @@ def _impose_condition(
             Constraint(
                 env.here,
                 tuple(comparisons),
-                one_line(node.span.text),
+                node.span.one_line,
                 it.place(node) or node.span,
                 weight,
                 ", ".join(env.scope.labels),
@@ -131,11 +131,6 @@ def _placed_in_call(
     return [placed_by(c, c.placed & placed or c.placed) for c in comparisons]
 
 
-def one_line(text: str) -> str:
-    """Source text on one line."""
-    return " ".join(text.split())
-
-
 def record_assertion(it: Interpreter, node: ast.Assert, env: Env, *, at_once: bool = False) -> None:
     """`assert`: kept to be checked on the solved model; with `at_once`, a false one is told now."""
     value = evaluate(it, node.test, env)
@@ -146,7 +141,7 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, *, at_once: bo
         return
     message = evaluate(it, node.message, env) if node.message is not None else None
     if value is False and at_once:
-        why = message.value if isinstance(message, Text) else f"`{one_line(node.test.span.text)}` is false"
+        why = message.value if isinstance(message, Text) else f"`{node.test.span.one_line}` is false"
         it.report("E0604", f"assertion failed: {why}{_turn(env)}", node.test, label="false as written")
         return
     it.assertions.append(
@@ -154,7 +149,7 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, *, at_once: bo
             env.here,
             value,
             message.value if isinstance(message, Text) else None,
-            one_line(node.test.span.text),
+            node.test.span.one_line,
             it.place(node.test) or node.span,
             ", ".join(env.scope.labels),
         )
@@ -201,9 +196,4 @@ def _numbers(it: Interpreter, value: Value, node: ast.Expression, env: Env) -> I
             for item in members(value) or ():
                 yield from _numbers(it, item, node, env)
         case Box():
-            yield from (Num(value.side(s), LENGTH) for s in ("left", "right", "top", "bottom"))
-
-
-def check_assertion(assertion: Assertion, evaluator: ex.Evaluator, tolerance: float) -> bool:
-    """Whether an assertion holds on the solved model."""
-    return holds(assertion.condition, evaluator, tolerance)
+            yield from (Num(value.side(s), LENGTH) for s in SIDES)

@@ -28,7 +28,7 @@ from aidl_lang.values import (
 
 
 def not_built(it: Interpreter, node: ast.Name, branch: ast.If) -> Value:
-    test = " ".join(branch.test.span.text.split())
+    test = branch.test.span.one_line
     it.report(
         "E0514",
         f"`{node.text}` was not built, because of `if {test}`",

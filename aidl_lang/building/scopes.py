@@ -20,6 +20,11 @@ if TYPE_CHECKING:
     from aidl_lang.values import Value
 
 
+def indexed(name: str, indices: Iterable[int]) -> str:
+    """`dot[3]`: the name of a member of an array."""
+    return name + "".join(f"[{i}]" for i in indices)
+
+
 @dataclass(eq=False)
 class LetBinding:
     """A name for an expression, evaluated where it is used.

@@ -109,9 +109,8 @@ class Interpreter:
         span = self.place(node)
         written = node.span if isinstance(node, ast.Node) else node
         if span is not None and written is not None and span.source is not written.source:
-            call = " ".join(span.text.split())
             inner = message if code == "E0604" else f"in the library, {message}"
-            message = f"`{call}` does not work out: {inner}"
+            message = f"`{span.one_line}` does not work out: {inner}"
             if any(d.code == code and d.span == span for d in self.diagnostics):
                 return  # one cause, met again further on
         self.diagnostics.append(Diagnostic(code, message, span, label, tuple(secondary), tuple(hints), fix))

@@ -9,7 +9,7 @@ from aidl_lang.building.blocks import run_block
 from aidl_lang.building.calls import default_of
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.evaluate import evaluate
-from aidl_lang.building.scopes import Scope
+from aidl_lang.building.scopes import Scope, indexed
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.stated import read_constraint
 from aidl_lang.building.templates import passed
@@ -34,7 +34,7 @@ def build_structure(
     it: Interpreter, node: ast.Structure, scope: Scope, parent: Structure | None, indices: tuple[int, ...]
 ) -> Structure:
     """A structure from its definition in place."""
-    name = node.name.text + "".join(f"[{i}]" for i in indices)
+    name = indexed(node.name.text, indices)
     structure = _new(it, node.kind, name, parent, node)
     structure.doc = node.doc
     _place(it, structure, node.placement, scope)
@@ -57,7 +57,7 @@ def instantiate(
 ) -> Structure | Nothing:
     """An instance of a template under the name it is assigned to."""
     definition = template.definition
-    name = node.name.text + "".join(f"[{i}]" for i in indices)
+    name = indexed(node.name.text, indices)
     if not it.enter(template.node, definition):
         return NOTHING
     try:

@@ -20,7 +20,7 @@ def a(kind: Type) -> str:
 
 def shown(node: ast.Node) -> str:
     """The text of an expression on one line, shortened where it is long."""
-    text = " ".join(node.span.text.split())
+    text = node.span.one_line
     return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
 
 

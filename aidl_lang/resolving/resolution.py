@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from aidl_lang import ast
-from aidl_lang.builtins import SIGNATURES
+from aidl_lang.builtins import EVERYWHERE, SIGNATURES
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.library import Library
 from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind
@@ -15,10 +15,7 @@ from aidl_lang.types import Signature
 
 _NOWHERE = ast.Module(SourceFile("built in", ""), (), (), span=Span(SourceFile("built in", ""), 0, 0))
 
-BUILTIN_NAMES = ("self", "origin", "x_axis", "y_axis", "pi")
-
-ATTRIBUTES = ("orientation", "color", "colour", "layer", "thickness", "material", "detached", "note")
-"""What may stand behind `@` before a definition."""
+BUILTIN_NAMES = (*EVERYWHERE, "pi")
 
 
 @dataclass(eq=False)
