@@ -20,6 +20,7 @@ from aidl_lang.solved import (
     Change,
     ConstraintReport,
     Frame,
+    Reading,
     Scalar,
     SolvedGeometry,
     SolvedModel,
@@ -43,7 +44,9 @@ def read_out(model: Model, lowered: Lowered, solution: Solution) -> tuple[Solved
     free = tuple(lowered.unknowns[i].path for i in solution.free)
     reports = tuple(_reports(model, lowered, solution))
     root = reader.structure(model.root)
-    return SolvedModel(solution.status.value, root, reports, solution.degrees, free, changed), evaluator
+    readings = tuple(dict.fromkeys(Reading(span, text) for span, text in model.readings))
+    solved = SolvedModel(solution.status.value, root, reports, solution.degrees, free, changed, readings)
+    return solved, evaluator
 
 
 def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:

@@ -127,6 +127,14 @@ class Change:
 
 
 @dataclass(frozen=True)
+class Reading:
+    """Which of its meanings an ambiguous call was taken in, by what was written."""
+
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True)
 class SolvedModel:
     status: str
     root: SolvedStructure
@@ -134,3 +142,4 @@ class SolvedModel:
     degrees: int | None
     free: tuple[str, ...]
     changed: tuple[Change, ...]
+    readings: tuple[Reading, ...] = ()

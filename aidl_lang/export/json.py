@@ -78,6 +78,11 @@ def to_dict(
         "pairs": [_pair(p) for p in drawing.pairs],
         "diagnostics": [diagnostic_dict(d) for d in diagnostics],
     }
+    if model.readings:
+        document["readings"] = [
+            {"text": r.span.one_line, "line": r.span.line, "column": r.span.column, "reading": r.text}
+            for r in model.readings
+        ]
     if timings is not None:
         document["timings"] = dict(timings)
     rounded: Json = _rounded(document)

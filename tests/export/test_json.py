@@ -9,6 +9,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 
+import aidl_lang
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.export import EXPORTERS, Job
 from aidl_lang.export.json import to_dict, to_json
@@ -141,3 +142,13 @@ def test_fixed_decimals(value: float, text: str):
 def test_compound_shapes_nest():
     m = model(structure("solid", "s", compound("outer", Line((0, 0), (1, 0)), type_="path")))
     jsonschema.validate(to_dict(m, draw(m)[0]), SCHEMA)
+
+
+def test_readings_of_ambiguous_calls_are_told():
+    program = """drawing d {
+        a = circle(center: (0, 0), radius: 5)
+        b = circle(center: (9, 0), radius: 3)
+        constrain tangent(b, a)
+    }"""
+    (reading,) = json.loads(aidl_lang.compile(program).to_json())["readings"]
+    assert reading == {"text": "tangent(b, a)", "line": 4, "column": 19, "reading": "taken as 8 (1 of 3)"}
