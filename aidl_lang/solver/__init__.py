@@ -2,7 +2,7 @@
 
 In the order of reading: `operations`, `expression` (the tape), `problem`, `valuation`, `freezing`,
 `program` (evaluation), `quadratic`, `newton` (one smooth system), `branches` (one attempt), `hierarchy`
-(the stages at each group), `conflicts`, `analysis` (degrees of freedom), `solution`.
+(the stages at each group), `preferences`, `conflicts`, `analysis` (degrees of freedom), `solution`.
 """
 
 from __future__ import annotations

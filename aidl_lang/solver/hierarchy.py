@@ -25,10 +25,11 @@ from typing import TypeAlias
 import numpy as np
 
 from aidl_lang.solver import conflicts
-from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
+from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds
 from aidl_lang.solver.gradients import gradients
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.preferences import prefer
 from aidl_lang.solver.problem import Problem, Row, Settings
 from aidl_lang.solver.solution import GroupFailure, StageReport
 from aidl_lang.solver.valuation import Cone, Valuation
@@ -51,11 +52,6 @@ CHANGED = 1e-9
 """A kept size that moved less than this, in units of its scale, did not change."""
 LAST_RESTARTS = 5
 """Perturbed starts at the last stage; the earlier ones have one."""
-FIRMNESS = 1e-5
-"""Unit of the slack of a preference of weight 1: how dear it is compared with moving things."""
-
-NEARLY = 1e-6
-"""Weighted violation of a preference that is due to the slack alone."""
 MOST_FAILURES = 20
 """Conflicts that are explained and worked around; after that, only the best effort is kept."""
 
@@ -341,11 +337,8 @@ class _Group:
             roots = [row.expression for row in hierarchy.rows([index])]
             hierarchy.values.refresh(hierarchy.cones[index])
             for gradient in gradients(hierarchy.values, roots).values():
-                sizes = [u for u, slope in gradient.items() if abs(slope) > FLAT and self.tier(u) > POSITIONS]
-                others = [
-                    u for u, slope in gradient.items() if abs(slope) > FLAT and self.tier(u) <= POSITIONS
-                ]
-                if sizes and not others:
+                tiers = [self.tier(u) for u, slope in gradient.items() if abs(slope) > FLAT]
+                if tiers and min(tiers) > POSITIONS:
                     found.append(index)
                     break
         return found
@@ -419,51 +412,8 @@ class _Group:
         self.placed = self.placed.union(*(self._placed_by(index) for index in preferences))
         self._tiers.clear()
         for tier in sorted({min(max(reached, (1, 0)), POSITIONS), limit}):
-            if self._prefer(preferences, tier):
+            if prefer(hierarchy, self.scope(tier, preferences), preferences):
                 break
-
-    def _prefer(self, soft: tuple[int, ...], tier: Tier) -> bool:
-        """Moves towards the preferences with everything up to `tier` free; whether all of them hold then."""
-        hierarchy = self.hierarchy
-        scope = self.scope(tier, soft)
-        before = hierarchy.save(scope.free)
-        if hierarchy.attempt(Scope(scope.free, scope.constraints), 1).satisfied:
-            return True
-        hierarchy.values.assign(before.items())
-        hard = [index for index in scope.constraints if hierarchy.is_hard(index)]
-        rows, softness = hierarchy.rows(hard), [0.0] * len(hierarchy.rows(hard))
-        for index in soft:
-            weight = hierarchy.problem.constraints[index].weight or 0.0
-            for row in hierarchy.problem.constraints[index].rows if weight > 0.0 else ():
-                rows.append(row)
-                softness.append(FIRMNESS / float(np.sqrt(weight)))
-        cost = self._cost(soft)
-        task = Task(rows, softness, scope.free)
-        verdict = attempt(task, hierarchy.values, hierarchy.metric, hierarchy.settings, hierarchy.clock)
-        if not verdict.satisfied or not self._cost(soft) < cost:
-            hierarchy.values.assign(before.items())
-        else:
-            self._meet_exactly(scope.free, hard, soft)
-        return False
-
-    def _meet_exactly(self, free: frozenset[int], hard: list[int], soft: tuple[int, ...]) -> None:
-        """Rids the preferences that hold but for the give of their slack of what is missing."""
-        hierarchy = self.hierarchy
-        nearly = [index for index in soft if self._cost((index,)) < NEARLY**2]
-        reached = hierarchy.save(free)
-        if not hierarchy.attempt(Scope(free, tuple(sorted([*hard, *nearly]))), 0).satisfied:
-            hierarchy.values.assign(reached.items())
-
-    def _cost(self, soft: tuple[int, ...]) -> float:
-        """The weighted squares of what the preferences lack."""
-        hierarchy = self.hierarchy
-        total = 0.0
-        for index in soft:
-            constraint = hierarchy.problem.constraints[index]
-            hierarchy.values.refresh(hierarchy.cones[index])
-            for row in constraint.rows:
-                total += (constraint.weight or 0.0) * (violation_of(row, hierarchy.values) / row.scale) ** 2
-        return total
 
 
 def _depths(problem: Problem) -> list[int]:
