@@ -26,6 +26,7 @@ from aidl_lang.model import (
 from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Row
 from aidl_lang.solver.expression import TapeBuilder
+from aidl_lang.solver.problem import constraint_arrays
 from aidl_lang.units import ANGLE, LENGTH, MaybeDimension
 from aidl_lang.values import Num, PointVal
 
@@ -96,7 +97,7 @@ class _Lowering:
             frame_of=np.array([self._frame_of(u) for u in found], dtype=np.int64),
             longest=np.array([_LONGEST_TURN if u.angular else np.inf for u in found], dtype=np.float64),
             parent=np.array(parents, dtype=np.int64),
-            constraints=tuple(constraints),
+            **constraint_arrays(constraints),
             observables=observables,
             names=tuple(u.path for u in found),
         )

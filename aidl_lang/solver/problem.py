@@ -6,8 +6,11 @@ constraints, and has a parent. A constraint held by a group mentions only unknow
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from functools import cached_property
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,8 +55,24 @@ class Constraint:
 
 
 @dataclass(frozen=True)
+class Rows:
+    """The rows of all constraints as arrays, those of one constraint side by side and in order.
+
+    expression (r,) tape node
+    at_most    (r,) True for `<= 0`, False for `== 0`
+    scale      (r,) see `Row`
+    constraint (r,) the constraint that each row belongs to, ascending
+    """
+
+    expression: NDArray[np.int64]
+    at_most: NDArray[np.bool_]
+    scale: Floats
+    constraint: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
 class Problem:
-    """n unknowns, g groups.
+    """n unknowns, g groups, c constraints with r rows.
 
     initial  (n,) first guesses
     scale    (n,) length of a change that counts as one unit: the solver prefers the change for which
@@ -65,6 +84,9 @@ class Problem:
     longest  (n,) the largest change of each unknown in one Newton step, so that near a singular place an
              angle does not spin; None for no limit
     parent   (g,) parent of each group, -1 for the root, which is group 0; parents come before children
+    holder   (c,) the group that holds each constraint
+    weight   (c,) NaN for a hard constraint, else the weight of the preference
+    placed   (2, k) pairs of a constraint and an unknown that may move first to satisfy it, by constraint
     observables: (group, tape node) for each coordinate that a reader of the drawing could see move, in the
              root's frame: degrees of freedom are counted on these, so that a frame and its contents moving
              against each other do not count.
@@ -77,10 +99,64 @@ class Problem:
     group: NDArray[np.int64]
     frame_of: NDArray[np.int64]
     parent: NDArray[np.int64]
-    constraints: tuple[Constraint, ...]
+    rows: Rows
+    holder: NDArray[np.int64]
+    weight: Floats
+    placed: NDArray[np.int64]
     longest: Floats | None = None
     observables: tuple[tuple[int, int], ...] = ()
     names: tuple[str, ...] = field(default=(), repr=False)
+
+    @cached_property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """The same as objects, for reading one at a time."""
+        rows: list[list[Row]] = [[] for _ in self.holder]
+        listed = self.rows
+        for expression, at_most, scale, owner in zip(
+            listed.expression.tolist(),
+            listed.at_most.tolist(),
+            listed.scale.tolist(),
+            listed.constraint.tolist(),
+            strict=True,
+        ):
+            rows[owner].append(Row(expression, Relation.AT_MOST if at_most else Relation.EQUAL, scale))
+        placed: list[list[int]] = [[] for _ in self.holder]
+        for owner, unknown in self.placed.T.tolist():
+            placed[owner].append(unknown)
+        return tuple(
+            Constraint(holder, tuple(rows[i]), frozenset(placed[i]), None if weight != weight else weight)
+            for i, (holder, weight) in enumerate(zip(self.holder.tolist(), self.weight.tolist(), strict=True))
+        )
+
+    def with_constraints(self, constraints: Sequence[Constraint]) -> Problem:
+        """The same unknowns under other constraints."""
+        return replace(self, **constraint_arrays(constraints))
+
+
+class ConstraintArrays(TypedDict):
+    """The fields of `Problem` that say what the constraints are."""
+
+    rows: Rows
+    holder: NDArray[np.int64]
+    weight: Floats
+    placed: NDArray[np.int64]
+
+
+def constraint_arrays(constraints: Sequence[Constraint]) -> ConstraintArrays:
+    """Constraints as the arrays of a `Problem`."""
+    rows = [(row, index) for index, constraint in enumerate(constraints) for row in constraint.rows]
+    pairs = [(index, unknown) for index, c in enumerate(constraints) for unknown in sorted(c.placed)]
+    return {
+        "rows": Rows(
+            np.array([row.expression for row, _ in rows], dtype=np.int64),
+            np.array([row.relation is Relation.AT_MOST for row, _ in rows], dtype=np.bool_),
+            np.array([row.scale for row, _ in rows], dtype=np.float64),
+            np.array([index for _, index in rows], dtype=np.int64),
+        ),
+        "holder": np.array([c.group for c in constraints], dtype=np.int64),
+        "weight": np.array([np.nan if c.weight is None else c.weight for c in constraints]),
+        "placed": np.array(pairs, dtype=np.int64).reshape(-1, 2).T,
+    }
 
 
 @dataclass(frozen=True)

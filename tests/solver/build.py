@@ -9,6 +9,7 @@ import numpy as np
 
 from aidl_lang.solver import Constraint, Problem, Relation, Row
 from aidl_lang.solver.expression import TapeBuilder
+from aidl_lang.solver.problem import constraint_arrays
 
 
 @dataclass(frozen=True)
@@ -145,7 +146,7 @@ class Model:
             group=np.array(self.group_of, dtype=np.int64),
             frame_of=np.array(self.frame_of, dtype=np.int64),
             parent=np.array(self.parent, dtype=np.int64),
-            constraints=tuple(self.constraints),
+            **constraint_arrays(self.constraints),
             observables=tuple(self.observables),
         )
 
