@@ -6,10 +6,10 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format bench accept examples lock clean
+.PHONY: help demo test lint format bench bench-solver bench-peers accept examples lock clean
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 demo: $(READY) ## set up, then draw examples/telephone.aidl
 	@mkdir -p build
@@ -31,6 +31,12 @@ format: $(READY) ## put all Python code into its canonical form
 
 bench: $(READY) ## measure the command and the stages
 	$(BIN)/python benchmarks/run.py
+
+bench-solver: $(READY) ## measure the solver against its peers
+	$(BIN)/python benchmarks/solver/run.py
+
+bench-peers: $(READY) ## install those peers, into benchmarks/solver/.peers
+	$(BIN)/python benchmarks/solver/install_peers.py
 
 accept: $(READY) ## take the present results as the new goldens, the README's picture among them
 	AIDL_ACCEPT=1 $(BIN)/python -m pytest $(wildcard tests/golden tests/spec)

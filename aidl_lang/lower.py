@@ -68,7 +68,7 @@ class _Lowering:
         self.mentioned: set[Unknown] = set()
         self.holders = {c.holder for c in model.constraints}
         # Every number that defines what is drawn, in the root's frame, by the structure that draws it.
-        self.drawn = {s: [self._in_root(s, at) for at in _seen(s)] for s in self.structures}
+        self.drawn = {s: [self._in_root(s, at) for _, _, at in seen(s)] for s in self.structures}
         self.size = _extent(at for drawn in self.drawn.values() for at in drawn)
 
     def run(self) -> Lowered:
@@ -221,22 +221,25 @@ _Seen = tuple[Expression, Expression] | tuple[Expression]
 """A place, or a number."""
 
 
-def _seen(s: Structure) -> Iterator[_Seen]:
-    """What defines the geometry of a structure itself, in its own frame."""
+def seen(s: Structure) -> Iterator[tuple[Geometry | Structure, str, _Seen]]:
+    """What defines the geometry of a structure itself, in its own frame: of what, the path, and the numbers.
+    The observables of the problem are these, structure by structure, and after each its variables.
+    """
     for geometry in s.own():
-        yield from _seen_geometry(geometry)
+        for path, at in _seen_geometry(geometry):
+            yield geometry, path, at
     if s.plan:
         left, bottom, width, height = s.plan
-        yield (left, bottom)
-        yield (ex.add(left, width), ex.add(bottom, height))
+        yield s, s.path, (left, bottom)
+        yield s, s.path, (ex.add(left, width), ex.add(bottom, height))
 
 
-def _seen_geometry(geometry: Geometry) -> Iterator[_Seen]:
-    for value in geometry.fields.values():
+def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:
+    for name, value in geometry.fields.items():
         if isinstance(value, PointVal):
-            yield (value.x.expression, value.y.expression)
+            yield f"{geometry.path}.{name}", (value.x.expression, value.y.expression)
         elif isinstance(value, Num):
-            yield (value.expression,)
+            yield f"{geometry.path}.{name}", (value.expression,)
     for part in own_geometry(geometry.parts, geometry):
         yield from _seen_geometry(part)
 

@@ -282,6 +282,8 @@ class Constraint:
     weight: float | None = None
     label: str = ""
     """loop variables at the place, as `i = 3`"""
+    wording: object = field(default=None, repr=False)
+    """the statement, to be read in other words (see building.wording); None for what was not stated"""
 
     @property
     def mentions(self) -> tuple[str, ...]:

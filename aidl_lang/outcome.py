@@ -2,104 +2,51 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 
 from aidl_lang.building.conditions import holds
 from aidl_lang.building.functions import Measurement
-from aidl_lang.diagnostics import Diagnostic, Label
+from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.expression import Evaluator
+from aidl_lang.failures import failure_notes
 from aidl_lang.geometry.boolean import clearance, overlap_area
 from aidl_lang.geometry.drawing import Drawing, draw
 from aidl_lang.geometry.measures import area, perimeter
 from aidl_lang.geometry.region import Region
 from aidl_lang.lower import Lowered
-from aidl_lang.model import Assertion, Comparison, Condition, Constraint, Geometry, Model, Structure
+from aidl_lang.model import Assertion, Comparison, Condition, Geometry, Model, Structure
+from aidl_lang.remedies import short
+from aidl_lang.repetitions import repetition_notes
 from aidl_lang.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.solver.solution import Failure, GroupFailure, Solution, Status
+from aidl_lang.solver.analysis import Freedom
+from aidl_lang.solver.solution import Solution, Status
 
 _TOLERANCE = 1e-6
 """How far an assertion may be off, relative to what it compares (and never less than this in mm)."""
 
 
-def solution_notes(lowered: Lowered, solution: Solution, model: SolvedModel) -> list[Diagnostic]:
+def solution_notes(
+    lowered: Lowered, solution: Solution, freedom: Freedom, model: SolvedModel
+) -> list[Diagnostic]:
     """Failures as errors; for a model that solved, changed sizes and redundant constraints as notes."""
-    found = [_failure(lowered, solution, failure) for failure in solution.failures]
+    found = failure_notes(lowered, solution)
     if solution.status is not Status.SOLVED:
         return found
     for change in model.changed:
-        if _short(change.written) == _short(change.solved):
+        if short(change.written) == short(change.solved):
             continue
         found.append(
             Diagnostic(
                 "N0601",
-                f"`{change.path}` was written {_short(change.written)} and became {_short(change.solved)}",
+                f"`{change.path}` was written {short(change.written)} and became {short(change.solved)}",
                 change.span,
                 "the constraints could not hold otherwise",
                 hints=(
-                    f"write {_short(change.solved)} to agree, or `fixed({_short(change.written)})` to insist",
+                    f"write {short(change.solved)} to agree, or `fixed({short(change.written)})` to insist",
                 ),
             )
         )
-    if solution.degrees is None:
-        message = "the model is too large for its degrees of freedom to be counted"
-        found.append(Diagnostic("N0603", message, lowered.unknowns[0].owner.span))
-    for index in solution.redundant:
-        stated = lowered.stated[index]
-        if stated is not None and stated.span is not None:
-            found.append(
-                Diagnostic("N0602", f"`{stated.text}` follows from the other constraints", stated.span)
-            )
-    return found
-
-
-_HEADLINE = {
-    Failure.CONTRADICTORY: ("E0601", "these constraints cannot hold together"),
-    Failure.NOT_CONVERGED: ("E0602", "the solver did not reach a position in which these constraints hold"),
-    Failure.TIMED_OUT: ("E0603", "the time for solving ran out before these constraints held"),
-}
-
-
-def _failure(lowered: Lowered, solution: Solution, failure: GroupFailure) -> Diagnostic:
-    code, headline = _HEADLINE[failure.reason]
-    conflict: list[tuple[int, Constraint]] = []
-    for index in failure.conflict:
-        stated = lowered.stated[index]
-        if stated is not None:
-            conflict.append((index, stated))
-    if not conflict:
-        return Diagnostic(code, headline)
-    worst = max(conflict, key=lambda pair: solution.residuals[pair[0]])
-    if len(conflict) == 1:
-        headline = (
-            f"`{worst[1].text}` cannot hold" if code == "E0601" else f"`{worst[1].text}` was not reached"
-        )
-    others = tuple(
-        Label(stated.span, "conflicts with this" if failure.minimal else "takes part")
-        for index, stated in conflict
-        if index != worst[0]
-    )
-    named = ", ".join(f"`{_named(stated)}`" for _, stated in conflict[:6])
-    hints = [f"were any one looser, the rest would hold: {named}"] if failure.minimal and others else []
-    hints.append(
-        "let one number follow from the others: `guess(…)` frees it, `prefer` states a wish; "
-        "a `param` or `fixed(…)` never moves"
-    )
-    if len(conflict) < len(failure.conflict):
-        hints.insert(0, "a size that was written may change, but it does not vanish")
-    off = solution.residuals[worst[0]]
-    label = f"off by {_short(off)}" if off > _TOLERANCE else "against the others"
-    if not math.isfinite(off):
-        label = "this has no value where the solver stopped"
-    return Diagnostic(code, headline, worst[1].span, label, others, tuple(hints))
-
-
-def _named(stated: Constraint) -> str:
-    return f"{stated.text} [{stated.label}]" if stated.label else stated.text
-
-
-def _short(value: float) -> str:
-    return f"{round(value, 6) + 0.0:.6g}"
+    return found + repetition_notes(lowered, solution, freedom)
 
 
 # --- Assertions ----------------------------------------------------------------------------------
@@ -141,7 +88,7 @@ def _false_parts(
 
 def _compared(comparison: Comparison, evaluate: Callable[..., float]) -> str:
     left, right = evaluate(comparison.left), evaluate(comparison.right)
-    return f"{_short(left)} {comparison.relation} {_short(right)}"
+    return f"{short(left)} {comparison.relation} {short(right)}"
 
 
 class _Measure:

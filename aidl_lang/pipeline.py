@@ -221,18 +221,22 @@ def _finish(
     from aidl_lang.lower import lower
     from aidl_lang.outcome import assertion_notes, solution_notes
     from aidl_lang.readout import read_out
+    from aidl_lang.repetitions import preference
     from aidl_lang.solver import Status, solve
+    from aidl_lang.solver.analysis import analyse
 
     with watch("lower"):
         lowered = lower(built.model)
     with watch("solve"):
         solution = solve(lowered.problem, settings.solving)
+    with watch("freedom"):
+        freedom = analyse(lowered.problem, solution, preference(lowered))
     with watch("read out"):
-        model, evaluator = read_out(built.model, lowered, solution)
+        model, evaluator = read_out(built.model, lowered, solution, freedom)
     with watch("regions"):
         drawing, notes = draw(model)
     with watch("asserts"):
-        found = solution_notes(lowered, solution, model)
+        found = solution_notes(lowered, solution, freedom, model)
         found += assertion_notes(
             built.model, model, drawing, evaluator, solved_fully=solution.status.value == "solved"
         )

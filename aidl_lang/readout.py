@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from aidl_lang import expression as ex
 from aidl_lang.building.scopes import ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.expression import DEGREE, Evaluator, Unknown
+from aidl_lang.freedom import motions
 from aidl_lang.geometry import curves
 from aidl_lang.geometry.curves import Curve, Vec
 from aidl_lang.geometry.evaluate import bounds
@@ -26,26 +28,33 @@ from aidl_lang.solved import (
     SolvedModel,
     SolvedStructure,
 )
+from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.solution import Solution
 from aidl_lang.values import Num, PointVal, Text, Value
 
 _FULL_TURN = 2 * math.pi
 
 
-def read_out(model: Model, lowered: Lowered, solution: Solution) -> tuple[SolvedModel, Evaluator]:
+def read_out(
+    model: Model, lowered: Lowered, solution: Solution, freedom: Freedom
+) -> tuple[SolvedModel, Evaluator]:
     """The solved model, and the evaluator of its values for what is checked afterwards."""
     values: dict[Unknown, float] = {
         u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)
     }
     evaluator = Evaluator(values)
-    counts = dict(zip(model.root.walk(), solution.group_degrees or (), strict=False))
-    reader = _Reader(model, evaluator, counts)
+    counts = dict(zip(model.root.walk(), freedom.group_degrees, strict=True))
+    states = dict(zip(counts, freedom.states, strict=True))
+    reader = _Reader(model, evaluator, counts, states)
     changed = tuple(_changes(lowered, solution))
-    free = tuple(lowered.unknowns[i].path for i in solution.free)
+    free = tuple(lowered.unknowns[i].path for i in freedom.free)
     reports = tuple(_reports(model, lowered, solution))
     root = reader.structure(model.root)
     readings = tuple(dict.fromkeys(Reading(span, text) for span, text in model.readings))
-    solved = SolvedModel(solution.status.value, root, reports, solution.degrees, free, changed, readings)
+    describe = partial(motions, model, lowered, freedom)
+    solved = SolvedModel(
+        solution.status.value, root, reports, freedom.degrees, free, changed, readings, describe
+    )
     return solved, evaluator
 
 
@@ -75,7 +84,8 @@ def report_of(stated: Constraint, residual: float, satisfied: bool) -> Constrain
 class _Reader:
     model: Model
     evaluate: Evaluator
-    degrees: Mapping[Structure, int]
+    degrees: Mapping[Structure, int | None]
+    states: Mapping[Structure, str]
 
     def structure(self, s: Structure) -> SolvedStructure:
         geometry = tuple(self.geometry(g) for g in s.own())
@@ -95,7 +105,8 @@ class _Reader:
             structures=children,
             box=self._box(s, geometry, children),
             is_empty=s.is_empty,
-            degrees=self.degrees.get(s),
+            degrees=self.degrees[s],
+            state=str(self.states[s]),
             span=s.span,
             doc=s.doc,
         )

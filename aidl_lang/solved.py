@@ -5,8 +5,9 @@ Coordinates are in the root frame, lengths in mm, angles in degrees counter-cloc
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TypeAlias
 
 from aidl_lang.geometry.curves import Curve, Vec
@@ -73,9 +74,9 @@ class SolvedGeometry:
 @dataclass(frozen=True)
 class SolvedStructure:
     """`box` is None where there is nothing to bound. `attributes`: name → argument values (`color`, `layer`,
-    `thickness`, `material`, `detached`, `note`, `orientation`). `degrees` is None where they were not
-    counted. `is_empty`: no geometry of its own and no
-    children, so that `box` is that of the plan.
+    `thickness`, `material`, `detached`, `note`, `orientation`). `degrees` is None where they could not be
+    counted. `is_empty`: no geometry of its own and no children, so that `box` is that of the plan. `state`
+    says how it is constrained: `fully`, `under`, `over`, `contradictory` or `unknown`.
     """
 
     name: str
@@ -92,6 +93,7 @@ class SolvedStructure:
     degrees: int | None
     span: Span | None
     doc: str | None = None
+    state: str = "unknown"
 
     def walk(self) -> Iterator[SolvedStructure]:
         """This structure and all below it, parents first, in order of writing."""
@@ -127,6 +129,22 @@ class Change:
 
 
 @dataclass(frozen=True)
+class Motion:
+    """A way in which something can still move.
+
+    kind   `slide`, `turn`, `grow`, `change` (a single parameter) or `together` (anything else)
+    things paths of what moves, the outermost that move as a whole
+    words  what they can do, as `slide left–right`
+    moves  parameters that take part, by path: how much each changes, relative to one another
+    """
+
+    kind: str
+    things: tuple[str, ...]
+    words: str
+    moves: Mapping[str, float] = field(repr=False)
+
+
+@dataclass(frozen=True)
 class Reading:
     """Which of its meanings an ambiguous call was taken in, by what was written."""
 
@@ -143,3 +161,10 @@ class SolvedModel:
     free: tuple[str, ...]
     changed: tuple[Change, ...]
     readings: tuple[Reading, ...] = ()
+    describe: Callable[[], tuple[Motion, ...]] = field(default=tuple, repr=False, compare=False)
+    """what `motions` is made by, when it is asked for"""
+
+    @cached_property
+    def motions(self) -> tuple[Motion, ...]:
+        """Independent ways to move, the simplest that were found; the first hundreds of a large model."""
+        return self.describe()

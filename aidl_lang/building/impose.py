@@ -11,6 +11,7 @@ from aidl_lang.building.coerce import as_point
 from aidl_lang.building.conditions import RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.wording import Wording
 from aidl_lang.model import Assertion, Comparison, Condition, Constraint, Geometry, Structure
 from aidl_lang.names import fold
 from aidl_lang.primitives import defining
@@ -23,7 +24,7 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
     if isinstance(node, ast.Call) and fold(node.callee.text) == "fixed":
         value = _held(it, node, env)
     else:
-        value = evaluate(it, _as_relation(node), env)
+        value = _read(it, node, env)
     match value:
         case Nothing() | True:
             return
@@ -112,8 +113,13 @@ def _impose_condition(
                 it.place(node) or node.span,
                 weight,
                 ", ".join(env.scope.labels),
+                Wording(node, it, env, _read),
             )
         )
+
+
+def _read(it: Interpreter, node: ast.Expression, env: Env) -> Value:
+    return evaluate(it, _as_relation(node), env)
 
 
 def _placed_in_call(

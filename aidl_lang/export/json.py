@@ -70,6 +70,10 @@ def to_dict(
         ],
         "dof": model.degrees,
         "free": list(model.free),
+        "motions": [
+            {"kind": m.kind, "things": list(m.things), "words": m.words, "moves": dict(m.moves)}
+            for m in model.motions
+        ],
         "changed": [{"path": c.path, "written": c.written, "solved": c.solved} for c in model.changed],
         "regions": {
             path: {"area": m.area, "perimeter": m.perimeter, "loops": m.loops}
@@ -116,6 +120,7 @@ def _structure(s: SolvedStructure) -> Json:
         "geometry": {g.name: _geometry(g) for g in s.geometry},
         "structures": [_structure(c) for c in s.structures],
         "dof": s.degrees,
+        "constrained": s.state,
     }
     attributes = {name: list(values) for name, values in s.attributes.items() if name != "orientation"}
     if attributes:

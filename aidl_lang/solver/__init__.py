@@ -2,13 +2,15 @@
 
 In the order of reading: `operations`, `expression` (the tape), `problem`, `valuation`, `freezing`,
 `program` (evaluation), `quadratic`, `newton` (one smooth system), `branches` (one attempt), `hierarchy`
-(the stages at each group), `preferences`, `conflicts`, `analysis` (degrees of freedom), `solution`.
+(the stages at each group), `preferences`, `conflicts`, `solution`. What is said of a solution afterwards is
+in `analysis`.
 """
 
 from __future__ import annotations
 
-from aidl_lang.solver import analysis
-from aidl_lang.solver.branches import violation_of
+import numpy as np
+from numpy.typing import NDArray
+
 from aidl_lang.solver.hierarchy import Hierarchy
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import Constraint, Problem, Relation, Row, Settings
@@ -20,34 +22,28 @@ __all__ = ["Constraint", "Problem", "Relation", "Row", "Settings", "Solution", "
 def solve(problem: Problem, settings: Settings = Settings()) -> Solution:
     """Solves `problem` as far as it can be solved. Same input, same output, to the last digit."""
     hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
-    hierarchy.run()
-    values = hierarchy.values
-    residuals, satisfied = [], []
-    for index, constraint in enumerate(problem.constraints):
-        satisfied.append(hierarchy.satisfied(index))
-        residuals.append(max((violation_of(row, values) for row in constraint.rows), default=0.0))
-    freedom = analysis.UNCOUNTED
-    if len(problem.observables) * len(problem.initial) <= settings.counted:
-        freedom = analysis.degrees_of_freedom(problem, values, satisfied, hierarchy.mentioned)
+    with np.errstate(all="ignore"):  # what overflows is found not to hold
+        hierarchy.run()
+    violation, rows = hierarchy.violations(), problem.rows
+    residuals = np.zeros(len(problem.holder))
+    np.maximum.at(residuals, rows.constraint, violation)
+    satisfied = np.ones(len(problem.holder), dtype=np.bool_)
+    satisfied[rows.constraint[~(violation <= settings.tolerance * rows.scale)]] = False
     return Solution(
-        status=_status(hierarchy, satisfied),
-        values=hierarchy.solution(),
-        residuals=tuple(residuals),
-        satisfied=tuple(satisfied),
+        status=_status(satisfied[np.isnan(problem.weight)], hierarchy.timed_out),
+        values=hierarchy.reached,
+        residuals=tuple(residuals.tolist()),
+        satisfied=tuple(satisfied.tolist()),
         changed=tuple(hierarchy.changed()),
-        degrees=freedom.degrees,
-        group_degrees=freedom.group_degrees,
-        free=freedom.free,
-        redundant=freedom.redundant,
         failures=tuple(hierarchy.failures),
         stages=tuple(hierarchy.stages),
     )
 
 
-def _status(hierarchy: Hierarchy, satisfied: list[bool]) -> Status:
-    hard = [index for index in range(len(satisfied)) if hierarchy.is_hard(index)]
-    if all(satisfied[index] for index in hard):
+def _status(satisfied: NDArray[np.bool_], timed_out: bool) -> Status:
+    """From which of the hard constraints hold."""
+    if satisfied.all():
         return Status.SOLVED
-    if hierarchy.timed_out or not any(satisfied[index] for index in hard):
+    if timed_out or not satisfied.any():
         return Status.FAILED
     return Status.PARTIAL

@@ -1,4 +1,4 @@
-"""What is left to move, and what was said twice: degrees of freedom, free unknowns, redundant constraints.
+"""What is left to move, and what was said twice: degrees of freedom, motions, redundant constraints.
 
 A motion is a direction in the null space of the Jacobian of the equations that hold, over all unknowns that
 are not kept sizes. Only what can be seen counts: degrees of freedom are the rank of the observables'
@@ -8,175 +8,181 @@ inequality takes no freedom away. A frame that no constraint mentions stays wher
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from collections.abc import Set as AbstractSet
+from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 
-from aidl_lang.solver.dense import independent_rows, null_space, row_space
-from aidl_lang.solver.gradients import gradients
-from aidl_lang.solver.operations import Floats
-from aidl_lang.solver.problem import Problem, Relation
-from aidl_lang.solver.valuation import Valuation
+from aidl_lang.solver.dependence import dependent_rows
+from aidl_lang.solver.gradients import Integers, Sparse, below, linearise
+from aidl_lang.solver.mobility import SEEN, Mobility, Motions, Watch, mobility
+from aidl_lang.solver.operations import Floats, Op
+from aidl_lang.solver.problem import Problem
+from aidl_lang.solver.redundancy import Equations, Redundancy, redundancies
+from aidl_lang.solver.solution import Solution
+from aidl_lang.solver.stacks import Flags
 
-NOTHING = 1e-7
-"""Components of unit vectors that count as zero."""
-DEPENDENT = 1e-6
-"""Part of a row that may be left when what it has in common with others is taken away."""
+SINGULAR = 1e-7
+"""Slope of a row, in units of its scale, below which it has none: that says nothing about the constraint."""
+
+
+class State(StrEnum):
+    """How a group and all below it is constrained."""
+
+    FULLY = "fully"
+    UNDER = "under"
+    """Something in it can still move."""
+    OVER = "over"
+    """One of its constraints follows from others."""
+    CONTRADICTORY = "contradictory"
+    """One of its constraints does not hold."""
+    UNKNOWN = "unknown"
+    """It could not be told."""
 
 
 @dataclass(frozen=True)
 class Freedom:
-    """See the fields of the same names in `Solution`."""
+    """
+    degrees       degrees of freedom left in the whole model (kept sizes held); None if not countable
+    group_degrees the same for what each group itself draws
+    states        of each group
+    free          unknowns that can still move (kept ones never do)
+    motions       of what can move, each part by itself
+    redundant     equality constraints already implied by others
+    undecided     unknowns of parts of which it could not be told what depends on what
+    """
 
     degrees: int | None
-    group_degrees: tuple[int, ...] | None
+    group_degrees: tuple[int | None, ...]
+    states: tuple[State, ...]
     free: tuple[int, ...]
-    redundant: tuple[int, ...]
+    motions: Motions
+    redundant: tuple[Redundancy, ...]
+    undecided: tuple[tuple[int, ...], ...]
 
 
-UNCOUNTED = Freedom(None, None, (), ())
+def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = None) -> Freedom:
+    """What the hard constraints that hold leave open, to the first order at the solution.
 
-
-@dataclass(frozen=True)
-class _Block:
-    """Equations that share no unknown with others: their scaled Jacobian (r, k), and whose rows they are."""
-
-    jacobian: Floats
-    columns: list[int]
-    owners: list[int]
-
-
-def degrees_of_freedom(
-    problem: Problem, values: Valuation, satisfied: Sequence[bool], mentioned: AbstractSet[int]
-) -> Freedom:
-    """Counts at the current values, with the equations of satisfied hard constraints.
-
-    `mentioned` are the unknowns that occur in any constraint.
+    order  of the constraints: what follows from others is told of the latest
     """
-    blocks = _equations(problem, values, satisfied)
-    motions = _motions(blocks, _movable(problem, mentioned), len(problem.initial))
-    visible = _observables(problem, values) @ motions
-    groups = np.array([group for group, _ in problem.observables], dtype=np.int64)
-    basis = row_space(visible)
-    seen = motions @ basis
+    hard = np.isnan(problem.weight)
+    satisfied = np.array(solution.satisfied, dtype=np.bool_)
+    equal = _equal_rows(problem, hard & satisfied, order)
+    observed = np.array([node for _, node in problem.observables], dtype=np.int64)
+    nodes, node_of = np.unique(observed, return_inverse=True)
+    with np.errstate(all="ignore"):
+        roots = np.concatenate((problem.rows.expression[equal], nodes))
+        values, matrix = linearise(problem.tape, solution.values, roots)
+        slopes, seen = matrix.split(len(equal))
+        equations, plain = _equations(problem, equal, slopes)
+        relations, unclear = dependent_rows(equations.matrix, len(problem.initial))
+        places = values[len(equal) :][node_of]
+        found = _mobility(problem, equations, seen, node_of, places)
+        redundant = redundancies(problem, solution.values, equations, relations, plain) if relations else []
+    undecided = [tuple(np.sort(unknowns).tolist()) for unknowns in found.undecided]
+    if unclear and not undecided:
+        undecided.append(tuple(np.unique(equations.matrix.take(np.array(unclear)).columns).tolist()))
     return Freedom(
-        degrees=basis.shape[1],
-        group_degrees=tuple(_rank(visible[groups == group]) for group in range(len(problem.parent))),
-        free=tuple(np.flatnonzero(np.abs(seen).max(axis=1, initial=0.0) > NOTHING).tolist()),
-        redundant=tuple(sorted(index for block in blocks for index in _redundant(block))),
+        degrees=found.total,
+        group_degrees=tuple(None if count < 0 else count for count in found.degrees.tolist()),
+        states=_states(problem, hard & ~satisfied, redundant, found.degrees),
+        free=tuple(np.flatnonzero(found.moving).tolist()),
+        motions=found.motions,
+        redundant=tuple(redundant),
+        undecided=tuple(undecided),
     )
 
 
-def _equations(problem: Problem, values: Valuation, satisfied: Sequence[bool]) -> list[_Block]:
-    """The equations in blocks that share no unknown; those that depend on none are left out."""
-    rows = [
-        (index, row)
-        for index, constraint in enumerate(problem.constraints)
-        if constraint.weight is None and satisfied[index]
-        for row in constraint.rows
-        if row.relation is Relation.EQUAL
-    ]
-    found = gradients(values, [row.expression for _, row in rows])
-    blocks = []
-    for members in components([found[row.expression] for _, row in rows]):
-        columns = sorted({unknown for i in members for unknown in found[rows[i][1].expression]})
-        column = {unknown: k for k, unknown in enumerate(columns)}
-        jacobian = np.zeros((len(members), len(columns)))
-        for r, i in enumerate(members):
-            for unknown, derivative in found[rows[i][1].expression].items():
-                jacobian[r, column[unknown]] = derivative / rows[i][1].scale
-        blocks.append(_Block(jacobian * problem.scale[columns], columns, [rows[i][0] for i in members]))
-    return blocks
+def _equal_rows(problem: Problem, holding: Flags, order: Sequence[int] | None) -> Integers:
+    """The equations of the constraints that are `holding`, in the order that is preferred."""
+    rows = problem.rows
+    equal = np.flatnonzero(holding[rows.constraint] & ~rows.at_most)
+    if order is None:
+        return equal
+    rank = np.empty(len(problem.holder), dtype=np.int64)
+    rank[np.array(order, dtype=np.int64)] = np.arange(len(order))
+    return equal[np.argsort(rank[rows.constraint[equal]], kind="stable")]
 
 
-def components(sets: Sequence[Iterable[int]]) -> list[list[int]]:
-    """Indices of the sets in groups connected by common elements; empty sets belong to none."""
-    leader: dict[int, int] = {}
-
-    def find(element: int) -> int:
-        while (above := leader.setdefault(element, element)) != element:
-            leader[element] = element = leader[above]
-        return element
-
-    firsts: list[tuple[int, int]] = []
-    for index, elements in enumerate(sets):
-        first = None
-        for element in elements:
-            if first is None:
-                first = element
-                firsts.append((index, element))
-            leader[find(element)] = find(first)
-    groups: dict[int, list[int]] = {}
-    for index, element in firsts:
-        groups.setdefault(find(element), []).append(index)
-    return list(groups.values())
+def _equations(problem: Problem, equal: Integers, slopes: Sparse) -> tuple[Equations, list[int]]:
+    """The equations that have a slope, and the constraints that consist of nothing else."""
+    rows = problem.rows
+    matrix = slopes.scaled(1.0 / rows.scale[equal], problem.scale)
+    lengths = matrix.lengths()
+    sloping = lengths > SINGULAR
+    matrix = matrix.scaled(1.0 / np.where(sloping, lengths, 1.0), np.ones(len(problem.scale)))
+    silent = np.ones(len(rows.constraint), dtype=np.bool_)
+    silent[equal[sloping]] = False
+    other = set(rows.constraint[silent].tolist())
+    owners = dict.fromkeys(rows.constraint[equal[sloping]].tolist())
+    plain = [owner for owner in owners if owner not in other]
+    sloped = np.flatnonzero(sloping)
+    return Equations(equal[sloped], rows.constraint[equal[sloped]], matrix.take(sloped)), plain
 
 
-def _movable(problem: Problem, mentioned: AbstractSet[int]) -> list[int]:
-    """The unknowns that are not kept, but for frames that no constraint mentions."""
-    frame, kept = problem.frame_of.tolist(), problem.kept.tolist()
-    return [
-        unknown
-        for unknown in range(len(problem.initial))
-        if not kept[unknown] and (frame[unknown] < 0 or unknown in mentioned)
-    ]
+def _mobility(
+    problem: Problem, equations: Equations, seen: Sparse, node_of: Integers, places: Floats
+) -> Mobility:
+    """`seen` are the gradients of what is observed; `node_of` is the row of each, `places` its value."""
+    movable = ~problem.kept
+    if (problem.frame_of >= 0).any():
+        movable &= (problem.frame_of < 0) | _mentioned(problem)
+    groups = np.array([group for group, _ in problem.observables], dtype=np.int64)
+    matrix = seen.scaled(np.ones(len(seen)), problem.scale)
+    matrix = matrix.only(movable[matrix.columns] & (np.abs(matrix.entries) > SEEN))
+    distinct, row_of = _distinct(matrix)
+    row = row_of[node_of]
+    group, row_seen = np.divmod(np.unique(groups[row >= 0] * (len(row) + 1) + row[row >= 0]), len(row) + 1)
+    jacobian = equations.matrix.only(movable[equations.matrix.columns])
+    motions = Motions(problem.scale, places, row)
+    return mobility(jacobian, matrix.take(distinct), Watch(group, row_seen), len(problem.parent), motions)
 
 
-def _motions(blocks: Iterable[_Block], movable: Sequence[int], unknowns: int) -> Floats:
-    """An orthonormal basis (n, d) of the directions that leave every equation as it is."""
-    rest = set(movable)
-    pieces: list[tuple[list[int], Floats]] = []
-    for block in blocks:
-        within = [i for i, unknown in enumerate(block.columns) if unknown in rest]
-        columns = [block.columns[i] for i in within]
-        rest.difference_update(columns)
-        if columns:
-            pieces.append((columns, null_space(block.jacobian[:, within])))
-    loose = sorted(rest)
-    pieces.append((loose, np.eye(len(loose))))
-    motions = np.zeros((unknowns, sum(piece.shape[1] for _, piece in pieces)))
-    at = 0
-    for columns, piece in pieces:
-        motions[columns, at : at + piece.shape[1]] = piece
-        at += piece.shape[1]
-    return motions
+def _mentioned(problem: Problem) -> Flags:
+    """The unknowns that occur in any constraint."""
+    found = np.zeros(len(problem.initial), dtype=np.bool_)
+    tape = problem.tape
+    nodes = np.array(below(tape, problem.rows.expression.tolist()), dtype=np.int64)
+    found[tape.operands[nodes[tape.ops[nodes] == Op.UNKNOWN], 0]] = True
+    return found
 
 
-def _observables(problem: Problem, values: Valuation) -> Floats:
-    """The Jacobian (o, n) of the observables over all unknowns, scaled."""
-    roots = [node for _, node in problem.observables]
-    values.refresh(values.cone(roots))
-    found = gradients(values, roots)
-    jacobian = np.zeros((len(roots), len(problem.initial)))
-    for i, root in enumerate(roots):
-        for unknown, derivative in found[root].items():
-            jacobian[i, unknown] = derivative
-    return np.nan_to_num(jacobian * problem.scale)
+def _distinct(matrix: Sparse) -> tuple[Integers, Integers]:
+    """The first of all rows that are equal, and for each row its place among these; -1 for an empty one."""
+    known: dict[tuple[object, ...], int] = {}
+    firsts: list[int] = []
+    places: list[int] = []
+    starts, columns, entries = matrix.starts.tolist(), matrix.columns.tolist(), matrix.entries.tolist()
+    for row in range(len(matrix)):
+        here = slice(starts[row], starts[row + 1])
+        key = (*columns[here], *entries[here])
+        place = known.setdefault(key, len(firsts)) if key else -1
+        if place == len(firsts):
+            firsts.append(row)
+        places.append(place)
+    return np.array(firsts, dtype=np.int64), np.array(places, dtype=np.int64)
 
 
-def _rank(matrix: Floats) -> int:
-    touched = np.abs(matrix).max(axis=0, initial=0.0) > NOTHING
-    return int(row_space(matrix[:, touched]).shape[1])
-
-
-def _redundant(block: _Block) -> list[int]:
-    """Constraints all of whose rows depend on rows of those before: Gram and Schmidt, in order."""
-    if independent_rows(block.jacobian):
-        return []
-    basis = np.zeros((0, block.jacobian.shape[1]))
-    independent: dict[int, bool] = {}
-    for owner, row in sorted(zip(block.owners, block.jacobian, strict=True), key=lambda pair: pair[0]):
-        length = float(np.linalg.norm(row))
-        independent.setdefault(owner, False)
-        if length <= NOTHING:
-            independent[owner] = True  # singular here: that says nothing about the constraint
-            continue
-        rest = row / length
-        for _ in range(2):
-            rest = rest - basis.T @ (basis @ rest)
-        if (size := float(np.linalg.norm(rest))) > DEPENDENT:
-            basis = np.vstack((basis, rest / size))
-            independent[owner] = True
-    return [owner for owner, counts in independent.items() if not counts]
+def _states(
+    problem: Problem, broken: Flags, redundant: Sequence[Redundancy], degrees: Integers
+) -> tuple[State, ...]:
+    contradictory = set(problem.holder[broken].tolist())
+    moving, unclear = (degrees > 0).tolist(), (degrees < 0).tolist()
+    for group, parent in reversed(list(enumerate(problem.parent.tolist()))):
+        if parent >= 0:
+            moving[parent] |= moving[group]
+            unclear[parent] |= unclear[group]
+    over = {int(problem.holder[found.constraint]) for found in redundant}
+    states: list[State] = []
+    for group in range(len(degrees)):
+        if group in contradictory:
+            states.append(State.CONTRADICTORY)
+        elif group in over:
+            states.append(State.OVER)
+        elif moving[group]:
+            states.append(State.UNDER)
+        else:
+            states.append(State.UNKNOWN if unclear[group] else State.FULLY)
+    return tuple(states)

@@ -1,4 +1,4 @@
-"""One attempt: chosen rows over chosen unknowns, with `min`, `max`, `abs`, `mod` and `select` in them.
+"""One attempt: chosen rows over chosen unknowns, with `min`, `max`, `abs` and `select` in them.
 
 Branching operations are replaced by the branch active at the current values, the smooth system that is left
 is solved, and the result is judged by the original expressions (paper, appendix B). Where a branch was
@@ -19,7 +19,7 @@ import numpy as np
 from aidl_lang.solver import newton
 from aidl_lang.solver.freezing import ZERO, Branch, Frozen, Root, freeze
 from aidl_lang.solver.newton import Clock, End, System
-from aidl_lang.solver.operations import Floats, Op, whole_turns
+from aidl_lang.solver.operations import Floats, Op
 from aidl_lang.solver.problem import Relation, Row, Settings
 from aidl_lang.solver.program import Program
 from aidl_lang.solver.valuation import Cone, Valuation
@@ -144,7 +144,7 @@ class _Attempt:
             self._move_to(base)
             roots: list[Root] = [self.task.rows[i].expression for i in self.considered]
             frozen = freeze(self.values, [*roots, *region], self.free, flipped)
-            verdict = self._judge(self._solve(frozen, base))
+            verdict = self._judge(self._solve(frozen, base, 0 if flipped else self.task.restarts))
             if verdict.satisfied:
                 return verdict, frozen.branches, False
             if self._join_violated() and not self.clock.expired:
@@ -165,10 +165,6 @@ class _Attempt:
         crossed, border = False, []
         for node, choice in branches:
             op, operands = self.values.tape.op_list[node], self.values.tape.operand_lists[node]
-            if op == Op.MOD:
-                a, b = (self.values.nodes[operand] for operand in operands)
-                crossed |= whole_turns(a, b) != choice
-                continue
             root = _border(op, operands, choice)
             if self._difference(root) > 0.0:
                 crossed = True
@@ -192,10 +188,12 @@ class _Attempt:
         self._move_to(self.origin)
         nodes = self._branching(unmet)
         others = self._branching(row.expression for row in self.task.rows)
+        others = [node for node in others if node not in nodes]
         flips = itertools.chain(
             itertools.combinations(nodes, 1),
             itertools.combinations(nodes[:NEIGHBOURS], 2),
-            itertools.combinations([node for node in others if node not in nodes], 1),
+            itertools.combinations(others, 1),
+            itertools.product(nodes[:NEIGHBOURS], others),
         )
         for flipped in itertools.islice(flips, NEIGHBOURS * max(1, self.task.restarts)):
             if self.clock.expired:
@@ -212,27 +210,27 @@ class _Attempt:
         return sorted((node for node, _ in branches if self._can_flip(node)), reverse=True)
 
     def _can_flip(self, node: int) -> bool:
-        if self.values.tape.op_list[node] == Op.MOD:
-            return False
         return not self.values.cone([node]).unknowns.isdisjoint(self.free)
 
     # -- solving with fixed branches
 
-    def _solve(self, frozen: Frozen, base: list[float]) -> End:
+    def _solve(self, frozen: Frozen, base: list[float], restarts: int) -> End:
         """Solves each program by itself and moves to the result; the worst end of them."""
         ends = [End.CONVERGED]
         if frozen.constant and not self._constants_hold(frozen):
-            if self.task.restarts <= 1:
+            if restarts <= 1:
                 return End.INFEASIBLE
             ends.append(End.INFEASIBLE)
         start = dict(zip(self.free, base, strict=True))
         origin = dict(zip(self.free, self.origin, strict=True))
         for program in frozen.programs:
-            ends.append(self._solve_program(program, start, origin))
+            ends.append(self._solve_program(program, start, origin, restarts))
         self.values.refresh(self.cone)
         return next((end for end in (End.EXHAUSTED, End.INFEASIBLE) if end in ends), End.CONVERGED)
 
-    def _solve_program(self, program: Program, start: dict[int, float], origin: dict[int, float]) -> End:
+    def _solve_program(
+        self, program: Program, start: dict[int, float], origin: dict[int, float], restarts: int
+    ) -> End:
         rows = [
             self.task.rows[self.considered[i]] if i < len(self.considered) else None for i in program.rows
         ]
@@ -261,7 +259,7 @@ class _Attempt:
             self.settings.iterations,
             self.clock,
             z,
-            self.task.restarts,
+            restarts,
         )
         x = anchor + scale * outcome.z[: len(scale)]
         if np.isfinite(x).all():

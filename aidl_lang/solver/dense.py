@@ -6,6 +6,8 @@ where rank is in doubt are singular values worth their price, which is about ten
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from aidl_lang.solver.operations import Floats
@@ -26,11 +28,24 @@ SMALL = 300
 """Number of entries below which singular values cost no more than the alternative."""
 
 
-def least_norm(jacobian: Floats, y: Floats) -> tuple[Floats, Floats, Floats | None]:
-    """The shortest z with J z = y, its multipliers m (z = -Jᵀ m), and the part of y out of reach, if any.
+@dataclass(frozen=True)
+class LeastNorm:
+    """The shortest z with J z = y for J (m, n), y (m,); in the sense of least squares if there is none.
 
-    If a part is out of reach, z satisfies the rest in the sense of least squares. J is (m, n), y (m,).
+    point       (n,) z
+    multipliers (m,) with z = -Jᵀ multipliers
+    outside     (m,) the part of y that is out of reach, None if none is
+    unique      whether no other z satisfies the rows, beyond doubt
     """
+
+    point: Floats
+    multipliers: Floats
+    outside: Floats | None
+    unique: bool
+
+
+def least_norm(jacobian: Floats, y: Floats) -> LeastNorm:
+    """The shortest z with J z = y."""
     if len(y) == 1:
         return _least_norm_of_one(jacobian, y)
     if jacobian.size > SMALL and (solved := _least_norm_by_cholesky(jacobian, y)):
@@ -45,19 +60,20 @@ def least_norm(jacobian: Floats, y: Floats) -> tuple[Floats, Floats, Floats | No
         rest = y - u @ (u.T @ y)
         if float(np.abs(rest).max()) > max(CONSISTENT * float(np.abs(y).max()), NOISE):
             outside = rest
-    return coordinates @ vt, multipliers, outside
+    return LeastNorm(coordinates @ vt, multipliers, outside, rank == jacobian.shape[1])
 
 
-def _least_norm_of_one(jacobian: Floats, y: Floats) -> tuple[Floats, Floats, Floats | None]:
+def _least_norm_of_one(jacobian: Floats, y: Floats) -> LeastNorm:
     gradient = jacobian[0]
     square = float(gradient @ gradient)
     if square == 0.0:
-        return np.zeros_like(gradient), np.zeros(1), y if abs(y[0]) > NOISE else None
+        outside = y if abs(y[0]) > NOISE else None
+        return LeastNorm(np.zeros_like(gradient), np.zeros(1), outside, False)
     multiplier = -float(y[0]) / square
-    return gradient * -multiplier, np.array([multiplier]), None
+    return LeastNorm(gradient * -multiplier, np.array([multiplier]), None, len(gradient) == 1)
 
 
-def _least_norm_by_cholesky(jacobian: Floats, y: Floats) -> tuple[Floats, Floats, None] | None:
+def _least_norm_by_cholesky(jacobian: Floats, y: Floats) -> LeastNorm | None:
     """By the normal equations, refined once; None where they are not to be trusted."""
     if len(y) > jacobian.shape[1]:
         return None
@@ -68,7 +84,9 @@ def _least_norm_by_cholesky(jacobian: Floats, y: Floats) -> tuple[Floats, Floats
     multipliers: Floats = np.asarray(first - np.linalg.solve(gram, gram @ first + y), dtype=np.float64)
     point: Floats = -(jacobian.T @ multipliers)
     error = float(np.abs(jacobian @ point - y).max())
-    return (point, multipliers, None) if error <= 1e-10 * float(np.abs(y).max()) else None
+    if error > 1e-10 * float(np.abs(y).max()):
+        return None
+    return LeastNorm(point, multipliers, None, len(y) == jacobian.shape[1])
 
 
 def _well_conditioned(gram: Floats) -> bool:

@@ -24,11 +24,13 @@ class Tape:
     ops       (m,)   `Op` of each node
     operands  (m, 4) node ids, -1 where there are fewer; for UNKNOWN the index of the unknown
     constants (m,)   value of a CONSTANT, else 0
+    levels    (m,)   0 for leaves, else one more than the highest operand
     """
 
     ops: NDArray[np.int8]
     operands: NDArray[np.int32]
     constants: Floats
+    levels: NDArray[np.int32]
 
     def __len__(self) -> int:
         return len(self.ops)
@@ -55,6 +57,7 @@ class TapeBuilder:
         self._ops: list[int] = []
         self._operands: list[tuple[int, ...]] = []
         self._constants: list[float] = []
+        self._levels: list[int] = []
         self._known: dict[tuple[object, ...], int] = {}
 
     def __len__(self) -> int:
@@ -165,10 +168,14 @@ class TapeBuilder:
         return self._node(Op.CUBIC_MAX, p0, p1, p2, p3)
 
     def finish(self) -> Tape:
-        operands = np.full((len(self._ops), 4), -1, dtype=np.int32)
-        for node, args in enumerate(self._operands):
-            operands[node, : len(args)] = args
-        return Tape(np.array(self._ops, dtype=np.int8), operands, np.array(self._constants, dtype=np.float64))
+        padding = (-1, -1, -1, -1)
+        padded = [args + padding[len(args) :] for args in self._operands]
+        return Tape(
+            np.array(self._ops, dtype=np.int8),
+            np.array(padded, dtype=np.int32).reshape(-1, 4),
+            np.array(self._constants, dtype=np.float64),
+            np.array(self._levels, dtype=np.int32),
+        )
 
     def _is(self, node: int, value: float) -> bool:
         return self._ops[node] == Op.CONSTANT and self._constants[node] == value
@@ -207,4 +214,6 @@ class TapeBuilder:
             self._ops.append(int(op))
             self._operands.append(operands)
             self._constants.append(constant)
+            levels = self._levels
+            levels.append(1 + max([levels[a] for a in operands]) if op > Op.UNKNOWN else 0)
         return node

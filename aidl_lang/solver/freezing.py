@@ -1,8 +1,7 @@
 """From rows of the tape to programs: fold what is constant, fix the branches, separate what is independent.
 
 `freeze` takes the rows of one attempt. What depends on no free unknown becomes a number; `abs`, `minimum`,
-`maximum`, `mod` and `select` are replaced by the branch active at the current values (paper, appendix B);
-and rows that share no free unknown go to programs of their own.
+`maximum` and `select` are replaced by the branch active at the current values (paper, appendix B); and rows that share no free unknown go to programs of their own.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from aidl_lang.solver.operations import BRANCHING, LINEAR, PARTIALS, Op, whole_turns
+from aidl_lang.solver.operations import BRANCHING, LINEAR, PARTIALS, Op
 from aidl_lang.solver.program import Program, Sweep
 from aidl_lang.solver.valuation import Valuation, compiled, evaluate
 
@@ -30,7 +29,7 @@ UNUSED = 0
 """Weight that is written for operands without a free unknown and never read."""
 
 Branch: TypeAlias = tuple[int, int]
-"""A branching node and which of its branches is meant (for `mod` the number of whole turns)."""
+"""A branching node and which of its branches is meant."""
 
 
 @dataclass
@@ -133,7 +132,7 @@ class _Freezer:
 
     def _active(self, node: int, op: int) -> tuple[int, ...]:
         operands = self.valuation.tape.operand_lists[node]
-        if op in (Op.MOD, Op.ABS):
+        if op == Op.ABS:
             return operands
         return (operands[self._choice(node, op)],)
 
@@ -154,27 +153,12 @@ class _Freezer:
 
     def _place_branch(self, node: int, op: int) -> None:
         active = [self.form[a] for a in self._active(node, op)]
-        if op == Op.MOD:
-            self.form[node] = self._less_turns(node, active)
-            return
         choice = self._choice(node, op)
         self.branches.append((node, choice))
         if op != Op.ABS or not choice:
             self.form[node] = active[0]
         else:
             self.form[node] = self._emit(Op.NEG, active) if isinstance(active[0], int) else -active[0]
-
-    def _less_turns(self, node: int, active: list[int | float]) -> int | float:
-        """The value a - b k of `mod` with k held."""
-        a, b = active
-        if isinstance(a, float) and isinstance(b, float):
-            return evaluate(Op.MOD, [a, b])
-        first, second = self.valuation.tape.operand_lists[node]
-        turns = whole_turns(self.valuation.nodes[first], self.valuation.nodes[second])
-        self.branches.append((node, int(turns) if turns == turns else 0))
-        if isinstance(b, int):
-            return self._emit(Op.SUB, [a, self._emit(Op.MUL, [b, turns])])
-        return self._emit(Op.SUB, [a, b * turns]) if turns else a
 
     def _emit(self, op: int, operands: Sequence[int | float]) -> int:
         slots = tuple(form if isinstance(form, int) else self._new_slot(form) for form in operands)

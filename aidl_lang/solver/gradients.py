@@ -1,53 +1,273 @@
-"""Gradients of many nodes at once, each as the few unknowns that it depends on.
+"""Gradients of many nodes at one place, each as the few unknowns that it depends on.
 
-Forward accumulation over the shared graph, once through: the right tool where every gradient is wanted a
-single time, as in counting degrees of freedom. Newton's method uses `Program.jacobian`.
+They are accumulated forward as dictionaries, which for a drawing is quickest; for large models the adjoints
+of all roots go down the levels of the tape together, as arrays. Newton's method, which comes back to the
+same rows again and again, does not use this.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TypeAlias
 
-from aidl_lang.solver.operations import PARTIALS, Op
-from aidl_lang.solver.valuation import Valuation, reachable
+import numpy as np
+from numpy.typing import NDArray
 
+from aidl_lang.solver import arrays
+from aidl_lang.solver.expression import Tape
+from aidl_lang.solver.operations import ARITY, PARTIALS, VALUE, Floats, Op
+from aidl_lang.solver.valuation import Valuation
+
+Integers: TypeAlias = NDArray[np.int64]
+Values: TypeAlias = "Mapping[int, float] | Sequence[float]"
+"""The value of each node, by its number."""
 Gradient: TypeAlias = dict[int, float]
 """Partial derivative by unknown; unknowns that are missing have none."""
+
+FEW = 3000
+"""Number of nodes up to which dictionaries are quicker than arrays."""
+DENSE = 8
+"""Nodes to a root up to which the whole tape is looked through for those below."""
+MANY = 100
+"""Nodes to a root beyond which it is not worth it to evaluate the whole tape."""
+BRANCHES = 4
+"""Most operands that an operation has."""
+
+_Adjoints: TypeAlias = tuple[Integers, Integers, Floats]
+"""Roots, nodes, and the derivatives of the former along the latter."""
+
+
+@dataclass(frozen=True)
+class Sparse:
+    """A matrix by its entries, row by row.
+
+    starts  (r + 1,) where each row begins
+    columns (e,)
+    entries (e,)
+    """
+
+    starts: Integers
+    columns: Integers
+    entries: Floats
+
+    def __len__(self) -> int:
+        return len(self.starts) - 1
+
+    @cached_property
+    def rows(self) -> Integers:
+        """(e,) the row of each entry."""
+        return np.repeat(np.arange(len(self)), np.diff(self.starts))
+
+    def lengths(self) -> Floats:
+        """(r,) Euclidean lengths of the rows."""
+        squares = np.bincount(self.rows, self.entries * self.entries, len(self))
+        return np.asarray(np.sqrt(squares), dtype=np.float64)
+
+    def split(self, row: int) -> tuple[Sparse, Sparse]:
+        """The rows before one, and the others."""
+        at = self.starts[row]
+        return (
+            Sparse(self.starts[: row + 1], self.columns[:at], self.entries[:at]),
+            Sparse(self.starts[row:] - at, self.columns[at:], self.entries[at:]),
+        )
+
+    def scaled(self, rows: Floats, columns: Floats) -> Sparse:
+        """Every entry times the factors of its row and its column."""
+        return Sparse(self.starts, self.columns, self.entries * rows[self.rows] * columns[self.columns])
+
+    def take(self, rows: Integers) -> Sparse:
+        """The given rows, in their order."""
+        counts = self.starts[rows + 1] - self.starts[rows]
+        starts = _starts(counts)
+        picked = np.arange(starts[-1]) + np.repeat(self.starts[rows] - starts[:-1], counts)
+        return Sparse(starts, self.columns[picked], self.entries[picked])
+
+    def only(self, entries: NDArray[np.bool_]) -> Sparse:
+        """The same without the entries that are marked False."""
+        starts = _starts(np.bincount(self.rows[entries], minlength=len(self)))
+        return Sparse(starts, self.columns[entries], self.entries[entries])
+
+    @property
+    def links(self) -> tuple[Integers, Integers]:
+        """Pairs of columns that share a row, enough of them to connect all that do."""
+        firsts = self.columns[np.minimum(self.starts[:-1], max(len(self.columns) - 1, 0))[self.rows]]
+        return firsts, self.columns
+
+    def dense(self, columns: Integers) -> Floats:
+        """The given columns, which are ascending and hold every entry."""
+        matrix = np.zeros((len(self), len(columns)))
+        matrix[self.rows, np.searchsorted(columns, self.columns)] = self.entries
+        return matrix
+
+
+def _starts(counts: NDArray[np.intp]) -> Integers:
+    return np.concatenate((np.zeros(1, dtype=np.int64), np.cumsum(counts, dtype=np.int64)))
+
+
+def connected(a: Integers, b: Integers, count: int) -> Integers:
+    """For each of `count` things the least one that it hangs together with, by links `a[i]` to `b[i]`."""
+    label = np.arange(count)
+    while (label[a] != label[b]).any():
+        low, high = np.minimum(label[a], label[b]), np.maximum(label[a], label[b])
+        np.minimum.at(label, high, low)
+        while (label[label] != label).any():
+            label = label[label]
+    return label
+
+
+def below(tape: Tape, roots: Iterable[int]) -> list[int]:
+    """The nodes that `roots` are made of, operands first."""
+    ops, operands = tape.op_list, tape.operand_lists
+    seen = set(roots)
+    if len(tape) < DENSE * len(seen):
+        marks = bytearray(len(tape))
+        for root in seen:
+            marks[root] = 1
+        for node in range(len(tape) - 1, -1, -1):
+            if marks[node] and ops[node] > Op.UNKNOWN:
+                for a in operands[node]:
+                    marks[a] = 1
+        return [node for node, mark in enumerate(marks) if mark]
+    stack = list(seen)
+    while stack:
+        node = stack.pop()
+        if ops[node] > Op.UNKNOWN:
+            for a in operands[node]:
+                if a not in seen:
+                    seen.add(a)
+                    stack.append(a)
+    return sorted(seen)
 
 
 def gradients(values: Valuation, roots: Iterable[int]) -> dict[int, Gradient]:
     """The gradient of each root at the current node values, which must be up to date."""
-    tape, nodes = values.tape, values.nodes
-    ops, operands = tape.op_list, tape.operand_lists
     wanted = list(roots)
-    found: dict[int, Gradient] = {}
-    for node in reachable(tape, wanted, [False] * len(tape)):
-        op, args = ops[node], operands[node]
-        if op == Op.UNKNOWN:
-            found[node] = {args[0]: 1.0}
-        elif op == Op.CONSTANT:
-            found[node] = {}
-        else:
-            found[node] = _chain(op, args, nodes, node, found)
+    found = _forward(values.tape, values.nodes, below(values.tape, wanted))
     return {root: found[root] for root in wanted}
 
 
-def _chain(
-    op: int, args: tuple[int, ...], nodes: list[float], node: int, found: dict[int, Gradient]
-) -> Gradient:
-    """The chain rule for one operation."""
-    inner = [found[a] for a in args]
-    if not any(inner):
-        return {}
+def linearise(tape: Tape, at: Floats, roots: Integers) -> tuple[Floats, Sparse]:
+    """The values (r,) of `roots` at the unknowns `at` (n,), and their finite partial derivatives.
+
+    Unknowns without influence on a root have no entry; entries that cancel may be zeros.
+    """
+    wanted = roots.tolist()
+    if len(tape) <= FEW or len(wanted) * MANY < len(tape):
+        nodes = below(tape, wanted)
+        known = _values(tape, at.tolist(), nodes)
+        found = _forward(tape, known, nodes)
+        values, matrix = np.array([known[root] for root in wanted]), _sparse([found[root] for root in wanted])
+    else:
+        with np.errstate(all="ignore"):
+            every, slopes = _everything(tape, at)
+            values, matrix = every[roots], _backward(tape, slopes, roots)
+    finite = np.nan_to_num(matrix.entries)  # products of finite slopes may still overflow
+    return values, replace(matrix, entries=finite)
+
+
+def _sparse(rows: Sequence[Gradient]) -> Sparse:
+    starts = np.cumsum([0, *(len(row) for row in rows)], dtype=np.int64)
+    columns = np.array([unknown for row in rows for unknown in row], dtype=np.int64)
+    return Sparse(starts, columns, np.array([slope for row in rows for slope in row.values()]))
+
+
+def _values(tape: Tape, at: Sequence[float], nodes: Iterable[int]) -> dict[int, float]:
+    ops, operands, constants = tape.op_list, tape.operand_lists, tape.constants
+    values: dict[int, float] = {}
+    for node in nodes:
+        op, args = ops[node], operands[node]
+        if op == Op.UNKNOWN:
+            values[node] = at[args[0]]
+        elif op == Op.CONSTANT:
+            values[node] = float(constants[node])
+        elif len(args) < 3:
+            values[node] = VALUE[op](values[args[0]], values[args[-1]])
+        else:
+            values[node] = VALUE[op](*[values[a] for a in args])
+    return values
+
+
+def _slopes(op: int, args: tuple[int, ...], values: Values, node: int) -> tuple[float, ...]:
     padded = args if len(args) > 1 else args * 2
-    slopes = PARTIALS[op](*[nodes[a] for a in padded], nodes[node])
-    total: Gradient = {}
-    for gradient, slope in zip(inner, slopes, strict=False):
-        if slope == 1.0 and not total:
-            total = gradient  # shared, hence copied before it is added to
-        elif slope != 0.0 and gradient:
-            total = dict(total)
-            for unknown, derivative in gradient.items():
-                total[unknown] = total.get(unknown, 0.0) + slope * derivative
-    return total
+    return PARTIALS[op](*[values[a] for a in padded], values[node])
+
+
+def _forward(tape: Tape, values: Values, nodes: Iterable[int]) -> dict[int, Gradient]:
+    """The gradient of each node from those of its operands."""
+    ops, operands = tape.op_list, tape.operand_lists
+    found: dict[int, Gradient] = {}
+    for node in nodes:
+        op, args = ops[node], operands[node]
+        total: Gradient = {}
+        if op == Op.UNKNOWN:
+            total = {args[0]: 1.0}
+        elif op != Op.CONSTANT and any(map(found.__getitem__, args)):
+            owned = False
+            for a, slope in zip(args, _slopes(op, args, values, node), strict=False):
+                if slope == 1.0 and not total:
+                    total = found[a]  # shared, hence copied before it is added to
+                elif slope != 0.0 and found[a]:
+                    if not owned:
+                        total, owned = dict(total), True
+                    for unknown, derivative in found[a].items():
+                        total[unknown] = total.get(unknown, 0.0) + slope * derivative
+        found[node] = total
+    return found
+
+
+def _everything(tape: Tape, at: Floats) -> tuple[Floats, Floats]:
+    """The value (m,) of every node of the tape, and the slope (m, 4) of each along its operands."""
+    values, slopes = tape.constants.copy(), np.zeros((len(tape), BRANCHES))
+    unknowns = np.flatnonzero(tape.ops == Op.UNKNOWN)
+    values[unknowns] = at[tape.operands[unknowns, 0]]
+    kind = tape.levels.astype(np.int64) * len(Op) + tape.ops
+    order = np.argsort(kind, kind="stable")
+    for nodes in np.split(order, np.flatnonzero(np.diff(kind[order])) + 1):
+        op = int(tape.ops[nodes[0]])
+        if op > Op.UNKNOWN:
+            operands = tuple(values[a] for a in tape.operands[nodes, : ARITY[op]].T)
+            values[nodes] = arrays.values(op, operands)
+            for k, slope in enumerate(arrays.partials(op, operands, values[nodes])[: ARITY[op]]):
+                slopes[nodes, k] = slope
+    return values, slopes
+
+
+def _backward(tape: Tape, slopes: Floats, roots: Integers) -> Sparse:
+    """The adjoints of all roots at once, from the highest level of the tape to the unknowns."""
+    operands, level = tape.operands.astype(np.int64), tape.levels
+    pending: dict[int, list[_Adjoints]] = {}
+    _sort_in(pending, level, (np.arange(len(roots)), roots, np.ones(len(roots))))
+    for height in range(int(level[roots].max(initial=0)), 0, -1):
+        if height not in pending:
+            continue
+        rows, at, weight = _merged(pending.pop(height), len(tape))
+        for k in range(BRANCHES):
+            share = weight * slopes[at, k]
+            passed = share != 0.0
+            if passed.any():
+                _sort_in(pending, level, (rows[passed], operands[at[passed], k], share[passed]))
+    rows, at, weight = _merged(pending.get(0, []), len(tape))
+    inputs = tape.ops[at] == Op.UNKNOWN
+    rows, columns, weight = rows[inputs], operands[at[inputs], 0], weight[inputs]
+    return Sparse(_starts(np.bincount(rows, minlength=len(roots))), columns, weight)
+
+
+def _sort_in(pending: dict[int, list[_Adjoints]], level: NDArray[np.int32], found: _Adjoints) -> None:
+    """Adds adjoints to those that wait at the level of their node."""
+    rows, at, weight = found
+    order = np.argsort(level[at], kind="stable")
+    heights, firsts = np.unique(level[at][order], return_index=True)
+    for height, part in zip(heights.tolist(), np.split(order, firsts[1:]), strict=False):
+        pending.setdefault(height, []).append((rows[part], at[part], weight[part]))
+
+
+def _merged(parts: list[_Adjoints], nodes: int) -> _Adjoints:
+    """Adjoints of the same root at the same node added up, by root and node."""
+    if not parts:
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0)
+    keys = np.concatenate([rows * nodes + at for rows, at, _ in parts])
+    unique, inverse = np.unique(keys, return_inverse=True)
+    total = np.bincount(inverse, np.concatenate([weight for _, _, weight in parts]))
+    return unique // nodes, unique % nodes, np.asarray(total, dtype=np.float64)

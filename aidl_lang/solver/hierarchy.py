@@ -18,21 +18,25 @@ break, and they join the system; a descendant that nothing outside mentions ther
 from __future__ import annotations
 
 from collections.abc import Iterable
-from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
-from typing import TypeAlias
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from aidl_lang.solver import conflicts
-from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds
+from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
 from aidl_lang.solver.gradients import gradients
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.preferences import prefer
-from aidl_lang.solver.problem import Problem, Row, Settings
+from aidl_lang.solver.problem import Problem, Row, Settings, depths, violations
 from aidl_lang.solver.solution import GroupFailure, StageReport
 from aidl_lang.solver.valuation import Cone, Valuation
+
+if TYPE_CHECKING:
+    from aidl_lang.solver.levels import Stage
 
 Tier: TypeAlias = tuple[int, int]
 Best: TypeAlias = tuple[float, dict[int, float]]
@@ -54,6 +58,9 @@ LAST_RESTARTS = 5
 """Perturbed starts at the last stage; the earlier ones have one."""
 MOST_FAILURES = 20
 """Conflicts that are explained and worked around; after that, only the best effort is kept."""
+
+MANY = 50
+"""Number of rows from which on all groups of a depth are solved at once."""
 
 _NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "sizes"}
 
@@ -79,51 +86,120 @@ class Hierarchy:
 
     def __init__(self, problem: Problem, settings: Settings, clock: Clock) -> None:
         self.problem, self.settings, self.clock = problem, settings, clock
-        self.values = Valuation(problem.tape, problem.initial.tolist())
         scale, longest = problem.scale, problem.longest
         self.metric = Metric(scale, scale, longest)
         self.firm = Metric(np.where(problem.kept, FIRM, 1.0) * scale, scale, longest)
         self.failures: list[GroupFailure] = []
         self.stages: list[StageReport] = []
         self.timed_out = False
-        self._kept = [bool(kept) for kept in problem.kept]
-        self._group = [int(group) for group in problem.group]
-        self._frame = [int(frame) >= 0 for frame in problem.frame_of]
-        self._depth = _depths(problem)
-        self.cones: list[Cone] = [
-            self.values.cone(row.expression for row in constraint.rows) for constraint in problem.constraints
-        ]
-        self._held_by: list[list[int]] = [[] for _ in problem.parent]
-        self._mentioned_by: dict[int, list[int]] = {}
-        for index, constraint in enumerate(problem.constraints):
-            self._held_by[constraint.group].append(index)
-            for unknown in self.cones[index].unknowns:
-                self._mentioned_by.setdefault(unknown, []).append(index)
+        self.reached = problem.initial
+        """The values (n,) at the end of the run."""
         self._broken: set[int] = set()
 
-    def run(self) -> None:
-        for group in reversed(range(len(self.problem.parent))):
-            if self._held_by[group]:
-                _Group(self, group).solve()
+    # What is looked up one by one is kept in lists, and made when the first group asks.
 
-    def solution(self) -> Floats:
-        return np.array(self.values.unknowns, dtype=np.float64)
+    @cached_property
+    def _kept(self) -> list[bool]:
+        return self.problem.kept.tolist()
+
+    @cached_property
+    def _frame(self) -> list[bool]:
+        return (self.problem.frame_of >= 0).tolist()
+
+    @cached_property
+    def _hard(self) -> list[bool]:
+        return np.isnan(self.problem.weight).tolist()
+
+    @cached_property
+    def _depth(self) -> list[int]:
+        """Of each unknown."""
+        return self._group_depths[self.problem.group].tolist()
+
+    @cached_property
+    def _group_depths(self) -> NDArray[np.int64]:
+        return depths(self.problem.parent)
+
+    @cached_property
+    def _held_by(self) -> dict[int, list[int]]:
+        found: dict[int, list[int]] = {}
+        for index, holder in enumerate(self.problem.holder.tolist()):
+            found.setdefault(holder, []).append(index)
+        return found
+
+    @cached_property
+    def values(self) -> Valuation:
+        return Valuation(self.problem.tape, self.problem.initial.tolist())
+
+    @cached_property
+    def cones(self) -> Cones:
+        return Cones(self.problem, self.values)
+
+    @cached_property
+    def _mentioned_by(self) -> dict[int, list[int]]:
+        found: dict[int, list[int]] = {}
+        for index in range(len(self.problem.holder)):
+            for unknown in self.cones[index].unknowns:
+                found.setdefault(unknown, []).append(index)
+        return found
+
+    def run(self) -> None:
+        if len(self.problem.rows.expression) < MANY:
+            for group in sorted(self._held_by, reverse=True):
+                _Group(self, group).solve()
+            self.reached = np.array(self.values.unknowns)
+        else:
+            self._run_by_levels()
+
+    def _run_by_levels(self) -> None:
+        """All groups of a depth at once; then, one by one, those for which that was not enough."""
+        from aidl_lang.solver.levels import Levels
+
+        levels = Levels(self.problem, self.settings, self.clock, self.metric)
+        wishing = set(self.problem.holder[~np.isnan(self.problem.weight)].tolist())
+        for depth in range(int(self._group_depths.max()), -1, -1):
+            passed: dict[int, Tier] = {}
+            for stage in levels.solve(depth):
+                self._record(stage, passed)
+            left = set(levels.unsolved(depth).tolist())
+            left.update(group for group in wishing if self._group_depths[group] == depth)
+            if left:
+                self.values.assign(enumerate(levels.x.tolist()))
+                for group in sorted(left, reverse=True):
+                    _Group(self, group).solve(passed.get(group, (0, 0)))
+                levels.x[:] = self.values.unknowns
+                levels.binding[list(self._broken)] = False
+        self.reached = levels.x
+        self._nodes = levels.nodes()
+
+    def _record(self, stage: Stage, passed: dict[int, Tier]) -> None:
+        name = stage_name(stage.tier)
+        columns = (stage.groups, stage.unknowns, stage.rows, stage.solved)
+        for group, unknowns, rows, solved in zip(*(column.tolist() for column in columns), strict=True):
+            self.stages.append(StageReport(group, name, unknowns, rows, solved))
+            if solved:
+                passed[group] = stage.tier
+
+    def violations(self) -> Floats:
+        """How far each row (r,) is from holding at the end, in its own units; infinite if it has no value."""
+        if len(self.problem.rows.expression) < MANY:
+            found = []
+            for index, constraint in enumerate(self.problem.constraints):
+                self.values.refresh(self.cones[index])
+                found.extend([violation_of(row, self.values) for row in constraint.rows])
+            return np.array(found)
+        return violations(self.problem, self._nodes)
 
     def changed(self) -> list[int]:
         """Kept sizes that are no longer what was written."""
-        moved = np.abs(self.solution() - self.problem.initial) > CHANGED * self.problem.scale
-        return [int(unknown) for unknown in np.flatnonzero(moved & self.problem.kept)]
-
-    @property
-    def mentioned(self) -> AbstractSet[int]:
-        """The unknowns that occur in any constraint."""
-        return self._mentioned_by.keys()
+        moved = np.abs(self.reached - self.problem.initial) > CHANGED * self.problem.scale
+        found: list[int] = np.flatnonzero(moved & self.problem.kept).tolist()
+        return found
 
     # -- what groups ask
 
     def tier(self, group: int, unknown: int, placed: frozenset[int]) -> Tier:
         """When `unknown` becomes free at `group`, whose constraints place `placed`."""
-        level = self._depth[self._group[unknown]] - self._depth[group]
+        level = self._depth[unknown] - int(self._group_depths[group])
         if self._kept[unknown]:
             return (5, 0 if unknown in placed else 1 + level)
         if level == 0:
@@ -131,10 +207,10 @@ class Hierarchy:
         return (3, level) if self._frame[unknown] else (4, level)
 
     def is_hard(self, index: int) -> bool:
-        return self.problem.constraints[index].weight is None
+        return self._hard[index]
 
     def held_by(self, group: int) -> list[int]:
-        return self._held_by[group]
+        return self._held_by.get(group, [])
 
     def solved_mentioning(self, unknown: int, group: int) -> Iterable[int]:
         """Constraints of `group` and its descendants, those that could not be met excepted."""
@@ -171,6 +247,10 @@ class Hierarchy:
         before = self.save(scope.free)
         task = Task(rows, [0.0] * len(rows), scope.free, restarts)
         verdict = attempt(task, self.values, metric, self.settings, clock or self.clock)
+        if sizes and not verdict.satisfied:
+            # What is dear moves last in a search, too, which may end before that.
+            self.values.assign(before.items())
+            verdict = attempt(task, self.values, self.metric, self.settings, clock or self.clock)
         idle = {u for u in sizes if abs(self.values.unknowns[u] - before[u]) < IDLE * self.problem.scale[u]}
         if verdict.satisfied and idle:
             reached = self.save(scope.free)
@@ -183,6 +263,21 @@ class Hierarchy:
 
     def save(self, unknowns: Iterable[int]) -> dict[int, float]:
         return {unknown: self.values.unknowns[unknown] for unknown in unknowns}
+
+
+class Cones:
+    """What each constraint is made of, by its index; found when first asked for."""
+
+    def __init__(self, problem: Problem, values: Valuation) -> None:
+        self._problem, self._values = problem, values
+        self._known: dict[int, Cone] = {}
+
+    def __getitem__(self, index: int) -> Cone:
+        found = self._known.get(index)
+        if found is None:
+            rows = self._problem.constraints[index].rows
+            found = self._known[index] = self._values.cone(row.expression for row in rows)
+        return found
 
 
 class _Group:
@@ -201,11 +296,10 @@ class _Group:
         hierarchy = self.hierarchy
         return hierarchy.problem.constraints[index].placed & hierarchy.cones[index].unknowns
 
-    def solve(self) -> None:
+    def solve(self, reached: Tier = (0, 0)) -> None:
         """Satisfies the constraints. Those that share nothing that could ever move are problems of their own:
-        what one needs does not loosen the other.
+        what one needs does not loosen the other. `reached` is the last stage that some of them needed before.
         """
-        reached: Tier = (0, 0)
         for part in self._independent():
             tier = self._solve_part(part)
             if tier is None:
@@ -414,10 +508,3 @@ class _Group:
         for tier in sorted({min(max(reached, (1, 0)), POSITIONS), limit}):
             if prefer(hierarchy, self.scope(tier, preferences), preferences):
                 break
-
-
-def _depths(problem: Problem) -> list[int]:
-    depths: list[int] = []
-    for parent in problem.parent.tolist():
-        depths.append(0 if parent < 0 else depths[parent] + 1)
-    return depths

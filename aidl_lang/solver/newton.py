@@ -13,21 +13,27 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.solver.dense import DampedSteps
+from aidl_lang.solver.linear import Matrix, damped_steps, with_slacks
 from aidl_lang.solver.operations import Floats
-from aidl_lang.solver.program import Program
 from aidl_lang.solver.quadratic import nearest
 
 GAIN = 0.1
 """A step must bring this part of the decrease that the linearised rows promise."""
+LEAPS = 5
+"""Full steps that may be taken in a row while the residuals are greater than they were."""
+HIGHEST = 100.0
+"""How much greater their squares may be meanwhile."""
 STILL = 1e-11
 """Steps shorter than this (scaled units, relative to the size of z) are no progress."""
 FLAT = 1e-11
 """Slopes below this (relative to what the residuals could give) lead nowhere."""
+ROUNDED = 1e-14
+"""A violation, in units of its row, that is rounding alone."""
 POLISHED = 1e-10
 POLISHING_STEPS = 40
 MEMORY = 5
@@ -36,6 +42,8 @@ RESTARTS = (1e-3, 0.03, 0.3, 1.0, 3.0)
 CONVINCING = 2
 SAME = 1e-6
 """So many restarts that end with the same violation, relatively, are taken to say that there is no less."""
+FAR = 0.3
+"""Size of a perturbation from which on it counts that a restart ends in the same place."""
 COSTLY = 40_000
 """Entries of the Jacobian above which one restart must do."""
 GOLDEN = 0.6180339887498949
@@ -84,6 +92,18 @@ class Clock:
         return self.seconds - (time.perf_counter() - self.start)
 
 
+class Rows(Protocol):
+    """Some rows as functions of their free unknowns: `program.Program` or `array_program.ArrayProgram`."""
+
+    @property
+    def linear(self) -> bool:
+        """Whether all of them are affine."""
+
+    def residuals(self, x: Floats) -> Floats: ...
+
+    def jacobian(self, row_factors: Floats, column_factors: Floats) -> Matrix: ...
+
+
 class System:
     """The rows of a program, scaled, as functions of scaled displacements.
 
@@ -97,7 +117,7 @@ class System:
 
     def __init__(
         self,
-        program: Program,
+        program: Rows,
         origin: Floats,
         scale: Floats,
         row_scale: Floats,
@@ -116,8 +136,7 @@ class System:
         self._has_inequalities = bool(inequality.any())
         self._per_row = 1.0 / row_scale
         self._slack = None if softness is None else np.diag(softness)[:, softness > 0.0]
-        self._units = self._per_row[:, None] * scale
-        self._constant_jacobian: Floats | None = None
+        self._constant_jacobian: Matrix | None = None
 
     @property
     def size(self) -> int:
@@ -125,16 +144,16 @@ class System:
 
     def residuals(self, z: Floats) -> Floats:
         k = len(self.origin)
-        rows = np.array(self.program.residuals((self.origin + self.scale * z[:k]).tolist())) * self._per_row
+        rows = self.program.residuals(self.origin + self.scale * z[:k]) * self._per_row
         return rows if self._slack is None else rows - self._slack @ z[k:]
 
-    def jacobian(self) -> Floats:
+    def jacobian(self) -> Matrix:
         """Where `residuals` was last evaluated."""
         if self._constant_jacobian is not None:
             return self._constant_jacobian
-        matrix = self.program.jacobian() * self._units
+        matrix = self.program.jacobian(self._per_row, self.scale)
         if self._slack is not None:
-            matrix = np.hstack((matrix, -self._slack))
+            matrix = with_slacks(matrix, self._slack)
         if self.linear:
             self._constant_jacobian = matrix
         return matrix
@@ -171,7 +190,9 @@ def solve(
         again = solver.run(perturbation(system.size, turn) * amplitude * solver.reach * system.stretch)
         if again.converged:
             return again
-        agreeing += again.end is best.end and abs(again.violation - best.violation) <= SAME * best.violation
+        far = amplitude >= FAR
+        alike = again.end is best.end and abs(again.violation - best.violation) <= SAME * best.violation
+        agreeing += far and alike
         if again.violation < 0.99 * best.violation:
             best = again
     return best
@@ -189,6 +210,8 @@ class _Newton:
         self.system, self.tolerance, self.iterations, self.clock = system, tolerance, iterations, clock
         self.reach = 1.0
         """Size of the residuals at the first start: what a perturbation is measured by."""
+        self._isolated: Matrix | None = None
+        """The Jacobian of the last step if it left no choice, so that the solution is the only one nearby."""
 
     def run(self, start: Floats) -> Outcome:
         system = self.system
@@ -196,13 +219,19 @@ class _Newton:
             projected = self._project()
             return self._refine(projected) if projected.converged else projected
         reached = self._approach(start, self.iterations)
-        return self._refine(self._polish(reached)) if reached.converged else reached
+        if not reached.converged:
+            return reached
+        return self._refine(self._polish(reached) if self._isolated is None else reached)
 
     def _refine(self, found: Outcome) -> Outcome:
         """A last step for the last digits: a tolerance says when to stop, not what a drawing shall show."""
         system = self.system
+        if found.violation <= ROUNDED:
+            return found
         residuals = system.residuals(found.z)
-        step = nearest(system.jacobian(), -residuals, system.inequality)
+        # Where the solution is isolated, the derivatives of the last step, whose factors are known, will do.
+        jacobian = system.jacobian() if self._isolated is None else self._isolated
+        step = nearest(jacobian, -residuals, system.inequality)
         if not step.feasible:
             return found
         z = found.z + step.point
@@ -240,6 +269,7 @@ class _Newton:
         violation = self._greatest(residuals)
         if violation < np.inf:
             self.reach = min(max(violation, 1e-2), 1e4)
+        self._isolated = None
         damping = 0.0
         norms: list[float] = []
         for _ in range(iterations):
@@ -265,13 +295,16 @@ class _Newton:
         merit = _squares(system.violations(residuals))
         if damping == 0.0:
             shortest = nearest(jacobian, -residuals, system.inequality)
+            self._isolated = jacobian if shortest.unique else None
             if shortest.feasible:
                 step, share = self._bounded(shortest.point)
                 left = (1.0 - share) ** 2 * merit
-                if taken := self._try(z, step, merit, left):
+                taken = self._try(z, step, merit, left) or self._leap(z, step, merit)
+                if taken:
                     return *taken, 0.0
+        self._isolated = None
         rows = ~system.inequality | (residuals > 0.0)
-        damped = DampedSteps(jacobian[rows], residuals[rows])
+        damped = damped_steps(jacobian[rows], residuals[rows])
         largest = damped.largest
         if damped.slope <= FLAT * np.sqrt(largest * merit):
             return None
@@ -300,6 +333,31 @@ class _Newton:
         reached = _squares(self.system.violations(residuals))
         if merit - reached >= GAIN * (merit - predicted):  # False if not a number
             return trial, residuals
+        return None
+
+    def _leap(self, z: Floats, step: Floats, merit: float) -> tuple[Floats, Floats] | None:
+        """Full steps, although the residuals grow for a while, to the first point where they are smaller.
+
+        In a long chain of parts a step turns what is far down the chain, which stretches it; the steps after
+        that mend it, while damped ones would creep. (The watchdog technique: Nocedal and Wright, section 15.6.)
+        """
+        system = self.system
+        if len(system.inequality) != system.size or system.inequality.any():
+            return None
+        for _ in range(LEAPS):
+            z = z + step
+            residuals = system.residuals(z)
+            reached = _squares(residuals)
+            if not reached <= HIGHEST * merit:
+                return None
+            if reached <= (1.0 - GAIN) * merit:
+                return z, residuals
+            jacobian = system.jacobian()
+            shortest = nearest(jacobian, -residuals, system.inequality)
+            self._isolated = jacobian if shortest.unique else None
+            if not shortest.feasible:
+                return None
+            step, _ = self._bounded(shortest.point)
         return None
 
     # -- polishing

@@ -9,7 +9,7 @@ are chosen so that Newton's method can leave them:
     hypot  at (0, 0)              (1, 0): coincident points that shall be apart part along x
     atan2  at (0, 0)              1 in y: a line without length is taken to point along +x
     abs    at 0                   1
-    asin, acos at -1 and 1        the slope is capped at 1000
+    asin, acos at -1 and 1        the slope is capped at 1e8
 
 Each operation has a scalar and a vectorised form; small systems are quicker with the former.
 Functions of one operand take a second and ignore it, so that both are called alike.
@@ -31,7 +31,7 @@ Floats: TypeAlias = NDArray[np.float64]
 NAN = math.nan
 ROUNDING = 1e-9
 """How far outside its domain an operand of sqrt, asin or acos may be by rounding alone."""
-STEEPEST = 1e3
+STEEPEST = 1e8
 """Cap on the slope of asin and acos at the ends of their domain."""
 
 
@@ -64,7 +64,7 @@ class Op(IntEnum):
 ARITY: tuple[int, ...] = (0, 0, 2, 2, 2, 2, 1, 2, 1, 1, 1, 1, 1, 2, 1, 1, 1, 2, 2, 2, 2, 3, 4)
 """Number of operands of each operation, indexed by `Op`."""
 
-BRANCHING = frozenset({Op.ABS, Op.MINIMUM, Op.MAXIMUM, Op.MOD, Op.SELECT})
+BRANCHING = frozenset({Op.ABS, Op.MINIMUM, Op.MAXIMUM, Op.SELECT})
 LINEAR = frozenset({Op.ADD, Op.SUB, Op.NEG})
 
 

@@ -165,15 +165,29 @@ class Settings:
 
     tolerance   residual at which a row counts as satisfied, relative to its scale
     iterations  Newton steps per attempt
-    counted     entries of the largest matrix whose rank may be taken for degrees of freedom; beyond that they
-                are not counted
     branches    re-choices of `min`/`max` branches per stage
     seconds     wall clock for the whole solve; reaching it ends with status `failed` and `timed_out`
     """
 
     tolerance: float = 1e-9
     iterations: int = 60
-    counted: int = 20_000_000
     branches: int = 12
     seconds: float = 20.0
     explain: bool = True
+
+
+def depths(parent: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The depth (g,) of each group, 0 for the root; parents (g,) come before children."""
+    found: list[int] = []
+    for above in parent.tolist():
+        found.append(0 if above < 0 else found[above] + 1)
+    return np.array(found, dtype=np.int64)
+
+
+def violations(problem: Problem, nodes: Floats) -> Floats:
+    """How far each row (r,) is from holding when the tape's nodes have the values `nodes` (m,), in the units
+    of the row; infinite if it has no value.
+    """
+    value = nodes[problem.rows.expression]
+    violation = np.where(problem.rows.at_most, np.maximum(value, 0.0), np.abs(value))
+    return np.where(np.isnan(value), np.inf, violation)

@@ -7,7 +7,7 @@ schedule made once.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -54,16 +54,16 @@ class Program:
     sweeps: list[Sweep] = field(default_factory=list, repr=False)
     scatter: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp), repr=False)
 
-    def residuals(self, x: Sequence[float]) -> list[float]:
+    def residuals(self, x: Floats) -> Floats:
         """The r rows at the k unknowns `x`."""
         values = self.values
-        for slot, value in zip(self.slots, x, strict=True):
+        for slot, value in zip(self.slots, x.tolist(), strict=True):
             values[slot] = value
         run(self.code, values)
-        return [values[root] for root in self.roots]
+        return np.array([values[root] for root in self.roots])
 
-    def jacobian(self) -> Floats:
-        """The (r, k) partial derivatives where `residuals` was last evaluated."""
+    def jacobian(self, row_factors: Floats, column_factors: Floats) -> Floats:
+        """The (r, k) partial derivatives where `residuals` was last evaluated, times these factors."""
         values, weights = self.values, self.weights
         for partial, operands, out, edges in self.partials:
             slopes = partial(*[values[i] for i in operands], values[out])
@@ -78,8 +78,11 @@ class Program:
             entries.extend([adjoints[slot] for slot in sweep.inputs])
             for slot in sweep.touched:
                 adjoints[slot] = 0.0
-        matrix = np.zeros(len(self.rows) * len(self.columns))
-        matrix[self.scatter] = entries
-        if not np.isfinite(matrix).all():  # products of finite slopes may still overflow
-            np.nan_to_num(matrix, copy=False)
-        return matrix.reshape(len(self.rows), len(self.columns))
+        flat = np.zeros(len(self.rows) * len(self.columns))
+        flat[self.scatter] = entries
+        if not np.isfinite(flat).all():  # products of finite slopes may still overflow
+            np.nan_to_num(flat, copy=False)
+        matrix = flat.reshape(len(self.rows), len(self.columns))
+        matrix *= row_factors[:, None]
+        matrix *= column_factors
+        return matrix

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.solver.dense import least_norm
+from aidl_lang.solver.linear import Matrix, least_norm
 from aidl_lang.solver.operations import Floats
 
 
@@ -26,23 +26,25 @@ class Nearest:
     point       (n,) the nearest point; in the sense of least squares if there is none
     multipliers (m,) point == -J.T @ multipliers; not negative for inequalities
     feasible    whether the rows can hold together
+    unique      whether there is no other point at which they do, beyond doubt
     """
 
     point: Floats
     multipliers: Floats
     feasible: bool
+    unique: bool = False
 
 
-def nearest(jacobian: Floats, y: Floats, inequality: NDArray[np.bool_]) -> Nearest:
+def nearest(jacobian: Matrix, y: Floats, inequality: NDArray[np.bool_]) -> Nearest:
     """The nearest point for `jacobian` (m, n), `y` (m,); `inequality` (m,) marks the rows that are <=."""
     if not inequality.any():
-        point, multipliers, outside = least_norm(jacobian, y)
-        return Nearest(point, multipliers, outside is None)
+        found = least_norm(jacobian, y)
+        return Nearest(found.point, found.multipliers, found.outside is None, found.unique)
     return _DualActiveSet(jacobian, y, inequality).solve()
 
 
 class _DualActiveSet:
-    def __init__(self, jacobian: Floats, y: Floats, inequality: NDArray[np.bool_]) -> None:
+    def __init__(self, jacobian: Matrix, y: Floats, inequality: NDArray[np.bool_]) -> None:
         self.jacobian, self.y, self.inequality = jacobian, y, inequality
         self.active = ~inequality
         self.multipliers = np.zeros(len(y))
@@ -69,16 +71,16 @@ class _DualActiveSet:
             if len(rows) == 0:
                 self.point = np.zeros(self.jacobian.shape[1])
                 return True
-            point, target, outside = least_norm(self.jacobian[rows], self.y[rows])
-            if outside is None:
-                direction, length = target - self.multipliers[rows], 1.0
+            found = least_norm(self.jacobian[rows], self.y[rows])
+            if found.outside is None:
+                direction, length = found.multipliers - self.multipliers[rows], 1.0
             else:  # the dual is unbounded this way, unless an inequality leaves
-                direction, length = -outside, np.inf
+                direction, length = -found.outside, np.inf
             blocking, step = self._first_to_vanish(rows, direction, length)
             if blocking is None:
-                self.point = point
-                self.multipliers[rows] = target
-                return outside is None
+                self.point = found.point
+                self.multipliers[rows] = found.multipliers
+                return found.outside is None
             self.multipliers[rows] += step * direction
             self.multipliers[blocking] = 0.0
             self.active[blocking] = False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from aidl_lang.solver.problem import Floats
@@ -21,21 +21,62 @@ class Failure(StrEnum):
     """Why a group could not be solved."""
 
     CONTRADICTORY = "contradictory"
+    """The search for the conflict ends from several starts with the same violation."""
+    OVERDETERMINED = "over-determined"
+    """The same, and curved equations ask more of the unknowns than they are: it is not for their values."""
     NOT_CONVERGED = "not converged"
     TIMED_OUT = "timed out"
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What a member of a conflict would ask for, were it to give way to the others.
+
+    residuals  of its rows, where the others hold and it lacks least: `a == 9` would hold as `a == 6` where
+               its residual is -3
+    regardless of its rows, where the others hold and it has no say: the same, unless they leave a choice
+    values     (unknown, value) at the former place
+    """
+
+    residuals: tuple[float, ...]
+    regardless: tuple[float, ...]
+    values: tuple[tuple[int, float], ...] = field(repr=False)
+
+
+@dataclass(frozen=True)
+class Member:
+    """A constraint in a conflict. `off` is its greatest violation where the search came nearest, in the units
+    of its row; `fit` is None where it is not known.
+    """
+
+    index: int
+    off: float
+    fit: Fit | None = None
 
 
 @dataclass(frozen=True)
 class GroupFailure:
     """A group whose constraints could not be met.
 
-    `conflict` are indices of constraints that cannot hold together, minimal when `minimal`.
+    members   constraints that cannot hold together, by index; without any one of them the others hold when
+              `minimal`, else they are those that were violated
+    moving    the unknowns that could move for them
+    equations the number of their rows that are equations
+    work      rows times unknowns of the attempts that this took
     """
 
     group: int
     reason: Failure
-    conflict: tuple[int, ...]
-    minimal: bool
+    members: tuple[Member, ...]
+    minimal: bool = False
+    moving: tuple[int, ...] = ()
+    equations: int = 0
+    work: int = 0
+
+    @property
+    def conflict(self) -> tuple[int, ...]:
+        """The indices of the members."""
+        return tuple(member.index for member in self.members)
 
 
 @dataclass(frozen=True)
@@ -57,11 +98,6 @@ class Solution:
                    evaluated on the original expressions at `values`, in the units of the row
     satisfied      per constraint
     changed        unknowns of kept sizes that had to change
-    degrees        degrees of freedom left in the whole model (kept sizes held); None if the model is too
-                   large for them to be counted (`Settings.counted`), then `free` and `redundant` are empty
-    group_degrees  the same for what each group itself draws
-    free           unknowns that can still move (kept ones never do)
-    redundant      equality constraints already implied by others
     stages         what was tried, in order
     """
 
@@ -70,9 +106,5 @@ class Solution:
     residuals: tuple[float, ...]
     satisfied: tuple[bool, ...]
     changed: tuple[int, ...]
-    degrees: int | None
-    group_degrees: tuple[int, ...] | None
-    free: tuple[int, ...]
-    redundant: tuple[int, ...]
     failures: tuple[GroupFailure, ...]
     stages: tuple[StageReport, ...]

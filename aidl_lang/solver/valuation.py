@@ -25,10 +25,7 @@ class Valuation:
         self.unknowns = [float(value) for value in initial]
         self.nodes = [float(value) for value in tape.constants]
         self._seen = [False] * len(tape)
-        self._code = [
-            compiled(op, node, operands) if op > Op.UNKNOWN else None
-            for node, (op, operands) in enumerate(zip(tape.op_list, tape.operand_lists, strict=True))
-        ]
+        self._code: list[Compiled | None] = [None] * len(tape)
 
     def assign(self, values: Iterable[tuple[int, float]]) -> None:
         for unknown, value in values:
@@ -39,8 +36,15 @@ class Valuation:
         nodes = reachable(self.tape, roots, self._seen)
         ops, operands = self.tape.op_list, self.tape.operand_lists
         inputs = [(node, operands[node][0]) for node in nodes if ops[node] == Op.UNKNOWN]
-        code = [instruction for node in nodes if (instruction := self._code[node])]
+        code = [self._compiled(node) for node in nodes if ops[node] > Op.UNKNOWN]
         return Cone(frozenset([unknown for _, unknown in inputs]), inputs, code)
+
+    def _compiled(self, node: int) -> Compiled:
+        code = self._code[node]
+        if code is None:
+            tape = self.tape
+            code = self._code[node] = compiled(tape.op_list[node], node, tape.operand_lists[node])
+        return code
 
     def refresh(self, cone: Cone) -> None:
         nodes, unknowns = self.nodes, self.unknowns

@@ -67,8 +67,8 @@ def gradient(tape: Tape, root: int, x: list[float]) -> np.ndarray:
     values.refresh(values.cone([root]))
     result = np.zeros(len(x))
     for program in freeze(values, [root], range(len(x))).programs:
-        program.residuals([x[i] for i in program.columns])
-        result[program.columns] = program.jacobian()[0]
+        program.residuals(np.array([x[i] for i in program.columns]))
+        result[program.columns] = program.jacobian(np.ones(1), np.ones(len(program.columns)))[0]
     return result
 
 

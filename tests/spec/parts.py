@@ -81,6 +81,7 @@ class Case:
     pending: str | None = None
     expectations: list[Expectation] = field(default_factory=list)
     formatted: tuple[int, str] | None = None
+    message: tuple[int, str] | None = None
     fixes: Program | None = None
 
     @property
@@ -121,6 +122,8 @@ def read(path: Path) -> list[Case]:
                 pending = None
             case "formatted", "":
                 cases[-1].formatted = number + 1, "".join(f"{text}\n" for text in body)
+            case "message", "":
+                cases[-1].message = number + 1, "".join(f"{text}\n" for text in body)
             case _, _:
                 raise ValueError(f"{path.name}:{number}: unknown block `{line}`")
     return cases

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import aidl_lang
 from aidl_lang import pipeline
 from aidl_lang.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.render import render
 from aidl_lang.source import SourceFile
 from aidl_lang.world import MemoryWorld
 from tests.spec.parts import Case, Expectation, Line, Program
@@ -46,9 +47,13 @@ def run(case: Case) -> Outcome:
     if case.formatted is not None:
         _check_format(case, outcome)
     plain = pipeline.compile(source, MemoryWorld(case.files))
+    if case.message is not None:
+        _check_message(case, [d for d in plain.diagnostics if d.is_error], outcome)
+        plain = replace(plain, diagnostics=[d for d in plain.diagnostics if not d.is_error])
     own = [e for e in case.expectations if not e.is_variant]
     _check_diagnostics(case, own, plain.diagnostics, source, outcome)
-    if not _status_is_said(own) and not plain.ok and not any(d.is_error for d in plain.diagnostics):
+    unexplained = case.message is None and not any(d.is_error for d in plain.diagnostics)
+    if not _status_is_said(own) and not plain.ok and unexplained:
         outcome.differs(case.program.at, f"the status is {plain.status}")
     for expectation in case.expectations:
         compiled = _variant(case, expectation, source) if expectation.is_variant else plain
@@ -101,6 +106,16 @@ def _check_diagnostics(
     lines = [line for e in expectations for line in e.diagnostics]
     _compare([line.text for line in lines], loose, lines[0].number if lines else program.at, outcome)
     _accept_list(lines, loose, outcome)
+
+
+def _check_message(case: Case, errors: Sequence[Diagnostic], outcome: Outcome) -> None:
+    """The errors of the program as a terminal shows them."""
+    assert case.message is not None
+    at, written = case.message
+    found = "".join(f"{render(d)}\n" for d in errors)
+    if found != written:
+        outcome.differs(at, f"the message is:\n{found}")
+        outcome.accepted[at, at + len(written.splitlines())] = found.splitlines()
 
 
 def _owner(program: Program, number: int) -> int:

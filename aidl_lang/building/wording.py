@@ -1,0 +1,104 @@
+"""A statement that constrains, kept so that it may be read again in other words where it stands.
+
+Messages about conflicts try other numbers in it: what a number does to the equations is told by no table but
+by the definitions themselves, those of a user as well as those of the library.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields, replace
+from typing import TypeVar
+
+from aidl_lang import ast
+from aidl_lang.building.state import Env, Interpreter, Stop
+from aidl_lang.model import Comparison, Condition, Geometry
+from aidl_lang.values import Num, PointVal, Value
+
+_Tree = TypeVar("_Tree", bound=ast.Node)
+
+
+@dataclass(frozen=True, eq=False)
+class Wording:
+    """`node` is the statement as written; `read` evaluates one in its stead."""
+
+    node: ast.Expression
+    it: Interpreter
+    env: Env
+    read: Callable[[Interpreter, ast.Expression, Env], Value]
+
+    def comparisons(self, node: ast.Expression) -> tuple[Comparison, ...]:
+        """What `node` would state here; nothing if it makes no sense or is decided already."""
+        value = self._value(node)
+        return tuple(value.comparisons()) if isinstance(value, Condition) else ()
+
+    def dials(self) -> Iterator[tuple[ast.Expression, float]]:
+        """The literals and the names of constants in the statement with their values, in mm or degrees; a
+        literal with its sign. Indices are none: they say which thing is meant.
+        """
+        stack: list[ast.Node] = [self.node]
+        while stack:
+            match stack.pop():
+                case (ast.Number() | ast.Unary(operator="-", operand=ast.Number()) | ast.Name()) as node:
+                    value = self._value(node)
+                    if isinstance(value, Num) and value.expression.is_constant:
+                        yield node, value.value
+                case ast.Index(value=inner):
+                    stack.append(inner)
+                case other:
+                    stack.extend(reversed(list(ast.children(other))))
+
+    def held(self) -> Iterator[str]:
+        """What the statement mentions and no solving moves."""
+        stack: list[ast.Node] = [self.node]
+        while stack:
+            node = stack.pop()
+            if isinstance(node, ast.Name | ast.Member | ast.Index) and _is_exact(self._value(node)):
+                yield node.span.text
+            else:
+                stack.extend(reversed(list(ast.children(node))))
+
+    def param(self, name: ast.Expression) -> ast.Param | None:
+        """The declaration of a `param` that nothing but this name reads."""
+        uses = self.it.program.resolution.uses
+        symbol = uses.get(name)
+        readers = [node for node, other in uses.items() if other is symbol and isinstance(node, ast.Name)]
+        return symbol.node if symbol and len(readers) == 1 and isinstance(symbol.node, ast.Param) else None
+
+    def _value(self, node: ast.Expression) -> Value | None:
+        it = self.it
+        it.deadline = time.monotonic() + it.limits.seconds
+        try:
+            return self.read(it, node, self.env)
+        except Stop:
+            return None
+
+
+def _is_exact(value: Value | None) -> bool:
+    match value:
+        case Num(expression=e):
+            return e.is_constant
+        case PointVal(x, y):
+            return x.expression.is_constant and y.expression.is_constant
+        case Geometry(fields=defining):
+            return bool(defining) and all(map(_is_exact, defining.values()))
+    return False
+
+
+def replaced(node: _Tree, old: ast.Node, new: ast.Node) -> _Tree:
+    """The tree with one node below `node` exchanged."""
+    changed: dict[str, object] = {}
+    for field in fields(node):
+        value = getattr(node, field.name)
+        if value is old:
+            changed[field.name] = new
+        elif isinstance(value, ast.Node) and (inner := replaced(value, old, new)) is not value:
+            changed[field.name] = inner
+        elif isinstance(value, tuple):
+            items = tuple(
+                new if v is old else replaced(v, old, new) if isinstance(v, ast.Node) else v for v in value
+            )
+            if any(a is not b for a, b in zip(items, value, strict=True)):
+                changed[field.name] = items
+    return replace(node, **changed) if changed else node  # type: ignore[arg-type]

@@ -1,0 +1,262 @@
+"""Newton's method on many small systems at once, each of them on its own.
+
+Systems of equal shape are stacked: their matrices become one array, and a step is taken for all of them in
+the time that a few would need one by one. It is the method of `newton`, cut down to the plain course: full
+steps that bring what they promise, then the polishing. A system for which that is not enough is left as it
+was, for the careful method to take up. Inequalities given here are those that shall hold with equality; the
+result counts only if their multipliers say that they push.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from aidl_lang.solver.array_program import ArrayProgram, Bools, Ints
+from aidl_lang.solver.dense import CONSISTENT, INDEPENDENT, NOISE, RANK
+from aidl_lang.solver.newton import GAIN, POLISHED, Clock
+from aidl_lang.solver.operations import Floats
+
+STEPS = 80
+"""Evaluations of all systems, at the most."""
+PULLING = 1e-9
+"""How far a multiplier may be on the wrong side by rounding, relative to the greatest."""
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """Of the program's columns: origin, scale (k,), longest (k,) or None; of its rows: row_scale (r,)."""
+
+    origin: Floats
+    scale: Floats
+    row_scale: Floats
+    longest: Floats | None
+
+
+@dataclass(frozen=True)
+class Systems:
+    """To which system each row (r,) and each column (k,) of a program belongs, and which are to be solved."""
+
+    of_row: Ints
+    of_column: Ints
+    wanted: Bools
+
+
+def solve(
+    program: ArrayProgram,
+    systems: Systems,
+    scaling: Scaling,
+    at_most: Bools,
+    tolerance: float,
+    clock: Clock,
+) -> tuple[Floats, Bools, Bools]:
+    """The values (k,) of all columns, and which systems were solved; the values of others mean nothing. Then
+    the systems whose linear equations contradict each other at once, in any branch.
+    """
+    stacks = list(_stacks(program, systems, at_most))
+    x = scaling.origin.copy()
+    for _ in range(STEPS):
+        if all(stack.settled for stack in stacks) or clock.expired:
+            break
+        residuals = program.residuals(x) / scaling.row_scale
+        entries = program.entries() * scaling.scale[program.indices]
+        entries /= scaling.row_scale[program.entry_rows]
+        for stack in stacks:
+            if not stack.settled:
+                limit = None if scaling.longest is None else scaling.longest / scaling.scale
+                stack.advance(residuals, entries, tolerance, limit)
+                x[stack.columns] = scaling.origin[stack.columns] + scaling.scale[stack.columns] * stack.z
+    solved, hopeless = np.zeros((2, len(systems.wanted)), dtype=np.bool_)
+    for stack in stacks:
+        solved[stack.systems] = stack.done
+        hopeless[stack.systems] = stack.out_of_reach
+    vague = np.zeros(len(systems.wanted), dtype=np.bool_)
+    vague[systems.of_row[~program.plain | at_most]] = True
+    return x, solved, hopeless & ~vague
+
+
+def _stacks(program: ArrayProgram, systems: Systems, at_most: Bools) -> Iterator[_Stack]:
+    """The wanted systems by shape."""
+    count = len(systems.wanted)
+    rows_of = np.bincount(systems.of_row, minlength=count)
+    columns_of = np.bincount(systems.of_column, minlength=count)
+    row_order, row_rank = _ranks(systems.of_row, rows_of)
+    column_order, column_rank = _ranks(systems.of_column, columns_of)
+    first_row, first_column = np.cumsum(rows_of) - rows_of, np.cumsum(columns_of) - columns_of
+    entry_system = systems.of_row[program.entry_rows]
+    bent = np.zeros(count, dtype=np.bool_)
+    bent[systems.of_row[~program.affine]] = True
+    shape = rows_of * (int(columns_of.max(initial=0)) + 1) + columns_of
+    shape[~systems.wanted] = -1
+    for code in sorted(set(shape[systems.wanted].tolist())):
+        members = np.flatnonzero(shape == code)
+        m, k = int(rows_of[members[0]]), int(columns_of[members[0]])
+        place = np.full(count, -1)
+        place[members] = np.arange(len(members))
+        entries = np.flatnonzero(place[entry_system] >= 0)
+        at = place[entry_system[entries]] * m + row_rank[program.entry_rows[entries]]
+        rows = row_order[first_row[members][:, None] + np.arange(m)]
+        yield _Stack(
+            members,
+            rows,
+            column_order[first_column[members][:, None] + np.arange(k)],
+            entries,
+            at * k + column_rank[program.indices[entries]],
+            at_most[rows],
+            bent[members],
+        )
+
+
+def _ranks(of: Ints, counts: Ints) -> tuple[Ints, Ints]:
+    """The members in order of their systems, and the place of each within its system."""
+    order = np.argsort(of, kind="stable")
+    rank = np.empty(len(of), dtype=np.int64)
+    rank[order] = np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return order, rank
+
+
+@dataclass
+class _Stack:
+    """b systems of m rows and k columns.
+
+    systems (b,); rows (b, m), columns (b, k) of the program; entries (e,) of its Jacobian, and their places
+    (e,) in (b, m, k); at_most (b, m); curved (b,) whether the nearest point has to be searched for
+    """
+
+    systems: Ints
+    rows: Ints
+    columns: Ints
+    entries: Ints
+    places: Ints
+    at_most: Bools
+    curved: Bools
+    z: Floats = field(init=False)
+    done: Bools = field(init=False)
+
+    def __post_init__(self) -> None:
+        count = len(self.systems)
+        self.z = np.zeros(self.columns.shape)
+        self.done = np.zeros(count, dtype=np.bool_)
+        self.failed = np.zeros(count, dtype=np.bool_)
+        self.out_of_reach = np.zeros(count, dtype=np.bool_)
+        self.polishing = np.zeros(count, dtype=np.bool_)
+        self.promised = np.full(count, np.inf)
+        """What the squares of the residuals may be at most after the last step."""
+        self.before: tuple[Floats, Floats] | None = None
+        """Where the last polishing step began, and the step."""
+
+    @property
+    def settled(self) -> bool:
+        return bool((self.done | self.failed).all())
+
+    def advance(self, residuals: Floats, entries: Floats, tolerance: float, limit: Floats | None) -> None:
+        """One step of each system that is not settled, from the residuals and derivatives where it is."""
+        b, m = self.rows.shape
+        k = self.columns.shape[1]
+        jacobian = np.zeros(b * m * k)
+        jacobian[self.places] = entries[self.entries]
+        jacobian = jacobian.reshape(b, m, k)
+        r = residuals[self.rows]
+        with np.errstate(all="ignore"):
+            squares = np.einsum("bm,bm->b", r, r)
+            met = np.abs(r).max(axis=1) <= tolerance
+            self.failed |= ~self.done & ~(squares <= self.promised) & ~met
+            reached = ~self.failed & ~self.done & met & ~self.polishing
+            ready = reached & ~self.curved
+            if self.at_most.any() and ready.any():
+                ready &= self._push(jacobian)
+            self.done |= ready
+            self.polishing |= reached & self.curved
+            moving = ~(self.done | self.failed)
+            if not moving.any():
+                return
+            wanted = np.where(self.polishing[:, None], np.einsum("bmk,bk->bm", jacobian, self.z) - r, -r)
+            point, feasible = least_norm(jacobian, wanted, moving)
+            self.out_of_reach |= moving & ~feasible
+            self.failed |= moving & ~feasible
+            moving &= feasible
+            self._approach(moving & ~self.polishing, point, squares, limit)
+            self._polish(moving & self.polishing, point, jacobian)
+
+    def _approach(self, which: Bools, step: Floats, squares: Floats, limit: Floats | None) -> None:
+        if limit is not None:
+            excess = (np.abs(step) / limit[self.columns]).max(axis=1)
+            self.failed |= which & (excess > 1.0)
+        self.z = np.where(which[:, None], self.z + step, self.z)
+        self.promised = np.where(which, (1.0 - GAIN) * squares, self.promised)
+
+    def _polish(self, which: Bools, point: Floats, jacobian: Floats) -> None:
+        """Towards the projection of the origin, with a step of Anderson's method of memory one."""
+        step = np.where(which[:, None], point - self.z, 0.0)
+        size = 1.0 + np.abs(self.z).max(axis=1)
+        still = which & (np.abs(step).max(axis=1) <= POLISHED * size)
+        self.promised[which] = np.inf
+        target = self.z + step
+        if self.before is not None:
+            last, last_step = self.before
+            change = step - last_step
+            length = np.einsum("bk,bk->b", change, change)
+            mix = np.where(length > 0.0, np.einsum("bk,bk->b", change, step) / length, 0.0)
+            mix = np.where(np.abs(mix) < 1e3, mix, 0.0)
+            known = which & ~still & (np.abs(last_step).max(axis=1) > 0.0)
+            mixed = target - mix[:, None] * (self.z - last + change)
+            target = np.where(known[:, None], mixed, target)
+        self.before = self.z, step
+        self.z = np.where(which[:, None], target, self.z)
+        if still.any():
+            pushing = self._push(jacobian) if self.at_most.any() else still
+            self.done |= still & pushing
+            self.failed |= still & ~pushing
+
+    def _push(self, jacobian: Floats) -> Bools:
+        """Whether the inequalities of each system keep it from being nearer; those that do not are not met
+        with equality.
+        """
+        multipliers = -np.einsum("bkm,bk->bm", np.linalg.pinv(jacobian), self.z)
+        slack = PULLING * (1.0 + np.abs(multipliers).max(axis=1))
+        pushing: Bools = (np.where(self.at_most, multipliers, 0.0) >= -slack[:, None]).all(axis=1)
+        self.failed |= ~pushing & ~self.done
+        return pushing
+
+
+def least_norm(jacobian: Floats, y: Floats, which: Bools) -> tuple[Floats, Bools]:
+    """The shortest points (b, k) with J z = y for J (b, m, k), y (b, m), and where there is one (b,).
+
+    Only those in `which` (b,) are looked for.
+    """
+    b, m, k = jacobian.shape
+    point = np.zeros((b, k))
+    feasible = np.zeros(b, dtype=np.bool_)
+    chosen = np.flatnonzero(which)
+    j, right = jacobian[chosen], y[chosen]
+    lengths = np.sqrt(np.einsum("bmk,bmk->bm", j, j))
+    clear = (lengths > 0.0).all(axis=1)
+    if m > k:
+        clear[:] = False
+    if clear.any():
+        unit = j[clear] / lengths[clear][:, :, None]
+        target = right[clear] / lengths[clear]
+        gram = unit @ unit.transpose(0, 2, 1)
+        pivots = np.linalg.cholesky(gram + 1e-12 * np.eye(m)).diagonal(axis1=1, axis2=2).min(axis=1)
+        trusted = pivots > INDEPENDENT
+        unit, gram, target = unit[trusted], gram[trusted], target[trusted]
+        first = np.linalg.solve(gram, target[:, :, None])
+        found = first + np.linalg.solve(gram, target[:, :, None] - gram @ first)
+        clear[clear] = trusted
+        at = chosen[clear]
+        point[at] = (unit.transpose(0, 2, 1) @ found)[:, :, 0]
+        feasible[at] = True
+    doubtful = np.flatnonzero(~clear & np.isfinite(j).all(axis=(1, 2)) & np.isfinite(right).all(axis=1))
+    if len(doubtful):
+        u, sigma, vt = np.linalg.svd(j[doubtful], full_matrices=False)
+        kept = sigma > RANK * sigma[:, :1]
+        target = right[doubtful]
+        inner = np.where(kept, np.einsum("bmr,bm->br", u, target), 0.0)
+        rest = np.abs(target - np.einsum("bmr,br->bm", u, inner)).max(axis=1)
+        at = chosen[doubtful]
+        scaled = np.where(kept, inner / np.where(kept, sigma, 1.0), 0.0)
+        point[at] = np.einsum("br,brk->bk", scaled, vt)
+        feasible[at] = rest <= np.maximum(CONSISTENT * np.abs(target).max(axis=1), NOISE)
+    return point, feasible

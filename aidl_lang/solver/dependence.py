@@ -1,0 +1,190 @@
+"""Rows of a matrix that are combinations of others: which, and of which.
+
+Rows are taken in an order of preference. One is dependent if it is a combination of independent rows before
+it; those with coefficients other than zero are the only ones that make it up: none of them can be left out.
+Copies and rows with an unknown of their own are put aside first; of the rest the left null space is reduced,
+latest rows first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TypeAlias
+
+import numpy as np
+
+from aidl_lang.solver.gradients import Integers, Sparse, connected
+from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.stacks import DOUBT, LARGE, RANK, Sorted, lots, stacked
+
+OWN = 1e-3
+"""Least entry of a unit row by which an unknown of its own makes the row independent beyond doubt."""
+SAME = 1e-9
+"""Difference of entries of unit rows that counts as none."""
+SHARE = 1e-6
+"""Coefficients of unit rows that count as none."""
+MOST = 200
+"""Dependent rows of one large part that are explained."""
+
+Relation: TypeAlias = dict[int, float]
+"""A row as a combination of others."""
+
+
+def dependent_rows(rows: Sparse, width: int) -> tuple[dict[int, Relation], list[int]]:
+    """The relation of each dependent row among unit rows, and rows of which it could not be told."""
+    relations = _copies(rows, width)
+    originals = np.setdiff1d(np.arange(len(rows)), list(relations))
+    matrix = rows.take(originals)
+    rest = _entangled(matrix, width)
+    undecided: list[int] = []
+    for part in _doubtful_parts(matrix.take(rest), width):
+        names = originals[rest[part]].tolist()
+        found = _relations(matrix.take(rest[part]))
+        if found is None:
+            undecided += names
+            continue
+        for row, relation in found.items():
+            relations[names[row]] = {names[other]: share for other, share in relation.items()}
+    # A copy of what follows from others follows from these.
+    for row, relation in relations.items():
+        ((first, share), *more) = relation.items()
+        if not more and first in relations:
+            relations[row] = {other: share * part for other, part in relations[first].items()}
+    return relations, undecided
+
+
+def _copies(matrix: Sparse, width: int) -> dict[int, Relation]:
+    """Which earlier row a row is, or is the opposite of, by a random combination of the columns at first."""
+    weights = np.random.default_rng(0).standard_normal(width)
+    sums = np.abs(np.bincount(matrix.rows, matrix.entries * weights[matrix.columns], len(matrix)))
+    order = np.argsort(sums, kind="stable")
+    alike = np.flatnonzero(np.diff(sums[order]) > SAME) + 1
+    relations: dict[int, Relation] = {}
+    for same in np.split(order, alike) if len(alike) < len(order) - 1 else ():
+        firsts: list[int] = []
+        for row in np.sort(same).tolist():
+            entries = dict(_pairs(matrix, row))
+            for first in firsts:
+                pairs = _pairs(matrix, first)
+                sign = 1.0 if sum(e * entries.get(c, 0.0) for c, e in pairs) > 0.0 else -1.0
+                if all(abs(entries.get(c, 0.0) - sign * e) <= SAME for c, e in pairs):
+                    relations[row] = {first: sign}
+                    break
+            else:
+                firsts.append(row)
+    return relations
+
+
+def _pairs(matrix: Sparse, row: int) -> list[tuple[int, float]]:
+    """The columns and entries of a row."""
+    here = slice(matrix.starts[row], matrix.starts[row + 1])
+    return list(zip(matrix.columns[here].tolist(), matrix.entries[here].tolist(), strict=True))
+
+
+def _entangled(matrix: Sparse, width: int) -> Integers:
+    """What is left when rows with an unknown that no other mentions are taken away, again and again."""
+    matrix = matrix.only(matrix.entries != 0.0)
+    # How many rows mention a column, and the sum of their numbers: with one left, this is its number.
+    counts = np.bincount(matrix.columns, minlength=width).tolist()
+    sums = np.bincount(matrix.columns, matrix.rows, width).astype(np.int64).tolist()
+    lone = [column for column, count in enumerate(counts) if count == 1]
+    starts, columns = matrix.starts.tolist(), matrix.columns.tolist()
+    sizes = np.abs(matrix.entries).tolist()
+    left = np.ones(len(matrix), dtype=np.bool_)
+    while lone:
+        column = lone.pop()
+        if counts[column] != 1:
+            continue
+        row = sums[column]
+        here = columns[starts[row] : starts[row + 1]]
+        if sizes[starts[row] + here.index(column)] < OWN:
+            continue
+        left[row] = False
+        for other in here:
+            counts[other] -= 1
+            sums[other] -= row
+            if counts[other] == 1:
+                lone.append(other)
+    return np.flatnonzero(left)
+
+
+def _doubtful_parts(matrix: Sparse, width: int) -> Iterable[Integers]:
+    """The rows by what they share, without parts that are clearly independent."""
+    if not len(matrix):
+        return []
+    links = matrix.links
+    label = connected(*links, width)
+    part_of_row = np.unique(label[links[1][matrix.starts[:-1]]], return_inverse=True)[1]
+    parts = Sorted(part_of_row, int(part_of_row.max()) + 1)
+    column_part = np.full(width, -1)
+    column_part[matrix.columns] = part_of_row[matrix.rows]
+    columns = Sorted(column_part, len(parts.count))
+    doubtful: list[int] = []
+    for members in lots(parts.count, columns.count):
+        if max(parts.count[members[0]], columns.count[members[0]]) > LARGE:
+            doubtful += members.tolist()
+            continue
+        slot = np.full(len(parts.count), -1)
+        slot[members] = np.arange(len(members))
+        stack = stacked(matrix, part_of_row, parts, columns, slot)
+        sigma = np.linalg.svd(stack, compute_uv=False)
+        few = np.count_nonzero(sigma >= RANK, axis=1) < parts.count[members]
+        doubtful += members[few].tolist()
+    return [parts.members(part) for part in doubtful]
+
+
+def _relations(matrix: Sparse) -> dict[int, Relation] | None:
+    """The dependent rows of one part; None if the rank cannot be told."""
+    columns = np.unique(matrix.columns)
+    if max(len(columns), len(matrix)) > LARGE:
+        return _sparse_relations(matrix, columns)
+    u, sigma, _ = np.linalg.svd(matrix.dense(columns))
+    if ((sigma > DOUBT) & (sigma < RANK)).any():
+        return None
+    return _reduced(u[:, np.count_nonzero(sigma >= RANK) :].T)
+
+
+def _sparse_relations(matrix: Sparse, columns: Integers) -> dict[int, Relation] | None:
+    from aidl_lang.solver.elimination import UndecidedError, combinations, independent_rows
+
+    local = Sparse(matrix.starts, np.searchsorted(columns, matrix.columns), matrix.entries)
+    try:
+        independent = independent_rows(local, len(columns))
+    except UndecidedError:
+        return None
+    dependent = np.setdiff1d(np.arange(len(matrix)), independent)
+    if len(dependent) > MOST:
+        return None
+    if not len(dependent):
+        return {}
+    left = np.zeros((len(dependent), len(matrix)))
+    left[:, independent] = -combinations(local.take(independent), local.take(dependent), len(columns))
+    left[np.arange(len(dependent)), dependent] = 1.0
+    return _reduced(left)
+
+
+def _reduced(left: Floats) -> dict[int, Relation]:
+    """From a basis (d, r) of the left null space d relations, each of the latest row that is possible."""
+    left = left.copy()
+    pending = np.arange(len(left))
+    pivots: dict[int, int] = {}
+    for row in range(left.shape[1] - 1, -1, -1):
+        if not len(pending):
+            break
+        best = int(pending[np.argmax(np.abs(left[pending, row]))])
+        if abs(left[best, row]) <= SHARE:
+            continue
+        left[best] /= left[best, row]
+        others = np.flatnonzero(left[:, row])
+        others = others[others != best]
+        left[others] -= np.outer(left[others, row], left[best])
+        pivots[row] = best
+        pending = pending[pending != best]
+    return {
+        row: {
+            other: -float(left[vector, other])
+            for other in np.flatnonzero(np.abs(left[vector]) > SHARE).tolist()
+            if other != row
+        }
+        for row, vector in pivots.items()
+    }

@@ -1,0 +1,219 @@
+"""The rank of large sparse matrices: elimination of many pivots at a time, then a dense remainder.
+
+In each round pivots are chosen that do not touch each other (no pivot's row has an entry in the column of
+another), so that all of them are eliminated by one product of sparse matrices. The choice is that of
+Markowitz, little fill first, among entries that are not small in their row (Duff, Erisman and Reid,
+Direct Methods for Sparse Matrices, chapters 7 and 10); conflicts are settled as in Luby's search for
+independent sets. What remains is decided by QR with pivoting.
+
+This module is the only one of the solver that needs scipy; it is imported for large models alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse
+import scipy.sparse.linalg
+from numpy.typing import NDArray
+
+from aidl_lang.solver.gradients import Integers, Sparse
+from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.stacks import DOUBT, RANK
+
+STABLE = 0.1
+"""Least size of a pivot, relative to the greatest entry of its row."""
+ROUNDING = 1e-13
+"""Entries below this are what cancellation leaves of unit rows."""
+REMAINDER = 150
+"""Rows that are few enough for dense algebra."""
+DENSITY = 0.15
+"""Share of entries from which on dense algebra is quicker."""
+LARGEST = 2500
+"""Rows of the greatest dense remainder that is within the budget."""
+ROUNDS = 400
+TRIES = 3
+"""Searches for more pivots within a round."""
+
+
+class UndecidedError(Exception):
+    """The rank could not be told: too close to call, or too large for the budget."""
+
+
+def as_csr(matrix: Sparse, width: int) -> scipy.sparse.csr_array:
+    shape = (len(matrix), width)
+    return scipy.sparse.csr_array((matrix.entries, matrix.columns, matrix.starts), shape=shape)
+
+
+def independent_rows(matrix: Sparse, width: int) -> Integers:
+    """As many rows of a matrix of unit rows as are independent, ascending.
+
+    Raises UndecidedError.
+    """
+    rest, names = as_csr(matrix, width), np.arange(len(matrix))
+    chosen: list[Integers] = []
+    for _ in range(ROUNDS):
+        rest, names = _without_zeros(rest, names)
+        columns = len(np.unique(rest.indices))
+        least = min(rest.shape[0], columns)
+        if least <= REMAINDER or rest.nnz > DENSITY * rest.shape[0] * columns:
+            break
+        rows, pivots = _pivots(rest)
+        chosen.append(names[rows])
+        rest, names = _eliminate(rest, names, rows, pivots)
+    chosen.append(names[_dense_independent_rows(rest)])
+    return np.sort(np.concatenate(chosen))
+
+
+def rank_of(blocks: Iterable[Sparse], width: int) -> int:
+    """The rank of matrices of unit rows on top of each other. Raises UndecidedError."""
+    parts = list(blocks)
+    starts = np.cumsum([0, *(len(part.columns) for part in parts)])
+    stacked = Sparse(
+        np.concatenate([[0], *(part.starts[1:] + start for part, start in zip(parts, starts, strict=False))]),
+        np.concatenate([part.columns for part in parts]),
+        np.concatenate([part.entries for part in parts]),
+    )
+    return len(independent_rows(stacked, width))
+
+
+class NullSpace:
+    """The null space of a matrix of unit rows. `rows` are those of them that are independent.
+
+    Raises UndecidedError.
+    """
+
+    def __init__(self, matrix: Sparse, width: int) -> None:
+        self.rows = matrix.take(independent_rows(matrix, width))
+        self._rows = as_csr(self.rows, width)
+        self._solve = gram_solver(self._rows)
+
+    def sample(self, matrix: Sparse, count: int) -> Floats:
+        """Random combinations of the rows of `matrix`, taken to the null space: (width, count)."""
+        rows = as_csr(matrix, self._rows.shape[1])
+        found: Floats = rows.T @ np.random.default_rng(0).standard_normal((len(matrix), count))
+        for _ in range(2):  # the second time for the digits that the square in `gram_solver` costs
+            found = found - self._rows.T @ self._solve(self._rows @ found)
+        return found
+
+
+def combinations(rows: Sparse, wanted: Sparse, width: int) -> Floats:
+    """The coefficients (w, r) of independent rows that make up each of w wanted ones."""
+    basis, target = as_csr(rows, width), as_csr(wanted, width).T.toarray()
+    solve = gram_solver(basis)
+    found = solve(basis @ target)
+    found = found + solve(basis @ (target - basis.T @ found))
+    return np.asarray(found.T)
+
+
+def gram_solver(rows: scipy.sparse.csr_array) -> Callable[[Floats], Floats]:
+    """Solves with J Jᵀ, for rows that are independent."""
+    if not rows.shape[0]:
+        return lambda right: right
+    gram = scipy.sparse.csc_array(rows @ rows.T)
+    options = {"SymmetricMode": True}
+    factors = scipy.sparse.linalg.splu(gram, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+    return factors.solve  # type: ignore[no-any-return]
+
+
+def _without_zeros(rest: scipy.sparse.csr_array, names: Integers) -> tuple[scipy.sparse.csr_array, Integers]:
+    """Without rounding errors, and without rows of which nothing is left."""
+    rest.data[np.abs(rest.data) < ROUNDING] = 0.0
+    rest.eliminate_zeros()
+    sizes = np.zeros(rest.shape[0])
+    filled = np.flatnonzero(np.diff(rest.indptr))
+    if len(filled):
+        sizes[filled] = np.maximum.reduceat(np.abs(rest.data), rest.indptr[:-1][filled])
+    left = sizes > DOUBT / np.sqrt(rest.shape[1])
+    return (rest, names) if left.all() else (rest[left], names[left])
+
+
+def _pivots(rest: scipy.sparse.csr_array) -> tuple[Integers, Integers]:
+    """Rows and columns of entries that can be eliminated at the same time; at least one."""
+    starts, columns, sizes = rest.indptr[:-1], rest.indices, np.abs(rest.data)
+    lengths = np.diff(rest.indptr)
+    rows = np.repeat(np.arange(len(lengths)), lengths)
+    counts = np.bincount(columns, minlength=rest.shape[1])
+    cost = (lengths[rows] - 1.0) * (counts[columns] - 1.0)
+    cost[sizes < STABLE * np.maximum.reduceat(sizes, starts)[rows]] = np.inf
+    best = np.minimum.reduceat(cost, starts)
+    firsts = np.unique(rows[cost == best[rows]], return_index=True)[1]
+    candidate = columns[cost == best[rows]][firsts]
+    # Distinct, so that of two that touch one goes first; in no order, so that many can.
+    order = np.random.default_rng(len(rows)).permutation(len(lengths))
+    priority: Floats = best * len(lengths) + order
+    priority[best > 4.0 * (best.min() + 1.0)] = np.inf
+    by_column = np.argsort(columns, kind="stable")
+    return _untouched(rows, columns, by_column, starts, candidate, priority, rest.shape[1])
+
+
+def _untouched(
+    rows: Integers,
+    columns: Integers,
+    by_column: Integers,
+    starts: Integers,
+    candidate: Integers,
+    priority: Floats,
+    width: int,
+) -> tuple[Integers, Integers]:
+    """The candidates (one to a row) that come before all those they touch, and of the rest again the same."""
+    column_starts = np.flatnonzero(np.diff(columns[by_column], prepend=-1))
+    column_names = columns[by_column][column_starts]
+    taken: list[Integers] = []
+    for _ in range(TRIES):
+        wanted = np.full(width, np.inf)
+        np.minimum.at(wanted, candidate, priority)
+        priority = np.where(priority == wanted[candidate], priority, np.inf)
+        across = np.minimum.reduceat(wanted[columns], starts)
+        down = np.full(width, np.inf)
+        down[column_names] = np.minimum.reduceat(priority[rows[by_column]], column_starts)
+        won = np.flatnonzero((priority < np.inf) & (priority <= across) & (priority <= down[candidate]))
+        if not len(won):
+            break
+        taken.append(won)
+        in_row, in_column = np.zeros(len(starts), dtype=bool), np.zeros(width, dtype=bool)
+        in_row[won], in_column[candidate[won]] = True, True
+        touched = np.zeros(width, dtype=bool)
+        touched[columns[in_row[rows]]] = True  # columns that a chosen row has an entry in
+        reaches = np.zeros(len(starts), dtype=bool)
+        reaches[rows[in_column[columns]]] = True  # rows with an entry in a chosen column
+        priority = np.where(reaches | touched[candidate], np.inf, priority)
+    found = np.concatenate(taken)
+    return found, candidate[found]
+
+
+def _eliminate(
+    rest: scipy.sparse.csr_array, names: Integers, rows: Integers, pivots: Integers
+) -> tuple[scipy.sparse.csr_array, Integers]:
+    """The Schur complement of the pivots: the other rows without the part along the pivots' columns."""
+    place = np.full(rest.shape[1], -1)
+    place[pivots] = np.arange(len(pivots))
+    upper = rest[rows]
+    on_pivot = place[upper.indices] == np.repeat(np.arange(len(rows)), np.diff(upper.indptr))
+    values: Floats = upper.data[on_pivot]
+    other = np.ones(len(names), dtype=bool)
+    other[rows] = False
+    lower = rest[other]
+    here = place[lower.indices] >= 0
+    shape = (lower.shape[0], len(pivots))
+    owner = np.repeat(np.arange(lower.shape[0]), np.diff(lower.indptr))
+    at = place[lower.indices[here]]
+    factors = scipy.sparse.csr_array((lower.data[here] / values[at], (owner[here], at)), shape=shape)
+    lower.data[here] = 0.0
+    upper.data[on_pivot] = 0.0
+    return scipy.sparse.csr_array(lower - factors @ upper), names[other]
+
+
+def _dense_independent_rows(rest: scipy.sparse.csr_array) -> NDArray[np.intp]:
+    if not rest.nnz:
+        return np.zeros(0, dtype=np.intp)
+    if min(rest.shape[0], len(np.unique(rest.indices))) > LARGEST:
+        raise UndecidedError
+    dense = rest[:, np.unique(rest.indices)].toarray()
+    triangle, order = scipy.linalg.qr(dense.T, mode="r", pivoting=True)
+    diagonal = np.abs(np.diagonal(triangle))
+    if ((diagonal > DOUBT) & (diagonal < RANK)).any():
+        raise UndecidedError
+    return np.asarray(order[: np.count_nonzero(diagonal >= RANK)])

@@ -1,0 +1,303 @@
+"""All groups of one depth at once: the stages of `hierarchy` for models of many parts.
+
+Groups of one depth have nothing in common that either could move, so what is done for one can be done for all
+in the same sweep over arrays: which constraints are violated, what becomes free, the systems that follow and
+their solution. A part for which the plain course fails is left untouched for `hierarchy`, which knows more
+ways; whether a result counts is decided by the original expressions in either case.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from aidl_lang.solver import batch, newton
+from aidl_lang.solver.array_program import ArrayFreezing, ArrayProgram, Bools, Ints, Schedule
+from aidl_lang.solver.branches import TIGHTER, Metric
+from aidl_lang.solver.newton import Clock, System
+from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.problem import Problem, Settings, depths, violations
+
+ROUNDS = 4
+"""Rounds of taking up inequalities that came to be violated."""
+EDGES = 3000
+"""Edges of a graph up to which components are found without scipy."""
+STACKED = 4096
+"""Entries of a Jacobian up to which systems are stacked; larger ones are solved one by one."""
+KINDS = {"placed": 1, "own": 2, "translations": 3, "positions": 4, "sizes": 5}
+DEPTHS = 1 << 20
+"""A tier (kind, level) as one number is kind * DEPTHS + level."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """What came of one stage, for each part (p,) for which it is clear: the group it belongs to, whether the
+    stage solved it, how many unknowns were free and rows were considered.
+    """
+
+    tier: tuple[int, int]
+    groups: Ints
+    solved: Bools
+    unknowns: Ints
+    rows: Ints
+
+
+class Levels:
+    """One solve of a problem, depth by depth. `x` (n,) are the values reached."""
+
+    def __init__(self, problem: Problem, settings: Settings, clock: Clock, metric: Metric) -> None:
+        self.problem, self.settings, self.clock, self.metric = problem, settings, clock, metric
+        self.schedule = Schedule(problem.tape)
+        self.x = problem.initial.copy()
+        depth = depths(problem.parent)
+        self._holder_depth = depth[problem.holder]
+        self._unknown_depth = depth[problem.group]
+        self._hard = np.isnan(problem.weight)
+        self.binding = self._hard.copy()
+        """The hard constraints that have not been given up."""
+        self.constraints, self.unknowns = self._incidence()
+        self._evaluated: tuple[Floats, Floats] | None = None
+
+    def _incidence(self) -> tuple[Ints, Ints]:
+        """Pairs of a constraint and an unknown in it, by constraint."""
+        problem = self.problem
+        everything = np.ones(len(problem.initial), dtype=np.bool_)
+        freezing = ArrayFreezing(self.schedule, problem.tape.constants, everything, choosing=False)
+        rows = np.flatnonzero(freezing.varies(problem.rows.expression))
+        row, unknown = freezing.pattern(problem.rows.expression[rows])
+        key = problem.rows.constraint[rows[row]] * len(everything) + unknown
+        key.sort()
+        key = key[np.diff(key, prepend=-1) > 0]
+        return np.divmod(key, len(everything))
+
+    def nodes(self) -> Floats:
+        """The value (m,) of each node of the tape at `x`."""
+        if self._evaluated is None or not np.array_equal(self._evaluated[0], self.x):
+            self._evaluated = self.x.copy(), self.schedule.evaluate(self.x)
+        return self._evaluated[1]
+
+    # -- one depth
+
+    def solve(self, depth: int) -> Iterator[Stage]:
+        """Solves what it can of the groups at `depth`, stage by stage."""
+        problem = self.problem
+        nodes = self.nodes()
+        holds = self._holding(nodes)
+        active = self.binding & (self._holder_depth >= depth)
+        held = active & (self._holder_depth == depth)
+        if not (held & ~self._all(holds)).any():
+            return
+        of_constraint, of_unknown = self._parts(active)
+        violated = held & ~self._all(holds)
+        left = np.zeros(int(max(of_constraint.max(), of_unknown.max(initial=0))) + 1, dtype=np.bool_)
+        left[of_constraint[violated]] = True
+        tier = self._tiers(depth, held)
+        mentioned = np.zeros(len(problem.initial), dtype=np.bool_)
+        mentioned[self.unknowns[active[self.constraints] & left[of_constraint[self.constraints]]]] = True
+        group_of = np.zeros(len(left), dtype=np.int64)
+        group_of[of_constraint[held]] = problem.holder[held]
+        tried = np.zeros(len(left), dtype=np.int64)
+        for code in sorted(set(tier[mentioned & (tier < KINDS["sizes"] * DEPTHS)].tolist())):
+            hopeful = left & self._promising(violated, of_constraint, tier <= code, len(left))
+            scope, free = self._scope(active, held & hopeful[of_constraint], tier <= code)
+            count = np.bincount(of_unknown[free], minlength=len(left))
+            hopeful &= count > tried
+            scope &= hopeful[of_constraint]
+            free &= hopeful[of_unknown]
+            if not hopeful.any():
+                continue
+            tried = np.maximum(tried, count)
+            rows = np.flatnonzero(scope[problem.rows.constraint])
+            solved = self._attempt(
+                rows, of_constraint[problem.rows.constraint[rows]], free, hopeful, of_unknown
+            )
+            left &= ~solved
+            parts = np.flatnonzero(hopeful)
+            considered = np.bincount(of_constraint[problem.rows.constraint[rows]], minlength=len(left))
+            stage = divmod(code, DEPTHS)
+            yield Stage(stage, group_of[parts], solved[parts], count[parts], considered[parts])
+            if not left.any() or self.clock.expired:
+                return
+
+    def unsolved(self, depth: int) -> Ints:
+        """The groups at `depth` with a hard constraint that does not hold."""
+        holds = self._all(self._holding(self.nodes()))
+        return self.problem.holder[self.binding & (self._holder_depth == depth) & ~holds]
+
+    def _holding(self, nodes: Floats) -> Bools:
+        return violations(self.problem, nodes) <= self.settings.tolerance * self.problem.rows.scale
+
+    def _all(self, holding: Bools) -> Bools:
+        """Whether all rows of each constraint (c,) hold."""
+        found = np.ones(len(self.problem.holder), dtype=np.bool_)
+        found[self.problem.rows.constraint[~holding]] = False
+        return found
+
+    # -- what takes part
+
+    def _parts(self, active: Bools) -> tuple[Ints, Ints]:
+        """For each constraint and each unknown, the part it belongs to: what the active constraints link."""
+        count = len(active)
+        pairs = np.flatnonzero(active[self.constraints])
+        labels = components(self.constraints[pairs], self.unknowns[pairs] + count, count + len(self.x))
+        return labels[:count], labels[count:]
+
+    def _tiers(self, depth: int, held: Bools) -> Ints:
+        """When each unknown (n,) below a group at `depth` becomes free (see `hierarchy`), as one number."""
+        problem = self.problem
+        level = self._unknown_depth - depth
+        pairs = self.problem.placed[:, held[problem.placed[0]]]
+        width = len(self.x)
+        placed = np.zeros(width, dtype=np.bool_)
+        if pairs.size:
+            within = np.isin(pairs[0] * width + pairs[1], self.constraints * width + self.unknowns)
+            placed[pairs[1, within]] = True
+        kind = np.where(problem.frame_of >= 0, KINDS["translations"], KINDS["positions"])
+        kind = np.where(level == 0, np.where(placed, KINDS["placed"], KINDS["own"]), kind)
+        tier = kind * DEPTHS + np.where(level == 0, 0, level)
+        sizes = KINDS["sizes"] * DEPTHS + np.where(placed, 0, 1 + level)
+        tier = np.where(problem.kept, sizes, tier)
+        return np.where(level < 0, (KINDS["sizes"] + 1) * DEPTHS, tier)
+
+    def _promising(self, violated: Bools, of_constraint: Ints, free: Bools, parts: int) -> Bools:
+        """Which of the parts (p,) have something free in every violated constraint."""
+        reachable = np.zeros(len(violated), dtype=np.bool_)
+        reachable[self.constraints[free[self.unknowns]]] = True
+        found = np.ones(parts, dtype=np.bool_)
+        found[of_constraint[violated & ~reachable]] = False
+        return found
+
+    def _scope(self, active: Bools, seeds: Bools, allowed: Bools) -> tuple[Bools, Bools]:
+        """The constraints and the free unknowns: what the seeds mention, what binds that, and so on."""
+        pairs = np.flatnonzero(active[self.constraints] & allowed[self.unknowns])
+        constraints, unknowns = self.constraints[pairs], self.unknowns[pairs]
+        scope, free = seeds.copy(), np.zeros(len(allowed), dtype=np.bool_)
+        size = -1
+        while size != (size := int(np.count_nonzero(scope))):
+            free[unknowns[scope[constraints]]] = True
+            scope[constraints[free[unknowns]]] = True
+        return scope, free
+
+    # -- one stage
+
+    def _attempt(
+        self, rows: Ints, part: Ints, free: Bools, hopeful: Bools, of_unknown: Ints
+    ) -> tuple[Bools, Bools]:
+        """Solves the rows (k,) of the parts (k,) with the unknowns `free` (n,). Returns the parts that succeed,
+        whose unknowns are moved, and those that certainly cannot.
+        """
+        problem = self.problem
+        nodes = self.nodes()
+        holding = self._holding(nodes)[rows]
+        freezing = ArrayFreezing(self.schedule, nodes, free)
+        considered = ~problem.rows.at_most[rows] | ~holding
+        varying = freezing.varies(problem.rows.expression[rows])
+        left, solved = hopeful.copy(), np.zeros(len(hopeful), dtype=np.bool_)
+        hopeless = solved.copy()
+        hopeless[part[~varying & ~holding]] = True
+        left &= ~hopeless
+        for _ in range(ROUNDS):
+            chosen = np.flatnonzero(considered & varying & left[part])
+            if len(chosen) == 0 or self.clock.expired:
+                break
+            x, failed, contrary = self._solve_rows(freezing, rows[chosen], part[chosen], len(left))
+            hopeless |= left & contrary
+            left &= ~failed
+            reached = self.schedule.evaluate(x)
+            holds = self._holding(reached)[rows]
+            unmet = np.zeros(len(left), dtype=np.bool_)
+            unmet[part[~holds]] = True
+            accepted = left & ~unmet
+            moved = free & accepted[of_unknown]
+            self.x[moved] = x[moved]
+            if np.array_equal(self.x, x):
+                self._evaluated = x, reached
+            solved |= accepted
+            left &= unmet
+            fresh = ~holds & ~considered
+            more = np.zeros(len(left), dtype=np.bool_)
+            more[part[fresh]] = True
+            left &= more
+            considered |= fresh
+        self._nodes = self.schedule.evaluate(self.x)
+        return solved
+
+    def _solve_rows(
+        self, freezing: ArrayFreezing, rows: Ints, part: Ints, parts: int
+    ) -> tuple[Floats, Bools]:
+        """The values (n,) that satisfy the rows, and the parts in which some could not be satisfied."""
+        program = freezing.program(self.problem.rows.expression[rows])
+        systems = _systems(program)
+        x = self.x.copy()
+        columns = program.columns
+        metric, listed = self.metric, self.problem.rows
+        longest = None if metric.longest is None else metric.longest[columns]
+        scaling = batch.Scaling(self.x[columns], metric.scale[columns], listed.scale[rows], longest)
+        tolerance = TIGHTER * self.settings.tolerance
+        solved, hopeless = np.zeros((2, len(systems.wanted)), dtype=np.bool_)
+        if systems.wanted.any():
+            reached, solved, hopeless = batch.solve(
+                program, systems, scaling, listed.at_most[rows], tolerance, self.clock
+            )
+            x[columns] = np.where(solved[systems.of_column], reached, x[columns])
+        for system in np.flatnonzero(~systems.wanted).tolist():
+            members = np.flatnonzero(systems.of_row == system)
+            whole = len(members) == len(rows)
+            alone = program if whole else freezing.program(listed.expression[rows[members]])
+            solved[system] = self._solve_alone(alone, rows[members], x)
+        failed, contrary = np.zeros((2, parts), dtype=np.bool_)
+        failed[part[~solved[systems.of_row]]] = True
+        contrary[part[hopeless[systems.of_row]]] = True
+        return x, failed, contrary
+
+    def _solve_alone(self, program: ArrayProgram, rows: Ints, x: Floats) -> bool:
+        """Solves one large system; moves `x` there if that succeeds."""
+        metric, columns, listed = self.metric, program.columns, self.problem.rows
+        system = System(
+            program,
+            x[columns],
+            metric.scale[columns],
+            listed.scale[rows],
+            listed.at_most[rows],
+            None,
+            None if metric.longest is None else metric.longest[columns],
+            metric.unit[columns],
+        )
+        settings = self.settings
+        outcome = newton.solve(
+            system, TIGHTER * settings.tolerance, settings.iterations, self.clock, restarts=0
+        )
+        if outcome.converged:
+            x[columns] += metric.scale[columns] * outcome.z
+        return outcome.converged
+
+
+def _systems(program: ArrayProgram) -> batch.Systems:
+    """The rows and columns that hang together, and those systems that are small enough to be stacked."""
+    rows, columns = program.shape
+    labels = components(program.entry_rows, program.indices + rows, rows + columns)
+    of_row, of_column = labels[:rows], labels[rows:]
+    count = int(labels.max(initial=-1)) + 1
+    entries = np.bincount(of_row, minlength=count) * np.bincount(of_column, minlength=count)
+    return batch.Systems(of_row, of_column, entries <= STACKED)
+
+
+def components(a: Ints, b: Ints, count: int) -> Ints:
+    """To which component each of `count` vertices belongs, numbered from 0, where edges (e,) link a and b."""
+    if len(a) > EDGES:
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        links = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(count, count))
+        return connected_components(links, directed=False)[1].astype(np.int64)
+    lowest = np.arange(count)
+    while True:
+        below, above = np.minimum(lowest[a], lowest[b]), np.maximum(lowest[a], lowest[b])
+        if (below == above).all():
+            break
+        np.minimum.at(lowest, above, below)
+        while (lowest != (lower := lowest[lowest])).any():
+            lowest = lower
+    return (np.cumsum(lowest == np.arange(count)) - 1)[lowest]

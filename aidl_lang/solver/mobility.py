@@ -1,0 +1,293 @@
+"""What can still move: the motions that leave every equation as it is, as far as a reader can see them.
+
+For the Jacobians J of the equations and O of the observables, the visible motions of a part that hangs
+together are the row space of O (1 - J⁺ J). Small parts of about one size are settled together as stacks of
+matrices; large ones by sparse elimination, their motions by samples: random combinations of the rows of O,
+taken to the null space of J, lie in the same space, and span it when there are enough of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from aidl_lang.solver.gradients import Integers, Sparse, connected
+from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.stacks import DOUBT, LARGE, RANK, Flags, Sorted, lots, stacked
+
+SEEN = 1e-7
+"""Motions of observables that count as none, where one is the size of a typical motion."""
+NOTHING = 1e-7
+"""Components of unit vectors that count as zero."""
+SAMPLES = 48
+SPARE = 8
+"""Samples beyond the rank that make it clear."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """Unknowns that hang together and can move, in `d` independent ways.
+
+    unknowns    (k,) those that take part in a motion
+    basis       (k, d) each column a motion, in the units of the unknowns
+    observables (o,) those of the problem that see one
+    velocities  (o, d) what they see of it
+    """
+
+    unknowns: Integers
+    basis: Floats
+    observables: Integers
+    velocities: Floats
+
+
+@dataclass(frozen=True)
+class Motions:
+    """The parts that can move, without large ones that have too many motions to list; made when asked for.
+
+    scale  (n,) of the unknowns
+    values (o,) of the observables
+    row    (o,) of each observable among those that differ
+    """
+
+    scale: Floats
+    values: Floats
+    row: Integers
+    found: list[tuple[Integers, Floats, Integers, Floats]] = field(default_factory=list, repr=False)
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        same = Sorted(self.row, int(self.row.max(initial=-1)) + 1)
+        return tuple(self._part(same, *each) for each in sorted(self.found, key=lambda each: int(each[0][0])))
+
+    def _part(self, same: Sorted, columns: Integers, basis: Floats, rows: Integers, seen: Floats) -> Part:
+        moving = np.abs(basis).max(axis=1) > NOTHING
+        watching = np.flatnonzero(np.abs(seen).max(axis=1) > SEEN)
+        observables = [same.members(row) for row in rows[watching].tolist()]
+        velocities = np.repeat(seen[watching], [len(each) for each in observables], axis=0)
+        columns = columns[moving]
+        return Part(
+            columns, basis[moving] * self.scale[columns, None], np.concatenate(observables), velocities
+        )
+
+
+@dataclass
+class Mobility:
+    """
+    degrees    (g,) of each group by what it draws; -1 where it could not be counted
+    total      of the whole; None where a part could not be counted
+    moving     (n,) whether an unknown takes part in a visible motion
+    motions    of the parts that can move
+    undecided  unknowns of each part of which the rank could not be told
+    """
+
+    degrees: Integers
+    moving: Flags
+    motions: Motions
+    total: int | None = 0
+    undecided: list[Integers] = field(default_factory=list)
+
+    def count(self, groups: Integers, degrees: Integers, total: int) -> None:
+        counted = self.degrees[groups] >= 0
+        np.add.at(self.degrees, groups[counted], degrees[counted])
+        if self.total is not None:
+            self.total += total
+
+    def add(self, columns: Integers, basis: Floats, rows: Integers, velocities: Floats) -> None:
+        self.moving[columns[np.abs(basis).max(axis=1) > NOTHING]] = True
+        self.motions.found.append((columns, basis, rows, velocities))
+
+    def give_up(self, unknowns: Integers, groups: Integers) -> None:
+        self.undecided.append(unknowns)
+        self.degrees[groups] = -1
+        self.total = None
+
+
+@dataclass(frozen=True)
+class Watch:
+    """Who sees what: groups (p,) and rows (p,) of the observables' Jacobian, each pair once."""
+
+    groups: Integers
+    rows: Integers
+
+
+def mobility(equations: Sparse, observables: Sparse, watch: Watch, groups: int, motions: Motions) -> Mobility:
+    """Counts motions, and lists them in `motions`.
+
+    equations   unit rows over the unknowns that may move
+    observables rows over the same, in units of a typical motion, none of them zero
+    """
+    unknowns = len(motions.scale)
+    found = Mobility(np.zeros(groups, dtype=np.int64), np.zeros(unknowns, dtype=np.bool_), motions)
+    if not len(observables):
+        return found
+    parts = _Parts(equations, observables, watch, unknowns)
+    for members in lots(parts.rows.count, parts.columns.count, parts.seen.count):
+        if parts.columns.count[members[0]] > LARGE:
+            for part in members.tolist():
+                _settle_large(parts, part, found)
+        else:
+            _settle_small(parts, members, found)
+    return found
+
+
+class _Parts:
+    """The unknowns that observables and equations link, numbered by part, with their rows."""
+
+    def __init__(self, equations: Sparse, observables: Sparse, watch: Watch, unknowns: int) -> None:
+        self.equations, self.observables, self.watch = equations, observables, watch
+        links = [np.concatenate(ends) for ends in zip(equations.links, observables.links, strict=True)]
+        label = connected(links[0], links[1], unknowns)
+        seen = np.unique(label[observables.columns])
+        number = np.full(unknowns, -1)
+        number[seen] = np.arange(len(seen))
+        self.part = number[label]
+        """Of each unknown; -1 for those that nothing sees."""
+        self.columns = Sorted(self.part, len(seen))
+        self.equation_part = _part_of_rows(equations, self.part)
+        self.rows = Sorted(self.equation_part, len(seen))
+        self.observable_part = _part_of_rows(observables, self.part)
+        self.seen = Sorted(self.observable_part, len(seen))
+        self.pairs = Sorted(self.observable_part[watch.rows], len(seen))
+
+    def local(self, matrix: Sparse) -> Sparse:
+        """With the columns numbered within their part."""
+        return Sparse(matrix.starts, self.columns.place[matrix.columns], matrix.entries)
+
+    def groups(self, part: int) -> Integers:
+        return np.unique(self.watch.groups[self.pairs.members(part)])
+
+
+def _part_of_rows(matrix: Sparse, part: Integers) -> Integers:
+    found = np.full(len(matrix), -1)
+    filled = np.diff(matrix.starts) > 0
+    found[filled] = part[matrix.columns[matrix.starts[:-1][filled]]]
+    return found
+
+
+# --- Small parts ---------------------------------------------------------------------------------
+
+
+def _settle_small(parts: _Parts, members: Integers, found: Mobility) -> None:
+    slot = np.full(len(parts.columns.count), -1)
+    slot[members] = np.arange(len(members))
+    jacobian = stacked(parts.equations, parts.equation_part, parts.rows, parts.columns, slot)
+    observed = stacked(parts.observables, parts.observable_part, parts.seen, parts.columns, slot)
+    if jacobian.shape[1]:
+        _, sigma, vt = np.linalg.svd(jacobian, full_matrices=False)
+        decided = ~((sigma > DOUBT) & (sigma < RANK)).any(axis=1)
+        vt = vt * (sigma >= RANK)[:, :, None]
+        visible = observed - (observed @ vt.transpose(0, 2, 1)) @ vt
+    else:
+        decided, visible = np.ones(len(members), dtype=bool), observed
+    _, sigma, vt = np.linalg.svd(visible, full_matrices=False)
+    total = np.count_nonzero(sigma > SEEN, axis=1)
+    total[~decided] = 0
+    most = int(total.max())
+    basis = vt[:, :most].transpose(0, 2, 1) * (np.arange(most) < total[:, None])[:, None, :]
+    velocities = visible @ basis
+    groups, degrees = _by_group(parts, slot, velocities, total)
+    found.count(groups, degrees, int(total.sum()))
+    for i in np.flatnonzero(~decided).tolist():
+        found.give_up(parts.columns.members(members[i]), parts.groups(members[i]))
+    for i in np.flatnonzero(total).tolist():
+        columns, rows = parts.columns.members(members[i]), parts.seen.members(members[i])
+        found.add(columns, basis[i, : len(columns), : total[i]], rows, velocities[i, : len(rows), : total[i]])
+
+
+def _by_group(
+    parts: _Parts, slot: Integers, velocities: Floats, total: Integers
+) -> tuple[Integers, Integers]:
+    """Groups that see some of a part in `slot`, and the rank of what each sees of it."""
+    part = parts.observable_part[parts.watch.rows]
+    pairs = np.flatnonzero(slot[part] >= 0)
+    owner, group, row = slot[part[pairs]], parts.watch.groups[pairs], parts.watch.rows[pairs]
+    count = int(parts.watch.groups.max()) + 1
+    keys, key = np.unique(owner * count + group, return_inverse=True)
+    if len(keys) == len(total):
+        return keys % count, total[keys // count]
+    seen = velocities[owner, parts.seen.place[row]]
+    return keys % count, _ranks(seen, key, len(keys), SEEN)
+
+
+# --- Large parts ---------------------------------------------------------------------------------
+
+
+def _settle_large(parts: _Parts, part: int, found: Mobility) -> None:
+    from aidl_lang.solver.elimination import UndecidedError
+
+    columns, groups = parts.columns.members(part), parts.groups(part)
+    try:
+        basis, moving, degrees, total = _large(parts, part, groups)
+    except UndecidedError:
+        found.give_up(columns, groups)
+        return
+    found.moving[columns[moving]] = True
+    found.count(groups, degrees, total)
+    if basis is not None:
+        rows = parts.seen.members(part)
+        found.add(columns, basis, rows, _times(parts.local(parts.observables.take(rows)), basis))
+
+
+def _large(parts: _Parts, part: int, groups: Integers) -> tuple[Floats | None, Flags, Integers, int]:
+    """Its motions (None if they are too many), which of its columns move, and degrees by group and in all."""
+    from aidl_lang.solver.elimination import NullSpace, UndecidedError, rank_of
+
+    width = int(parts.columns.count[part])
+    null_space = NullSpace(parts.local(parts.equations.take(parts.rows.members(part))), width)
+    observed = parts.local(parts.observables.take(parts.seen.members(part)))
+
+    def degrees_of(rows: Sparse) -> int:
+        return rank_of([null_space.rows, _unit(rows)], width) - len(null_space.rows)
+
+    total = degrees_of(observed)
+    if not total:
+        return None, np.zeros(width, dtype=np.bool_), np.zeros(len(groups), dtype=np.int64), 0
+    samples = null_space.sample(_unit(observed), SAMPLES)
+    samples /= np.abs(samples).max()
+    moving = np.abs(samples).max(axis=1) > RANK
+    pairs = parts.pairs.members(part)
+    group, seen = (
+        np.searchsorted(groups, parts.watch.groups[pairs]),
+        parts.seen.place[parts.watch.rows[pairs]],
+    )
+    if total <= SAMPLES - SPARE:
+        basis, sigma, _ = np.linalg.svd(samples, full_matrices=False)
+        if np.count_nonzero(sigma > RANK) != total:
+            raise UndecidedError
+        velocities = _times(observed, basis[:, :total])
+        return basis[:, :total], moving, _ranks(velocities[seen], group, len(groups), SEEN), total
+    few = np.bincount(group) <= SAMPLES - SPARE
+    shown = few[group]
+    velocities = _times(observed.take(seen[shown]), samples)
+    degrees = _ranks(velocities, group[shown], len(groups), RANK)
+    for i in np.flatnonzero(~few).tolist():
+        degrees[i] = degrees_of(observed.take(seen[group == i]))
+    return None, moving, degrees, total
+
+
+def _unit(matrix: Sparse) -> Sparse:
+    lengths = matrix.lengths()
+    return Sparse(matrix.starts, matrix.columns, matrix.entries / lengths[matrix.rows])
+
+
+def _times(matrix: Sparse, dense: Floats) -> Floats:
+    product = np.zeros((len(matrix), dense.shape[1]))
+    np.add.at(product, matrix.rows, matrix.entries[:, None] * dense[matrix.columns])
+    return product
+
+
+def _ranks(rows: Floats, key: Integers, keys: int, least: float) -> Integers:
+    """The rank of the rows (p, d) of each key."""
+    order = Sorted(key, keys)
+    found = np.zeros(keys, dtype=np.int64)
+    for members in lots(order.count):
+        slot = np.full(keys, -1)
+        slot[members] = np.arange(len(members))
+        own = np.flatnonzero(slot[key] >= 0)
+        stack = np.zeros((len(members), int(order.count[members].max()), rows.shape[1]))
+        stack[slot[key[own]], order.place[own]] = rows[own]
+        if stack.size:
+            found[members] = np.count_nonzero(np.linalg.svd(stack, compute_uv=False) > least, axis=1)
+    return found

@@ -1,0 +1,167 @@
+"""Constraints that say nothing new, each with those that it follows from.
+
+Gradients tell what happens near by to the first order only: `distance(a, b) == 10` has the gradient of
+`b.x - a.x == 10` where both hold, and yet says more. So whatever depends on others by its gradient is tried:
+from a place a little off, where the others hold again, the row must hold as well.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from aidl_lang.solver.dependence import Relation
+from aidl_lang.solver.gradients import Integers, Sparse, below, connected, linearise
+from aidl_lang.solver.operations import Floats, Op
+from aidl_lang.solver.problem import Problem
+from aidl_lang.solver.stacks import LARGE, RANK
+
+AWAY = 1e-2
+"""How far a row is tried from the solution, relative to its scale."""
+STEPS = 10
+HELD = 1e-10
+"""Residual, relative to the scale of the row, at which the others hold again."""
+HOLDS = 1e-8
+WIDER = 40
+"""Rows beyond the combination that are tried one by one."""
+
+
+@dataclass(frozen=True)
+class Equations:
+    """Equations that hold, in order of preference; those without slope are left out.
+
+    row    (r,) which of the problem's rows each is
+    owner  (r,) its constraint
+    matrix unit rows over all unknowns, in units of their scales
+    """
+
+    row: Integers
+    owner: Integers
+    matrix: Sparse
+
+
+@dataclass(frozen=True)
+class Redundancy:
+    """A constraint that follows from others: without any one of them it would not. None are named where they
+    are too many to be told apart.
+    """
+
+    constraint: int
+    follows_from: tuple[int, ...]
+
+
+def redundancies(
+    problem: Problem,
+    values: Floats,
+    equations: Equations,
+    relations: Mapping[int, Relation],
+    whole: Iterable[int],
+) -> list[Redundancy]:
+    """The constraints all of whose rows follow from others.
+
+    whole  those that have nothing but equations with a slope
+    """
+    rows_of: dict[int, list[int]] = defaultdict(list)
+    for row, owner in enumerate(equations.owner.tolist()):
+        rows_of[owner].append(row)
+    tried = _Trial(problem, values, equations, set(relations))
+    found: list[Redundancy] = []
+    for constraint in whole:
+        rows = rows_of[constraint]
+        if not rows or not all(row in relations for row in rows):
+            continue
+        named: set[int] | None = set()
+        for row in rows:
+            support = tried.support(row, sorted(relations[row]))
+            if support is None:
+                break
+            named = named | set(support) if support and named is not None else None
+        else:
+            owners = dict.fromkeys(equations.owner[sorted(named)].tolist()) if named else ()
+            found.append(Redundancy(constraint, tuple(owners)))
+    return found
+
+
+class _Trial:
+    """Tries rows away from the solution."""
+
+    def __init__(self, problem: Problem, values: Floats, equations: Equations, dependent: set[int]) -> None:
+        self.problem, self.values, self.equations = problem, values, equations
+        self.expressions = problem.rows.expression[equations.row]
+        self.scales = problem.rows.scale[equations.row]
+        self.dependent = dependent
+        self._label: Integers | None = None
+
+    def support(self, row: int, relation: Sequence[int]) -> Sequence[int] | None:
+        """Rows that `row` follows from, the fewest known; empty if they are too many, None if it does not."""
+        if len(relation) == 1 and self.expressions[relation[0]] == self.expressions[row]:
+            return relation
+        if self._follows(row, relation):
+            return relation
+        extra = [other for other in self._around(row) if other not in relation]
+        if not self._follows(row, [*relation, *extra]):
+            return None
+        if len(extra) > WIDER:
+            return ()
+        for other in reversed(extra):
+            fewer = [kept for kept in extra if kept != other]
+            if self._follows(row, [*relation, *fewer]):
+                extra = fewer
+        return sorted([*relation, *extra])
+
+    def _around(self, row: int) -> list[int]:
+        """The independent rows that hang together with one."""
+        if self._label is None:
+            mentioned = [self._unknowns([each]) for each in range(len(self.expressions))]
+            firsts = np.repeat([each[0] for each in mentioned], [len(each) for each in mentioned])
+            label = connected(firsts, np.concatenate(mentioned), len(self.values))
+            self._label = label[[each[0] for each in mentioned]]
+        near = np.flatnonzero(self._label == self._label[row]).tolist()
+        return [other for other in near if other not in self.dependent]
+
+    def _unknowns(self, rows: Sequence[int] | Integers) -> Integers:
+        """What rows mention, whether or not it has a slope here."""
+        tape = self.problem.tape
+        nodes = np.array(below(tape, self.expressions[rows].tolist()), dtype=np.int64)
+        return np.unique(tape.operands[nodes[tape.ops[nodes] == Op.UNKNOWN], 0]).astype(np.int64)
+
+    def _follows(self, row: int, others: Sequence[int]) -> bool:
+        rows = np.array([*others, row], dtype=np.int64)
+        columns = self._unknowns(rows)
+        if max(len(rows), len(columns)) > LARGE:
+            return True  # by its gradient; too large to be tried
+        gradient = self._rows(self.values, rows, columns)[1]
+        inverse = np.linalg.pinv(gradient[:-1], rcond=RANK)
+        for seed in range(2):
+            move = np.random.default_rng(seed).standard_normal(len(columns))
+            move -= inverse @ (gradient[:-1] @ move)
+            length = float(np.linalg.norm(move))
+            if length < RANK:
+                return True  # the others leave a single place
+            away = AWAY / (length * float(np.linalg.norm(gradient[-1])))
+            if not self._holds_at(rows, columns, away * move):
+                return False
+        return True
+
+    def _holds_at(self, rows: Integers, columns: Integers, move: Floats) -> bool:
+        """Whether the last of `rows` holds where the others hold again, after a move away."""
+        place = self.values.copy()
+        scale = self.problem.scale[columns]
+        place[columns] += move * scale
+        for _ in range(STEPS):
+            residuals, gradient = self._rows(place, rows, columns)
+            if not np.isfinite(residuals).all():
+                return False
+            if np.abs(residuals[:-1]).max() <= HELD:
+                return abs(float(residuals[-1])) <= HOLDS
+            place[columns] -= scale * np.linalg.lstsq(gradient[:-1], residuals[:-1], rcond=RANK)[0]
+        return False
+
+    def _rows(self, place: Floats, rows: Integers, columns: Integers) -> tuple[Floats, Floats]:
+        """Residuals and gradients of rows in units of their scales."""
+        values, matrix = linearise(self.problem.tape, place, self.expressions[rows])
+        dense = matrix.dense(columns) * self.problem.scale[columns]
+        return values / self.scales[rows], dense / self.scales[rows][:, None]

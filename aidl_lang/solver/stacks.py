@@ -1,0 +1,61 @@
+"""Many small matrices at once: parts of a sparse matrix that share no column, as stacks of about one size."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.solver.gradients import Integers, Sparse
+from aidl_lang.solver.operations import Floats
+
+Flags: TypeAlias = NDArray[np.bool_]
+
+RANK = 1e-6
+"""Singular values of unit rows above this count."""
+DOUBT = 1e-8
+"""Those below this do not; in between nothing is decided."""
+LARGE = 300
+"""Rows or columns of a part from which on sparse elimination is quicker."""
+
+
+class Sorted:
+    """Things sorted by the part they belong to: `of[first[p] : first[p] + count[p]]` are those of part p."""
+
+    def __init__(self, part: Integers, parts: int) -> None:
+        self.of = np.argsort(part, kind="stable")
+        self.count = np.bincount(part[part >= 0], minlength=parts)
+        self.first = np.cumsum(self.count) - self.count + np.count_nonzero(part < 0)
+        self.place = np.empty(len(part), dtype=np.int64)
+        """The number of each within its part."""
+        self.place[self.of] = np.arange(len(part)) - np.where(part >= 0, self.first[part], 0)[self.of]
+
+    def members(self, part: int) -> Integers:
+        return self.of[self.first[part] : self.first[part] + self.count[part]]
+
+
+def lots(*sizes: Integers) -> list[Integers]:
+    """Parts by their sizes, each rounded up to a power of two."""
+    exponents = np.ceil(np.log2(np.maximum(np.stack(sizes), 0.5))).astype(np.int64)
+    found: dict[tuple[int, ...], list[int]] = defaultdict(list)
+    for part, size in enumerate(zip(*exponents.tolist(), strict=True)):
+        found[size].append(part)
+    return [np.array(parts) for parts in found.values()]
+
+
+def stacked(matrix: Sparse, of_row: Integers, rows: Sorted, columns: Sorted, slot: Integers) -> Floats:
+    """The rows of each part that has a slot as one matrix of a stack, filled up with zeros.
+
+    of_row  the part of each row, -1 for none
+    slot    of each part, -1 for none
+    """
+    slot_of_row = np.append(slot, -1)[of_row]
+    at = np.flatnonzero(slot_of_row >= 0)
+    picked = matrix.take(at)
+    row = at[picked.rows]
+    height, width = (int(sizes.count[slot >= 0].max(initial=0)) for sizes in (rows, columns))
+    stack = np.zeros((int(slot.max()) + 1, height, width))
+    stack[slot_of_row[row], rows.place[row], columns.place[picked.columns]] = picked.entries
+    return stack

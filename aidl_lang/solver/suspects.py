@@ -1,0 +1,106 @@
+"""Which constraints a stalled search accuses: those whose linearised rows cannot hold together.
+
+Where no step leads on, some combination y of the rows has no slope in any direction, yet is not zero there:
+Jᵀ y = 0, y · r ≠ 0, y >= 0 for inequalities. That is Farkas' proof that the linearised rows contradict each
+other, and the rows with y ≠ 0 are the suspects. They are thinned out until each is needed, which makes the
+proof one of the sparsest (Gleeson and Ryan, Identifying minimally infeasible subsystems of inequalities,
+ORSA Journal on Computing 2, 1990). In an affine problem the suspects are a conflict; in others, a good guess.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.solver.gradients import gradients
+from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.problem import Relation
+from aidl_lang.solver.quadratic import nearest
+
+if TYPE_CHECKING:
+    from aidl_lang.solver.hierarchy import Hierarchy
+
+FAINT = 1e-3
+"""Singular values of unit rows that count as none: the search stops near the singular place, not on it."""
+SHARE = 1e-6
+"""Part of the greatest multiplier below which a row takes no part."""
+FAR = 100.0
+"""Steps longer than so many times the size of the rows do not count as mending them."""
+
+
+class Linearised:
+    """The rows of constraints at the current values, each divided by its slope.
+
+    jacobian   (r, k) unit rows over the free unknowns; zero rows where nothing free changes a row
+    distance   (r,) how far each row is from zero, as the shortest step that would bring it there
+    inequality (r,)
+    owner      (r,) the constraint of each row
+    """
+
+    def __init__(self, hierarchy: Hierarchy, constraints: Sequence[int], free: Iterable[int]) -> None:
+        rows = [(index, row) for index in constraints for row in hierarchy.rows([index])]
+        for index in constraints:
+            hierarchy.values.refresh(hierarchy.cones[index])
+        found = gradients(hierarchy.values, [row.expression for _, row in rows])
+        columns = {unknown: k for k, unknown in enumerate(sorted(free))}
+        self.jacobian = np.zeros((len(rows), len(columns)))
+        self.distance = np.zeros(len(rows))
+        self.inequality = np.array([row.relation is Relation.AT_MOST for _, row in rows], dtype=np.bool_)
+        self.owner = np.array([index for index, _ in rows], dtype=np.int64)
+        scale = hierarchy.problem.scale
+        for i, (_, row) in enumerate(rows):
+            for unknown, slope in found[row.expression].items():
+                if unknown in columns:
+                    self.jacobian[i, columns[unknown]] = slope * scale[unknown]
+            self.distance[i] = hierarchy.values.nodes[row.expression]
+        self.jacobian, self.distance = np.nan_to_num(self.jacobian), np.nan_to_num(self.distance)
+        length = np.linalg.norm(self.jacobian, axis=1)
+        size = np.array([row.scale for _, row in rows])
+        flat = length * size <= FAINT * np.abs(self.distance)
+        self.jacobian[flat] = 0.0
+        length = np.where(flat, 1.0, length)
+        self.jacobian /= length[:, None]
+        self.distance /= length
+        self.reach = FAR * float(size.max(initial=1.0))
+
+    def accused(self) -> list[int]:
+        """The constraints in the left null space of the rows that are violated or tight."""
+        rows = ~self.inequality | (self.distance > -1e-9 * self.reach)
+        jacobian, distance = self.jacobian[rows], self.distance[rows]
+        gram = jacobian @ jacobian.T + FAINT**2 * np.eye(len(jacobian))
+        multipliers = np.abs(np.linalg.solve(gram, distance))
+        part = multipliers > SHARE * multipliers.max(initial=0.0)
+        return sorted(set(self.owner[rows][part].tolist()))
+
+    def implies(self, index: int) -> bool:
+        """Whether the equations of the others leave the rows of `index` nowhere to go."""
+        own = self.owner == index
+        others = self.jacobian[~own & ~self.inequality]
+        combined = np.linalg.lstsq(others.T, self.jacobian[own].T, rcond=FAINT)[0]
+        rest = self.jacobian[own] - combined.T @ others
+        return bool((np.linalg.norm(rest, axis=1) <= FAINT).all())
+
+    def can_hold(self, constraints: Iterable[int]) -> bool:
+        """Whether the linearised rows of these constraints hold together within a sensible distance."""
+        rows: NDArray[np.bool_] = np.isin(self.owner, list(constraints))
+        target: Floats = -self.distance[rows]
+        step = nearest(self.jacobian[rows], target, self.inequality[rows])
+        return step.feasible and float(np.abs(step.point).max(initial=0.0)) <= self.reach
+
+
+def suspects(hierarchy: Hierarchy, constraints: Sequence[int], free: Iterable[int]) -> list[int]:
+    """A set of constraints whose linearised rows contradict each other at the current values, each of them
+    needed for that; empty if there is none.
+    """
+    rows = Linearised(hierarchy, constraints, free)
+    accused = rows.accused()
+    if rows.can_hold(accused):
+        return []
+    for index in list(accused):
+        rest = [other for other in accused if other != index]
+        if not rows.can_hold(rest):
+            accused = rest
+    return accused

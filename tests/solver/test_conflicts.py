@@ -1,0 +1,298 @@
+"""Conflicts against others' judgement: linear programs, and least squares from many starts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from scipy.optimize import least_squares, linprog
+
+from aidl_lang.solver import Settings, Solution, solve
+from aidl_lang.solver.conflicts import WORK
+from aidl_lang.solver.solution import GroupFailure
+
+from .build import E, Model, call, distance
+from .test_linear_programming import Linear, random_problem
+
+SEEDS = st.integers(0, 100_000)
+
+
+# -- affine
+
+
+def least_shift(problem: Linear, chosen: Sequence[int], member: int) -> float:
+    """By how much a row would have to give way for the chosen ones to hold with it."""
+    count, n = len(problem.right), len(problem.x0)
+    upper, bounds, equal, right = [], [], [], []
+    for i in chosen:
+        equation = i < count
+        row = problem.equations[i] if equation else problem.inequalities[i - count]
+        value = problem.right[i] if equation else problem.bound[i - count]
+        if i == member:
+            upper.append([*row, -1.0])
+            bounds.append(value)
+            if equation:
+                upper.append([*-row, -1.0])
+                bounds.append(-value)
+        elif equation:
+            equal.append([*row, 0.0])
+            right.append(value)
+        else:
+            upper.append([*row, 0.0])
+            bounds.append(value)
+    answer = linprog(
+        [*[0.0] * n, 1.0],
+        A_ub=upper or None,
+        b_ub=bounds or None,
+        A_eq=equal or None,
+        b_eq=right or None,
+        bounds=[(None, None)] * n + [(0, None)],
+    )
+    return float(answer.fun) if answer.status == 0 else np.inf
+
+
+@given(SEEDS)
+@settings(max_examples=40, deadline=None)
+def test_what_would_fit_is_the_least_that_fits(seed: int) -> None:
+    problem = random_problem(seed)
+    everything = range(len(problem.right) + len(problem.bound))
+    assume(not problem.feasible(everything))
+    for failure in solve(problem.model().problem()).failures[:1]:
+        for member in failure.members:
+            assert member.fit is not None
+            (residual,) = member.fit.residuals
+            wanted = {
+                round(least_shift(problem, rest, member.index), 4) for rest in (failure.conflict, everything)
+            }
+            assert any(abs(abs(residual) - shift) <= 1e-4 for shift in wanted)
+
+
+@given(SEEDS, st.randoms(use_true_random=False))
+@settings(max_examples=20, deadline=None)
+def test_the_order_of_writing_does_not_make_a_conflict_wrong(seed: int, random: object) -> None:
+    problem = random_problem(seed)
+    assume(not problem.feasible(range(len(problem.right) + len(problem.bound))))
+    model = problem.model()
+    order = list(range(len(model.constraints)))
+    random.shuffle(order)  # type: ignore[attr-defined]
+    shuffled = model.problem().with_constraints([model.constraints[i] for i in order])
+    failures = solve(shuffled).failures
+    assert failures
+    for failure in failures:
+        conflict = [order[i] for i in failure.conflict]
+        assert failure.minimal
+        assert not problem.feasible(conflict)
+        assert all(problem.feasible([j for j in conflict if j != i]) for i in conflict)
+
+
+# -- distances
+
+
+@dataclass
+class Distances:
+    """Points of the plane, some of which cannot move, and distances between pairs of them."""
+
+    points: np.ndarray
+    held: int
+    pairs: list[tuple[int, int]]
+    lengths: np.ndarray
+
+    def model(self) -> Model:
+        m = Model()
+        zero = E(m.builder, m.builder.constant(0.0))
+        points = [
+            (zero + float(x), zero + float(y)) if i < self.held else m.point(float(x), float(y))
+            for i, (x, y) in enumerate(self.points)
+        ]
+        for (a, b), length in zip(self.pairs, self.lengths, strict=True):
+            m.equal(distance(points[a], points[b]) - float(length))
+        return m
+
+    def reachable(self, chosen: Sequence[int], lengths: np.ndarray) -> bool:
+        """Whether least squares from some of many starts meet the chosen distances."""
+        rng = np.random.default_rng(1)
+
+        def residuals(x: np.ndarray) -> np.ndarray:
+            at = np.vstack([self.points[: self.held], x.reshape(-1, 2)])
+            gaps = [np.hypot(*(at[a] - at[b])) for a, b in (self.pairs[i] for i in chosen)]
+            return np.array(gaps) - lengths[list(chosen)]
+
+        start = self.points[self.held :].ravel()
+        for turn in range(30):
+            aside = rng.normal(0.0, 1.0 + turn, start.shape) if turn else 0.0
+            found = least_squares(residuals, start + aside, xtol=1e-15, ftol=1e-15, gtol=1e-15)
+            if np.abs(found.fun).max() < 1e-5:
+                return True
+        return False
+
+
+def random_distances(seed: int) -> Distances:
+    """More distances than the points allow, or such that no triangle closes."""
+    rng = np.random.default_rng(seed)
+    count, held = int(rng.integers(3, 6)), int(rng.integers(0, 3))
+    pairs = [pair for pair in combinations(range(count), 2) if pair[1] >= held]
+    rng.shuffle(pairs)
+    pairs = [tuple(pair) for pair in pairs]
+    return Distances(rng.uniform(-10, 10, (count, 2)), held, pairs, rng.uniform(2, 20, len(pairs)))
+
+
+@given(SEEDS)
+@settings(max_examples=10, deadline=None)
+def test_distances_that_conflict(seed: int) -> None:
+    problem = random_distances(seed)
+    solution = solve(problem.model().problem())
+    for failure in solution.failures[:1]:
+        assume(failure.reason != "not converged")
+        assert failure.minimal
+        assert not problem.reachable(failure.conflict, problem.lengths)
+        for member in failure.members:
+            rest = [i for i in failure.conflict if i != member.index]
+            assert problem.reachable(rest, problem.lengths)
+            if member.fit is not None:
+                lengths = problem.lengths.copy()
+                lengths[member.index] += member.fit.residuals[0]
+                assert problem.reachable(failure.conflict, lengths)
+
+
+def test_most_conflicts_of_distances_are_found_and_fitted() -> None:
+    failures = [f for seed in range(20) for f in solve(random_distances(seed).model().problem()).failures]
+    proven = [f for f in failures if f.reason != "not converged"]
+    fits = [member.fit is not None for failure in proven for member in failure.members]
+    assert len(failures) > 15
+    assert len(proven) > 0.9 * len(failures)
+    assert np.mean(fits) > 0.9
+
+
+# -- what is said of them
+
+
+def anchored(lengths: Sequence[float]) -> Distances:
+    anchors = np.array([[0.0, 0.0], [40.0, 0.0], [20.0, 30.0]])
+    points = np.vstack([anchors, [[18.0, 10.0]]])
+    return Distances(points, 3, [(0, 3), (1, 3), (2, 3)], np.array(lengths))
+
+
+def only_failure(solution: Solution) -> GroupFailure:
+    (failure,) = solution.failures
+    return failure
+
+
+def test_more_equations_than_numbers() -> None:
+    failure = only_failure(solve(anchored([25.0, 25.0, 20.0]).model().problem()))
+    assert failure.reason == "over-determined"
+    assert (failure.equations, failure.moving) == (3, (0, 1))
+    assert [member.fit.residuals[0] for member in failure.members if member.fit] == pytest.approx(
+        [19.9763 - 25.0, 19.9763 - 25.0, -5.0], abs=1e-3
+    )
+
+
+def test_a_curve_that_is_out_of_reach_is_a_contradiction() -> None:
+    failure = solve(anchored([5.0, 5.0, 30.0]).model().problem()).failures[0]
+    assert failure.reason == "contradictory"
+    assert failure.conflict == (0, 1)
+
+
+def test_straight_equations_are_never_called_over_determined() -> None:
+    m = Model()
+    x, y = m.unknown(0.0), m.unknown(1.0)
+    m.equal(x - 1.0)
+    m.equal(y - 2.0)
+    m.equal(x + y - 4.0)
+    failure = only_failure(solve(m.problem()))
+    assert failure.reason == "contradictory"
+    assert [member.fit.residuals for member in failure.members if member.fit] == [
+        pytest.approx((1.0,)),
+        pytest.approx((1.0,)),
+        pytest.approx((-1.0,)),
+    ]
+
+
+def test_a_choice_that_the_others_leave_is_told() -> None:
+    m = Model()
+    x, y = m.unknown(0.0), m.unknown(1.0)
+    m.at_most(x - 6.0)
+    m.equal(x - 9.0)
+    m.equal(y - 2.0)
+    below, equal = only_failure(solve(m.problem())).members
+    assert below.fit is not None
+    assert equal.fit is not None
+    assert below.fit.residuals == below.fit.regardless == pytest.approx((3.0,))
+    assert equal.fit.residuals == pytest.approx((-3.0,))
+    assert equal.fit.regardless == pytest.approx((-9.0,))
+    assert dict(equal.fit.values)[0] == pytest.approx(6.0)
+
+
+def test_without_enough_steps_nothing_is_claimed() -> None:
+    problem = anchored([25.0, 25.0, 15.5]).model().problem()
+    failure = solve(problem, Settings(iterations=1)).failures[0]
+    assert failure.reason == "not converged"
+    assert all(member.fit is None for member in failure.members)
+    assert max(member.off for member in failure.members) > 1e-6
+
+
+def test_without_time_what_did_not_hold_is_named() -> None:
+    failure = only_failure(solve(anchored([25.0, 25.0, 20.0]).model().problem(), Settings(seconds=0.0)))
+    assert failure.reason == "timed out"
+    assert not failure.minimal
+    assert all(member.off > 0.0 for member in failure.members)
+
+
+def test_explanations_keep_to_their_budget() -> None:
+    m = Model()
+    points = [m.point(10.0 * i, float(i % 3)) for i in range(10)]
+    for a, b in combinations(range(10), 2):
+        m.equal(distance(points[a], points[b]) - 7.0 - (a + b) % 5)
+    failures = solve(m.problem()).failures
+    assert failures
+    whole = len(m.constraints) * len(m.initial)
+    assert 0 < sum(failure.work for failure in failures) <= WORK + 10 * whole
+
+
+def test_the_same_problem_fails_in_the_same_way() -> None:
+    problem = random_distances(5).model().problem()
+    first, again = solve(problem), solve(problem)
+    assert first.failures
+    assert first.failures == again.failures
+
+
+def test_branches_take_part() -> None:
+    m = Model()
+    x, y = m.unknown(1.0), m.unknown(4.0)
+    lower = m.equal(call("minimum", x, y) - 5.0)
+    upper = m.at_most(call("maximum", x, y) - 3.0)
+    m.at_most(x - 100.0)
+    failure = only_failure(solve(m.problem()))
+    assert failure.conflict == (lower, upper)
+    assert failure.minimal
+    for member in failure.members:
+        assert member.fit is not None
+        assert abs(member.fit.residuals[0]) == pytest.approx(2.0, abs=1e-6)
+
+
+def test_conflicts_across_groups() -> None:
+    m = Model()
+    child = m.group()
+    frame, x = m.unknown(0.0, frame=child), m.unknown(2.0, child)
+    inner = m.equal(x - 2.0, group=child)
+    frame_at = m.equal(frame - 1.0)
+    outer = m.equal(frame + x - 10.0)
+    failure = only_failure(solve(m.problem()))
+    assert sorted(failure.conflict) == [inner, frame_at, outer]
+    assert failure.group == 0
+
+
+def test_preferences_are_not_to_blame() -> None:
+    m = Model()
+    x = m.unknown(0.0)
+    first = m.equal(x - 1.0)
+    m.equal(x - 7.0, weight=5.0)
+    second = m.equal(x - 2.0)
+    problem = m.problem()
+    assert only_failure(solve(problem)).conflict == (first, second)
+    soft = [replace(c, weight=1.0) if i == second else c for i, c in enumerate(problem.constraints)]
+    assert solve(problem.with_constraints(soft)).status == "solved"

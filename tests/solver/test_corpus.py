@@ -1,0 +1,91 @@
+"""The corpus of hard problems: files in the form of docs/solver-problems.md that say what is expected."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from aidl_lang.solver import Relation, Solution, solve
+from aidl_lang.solver.analysis import analyse
+from aidl_lang.solver.form import Case, read
+
+from .check import assert_solved, evaluate
+
+CORPUS = sorted((Path(__file__).parent / "corpus").glob("*.json"))
+KINDS = {
+    "singular", "far", "redundant", "scales", "tangent", "arc", "inequality", "branch", "angle", "conflict",
+    "kept", "groups", "prefer", "empty",
+}  # fmt: skip
+FAILING = {
+    "angle-end-of-acos": "the slope of acos is capped, and steps overshoot",
+    "branch-manhattan-circle": "two branches change, in different rows",
+    "branch-remainder-of-another-turn": "no other number of turns is tried",
+    "far-exponential": "squares of the residuals overflow, and damping does not come down again",
+    "singular-square-from-a-point": "restarts agree on a folded square",
+}
+"""What the solver does not manage yet, and why."""
+
+
+def _cases() -> list[object]:
+    reasons = {path: FAILING.get(path.stem) for path in CORPUS}
+    return [
+        pytest.param(
+            path, id=path.stem, marks=[pytest.mark.xfail(reason=reason, strict=False)] if reason else []
+        )
+        for path, reason in reasons.items()
+    ]
+
+
+@pytest.mark.parametrize("path", _cases())
+def test_case(path: Path) -> None:
+    case = read(path.read_text(encoding="utf-8"))
+    solution = solve(case.problem)
+    assert solution.status == case.expected.status
+    with np.errstate(all="ignore"):
+        _check_constraints(case, solution)
+    _check_expected(case, solution)
+
+
+def _check_constraints(case: Case, solution: Solution) -> None:
+    """By plain evaluation: what is said to hold holds, what is said not to does not."""
+    problem = case.problem
+    if solution.status == "solved":
+        assert_solved(problem, solution)
+    for constraint, satisfied in zip(problem.constraints, solution.satisfied, strict=True):
+        holds = True
+        for row in constraint.rows:
+            value = evaluate(problem, row.expression, solution.values)
+            off = max(value, 0.0) if row.relation is Relation.AT_MOST else abs(value)
+            holds &= off <= (2e-9 if satisfied else 0.5e-9) * row.scale
+        assert holds == satisfied
+
+
+def _check_expected(case: Case, solution: Solution) -> None:
+    expected, names = case.expected, case.problem.names
+    freedom = analyse(case.problem, solution)
+    found = dict(zip(names, solution.values.tolist(), strict=True))
+    for name, value in (expected.values or {}).items():
+        assert found[name] == pytest.approx(value, rel=0, abs=expected.tolerance), name
+    if expected.degrees is not None:
+        assert freedom.degrees == expected.degrees
+    if expected.conflicts is not None:
+        conflicts = [{case.tags[i] for i in failure.conflict} for failure in solution.failures]
+        assert sorted(map(sorted, conflicts)) == sorted(map(sorted, expected.conflicts))
+    if expected.changed is not None:
+        assert {names[i] for i in solution.changed} == expected.changed
+    if expected.redundant is not None:
+        assert {case.tags[found.constraint] for found in freedom.redundant} == expected.redundant
+
+
+def test_every_case_says_what_is_hard_and_what_comes_of_it() -> None:
+    assert len(CORPUS) >= 130
+    for path in CORPUS:
+        case = read(path.read_text(encoding="utf-8"))
+        assert case.about, path.stem
+        assert "\n" not in case.about, path.stem
+        assert case.expected.status is not None, path.stem
+        assert bool(case.expected.conflicts) == (case.expected.status != "solved"), path.stem
+        assert path.stem.split("-")[0] in KINDS
+    assert FAILING.keys() <= {path.stem for path in CORPUS}

@@ -1,0 +1,191 @@
+"""Values and derivatives: every way of finding them, against finite differences and against each other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, note
+from hypothesis import strategies as st
+
+from aidl_lang.solver import Problem, arrays
+from aidl_lang.solver.array_program import ArrayFreezing, Schedule
+from aidl_lang.solver.freezing import freeze
+from aidl_lang.solver.gradients import linearise
+from aidl_lang.solver.operations import ARITY, BRANCHING, PARTIALS, VALUE, Op
+from aidl_lang.solver.valuation import Valuation, evaluate
+
+from .check import values_of
+from .kinds import KINDS
+from .random_expressions import HOSTILE, PLAIN, WORST, Tangle, tangles
+from .random_problems import Taste, profile, sketches
+from .sketches import Sketch
+
+STEPS = 10.0 ** np.arange(-2.0, -7.0, -0.5)
+KINK = 1e-3
+"""Differences ahead and behind that disagree by more say that there is no derivative."""
+Derivative = Callable[[Problem, list[int], np.ndarray], np.ndarray]
+
+
+# ---- the ways -------------------------------------------------------------------------------------------
+
+
+def by_dictionaries(problem: Problem, nodes: list[int], x: np.ndarray) -> np.ndarray:
+    """Forward accumulation, root by root."""
+    return np.vstack([_linearised(problem, [node], x) for node in nodes])
+
+
+def by_levels(problem: Problem, nodes: list[int], x: np.ndarray) -> np.ndarray:
+    """Adjoints as arrays: asked for so many roots that this way is taken."""
+    return _linearised(problem, nodes * 100, x)[: len(nodes)]
+
+
+def _linearised(problem: Problem, nodes: list[int], x: np.ndarray) -> np.ndarray:
+    _, sparse = linearise(problem.tape, x, np.array(nodes, dtype=np.int64))
+    return sparse.dense(np.arange(len(x)))
+
+
+def by_program(problem: Problem, nodes: list[int], x: np.ndarray) -> np.ndarray:
+    values = Valuation(problem.tape, x.tolist())
+    values.refresh(values.cone(nodes))
+    found = np.zeros((len(nodes), len(x)))
+    for program in freeze(values, nodes, range(len(x))).programs:
+        program.residuals(x[program.columns])
+        found[np.ix_(program.rows, program.columns)] = program.jacobian(
+            np.ones(len(program.rows)), np.ones(len(program.columns))
+        )
+    return found
+
+
+def by_array_program(problem: Problem, nodes: list[int], x: np.ndarray) -> np.ndarray:
+    schedule, roots = Schedule(problem.tape), np.array(nodes, dtype=np.int64)
+    freezing = ArrayFreezing(schedule, schedule.evaluate(x), np.ones(len(x), dtype=np.bool_))
+    found = np.zeros((len(nodes), len(x)))
+    varies = np.flatnonzero(freezing.varies(roots))
+    if len(varies):
+        program = freezing.program(roots[varies])
+        program.residuals(x[program.columns])
+        matrix = program.jacobian(np.ones(len(varies)), np.ones(len(program.columns)))
+        found[np.ix_(varies, program.columns)] = (
+            matrix if isinstance(matrix, np.ndarray) else matrix.toarray()
+        )
+    return found
+
+
+WAYS: dict[str, Derivative] = {
+    "dictionaries": by_dictionaries,
+    "levels": by_levels,
+    "program": by_program,
+    "array program": by_array_program,
+}
+
+
+# ---- against finite differences -------------------------------------------------------------------------
+
+
+def differences(problem: Problem, nodes: list[int], x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Central differences (m, n) at the step where they change least from one step to the next, and what they
+    are good for: by how much they change there, infinite at a kink."""
+    shifts = np.concatenate([side * h * np.eye(len(x)) for h in STEPS for side in (1.0, -1.0)], axis=1)
+    values = values_of(problem, nodes, x[:, None] + shifts).reshape(len(nodes), len(STEPS), 2, len(x))
+    ahead, behind = values[:, :, 0], values[:, :, 1]
+    slopes = (ahead - behind) / (2.0 * STEPS[:, None])
+    changes = np.abs(np.diff(slopes, axis=1))
+    changes[~np.isfinite(changes)] = np.inf
+    best = changes.argmin(axis=1)[:, None]
+    error = np.take_along_axis(changes, best, 1)[:, 0]
+    bend = (ahead + behind - 2.0 * values_of(problem, nodes, x)[:, None, None])[:, -1] / STEPS[-1]
+    error[~(np.abs(bend) < KINK)] = np.inf
+    return np.take_along_axis(slopes, best, 1)[:, 0], error
+
+
+def assert_derivative(way: Derivative, problem: Problem, nodes: list[int], x: np.ndarray) -> int:
+    """Wherever finite differences can tell; says in how many places that is."""
+    with np.errstate(all="ignore"):
+        expected, error = differences(problem, nodes, x)
+    found = way(problem, nodes, x)
+    assert np.isfinite(found).all()
+    size = 1.0 + np.abs(expected)
+    certain = error < 1e-6 * size
+    note((found, expected, error))
+    assert (np.abs(found - expected)[certain] <= (10.0 * error + 1e-7 * size)[certain]).all()
+    return int(certain.sum())
+
+
+@pytest.mark.parametrize("way", WAYS)
+@given(tangle=tangles(PLAIN))
+@profile(60)
+def test_derivatives_of_any_expression(way: str, tangle: Tangle) -> None:
+    model, found = tangle.model()
+    problem = model.problem()
+    assert_derivative(WAYS[way], problem, [e.node for e in found], problem.initial)
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("kind", KINDS)
+@given(data=st.data())
+@profile(4)
+def test_derivatives_of_what_links_measure(kind: str, way: str, data: st.DataObject) -> None:
+    taste = Taste(kinds=(kind,), points=(4, 6), circles=(2, 3), groups=2, links=(1, 3), noise=2.0)
+    sketch: Sketch = data.draw(sketches(taste))
+    assume(sketch.links)
+    problem = sketch.problem()
+    nodes = problem.rows.expression.tolist()
+    assert assert_derivative(WAYS[way], problem, nodes, problem.initial) > 0
+
+
+# ---- the ways against each other ------------------------------------------------------------------------
+
+
+def same(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Equal to the last digits; NaN equals NaN, and zeros have the same sign."""
+    with np.errstate(all="ignore"):
+        near = np.abs(one - other) <= 1e-14 * np.abs(one)
+    return (np.isnan(one) & np.isnan(other)) | (one == other) | near
+
+
+@pytest.mark.parametrize("op", [op for op in Op if op > Op.UNKNOWN], ids=lambda op: op.name.lower())
+@given(data=st.data())
+@profile(40)
+def test_arrays_mean_what_numbers_mean(op: Op, data: st.DataObject) -> None:
+    places = data.draw(st.lists(st.tuples(*[WORST] * ARITY[op]), min_size=1, max_size=8))
+    operands = tuple(np.array(column) for column in zip(*places, strict=True))
+    expected = np.array([evaluate(op, place) for place in places])
+    with np.errstate(all="ignore"):
+        found = arrays.values(op, operands)
+    note((found, expected))
+    assert same(found, expected).all()
+    if op in BRANCHING:
+        return
+    padded = [place if len(place) > 1 else place * 2 for place in places]
+    slopes = np.array([PARTIALS[op](*p, v) for p, v in zip(padded, expected.tolist(), strict=True)])
+    with np.errstate(all="ignore"):
+        partials = np.array(arrays.partials(op, operands, expected)).T
+    note((partials, slopes))
+    assert np.isfinite(partials).all()
+    assert same(partials[:, : ARITY[op]], slopes[:, : ARITY[op]]).all()
+
+
+@given(tangles(HOSTILE))
+@profile(150)
+def test_numbers_and_arrays_agree_on_whole_expressions(tangle: Tangle) -> None:
+    model, found = tangle.model()
+    problem, nodes = model.problem(), [e.node for e in found]
+    x = problem.initial
+    values = Valuation(problem.tape, x.tolist())
+    values.refresh(values.cone(nodes))
+    expected = np.array([values.nodes[node] for node in nodes])
+    whole = Schedule(problem.tape).evaluate(x)[nodes]
+    note((whole, expected))
+    assert same(whole, expected).all()
+    jacobians = {name: way(problem, nodes, x) for name, way in WAYS.items()}
+    note(jacobians)
+    assert all(np.isfinite(matrix).all() for matrix in jacobians.values())
+    for one, other in (("dictionaries", "levels"), ("program", "array program")):
+        a, b = (jacobians[name][np.isfinite(expected)] for name in (one, other))
+        assert np.abs(a - b).max(initial=0.0) <= 1e-9 * np.abs(a).max(initial=1.0)
+
+
+def test_every_operation_has_a_value_and_partials() -> None:
+    assert set(VALUE) == set(PARTIALS) == {op for op in Op if op > Op.UNKNOWN}

@@ -1,0 +1,308 @@
+"""Degrees of freedom, motions, redundancy: against the dense rank by finite differences."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from aidl_lang.solver import Problem, dependence, mobility, solve
+from aidl_lang.solver.analysis import Freedom, State, analyse
+from aidl_lang.solver.operations import Op
+
+from .build import E, Model, call, distance
+from .check import evaluate, jacobian
+
+
+def freedom_of(m: Model) -> Freedom:
+    problem = m.problem()
+    return analyse(problem, solve(problem))
+
+
+def redundant(freedom: Freedom) -> dict[int, tuple[int, ...]]:
+    return {found.constraint: found.follows_from for found in freedom.redundant}
+
+
+class TestFreedom:
+    def test_a_rigid_triangle_has_three(self) -> None:
+        m = Model()
+        points = [m.point(x, y) for x, y in [(0, 0), (4, 0), (1, 3)]]
+        for i in range(3):
+            m.equal(distance(points[i], points[i - 1]) - 4.0)
+        freedom = freedom_of(m)
+        assert freedom.degrees == 3
+        assert freedom.group_degrees == (3,)
+        assert freedom.free == tuple(range(6))
+        assert freedom.states == (State.UNDER,)
+
+    def test_a_pinned_one_has_none(self) -> None:
+        m = Model()
+        a, b = m.point(0, 0), m.point(4, 1)
+        m.equal(*a)
+        m.equal(distance(a, b) - 4.0)
+        m.equal(b[1])
+        freedom = freedom_of(m)
+        assert freedom.degrees == 0
+        assert freedom.free == ()
+        assert freedom.motions.parts == ()
+        assert freedom.states == (State.FULLY,)
+
+    def test_frame_and_contents_against_each_other_do_not_count(self) -> None:
+        m = Model()
+        child = m.group()
+        frame, x = m.unknown(1.0, frame=child), m.unknown(2.0, child)
+        m.observe(child, frame + x)
+        m.at_most(frame + x - 100.0)
+        assert freedom_of(m).degrees == 1
+        m.equal(frame + x - 8.0)
+        assert freedom_of(m).degrees == 0
+
+    def test_a_frame_that_nothing_mentions_does_not_count(self) -> None:
+        m = Model()
+        child = m.group()
+        frame, x = m.unknown(1.0, frame=child), m.unknown(2.0, child)
+        m.observe(child, frame + x)
+        m.equal(x - 2.0, group=child)
+        assert freedom_of(m).degrees == 0
+
+    def test_kept_sizes_and_inequalities_do_not_count(self) -> None:
+        m = Model()
+        x, r = m.unknown(1.0, visible=True), m.unknown(2.0, kept=True, visible=True)
+        m.at_most(r - x)
+        freedom = freedom_of(m)
+        assert freedom.degrees == 1
+        assert freedom.free == (0,)
+
+    def test_groups_are_counted_by_what_they_draw(self) -> None:
+        m = Model()
+        child = m.group()
+        m.point(0, 0)
+        p = m.point(1, 1, child)
+        m.equal(p[0] - 1.0, group=child)
+        freedom = freedom_of(m)
+        assert freedom.degrees == 3
+        assert freedom.group_degrees == (2, 1)
+
+    def test_an_empty_problem(self) -> None:
+        freedom = freedom_of(Model())
+        assert (freedom.degrees, freedom.group_degrees, freedom.free) == (0, (0,), ())
+
+    def test_a_group_with_a_constraint_that_fails_is_contradictory(self) -> None:
+        m = Model()
+        bad, good = m.group(), m.group()
+        x, y = m.unknown(0.0, bad, visible=True), m.unknown(0.0, good, visible=True)
+        m.equal(x - 1.0, group=bad)
+        m.equal(x - 2.0, group=bad)
+        m.equal(y - 4.0, group=good)
+        assert freedom_of(m).states == (State.FULLY, State.CONTRADICTORY, State.FULLY)
+
+
+class TestRedundancy:
+    def test_what_follows_from_others_is_named_with_them(self) -> None:
+        m = Model()
+        a, b, c, d = (m.unknown(float(i)) for i in range(4))
+        first, second = m.equal(a - b), m.equal(b - c)
+        m.equal(a - d)
+        third = m.equal(a - c)
+        freedom = freedom_of(m)
+        assert redundant(freedom) == {third: (first, second)}
+        assert freedom.states == (State.OVER,)
+
+    def test_the_order_says_which_is_told(self) -> None:
+        m = Model()
+        a, b, c = (m.unknown(float(i)) for i in range(3))
+        constraints = [m.equal(a - b), m.equal(b - c), m.equal(a - c)]
+        problem = m.problem()
+        solution = solve(problem)
+        for last in constraints:
+            others = [index for index in constraints if index != last]
+            (found,) = analyse(problem, solution, [*others, last]).redundant
+            assert found.constraint == last
+            assert sorted(found.follows_from) == others
+
+    def test_independent_ones_are_not(self) -> None:
+        m = Model()
+        a, b = m.unknown(0.0), m.unknown(1.0)
+        m.equal(a - b, a + b - 4.0)
+        assert freedom_of(m).redundant == ()
+
+    def test_one_that_is_new_in_part_is_not(self) -> None:
+        m = Model()
+        a, b, c = (m.unknown(float(i)) for i in range(3))
+        m.equal(a - 1.0)
+        m.equal(a - 1.0, b - c)
+        assert freedom_of(m).redundant == ()
+
+    def test_one_that_is_an_inequality_as_well_is_not(self) -> None:
+        m = Model()
+        a, b = m.unknown(0.0), m.unknown(0.0)
+        m.equal(a - 1.0)
+        index = m.equal(a - 1.0)
+        constraint = m.constraints[index]
+        more = m.constraints[m.at_most(b - 9.0)].rows
+        m.constraints[index] = type(constraint)(0, constraint.rows + more, constraint.placed)
+        assert freedom_of(m).redundant == ()
+
+    def test_a_copy_of_what_follows_follows_from_the_same(self) -> None:
+        m = Model()
+        a, b, c = (m.unknown(float(i)) for i in range(3))
+        first, second = m.equal(a - b), m.equal(b - c)
+        third, copy = m.equal(a - c), m.equal((c - a) * 2.0)
+        assert redundant(freedom_of(m)) == {third: (first, second), copy: (first, second)}
+
+    def test_a_row_without_slope_is_not_redundant(self) -> None:
+        m = Model()
+        x, y = m.unknown(0.0), m.unknown(3.0)
+        m.equal(x)
+        m.equal(call("square", x) + call("square", y - 3.0))
+        assert freedom_of(m).redundant == ()
+
+    def test_the_same_slope_is_not_the_same_constraint(self) -> None:
+        """A distance that is met in one direction alone forbids the other, which a slope does not show."""
+        m = Model()
+        a, b = m.point(0, 0), m.point(10, 0)
+        m.equal(*a)
+        m.equal(b[0] - 10.0)
+        m.equal(distance(a, b) - 10.0)
+        assert freedom_of(m).redundant == ()
+
+    def test_what_holds_it_beyond_the_first_order_is_named_too(self) -> None:
+        m = Model()
+        a, b = m.point(0, 0), m.point(10, 0)
+        m.unknown(3.0)
+        start, across, up = m.equal(*a), m.equal(b[0] - a[0] - 10.0), m.equal(b[1] - a[1])
+        free = m.point(4, 4)
+        m.equal(distance(b, free) - 5.0)
+        last = m.equal(distance(a, b) - 10.0)
+        assert redundant(freedom_of(m)) == {last: (across, up)}
+        assert start not in redundant(freedom_of(m))
+
+    def test_the_fourth_side_of_a_rectangle(self) -> None:
+        """Over-determined and consistent: three right angles make the fourth."""
+        m = Model()
+        p = [m.point(x, y) for x, y in [(0, 0), (4, 3), (2.5, 5), (-1.5, 2)]]
+        corners = []
+        for i in range(4):
+            before, after = p[i - 1], p[(i + 1) % 4]
+            u, v = [[q[k] - p[i][k] for k in (0, 1)] for q in (before, after)]
+            corners.append(m.equal(u[0] * v[0] + u[1] * v[1]))
+        freedom = freedom_of(m)
+        assert redundant(freedom) == {corners[3]: tuple(corners[:3])}
+        assert freedom.degrees == 5
+
+
+# ---- random problems --------------------------------------------------------------------------------
+
+
+def random_problem(seed: int, groups: int = 3) -> tuple[Model, Problem]:
+    """Points in groups with frames, and constraints of several kinds that hold where they are written, some
+    of them following from others."""
+    rng = np.random.default_rng(seed)
+    m = Model()
+    children = [m.group() for _ in range(groups)]
+    frames = [m.frame(child, *rng.uniform(-5, 5, 2)) for child in children]
+    points: list[tuple[E, E]] = []
+    for child, frame in zip(children, frames, strict=True):
+        for _ in range(int(rng.integers(1, 4))):
+            x, y = m.unknown(rng.uniform(-9, 9), child), m.unknown(rng.uniform(-9, 9), child)
+            points.append((frame[0] + x, frame[1] + y))
+            m.observe(child, *points[-1])
+        m.unknown(rng.uniform(1, 4), child, kept=bool(rng.integers(2)), visible=True)
+    start = np.array(m.initial)
+    for _ in range(int(rng.integers(2, 4 * groups))):
+        i, j = rng.integers(0, len(points), 2)
+        k = int(rng.integers(0, 2))
+        u, v = rng.integers(0, len(m.initial), 2)
+        rows = {
+            0: [distance(points[i], points[j])] if i != j else [points[i][k]],
+            1: [points[i][k] - points[j][k]] if i != j else [points[i][k]],
+            2: [points[i][0] - points[j][0] * 1.0, points[i][1] - points[j][1]] if i != j else [points[i][k]],
+            3: [E(m.builder, m.builder.unknown(int(u))) + E(m.builder, m.builder.unknown(int(v))) * 0.5],
+            4: [points[i][0] * points[j][1]],
+        }[int(rng.integers(0, 5))]
+        tape = m.problem()
+        m.equal(*[row - evaluate(tape, row.node, start) for row in rows])
+    return m, m.problem()
+
+
+def dense(problem: Problem, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Unit rows of the equations, those of the observables, and which unknowns may move."""
+    rows = [row.expression for c in problem.constraints for row in c.rows]
+    slopes = jacobian(problem, rows, x)
+    slopes /= np.linalg.norm(slopes, axis=1, keepdims=True)
+    seen = jacobian(problem, [node for _, node in problem.observables], x)
+    mentioned = np.isin(np.arange(len(x)), [u for node in rows for u in unknowns(problem, node)])
+    return slopes, seen, ~problem.kept & ((problem.frame_of < 0) | mentioned)
+
+
+def unknowns(problem: Problem, node: int) -> set[int]:
+    """What an expression mentions."""
+    operands = problem.tape.operand_lists[node]
+    if problem.tape.ops[node] == Op.UNKNOWN:
+        return set(operands)
+    return set().union(*(unknowns(problem, a) for a in operands))
+
+
+def rank(matrix: np.ndarray) -> int:
+    return int(np.linalg.matrix_rank(matrix, tol=1e-5)) if matrix.size else 0
+
+
+def assert_right(problem: Problem, freedom: Freedom, x: np.ndarray) -> None:
+    slopes, seen, movable = dense(problem, x)
+    j, o = slopes[:, movable], seen[:, movable]
+    assert freedom.degrees == rank(np.vstack((j, o))) - rank(j)
+    groups = np.array([group for group, _ in problem.observables])
+    for group, count in enumerate(freedom.group_degrees):
+        assert count == rank(np.vstack((j, o[groups == group]))) - rank(j)
+    # The motions: none disturbs an equation, they are independent, and all of them can be seen.
+    found = np.zeros((len(x), 0))
+    for part in freedom.motions.parts:
+        columns = np.zeros((len(x), part.basis.shape[1]))
+        columns[part.unknowns] = part.basis
+        assert np.allclose(seen[part.observables] @ columns, part.velocities, atol=1e-6)
+        found = np.hstack((found, columns))
+    assert not found[~movable].any()
+    assert np.abs(slopes @ found).max(initial=0.0) < 1e-6
+    assert rank(seen @ found) == found.shape[1] == freedom.degrees
+    assert freedom.free == tuple(np.flatnonzero(np.abs(found).max(axis=1, initial=0.0) > 1e-6))
+    assert_explained(problem, freedom, slopes)
+
+
+def assert_explained(problem: Problem, freedom: Freedom, slopes: np.ndarray) -> None:
+    """What is redundant lies in the span of what it follows from, and of no less."""
+    owner = np.array([i for i, c in enumerate(problem.constraints) for _ in c.rows])
+    told = redundant(freedom)
+    for constraint, others in told.items():
+        own, by = slopes[owner == constraint], slopes[np.isin(owner, others)]
+        assert others
+        assert not set(others) & set(told)
+        assert rank(np.vstack((by, own))) == rank(by)
+        for left_out in others if np.bincount(owner).max() == 1 else ():
+            fewer = slopes[np.isin(owner, [other for other in others if other != left_out])]
+            assert rank(np.vstack((fewer, own))) > rank(fewer)
+    kept = slopes[~np.isin(owner, list(told))]
+    assert rank(kept) == rank(slopes)
+
+
+@given(st.integers(0, 100_000))
+@settings(max_examples=60, deadline=None)
+def test_counts_motions_and_reasons_are_those_of_the_dense_matrices(seed: int) -> None:
+    _, problem = random_problem(seed)
+    freedom = analyse(problem, solve(problem))
+    assert_right(problem, freedom, problem.initial)
+
+
+@given(st.integers(0, 100_000))
+@settings(max_examples=40, deadline=None)
+def test_sparse_elimination_says_the_same(seed: int) -> None:
+    _, problem = random_problem(seed, 4)
+    solution = solve(problem)
+    small = analyse(problem, solution)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(mobility, "LARGE", 0)
+        patch.setattr(dependence, "LARGE", 0)
+        large = analyse(problem, solution)
+    assert_right(problem, large, problem.initial)
+    assert large.free == small.free
+    assert large.redundant == small.redundant

@@ -1,0 +1,126 @@
+"""What messages about conflicts promise: every fix mends its program, and what would fit fits."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pytest
+
+from aidl_lang import pipeline
+from aidl_lang.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.render import render, to_dict
+from aidl_lang.source import SourceFile, Span
+from tests.documents import ROOT, Block, programs
+
+UNSOLVABLE = programs(ROOT / "tests" / "spec" / "conflicts.md")
+NUMBER = re.compile(r"(?<![\w.\[])-?\d+(?:\.\d+)?(?![\w.])")
+FITS = re.compile(r"(?:^|; )(-?\d+(?:\.\d{1,2})?) would fit$")
+"""A number that is told with all its digits, and is not a limit."""
+
+
+def compiled(text: str, **solving: float) -> pipeline.Compiled:
+    settings = pipeline.Settings()
+    return pipeline.compile(
+        SourceFile("part.aidl", text),
+        settings=replace(settings, solving=replace(settings.solving, **solving)),
+    )
+
+
+def errors(text: str, **solving: float) -> list[Diagnostic]:
+    return [d for d in compiled(text, **solving).diagnostics if d.is_error]
+
+
+@pytest.mark.parametrize("block", UNSOLVABLE, ids=lambda block: block.place)
+def test_every_fix_mends_its_program(block: Block) -> None:
+    found = compiled(block.text)
+    failures = [d for d in found.diagnostics if d.is_error]
+    assert failures
+    assert {d.code for d in failures} <= {"E0601", "E0605"}
+    if "drawing washer(" in block.text:
+        assert [d.fix for d in failures] == [None]  # it would change other instances as well
+        return
+    source = failures[0].span.source if failures[0].span else None
+    assert source is not None
+    text, applied = apply_fixes(source, failures)
+    assert applied == len(failures)
+    assert compiled(text).status == "solved"
+
+
+def replacements(text: str) -> Iterator[str]:
+    """The program with one number replaced by the one that is said to fit, for each that is said."""
+    for d in errors(text):
+        places: list[tuple[Span | None, str]] = [(d.span, d.label)]
+        places += [(label.span, label.text) for label in d.secondary]
+        for span, said in places:
+            fits = FITS.search(said)
+            if span is None or fits is None:
+                continue
+            numbers = list(NUMBER.finditer(span.text))
+            assert len(numbers) == 1, f"`{span.text}` does not say for which number {fits[1]} would fit"
+            start, end = span.start + numbers[0].start(), span.start + numbers[0].end()
+            yield text[:start] + fits[1] + text[end:]
+
+
+def test_what_would_fit_fits() -> None:
+    tried = 0
+    for block in UNSOLVABLE:
+        if "for " in block.text:
+            continue
+        before = len(errors(block.text))
+        for text in replacements(block.text):
+            tried += 1
+            assert len(errors(text)) == before - 1, text
+    assert tried > 40
+
+
+def test_the_same_program_gives_the_same_message() -> None:
+    for block in UNSOLVABLE[::6]:
+        once, again = ([render(d) for d in errors(block.text)] for _ in range(2))
+        assert once == again
+
+
+TRIANGLE = """drawing d {
+    a = line((0, 0), (30, 0))
+    b = line(a.end, (15, 20))
+    c = line(b.end, a.start)
+    constrain { a.length == 41; b.length == 52; c.length == 33 }
+}
+"""
+
+
+def test_a_search_that_does_not_arrive_says_how_near_it_came() -> None:
+    (failure,) = errors(TRIANGLE, iterations=1)
+    assert failure.code == "E0602"
+    assert re.fullmatch(r"no position was found in which .* hold", failure.message)
+    assert re.fullmatch(r"off by \d+\.\d+ mm at best", failure.label)
+    assert failure.fix is None
+
+
+def test_a_search_without_time_says_so() -> None:
+    (failure,) = errors(TRIANGLE, seconds=0.0)
+    assert failure.code == "E0603"
+    assert failure.message.startswith("the time for solving ran out before ")
+    assert failure.fix is None
+
+
+def test_json_has_the_places_what_would_fit_and_the_fix() -> None:
+    text = UNSOLVABLE[0].text
+    (failure,) = errors(text)
+    data = to_dict(failure)
+    assert (data["code"], data["line"], data["label"]) == ("E0601", 5, "6 would fit")
+    assert [(s["line"], s["label"]) for s in data["secondary"]] == [(4, "conflicts with this; 9 would fit")]
+    assert [edit["replacement"] for edit in data["fix"]["edits"]] == [""]
+    assert SourceFile("part.aidl", text).text[data["fix"]["edits"][0]["start"] :].lstrip().startswith("rim")
+
+
+@pytest.mark.parametrize("value", ["1e12", "-1e12", "1e-300", "0", "-1e12mm", "6.000001"])
+def test_extreme_numbers_do_not_break_the_message(value: str) -> None:
+    stated = f"a.radius == 6; a.radius == {value}"
+    found = errors(f"drawing d {{ a = circle(center: (0, 0), radius: 5); constrain {{ {stated} }} }}")
+    assert found
+    assert {d.code for d in found} == {"E0601"}
+    for d in found:
+        assert render(d)
+        assert d.fix is not None
