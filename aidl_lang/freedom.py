@@ -16,8 +16,10 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.expression import DEGREE
 from aidl_lang.lower import Lowered, seen
 from aidl_lang.model import Geometry, Model, Structure
+from aidl_lang.primitives import DIRECTIONS
 from aidl_lang.solved import Motion
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.mobility import Part
@@ -80,6 +82,8 @@ class _Scene:
     def __init__(self, model: Model, lowered: Lowered, freedom: Freedom) -> None:
         self.lowered = lowered
         self.places = freedom.motions.values
+        self.turning = np.zeros(len(self.places))
+        """degrees that a direction turns in units of a turn by an angle of one radian"""
         self.axis = np.full(len(self.places), NUMBER)
         self.number: list[str] = [""] * len(self.places)
         self.things: list[_Thing] = []
@@ -105,6 +109,7 @@ class _Scene:
                     self.things.append(_Thing(path, at, at + 2, POINT))
             self.number[at] = path
             if isinstance(geometry, Geometry):
+                self.turning[at] = (path.rpartition(".")[2] in DIRECTIONS) / DEGREE
                 ranges.setdefault(geometry, [at, at])[1] = at + len(numbers)
             at += len(numbers)
         for geometry, (first, last) in ranges.items():
@@ -133,6 +138,7 @@ class _Telling:
         self.local[observables] = np.arange(len(observables))
         self.axis = self.scene.axis[observables]
         self.places = self.scene.places[observables]
+        self.turning = self.scene.turning[observables]
         # Orthonormal, so that what is out of reach is found by subtraction.
         self.reach, self.triangle = np.linalg.qr(self.part.velocities)
 
@@ -152,6 +158,8 @@ class _Telling:
         for each in things:
             yield from self._slides(*each)
             yield from self._turns(*each)
+        for thing in self._near():
+            yield from self._turns_about_a_place(thing)
         yield from self._changes()
         for each in things:
             yield from self._growth(*each)
@@ -159,12 +167,8 @@ class _Telling:
 
     def _things(self) -> list[_Masked]:
         """What may move as a whole, the smallest first; None stands for everything in the part."""
-        found = {thing for o in self.part.observables.tolist() for thing in self.scene.of[o]}
-        for ranks in ((ROOT, WHOLE), ()):
-            if len(found) * self.reach.size > WORK:
-                found = {thing for thing in found if thing.rank in ranks}
         tried: dict[bytes, _Masked] = {}
-        for thing in sorted(found, key=lambda t: (-t.rank, t.start, -t.stop)):
+        for thing in self._near():
             xs, ys = self._whole(thing, X), self._whole(thing, Y)
             if xs.any() or ys.any():
                 tried.setdefault(xs.tobytes() + ys.tobytes(), (thing, xs, ys))
@@ -172,6 +176,21 @@ class _Telling:
         if xs.any() or ys.any():
             tried.setdefault(xs.tobytes() + ys.tobytes(), (None, xs, ys))
         return sorted(tried.values(), key=lambda each: float(each[1].sum() + each[2].sum()))
+
+    def _inside(self, thing: _Thing | None) -> Floats:
+        """The observables of a thing, or all, as 0 and 1."""
+        observables = self.part.observables
+        if thing is None:
+            return np.ones(len(observables))
+        return ((observables >= thing.start) & (observables < thing.stop)).astype(float)
+
+    def _near(self) -> list[_Thing]:
+        """The things that something of the part belongs to; not the small ones where they are too many."""
+        found = {thing for o in self.part.observables.tolist() for thing in self.scene.of[o]}
+        for ranks in ((ROOT, WHOLE), ()):
+            if len(found) * self.reach.size > WORK:
+                found = {thing for thing in found if thing.rank in ranks}
+        return sorted(found, key=lambda t: (-t.rank, t.start, -t.stop))
 
     def _whole(self, thing: _Thing, axis: int) -> Floats:
         """The observables of a thing along an axis as 0 and 1; none if some of them do not move."""
@@ -230,6 +249,7 @@ class _Telling:
         x, y = self.places[at_x].mean(), self.places[at_y].mean()
         turn = np.zeros(len(xs))
         turn[at_x], turn[at_y] = y - self.places[at_y], self.places[at_x] - x
+        turn += self.turning * self._inside(thing)
         if np.linalg.norm(turn) <= POSSIBLE:
             return
         missing = np.stack((self._missing(xs), self._missing(ys)), axis=1)
@@ -237,8 +257,26 @@ class _Telling:
         words = "turn"
         if np.linalg.norm(missing) > POSSIBLE:  # else it can turn about any place
             words = f"turn about ({_short(x - about[1])}, {_short(y + about[0])})"
-        velocity = (turn + about[0] * xs + about[1] * ys) * math.radians(1.0)
+        velocity = (turn + about[0] * xs + about[1] * ys) * DEGREE
         yield from self._told(velocity, "turn", self._named(thing, xs + ys), words)
+
+    def _turns_about_a_place(self, thing: _Thing) -> Iterator[Motion]:
+        """Of a thing with places that stay, all of them the same."""
+        at_x = np.flatnonzero(self.scene.axis[thing.start : thing.stop] == X) + thing.start
+        places = np.stack((self.scene.places[at_x], self.scene.places[at_x + 1]))
+        local = np.stack((self.local[at_x], self.local[at_x + 1]))
+        stays = (local < 0).all(axis=0)
+        if self.is_done or stays.all() or not stays.any():
+            return
+        x, y = places[:, stays][:, 0]
+        needed = np.stack((y - places[1], places[0] - x))
+        if np.abs(needed[local < 0]).max() > POSSIBLE:
+            return
+        velocity = self.turning * self._inside(thing)
+        velocity[local[local >= 0]] = needed[local >= 0]
+        yield from self._told(
+            velocity * DEGREE, "turn", [thing.path], f"turn about ({_short(x)}, {_short(y)})"
+        )
 
     def _changes(self) -> Iterator[Motion]:
         """Single parameters that can change while nothing else does."""

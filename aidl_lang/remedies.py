@@ -15,7 +15,7 @@ from aidl_lang import ast
 from aidl_lang.building.wording import Wording, replaced
 from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.expression import Evaluator, Unknown
-from aidl_lang.model import Comparison, Constraint
+from aidl_lang.model import SIZES, Comparison, Constraint
 from aidl_lang.solver.solution import Fit
 from aidl_lang.source import Span
 from aidl_lang.units import ANGLE, UNITS
@@ -175,9 +175,12 @@ def _is_direct(statement: ast.Node, dial: ast.Node) -> bool:
 
 
 def _may_be_negative(statement: ast.Node, dial: ast.Node) -> bool:
-    """No gap, margin or size may; a number that is compared may, or a coordinate of a point."""
-    if isinstance(statement, ast.Comparison | ast.Membership) and _is_direct(statement, dial):
-        return True
+    """No gap, margin or size may, nor what has a name; a coordinate may that is compared or in a point."""
+    if isinstance(dial, ast.Name):
+        return False
+    match statement:
+        case ast.Comparison(operands=operands) if dial in operands:
+            return not any(isinstance(o, ast.Member) and o.name.text in SIZES for o in operands)
     return any(isinstance(node, ast.Point) and dial in (node.x, node.y) for node in ast.walk(statement))
 
 

@@ -30,6 +30,9 @@ TIE = 1e-9
 """Difference, relative to the operands, below which rounding shall not decide between branches."""
 DENSE = 4096
 """Entries of a Jacobian up to which it is a dense matrix."""
+GOLDEN = 0.6180339887498949
+ALIKE = 1e-12
+"""Relative difference of slopes that is rounding alone."""
 IDENTITY = 40
 """What a branching node becomes once its branch is chosen; beyond the codes of `Op`."""
 
@@ -76,7 +79,8 @@ class Schedule:
         """Which unknowns they are."""
 
     @cached_property
-    def _batches(self) -> list[Batch]:
+    def batches(self) -> list[Batch]:
+        """All other nodes, in an order in which they can be evaluated."""
         tape = self.tape
         return Graph(tape.ops, tape.operands, tape.levels).batches(np.flatnonzero(tape.ops > Op.UNKNOWN))
 
@@ -92,7 +96,7 @@ class Schedule:
         values = self.tape.constants.copy()
         values[self.inputs] = x[self.unknowns]
         with np.errstate(all="ignore"):
-            for batch in self._batches:
+            for batch in self.batches:
                 values[batch.nodes] = arrays.values(batch.op, tuple(values[a] for a in batch.operands))
         return values
 
@@ -130,7 +134,7 @@ class ArrayProgram:
     columns  (k,) the unknowns, ascending
     indptr, indices: the pattern of the Jacobian by rows, as in `scipy.sparse.csr_array`
     affine   (r,) whether each row is an affine function of the unknowns
-    plain    (r,) whether it is so whatever branches are taken
+    plain    (r,) whether it is the same affine function whatever branches are taken
     """
 
     roots: Ints
@@ -298,6 +302,31 @@ class ArrayFreezing:
             found[nodes] = found[self._operands[nodes]].any(axis=1)
         return found[:-1]
 
+    @cached_property
+    def _plain(self) -> Bools:
+        """Whether each node (m,) is an affine function of the free unknowns that branches have no part in.
+
+        The least of several coordinates of one rigid part is such a function, as all of them move alike: two
+        branches are taken for one if they change alike in a direction in which no two unknowns change alike.
+        """
+        tape, schedule = self._schedule.tape, self._schedule
+        values, slopes, plain = (
+            self._values,
+            np.zeros(len(self._values)),
+            np.ones(len(self._values), np.bool_),
+        )
+        turn = np.mod(schedule.unknowns * GOLDEN, 1.0) + 0.5
+        slopes[schedule.inputs] = np.where(self._free[schedule.unknowns], turn, 0.0)
+        with np.errstate(all="ignore"):
+            for batch in schedule.batches:
+                nodes, operands = batch.nodes, batch.operands
+                slopes[nodes], known = _slope(batch, values, slopes)
+                for operand in operands:
+                    known = known & plain[operand]
+                plain[nodes] = known
+        plain[len(tape) :] = False
+        return plain
+
     # -- programs
 
     def pattern(self, roots: Ints) -> tuple[Ints, Ints]:
@@ -315,10 +344,8 @@ class ArrayFreezing:
         indptr = np.zeros(len(roots) + 1, dtype=np.int64)
         np.cumsum(np.bincount(layout.row, minlength=len(roots)), out=indptr[1:])
         affine = np.ones(len(roots), dtype=np.bool_)
-        plain = affine.copy()
         for rows, members in zip(layout.rows, layout.nodes, strict=True):
             affine[rows[self._curved(members)]] = False
-            plain[rows[self._branches[members]]] = False
         place = np.empty(width, dtype=np.int64)
         place[columns] = np.arange(len(columns))
         input_of = np.empty(width, dtype=np.int64)
@@ -329,7 +356,7 @@ class ArrayFreezing:
             indptr,
             place[layout.unknown],
             affine,
-            affine & plain,
+            self._plain[roots],
             input_of[columns],
             Graph(self._ops, self._operands, self._levels).batches(nodes),
             layout.steps,
@@ -438,6 +465,32 @@ def _value(batch: Batch, operands: tuple[Floats, ...]) -> Floats:
     if batch.op == IDENTITY:
         return operands[0]
     return arrays.values(batch.op, operands)
+
+
+def _slope(batch: Batch, values: Floats, slopes: Floats) -> tuple[Floats, Bools]:
+    """The slope of each node in the direction of which `slopes` has those of its operands, and whether it is
+    the same everywhere.
+    """
+    op, operands = batch.op, batch.operands
+    inner = [slopes[a] for a in operands]
+    steady = np.ones(len(batch.nodes), dtype=np.bool_)
+    match op:
+        case Op.ADD:
+            return inner[0] + inner[1], steady
+        case Op.SUB:
+            return inner[0] - inner[1], steady
+        case Op.NEG:
+            return -inner[0], steady
+        case Op.MUL:
+            a, b = (values[operand] for operand in operands)
+            return inner[0] * b + inner[1] * a, (inner[0] == 0.0) | (inner[1] == 0.0)
+        case Op.DIV:
+            return inner[0] / values[operands[1]], inner[1] == 0.0
+        case Op.MINIMUM | Op.MAXIMUM:
+            return inner[0], np.abs(inner[0] - inner[1]) <= ALIKE * np.abs(inner[0])
+    for slope in inner:
+        steady &= slope == 0.0
+    return np.zeros(len(batch.nodes)), steady
 
 
 def _partials(batch: Batch, operands: tuple[Floats, ...], values: Floats) -> tuple[Floats | float, ...]:

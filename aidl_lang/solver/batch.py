@@ -73,7 +73,7 @@ def solve(
         solved[stack.systems] = stack.done
         hopeless[stack.systems] = stack.out_of_reach
     vague = np.zeros(len(systems.wanted), dtype=np.bool_)
-    vague[systems.of_row[~program.plain | at_most]] = True
+    vague[systems.of_row[~program.plain]] = True
     return x, solved, hopeless & ~vague
 
 
@@ -173,8 +173,11 @@ class _Stack:
             if not moving.any():
                 return
             wanted = np.where(self.polishing[:, None], np.einsum("bmk,bk->bm", jacobian, self.z) - r, -r)
-            point, feasible = least_norm(jacobian, wanted, moving)
-            self.out_of_reach |= moving & ~feasible
+            point, outside = least_norm(jacobian, wanted, moving)
+            feasible = ~outside.any(axis=1)
+            # By the lemma of Farkas, if what is out of reach pulls at no inequality.
+            pulls = (np.where(self.at_most, outside, 0.0) > 0.0).any(axis=1)
+            self.out_of_reach |= moving & ~feasible & ~pulls
             self.failed |= moving & ~feasible
             moving &= feasible
             self._approach(moving & ~self.polishing, point, squares, limit)
@@ -221,14 +224,14 @@ class _Stack:
         return pushing
 
 
-def least_norm(jacobian: Floats, y: Floats, which: Bools) -> tuple[Floats, Bools]:
-    """The shortest points (b, k) with J z = y for J (b, m, k), y (b, m), and where there is one (b,).
+def least_norm(jacobian: Floats, y: Floats, which: Bools) -> tuple[Floats, Floats]:
+    """The shortest points (b, k) with J z = y for J (b, m, k), y (b, m), and what is out of reach of y (b, m).
 
-    Only those in `which` (b,) are looked for.
+    Only those in `which` (b,) are looked for. Where J or y is not finite, everything is out of reach.
     """
     b, m, k = jacobian.shape
     point = np.zeros((b, k))
-    feasible = np.zeros(b, dtype=np.bool_)
+    outside = np.zeros((b, m))
     chosen = np.flatnonzero(which)
     j, right = jacobian[chosen], y[chosen]
     lengths = np.sqrt(np.einsum("bmk,bmk->bm", j, j))
@@ -247,16 +250,19 @@ def least_norm(jacobian: Floats, y: Floats, which: Bools) -> tuple[Floats, Bools
         clear[clear] = trusted
         at = chosen[clear]
         point[at] = (unit.transpose(0, 2, 1) @ found)[:, :, 0]
-        feasible[at] = True
-    doubtful = np.flatnonzero(~clear & np.isfinite(j).all(axis=(1, 2)) & np.isfinite(right).all(axis=1))
+    finite = np.isfinite(j).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
+    outside[chosen[~finite]] = np.inf
+    doubtful = np.flatnonzero(~clear & finite)
     if len(doubtful):
         u, sigma, vt = np.linalg.svd(j[doubtful], full_matrices=False)
         kept = sigma > RANK * sigma[:, :1]
         target = right[doubtful]
         inner = np.where(kept, np.einsum("bmr,bm->br", u, target), 0.0)
-        rest = np.abs(target - np.einsum("bmr,br->bm", u, inner)).max(axis=1)
+        rest = target - np.einsum("bmr,br->bm", u, inner)
+        size = np.abs(target).max(axis=1, keepdims=True)
         at = chosen[doubtful]
         scaled = np.where(kept, inner / np.where(kept, sigma, 1.0), 0.0)
         point[at] = np.einsum("br,brk->bk", scaled, vt)
-        feasible[at] = rest <= np.maximum(CONSISTENT * np.abs(target).max(axis=1), NOISE)
-    return point, feasible
+        worst = np.abs(rest).max(axis=1, keepdims=True)
+        outside[at] = np.where(worst > np.maximum(CONSISTENT * size, NOISE), rest, 0.0)
+    return point, outside

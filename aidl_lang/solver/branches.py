@@ -182,6 +182,8 @@ class _Attempt:
         """The last resort: one branching node takes its other branch, or two of them do. Those that decide
         most about a row that could not be met (the outermost) come first.
         """
+        if not self._hold_without_branches():
+            return verdict
         reached = self._current()
         tolerance = self.settings.tolerance
         unmet = [row.expression for row in self.task.rows if not holds(row, self.values, tolerance)]
@@ -203,6 +205,19 @@ class _Attempt:
                 return other
         self._move_to(reached)
         return verdict
+
+    def _hold_without_branches(self) -> bool:
+        """Whether the rows that no other branch could help can be met by themselves."""
+        reached = self._current()
+        self._move_to(self.origin)
+        steady = [i for i, row in enumerate(self.task.rows) if not self._branching([row.expression])]
+        if len(steady) == len(self.task.rows):
+            return False
+        rows, softness = self.task.rows, self.task.softness
+        alone = Task([rows[i] for i in steady], [softness[i] for i in steady], self.task.free)
+        met = attempt(alone, self.values, self.metric, self.settings, self.clock).satisfied
+        self._move_to(reached)
+        return met
 
     def _branching(self, roots: Iterable[int]) -> list[int]:
         """The nodes below that choose a branch which the free unknowns decide, outermost first."""

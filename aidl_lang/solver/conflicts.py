@@ -112,10 +112,10 @@ class _Search:
         return GroupFailure(group, reason, tuple(members), minimal, moving, equations, self.work)
 
     @staticmethod
-    def member(hierarchy: Hierarchy, index: int, fit: Fit | None = None) -> Member:
+    def member(hierarchy: Hierarchy, index: int) -> Member:
         """The constraint and how far it is off at the current values."""
         hierarchy.values.refresh(hierarchy.cones[index])
-        return Member(index, max(violation_of(row, hierarchy.values) for row in hierarchy.rows([index])), fit)
+        return Member(index, max(violation_of(row, hierarchy.values) for row in hierarchy.rows([index])))
 
     # -- the set
 

@@ -36,7 +36,7 @@ from aidl_lang.solver.solution import GroupFailure, StageReport
 from aidl_lang.solver.valuation import Cone, Valuation
 
 if TYPE_CHECKING:
-    from aidl_lang.solver.levels import Stage
+    from aidl_lang.solver.levels import Levels, Stage
 
 Tier: TypeAlias = tuple[int, int]
 Best: TypeAlias = tuple[float, dict[int, float]]
@@ -95,25 +95,26 @@ class Hierarchy:
         self.reached = problem.initial
         """The values (n,) at the end of the run."""
         self._broken: set[int] = set()
+        self._levels: Levels | None = None
 
     # What is looked up one by one is kept in lists, and made when the first group asks.
 
     @cached_property
     def _kept(self) -> list[bool]:
-        return self.problem.kept.tolist()
+        return list(map(bool, self.problem.kept))
 
     @cached_property
     def _frame(self) -> list[bool]:
-        return (self.problem.frame_of >= 0).tolist()
+        return list(map(bool, self.problem.frame_of >= 0))
 
     @cached_property
     def _hard(self) -> list[bool]:
-        return np.isnan(self.problem.weight).tolist()
+        return list(map(bool, np.isnan(self.problem.weight)))
 
     @cached_property
     def _depth(self) -> list[int]:
         """Of each unknown."""
-        return self._group_depths[self.problem.group].tolist()
+        return list(map(int, self._group_depths[self.problem.group]))
 
     @cached_property
     def _group_depths(self) -> NDArray[np.int64]:
@@ -137,10 +138,16 @@ class Hierarchy:
     @cached_property
     def _mentioned_by(self) -> dict[int, list[int]]:
         found: dict[int, list[int]] = {}
-        for index in range(len(self.problem.holder)):
-            for unknown in self.cones[index].unknowns:
-                found.setdefault(unknown, []).append(index)
+        for index, unknown in self._mentions():
+            found.setdefault(unknown, []).append(index)
         return found
+
+    def _mentions(self) -> Iterable[tuple[int, int]]:
+        """Pairs of a constraint and an unknown in it, by constraint."""
+        if self._levels is not None:
+            return zip(self._levels.constraints.tolist(), self._levels.unknowns.tolist(), strict=True)
+        indices = range(len(self.problem.holder))
+        return ((index, unknown) for index in indices for unknown in self.cones[index].unknowns)
 
     def run(self) -> None:
         if len(self.problem.rows.expression) < MANY:
@@ -154,13 +161,12 @@ class Hierarchy:
         """All groups of a depth at once; then, one by one, those for which that was not enough."""
         from aidl_lang.solver.levels import Levels
 
-        levels = Levels(self.problem, self.settings, self.clock, self.metric)
+        levels = self._levels = Levels(self.problem, self.settings, self.clock, self.metric)
         wishing = set(self.problem.holder[~np.isnan(self.problem.weight)].tolist())
         for depth in range(int(self._group_depths.max()), -1, -1):
-            passed: dict[int, Tier] = {}
-            for stage in levels.solve(depth):
-                self._record(stage, passed)
+            stages = list(levels.solve(depth))
             left = set(levels.unsolved(depth).tolist())
+            passed = self._record(stages, left)
             left.update(group for group in wishing if self._group_depths[group] == depth)
             if left:
                 self.values.assign(enumerate(levels.x.tolist()))
@@ -169,25 +175,29 @@ class Hierarchy:
                 levels.x[:] = self.values.unknowns
                 levels.binding[list(self._broken)] = False
         self.reached = levels.x
-        self._nodes = levels.nodes()
 
-    def _record(self, stage: Stage, passed: dict[int, Tier]) -> None:
-        name = stage_name(stage.tier)
-        columns = (stage.groups, stage.unknowns, stage.rows, stage.solved)
-        for group, unknowns, rows, solved in zip(*(column.tolist() for column in columns), strict=True):
-            self.stages.append(StageReport(group, name, unknowns, rows, solved))
-            if solved:
-                passed[group] = stage.tier
+    def _record(self, stages: list[Stage], left: set[int]) -> dict[int, Tier]:
+        """Reports the stages, but for what is tried again; the last stage that helped each group."""
+        passed: dict[int, Tier] = {}
+        for stage in stages:
+            name = stage_name(stage.tier)
+            columns = (stage.groups, stage.unknowns, stage.rows, stage.solved)
+            for group, unknowns, rows, solved in zip(*(column.tolist() for column in columns), strict=True):
+                if solved:
+                    passed[group] = stage.tier
+                if solved or group not in left:
+                    self.stages.append(StageReport(group, name, unknowns, rows, solved))
+        return passed
 
     def violations(self) -> Floats:
         """How far each row (r,) is from holding at the end, in its own units; infinite if it has no value."""
-        if len(self.problem.rows.expression) < MANY:
-            found = []
-            for index, constraint in enumerate(self.problem.constraints):
-                self.values.refresh(self.cones[index])
-                found.extend([violation_of(row, self.values) for row in constraint.rows])
-            return np.array(found)
-        return violations(self.problem, self._nodes)
+        if self._levels is not None:
+            return violations(self.problem, self._levels.nodes())
+        found = []
+        for index, constraint in enumerate(self.problem.constraints):
+            self.values.refresh(self.cones[index])
+            found.extend([violation_of(row, self.values) for row in constraint.rows])
+        return np.array(found)
 
     def changed(self) -> list[int]:
         """Kept sizes that are no longer what was written."""

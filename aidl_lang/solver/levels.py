@@ -16,7 +16,7 @@ import numpy as np
 from aidl_lang.solver import batch, newton
 from aidl_lang.solver.array_program import ArrayFreezing, ArrayProgram, Bools, Ints, Schedule
 from aidl_lang.solver.branches import TIGHTER, Metric
-from aidl_lang.solver.newton import Clock, System
+from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.problem import Problem, Settings, depths, violations
 
@@ -110,12 +110,11 @@ class Levels:
                 continue
             tried = np.maximum(tried, count)
             rows = np.flatnonzero(scope[problem.rows.constraint])
-            solved = self._attempt(
-                rows, of_constraint[problem.rows.constraint[rows]], free, hopeful, of_unknown
-            )
-            left &= ~solved
-            parts = np.flatnonzero(hopeful)
-            considered = np.bincount(of_constraint[problem.rows.constraint[rows]], minlength=len(left))
+            part = of_constraint[problem.rows.constraint[rows]]
+            solved, hopeless = self._attempt(rows, part, free, hopeful, of_unknown)
+            left &= ~hopeful | hopeless
+            parts = np.flatnonzero(hopeful & (solved | hopeless))
+            considered = np.bincount(part, minlength=len(left))
             stage = divmod(code, DEPTHS)
             yield Stage(stage, group_of[parts], solved[parts], count[parts], considered[parts])
             if not left.any() or self.clock.expired:
@@ -124,7 +123,8 @@ class Levels:
     def unsolved(self, depth: int) -> Ints:
         """The groups at `depth` with a hard constraint that does not hold."""
         holds = self._all(self._holding(self.nodes()))
-        return self.problem.holder[self.binding & (self._holder_depth == depth) & ~holds]
+        found: Ints = self.problem.holder[self.binding & (self._holder_depth == depth) & ~holds]
+        return found
 
     def _holding(self, nodes: Floats) -> Bools:
         return violations(self.problem, nodes) <= self.settings.tolerance * self.problem.rows.scale
@@ -192,19 +192,20 @@ class Levels:
         nodes = self.nodes()
         holding = self._holding(nodes)[rows]
         freezing = ArrayFreezing(self.schedule, nodes, free)
-        considered = ~problem.rows.at_most[rows] | ~holding
+        considered = ~problem.rows.at_most[rows]  # and those that turn out to be violated without them
         varying = freezing.varies(problem.rows.expression[rows])
         left, solved = hopeful.copy(), np.zeros(len(hopeful), dtype=np.bool_)
         hopeless = solved.copy()
         hopeless[part[~varying & ~holding]] = True
         left &= ~hopeless
         for _ in range(ROUNDS):
-            chosen = np.flatnonzero(considered & varying & left[part])
-            if len(chosen) == 0 or self.clock.expired:
+            if not left.any() or self.clock.expired:
                 break
-            x, failed, contrary = self._solve_rows(freezing, rows[chosen], part[chosen], len(left))
-            hopeless |= left & contrary
-            left &= ~failed
+            chosen, x = np.flatnonzero(considered & varying & left[part]), self.x
+            if len(chosen):
+                x, failed, contrary = self._solve_rows(freezing, rows[chosen], part[chosen], len(left))
+                hopeless |= left & contrary
+                left &= ~failed
             reached = self.schedule.evaluate(x)
             holds = self._holding(reached)[rows]
             unmet = np.zeros(len(left), dtype=np.bool_)
@@ -213,7 +214,7 @@ class Levels:
             moved = free & accepted[of_unknown]
             self.x[moved] = x[moved]
             if np.array_equal(self.x, x):
-                self._evaluated = x, reached
+                self._evaluated = self.x.copy(), reached
             solved |= accepted
             left &= unmet
             fresh = ~holds & ~considered
@@ -221,13 +222,14 @@ class Levels:
             more[part[fresh]] = True
             left &= more
             considered |= fresh
-        self._nodes = self.schedule.evaluate(self.x)
-        return solved
+        return solved, hopeless
 
     def _solve_rows(
         self, freezing: ArrayFreezing, rows: Ints, part: Ints, parts: int
-    ) -> tuple[Floats, Bools]:
-        """The values (n,) that satisfy the rows, and the parts in which some could not be satisfied."""
+    ) -> tuple[Floats, Bools, Bools]:
+        """The values (n,) that satisfy the rows, the parts in which some could not be satisfied, and those in
+        which they certainly cannot be.
+        """
         program = freezing.program(self.problem.rows.expression[rows])
         systems = _systems(program)
         x = self.x.copy()
@@ -242,18 +244,22 @@ class Levels:
                 program, systems, scaling, listed.at_most[rows], tolerance, self.clock
             )
             x[columns] = np.where(solved[systems.of_column], reached, x[columns])
-        for system in np.flatnonzero(~systems.wanted).tolist():
+        choosy = np.zeros(len(solved), dtype=np.bool_)  # which inequalities bind has to be searched for
+        choosy[systems.of_row[listed.at_most[rows]]] = True
+        for system in np.flatnonzero(~systems.wanted | (choosy & ~solved & ~hopeless)).tolist():
             members = np.flatnonzero(systems.of_row == system)
             whole = len(members) == len(rows)
             alone = program if whole else freezing.program(listed.expression[rows[members]])
-            solved[system] = self._solve_alone(alone, rows[members], x)
+            end = self._solve_alone(alone, rows[members], x)
+            solved[system] = end is End.CONVERGED
+            hopeless[system] = end is End.INFEASIBLE and bool(alone.plain.all())
         failed, contrary = np.zeros((2, parts), dtype=np.bool_)
         failed[part[~solved[systems.of_row]]] = True
         contrary[part[hopeless[systems.of_row]]] = True
         return x, failed, contrary
 
-    def _solve_alone(self, program: ArrayProgram, rows: Ints, x: Floats) -> bool:
-        """Solves one large system; moves `x` there if that succeeds."""
+    def _solve_alone(self, program: ArrayProgram, rows: Ints, x: Floats) -> End:
+        """Solves one system with all care; moves `x` there if that succeeds."""
         metric, columns, listed = self.metric, program.columns, self.problem.rows
         system = System(
             program,
@@ -271,7 +277,7 @@ class Levels:
         )
         if outcome.converged:
             x[columns] += metric.scale[columns] * outcome.z
-        return outcome.converged
+        return outcome.end
 
 
 def _systems(program: ArrayProgram) -> batch.Systems:
@@ -291,7 +297,8 @@ def components(a: Ints, b: Ints, count: int) -> Ints:
         from scipy.sparse.csgraph import connected_components
 
         links = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(count, count))
-        return connected_components(links, directed=False)[1].astype(np.int64)
+        labels: Ints = connected_components(links, directed=False)[1].astype(np.int64)
+        return labels
     lowest = np.arange(count)
     while True:
         below, above = np.minimum(lowest[a], lowest[b]), np.maximum(lowest[a], lowest[b])

@@ -32,7 +32,7 @@ class Part:
 
     unknowns    (k,) those that take part in a motion
     basis       (k, d) each column a motion, in the units of the unknowns
-    observables (o,) those of the problem that see one
+    observables (o,) those of the problem that see one, ascending
     velocities  (o, d) what they see of it
     """
 
@@ -64,12 +64,13 @@ class Motions:
     def _part(self, same: Sorted, columns: Integers, basis: Floats, rows: Integers, seen: Floats) -> Part:
         moving = np.abs(basis).max(axis=1) > NOTHING
         watching = np.flatnonzero(np.abs(seen).max(axis=1) > SEEN)
-        observables = [same.members(row) for row in rows[watching].tolist()]
-        velocities = np.repeat(seen[watching], [len(each) for each in observables], axis=0)
+        alike = [same.members(row) for row in rows[watching].tolist()]
+        velocities = np.repeat(seen[watching], [len(each) for each in alike], axis=0)
+        observables = np.concatenate(alike)
+        order = np.argsort(observables)
         columns = columns[moving]
-        return Part(
-            columns, basis[moving] * self.scale[columns, None], np.concatenate(observables), velocities
-        )
+        rates = basis[moving] * self.scale[columns, None]
+        return Part(columns, rates, observables[order], velocities[order])
 
 
 @dataclass

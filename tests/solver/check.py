@@ -15,13 +15,17 @@ ROUNDING = 1e-9
 
 
 def _cubic_max(p0: np.ndarray, p1: np.ndarray, p2: np.ndarray, p3: np.ndarray) -> np.ndarray:
-    """At the ends, or where the derivative of a t³ + b t² + c t + p0 is zero."""
-    a, b, c = p3 - 3 * p2 + 3 * p1 - p0, 3 * p2 - 6 * p1 + 3 * p0, 3 * p1 - 3 * p0
+    """At the ends, or where the derivative 3 (a t² + 2 b t + c) is zero."""
+    a, b, c = p3 - 3 * p2 + 3 * p1 - p0, p2 - 2 * p1 + p0, p1 - p0
     with np.errstate(all="ignore"):
-        root = np.sqrt(b * b - 3 * a * c)
-        places = [(-b + root) / (3 * a), (-b - root) / (3 * a), c / (-b - root), c / (-b + root)]
-        inside = [np.clip(np.nan_to_num(t), 0.0, 1.0) for t in places]
-        return np.max([p0, p3, *(((a * t + b) * t + c) * t + p0 for t in inside)], axis=0)
+        root = np.sqrt(b * b - a * c)
+        places = [(-b + root) / a, (-b - root) / a, c / (-b - root), c / (-b + root)]
+        inside = [np.clip(np.nan_to_num(t), 0.0, 1.0) for t in (0.0 * p0, 0.0 * p0 + 1.0, *places)]
+        heights = [
+            (1 - t) ** 3 * p0 + 3 * (1 - t) ** 2 * t * p1 + 3 * (1 - t) * t**2 * p2 + t**3 * p3
+            for t in inside
+        ]
+        return np.max(heights, axis=0)
 
 
 def _unit(a: np.ndarray) -> np.ndarray:
@@ -135,4 +139,7 @@ def _violations(problem: Problem, rows: Sequence[Row], x: np.ndarray) -> tuple[n
     inequality = np.array([[row.relation is Relation.AT_MOST] for row in rows], dtype=np.bool_)
     found = np.where(inequality, np.maximum(values, 0.0), np.abs(values)) if rows else values
     found[np.isnan(found)] = np.inf
-    return found.min(axis=1), found.max(axis=1)
+    low, high = found.min(axis=1), found.max(axis=1)
+    with np.errstate(invalid="ignore"):
+        spread = np.nan_to_num(high - low)
+    return np.maximum(low - spread, 0.0), high + spread

@@ -100,7 +100,7 @@ class Reader:
 
     def _call(self, name: str, values: list[Value]) -> float:
         match name, values:
-            case "dof", [SolvedStructure() as structure]:
+            case "dof", [SolvedStructure() as structure] if structure.degrees is not None:
                 return structure.degrees
             case (("area" | "perimeter"), [SolvedStructure() as structure]) if self.compiled.drawing:
                 return float(getattr(self.compiled.drawing.measures[structure.path], name))

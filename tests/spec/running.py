@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import aidl_lang
 from aidl_lang import pipeline
 from aidl_lang.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.freedom import sentences
 from aidl_lang.render import render
 from aidl_lang.source import SourceFile
 from aidl_lang.world import MemoryWorld
@@ -172,7 +173,7 @@ def _accept_list(lines: Sequence[Line], texts: Sequence[str], outcome: Outcome) 
 
 def _check_claim(claim: Line, compiled: pipeline.Compiled, outcome: Outcome) -> None:
     word, colon, rest = claim.text.partition(":")
-    if colon and word in ("status", "dof", "free", "changed"):
+    if colon and word in ("status", "dof", "free", "motions", "changed"):
         found = _summary(word, compiled)
         if rest.strip() != found:
             outcome.differs(claim.number, f"`{claim.text}`, but it is `{found}`")
@@ -207,6 +208,8 @@ def _summary(word: str, compiled: pipeline.Compiled) -> str:
             return str(model.degrees)
         case "free":
             return ", ".join(model.free) or "nothing"
+        case "motions":
+            return "; ".join(sentences(model.motions, model.root.path)) or "none"
         case _:
             changes = [f"{c.path} {shown(c.written)} -> {shown(c.solved)}" for c in model.changed]
             return ", ".join(changes) or "nothing"

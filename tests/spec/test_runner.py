@@ -91,6 +91,18 @@ def test_fix_and_canonical_form_are_compared(tmp_path: Path) -> None:
     assert [p.line for p in problems(tmp_path, text)] == [6]
 
 
+def test_messages_are_compared_to_the_letter(tmp_path: Path) -> None:
+    program = "```aidl\ndrawing d { c = circle(radius: 3); constrain c.radius == -1 }\n```\n"
+    assert [p.text[:16] for p in problems(tmp_path, program)] == ["comes unexpected"]
+    (case,) = cases(tmp_path, f"{program}\n```message\n```\n")
+    ((place, lines),) = run(case).accepted.items()
+    assert place == (6, 6)
+    assert lines[0] == "error[E0601]: `c.radius == -1` cannot hold"
+    shown = "".join(f"{line}\n" for line in lines)
+    assert problems(tmp_path, f"{program}\n```message\n{shown}```\n") == []
+    assert len(problems(tmp_path, f"{program}\n```message\n{shown.replace('hold', 'stand')}```\n")) == 1
+
+
 def test_accepting_leads_to_agreement(tmp_path: Path) -> None:
     path = tmp_path / "spec.md"
     text = PROGRAM.replace("EXPECTED", "") + "\n```expect\nd.c.radius == ?\ndof: 0\n```\n"
