@@ -45,11 +45,13 @@ class Lowered:
     unknowns  by their number in the problem
     stated    for each constraint of the problem, the one of the model; None for those that come with the
               nature of a size or a box (never negative)
+    groups    path of the structure that each group of the problem is
     """
 
     problem: Problem
     unknowns: tuple[Unknown, ...]
     stated: tuple[Constraint | None, ...]
+    groups: tuple[str, ...]
 
 
 def lower(model: Model) -> Lowered:
@@ -101,7 +103,7 @@ class _Lowering:
             observables=observables,
             names=tuple(u.path for u in found),
         )
-        return Lowered(problem, found, tuple(stated))
+        return Lowered(problem, found, tuple(stated), tuple(s.path for s in self.structures))
 
     # --- Unknowns ------------------------------------------------------------------------------
 
@@ -245,10 +247,13 @@ def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:
 
 
 def _extent(seen: Iterable[_Seen]) -> float:
-    """The extent of the places at the first guesses in mm, at least 1."""
+    """About the extent of the places at the first guesses in mm: the power of two above it, at least 1.
+
+    A small change of a model changes no tolerance, and so nothing in parts that it does not concern.
+    """
     low, high = 0.0, 0.0
     for at in seen:
         for e in at if len(at) == 2 else ():
             if abs(e.value) < 1e12:
                 low, high = min(low, e.value), max(high, e.value)
-    return max(high - low, 1.0)
+    return float(2.0 ** np.ceil(np.log2(max(high - low, 1.0))))

@@ -22,6 +22,7 @@ from aidl_lang.model import Knob
 from aidl_lang.printer import format_module
 from aidl_lang.resolve import resolve
 from aidl_lang.resolving.symbols import SymbolKind
+from aidl_lang.solver.memory import Memory
 from aidl_lang.solver.problem import Settings as SolverSettings
 from aidl_lang.source import SourceFile
 from aidl_lang.typecheck import Program
@@ -31,6 +32,7 @@ from aidl_lang.world import World
 if TYPE_CHECKING:
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.solved import SolvedModel
+    from aidl_lang.solver.solution import StageReport
 
 _RECURSION = 20_000
 """Python frames for deeply nested programs; the limits on nesting and calls end sooner."""
@@ -61,6 +63,8 @@ class Compiled:
     model: SolvedModel | None = None
     drawing: Drawing | None = None
     show: frozenset[str] = field(default_factory=frozenset)
+    stages: tuple[tuple[str, StageReport], ...] = ()
+    """What the solver tried, in order: the path of a structure, and one stage for it."""
 
     @property
     def ok(self) -> bool:
@@ -198,15 +202,19 @@ def compile(
     params: Mapping[str, str | float | bool] | None = None,
     settings: Settings = Settings(),
     show: Sequence[str] = (),
+    memory: Memory | None = None,
 ) -> Compiled:
-    """Run the whole road. A program that is wrong, or does not solve, says so in `diagnostics`."""
+    """Run the whole road. A program that is wrong, or does not solve, says so in `diagnostics`.
+
+    With a `memory` of the last run, structures that the changes since then do not concern are not solved again.
+    """
     watch = _Stopwatch()
     with _working():
         built, diagnostics = _build(source, world, params or {}, settings, watch)
         known = tuple(built.model.knobs)
         if has_errors(diagnostics):
             return Compiled("wrong", diagnostics, watch.seconds, known)
-        return _finish(built, diagnostics, settings, watch, known, frozenset(show))
+        return _finish(built, diagnostics, settings, watch, known, frozenset(show), memory)
 
 
 def _finish(
@@ -216,6 +224,7 @@ def _finish(
     watch: _Stopwatch,
     known: tuple[Knob, ...],
     show: frozenset[str],
+    memory: Memory | None,
 ) -> Compiled:
     from aidl_lang.geometry.drawing import draw
     from aidl_lang.lower import lower
@@ -228,7 +237,7 @@ def _finish(
     with watch("lower"):
         lowered = lower(built.model)
     with watch("solve"):
-        solution = solve(lowered.problem, settings.solving)
+        solution = solve(lowered.problem, settings.solving, memory)
     with watch("freedom"):
         freedom = analyse(lowered.problem, solution, preference(lowered))
     with watch("read out"):
@@ -243,7 +252,8 @@ def _finish(
     if solution.status is not Status.SOLVED:
         notes = []  # the parts are not where they belong
     everything = ordered([*diagnostics, *found, *notes])
-    return Compiled(model.status, everything, watch.seconds, known, model, drawing, show)
+    stages = tuple((lowered.groups[stage.group], stage) for stage in solution.stages)
+    return Compiled(model.status, everything, watch.seconds, known, model, drawing, show, stages)
 
 
-__all__ = ["Compiled", "Knob", "Settings", "check", "compile", "formatted", "front", "knobs"]
+__all__ = ["Compiled", "Knob", "Memory", "Settings", "check", "compile", "formatted", "front", "knobs"]

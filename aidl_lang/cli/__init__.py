@@ -24,6 +24,8 @@ _VERBS = (compile, check, fmt, params, explain, watch, new)
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code; wrong use of options raises `SystemExit(2)`."""
+    # Threads cost more than they bring for matrices of the size of a part; numpy asks when it is loaded.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     _keep_writing()
     try:
         arguments = _parser().parse_args(argv)

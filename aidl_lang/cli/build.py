@@ -12,7 +12,7 @@ from aidl_lang.cli import files
 from aidl_lang.cli.report import UseError, exit_code
 
 if TYPE_CHECKING:
-    from aidl_lang.pipeline import Compiled
+    from aidl_lang.pipeline import Compiled, Memory
 
 
 _DEFAULT_FORMAT = ".svg"
@@ -38,6 +38,16 @@ class Outcome:
     def code(self) -> int:
         return exit_code(self.compiled.diagnostics) or (0 if self.compiled.ok else 1)
 
+    def motions(self, most: int) -> list[str]:
+        """What can still move, one sentence a line."""
+        from aidl_lang.freedom import sentences
+
+        model = self.compiled.model
+        if model is None or not self.compiled.ok:
+            return []
+        found = list(sentences(model.motions, model.root.path))
+        return found if len(found) <= most else [*found[: most - 1], f"… and {len(found) - most + 1} more"]
+
     def line(self, program: str) -> str:
         """The outcome in a line."""
         model = self.compiled.model
@@ -59,8 +69,11 @@ def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
     return found
 
 
-def build(arguments: argparse.Namespace) -> Outcome:
-    """Compile and write. Nothing is written unless every output could be made."""
+def build(arguments: argparse.Namespace, memory: Memory | None = None) -> Outcome:
+    """Compile and write. Nothing is written unless every output could be made.
+
+    With a `memory` of the last run, only what has changed since then is solved again.
+    """
     from aidl_lang import pipeline
 
     start = time.perf_counter()
@@ -68,7 +81,7 @@ def build(arguments: argparse.Namespace) -> Outcome:
     outputs = targets(arguments)
     world = files.world(arguments.file)
     params, show = dict(arguments.params), tuple(sorted(arguments.show))
-    compiled = pipeline.compile(source, world, params=params, show=show)
+    compiled = pipeline.compile(source, world, params=params, show=show, memory=memory)
     written: tuple[str, ...] = ()
     if compiled.ok or (arguments.best_effort and compiled.drawing is not None):
         data = [

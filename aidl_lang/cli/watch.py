@@ -5,11 +5,15 @@ from __future__ import annotations
 import argparse
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from aidl_lang.cli import files
 from aidl_lang.cli.build import build, targets
 from aidl_lang.cli.options import add_drawing, add_program
 from aidl_lang.cli.report import UseError, say
+
+if TYPE_CHECKING:
+    from aidl_lang.pipeline import Memory
 
 
 def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -32,20 +36,22 @@ def run(arguments: argparse.Namespace) -> int:
         raise UseError("E0902", "standard input cannot be watched", "name a file")
     files.read(arguments.file)
     targets(arguments)
-    folder = Path(arguments.file).resolve().parent
-    _once(arguments)
+    from aidl_lang.pipeline import Memory
+
+    folder, memory = Path(arguments.file).resolve().parent, Memory()
+    _once(arguments, memory)
     for _ in watch(folder, watch_filter=lambda _, path: path.endswith(".aidl")):
-        _once(arguments)
+        _once(arguments, memory)
     return 0
 
 
-def _once(arguments: argparse.Namespace) -> None:
+def _once(arguments: argparse.Namespace, memory: Memory) -> None:
     """One run, told in one line. A file that is gone for a moment does not end the watch."""
     from aidl_lang.render import one_line
 
     clock = time.strftime("%H:%M:%S")
     try:
-        outcome = build(arguments)
+        outcome = build(arguments, memory)
     except UseError as reason:
         say(f"{clock} {one_line(reason.diagnostic)}")
         return

@@ -78,8 +78,9 @@ def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = 
         slopes, seen = matrix.split(len(equal))
         equations, plain = _equations(problem, equal, slopes)
         relations, unclear = dependent_rows(equations.matrix, len(problem.initial))
-        places = values[len(equal) :][node_of]
-        found = _mobility(problem, equations, seen, node_of, places)
+        new = np.setdiff1d(np.arange(len(equations.row)), list(relations))
+        rows, clear = equations.matrix.take(new), ~np.isin(new, unclear)
+        found = _mobility(problem, rows, clear, seen, node_of, values[len(equal) :][node_of])
         redundant = redundancies(problem, solution.values, equations, relations, plain) if relations else []
     undecided = [tuple(np.sort(unknowns).tolist()) for unknowns in found.undecided]
     if unclear and not undecided:
@@ -123,9 +124,12 @@ def _equations(problem: Problem, equal: Integers, slopes: Sparse) -> tuple[Equat
 
 
 def _mobility(
-    problem: Problem, equations: Equations, seen: Sparse, node_of: Integers, places: Floats
+    problem: Problem, rows: Sparse, clear: Flags, seen: Sparse, node_of: Integers, places: Floats
 ) -> Mobility:
-    """`seen` are the gradients of what is observed; `node_of` is the row of each, `places` its value."""
+    """What can move, with the equations `rows`, of which those that are `clear` are known to be independent.
+
+    seen  the gradients of what is observed; `node_of` is the row of each, `places` its value
+    """
     movable = ~problem.kept
     if (problem.frame_of >= 0).any():
         movable &= (problem.frame_of < 0) | _mentioned(problem)
@@ -135,9 +139,11 @@ def _mobility(
     distinct, row_of = _distinct(matrix)
     row = row_of[node_of]
     group, row_seen = np.divmod(np.unique(groups[row >= 0] * (len(row) + 1) + row[row >= 0]), len(row) + 1)
-    jacobian = equations.matrix.only(movable[equations.matrix.columns])
+    jacobian = rows.only(movable[rows.columns])
+    known = clear & (np.diff(jacobian.starts) == np.diff(rows.starts))
+    observables, watch = matrix.take(distinct), Watch(group, row_seen)
     motions = Motions(problem.scale, places, row)
-    return mobility(jacobian, matrix.take(distinct), Watch(group, row_seen), len(problem.parent), motions)
+    return mobility(jacobian, known, observables, watch, len(problem.parent), motions)
 
 
 def _mentioned(problem: Problem) -> Flags:

@@ -11,7 +11,6 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +18,7 @@ from numpy.typing import NDArray
 from aidl_lang.solver import arrays
 from aidl_lang.solver.expression import Tape
 from aidl_lang.solver.linear import Matrix
-from aidl_lang.solver.operations import BRANCHING, LINEAR, Floats, Op
-
-Ints: TypeAlias = NDArray[np.int64]
-Bools: TypeAlias = NDArray[np.bool_]
+from aidl_lang.solver.operations import BRANCHING, LINEAR, Bools, Floats, Ints, Op
 
 ZERO = -1
 """First member of a difference that is 0."""

@@ -14,10 +14,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from aidl_lang.solver.array_program import ArrayProgram, Bools, Ints
+from aidl_lang.solver.array_program import ArrayProgram
 from aidl_lang.solver.dense import CONSISTENT, INDEPENDENT, NOISE, RANK
 from aidl_lang.solver.newton import GAIN, POLISHED, Clock
-from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.operations import Bools, Floats, Ints
 
 STEPS = 80
 """Evaluations of all systems, at the most."""
@@ -225,7 +225,7 @@ class _Stack:
 
 
 def least_norm(jacobian: Floats, y: Floats, which: Bools) -> tuple[Floats, Floats]:
-    """The shortest points (b, k) with J z = y for J (b, m, k), y (b, m), and what is out of reach of y (b, m).
+    """The shortest points (b, k) with J z = y for J (b, m, k), y (b, m), and what of y is out of reach (b, m).
 
     Only those in `which` (b,) are looked for. Where J or y is not finite, everything is out of reach.
     """

@@ -212,6 +212,7 @@ class _Attempt:
         self._move_to(self.origin)
         steady = [i for i, row in enumerate(self.task.rows) if not self._branching([row.expression])]
         if len(steady) == len(self.task.rows):
+            self._move_to(reached)
             return False
         rows, softness = self.task.rows, self.task.softness
         alone = Task([rows[i] for i in steady], [softness[i] for i in steady], self.task.free)

@@ -17,7 +17,7 @@ break, and they join the system; a descendant that nothing outside mentions ther
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
@@ -29,7 +29,8 @@ from aidl_lang.solver import conflicts
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
 from aidl_lang.solver.gradients import gradients
 from aidl_lang.solver.newton import Clock
-from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.memory import Recollection
+from aidl_lang.solver.operations import Bools, Floats
 from aidl_lang.solver.preferences import prefer
 from aidl_lang.solver.problem import Problem, Row, Settings, depths, violations
 from aidl_lang.solver.solution import GroupFailure, StageReport
@@ -92,8 +93,8 @@ class Hierarchy:
         self.failures: list[GroupFailure] = []
         self.stages: list[StageReport] = []
         self.timed_out = False
-        self.reached = problem.initial
-        """The values (n,) at the end of the run."""
+        self.reached = problem.initial.copy()
+        """The values (n,) after the last depth."""
         self._broken: set[int] = set()
         self._levels: Levels | None = None
 
@@ -149,32 +150,47 @@ class Hierarchy:
         indices = range(len(self.problem.holder))
         return ((index, unknown) for index in indices for unknown in self.cones[index].unknowns)
 
-    def run(self) -> None:
-        if len(self.problem.rows.expression) < MANY:
-            for group in sorted(self._held_by, reverse=True):
-                _Group(self, group).solve()
-            self.reached = np.array(self.values.unknowns)
-        else:
-            self._run_by_levels()
+    def run(self, recollection: Recollection | None = None) -> None:
+        """Solves the groups depth by depth, from below; those that nothing has changed for are recalled."""
+        many = len(self.problem.rows.expression) >= MANY
+        turn = self._solve_together if many else self._solve_in_turn
+        for depth in range(int(self._group_depths.max(initial=0)), -1, -1):
+            known = np.zeros(len(self.problem.parent), dtype=np.bool_)
+            if recollection is not None:
+                known = recollection.recall(depth, self.reached)
+                for group in np.flatnonzero(known).tolist():
+                    self.stages.extend(recollection.stages(group))
+            turn(depth, known)
+            if recollection is not None:
+                recollection.note(depth, self.reached)
 
-    def _run_by_levels(self) -> None:
-        """All groups of a depth at once; then, one by one, those for which that was not enough."""
-        from aidl_lang.solver.levels import Levels
+    def _solve_in_turn(self, depth: int, known: Bools) -> None:
+        """Solves the groups at `depth` one by one, but for those that are `known` (g,)."""
+        groups = [g for g in self._held_by if self._group_depths[g] == depth and not known[g]]
+        self._solve_with_care(dict.fromkeys(groups, (0, 0)))
 
-        levels = self._levels = Levels(self.problem, self.settings, self.clock, self.metric)
-        wishing = set(self.problem.holder[~np.isnan(self.problem.weight)].tolist())
-        for depth in range(int(self._group_depths.max()), -1, -1):
-            stages = list(levels.solve(depth))
-            left = set(levels.unsolved(depth).tolist())
-            passed = self._record(stages, left)
-            left.update(group for group in wishing if self._group_depths[group] == depth)
-            if left:
-                self.values.assign(enumerate(levels.x.tolist()))
-                for group in sorted(left, reverse=True):
-                    _Group(self, group).solve(passed.get(group, (0, 0)))
-                levels.x[:] = self.values.unknowns
-                levels.binding[list(self._broken)] = False
-        self.reached = levels.x
+    def _solve_together(self, depth: int, known: Bools) -> None:
+        """Solves the groups at `depth` at once; then, one by one, those for which that was not enough."""
+        if self._levels is None:
+            from aidl_lang.solver.levels import Levels
+
+            self._levels = Levels(self.problem, self.reached, self.settings, self.clock, self.metric)
+        levels = self._levels
+        stages = list(levels.solve(depth, known))
+        left = set(levels.unsolved(depth).tolist())
+        passed = self._record(stages, left)
+        wishing = self.problem.holder[~np.isnan(self.problem.weight)].tolist()
+        left.update(group for group in wishing if self._group_depths[group] == depth)
+        self._solve_with_care({group: passed.get(group, (0, 0)) for group in left if not known[group]})
+        levels.binding[list(self._broken)] = False
+
+    def _solve_with_care(self, groups: Mapping[int, Tier]) -> None:
+        """Solves these groups one by one, each of which has passed the given stage."""
+        if groups:
+            self.values.assign(enumerate(self.reached.tolist()))
+            for group in sorted(groups):
+                _Group(self, group).solve(groups[group])
+            self.reached[:] = self.values.unknowns
 
     def _record(self, stages: list[Stage], left: set[int]) -> dict[int, Tier]:
         """Reports the stages, but for what is tried again; the last stage that helped each group."""
@@ -193,6 +209,7 @@ class Hierarchy:
         """How far each row (r,) is from holding at the end, in its own units; infinite if it has no value."""
         if self._levels is not None:
             return violations(self.problem, self._levels.nodes())
+        self.values.assign(enumerate(self.reached.tolist()))
         found = []
         for index, constraint in enumerate(self.problem.constraints):
             self.values.refresh(self.cones[index])
@@ -419,7 +436,9 @@ class _Group:
             if scope.free == tried:
                 continue
             tried = scope.free
-            verdict = hierarchy.attempt(scope, LAST_RESTARTS if tier == tiers[-1] else 1)
+            # What builds on a part that failed is drawn as well as it goes, and not searched for long.
+            last = tier == tiers[-1] and not hierarchy.failures
+            verdict = hierarchy.attempt(scope, LAST_RESTARTS if last else 1)
             self._report(stage_name(tier), scope, verdict.satisfied)
             if verdict.satisfied:
                 return tier, best

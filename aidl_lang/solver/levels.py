@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from aidl_lang.solver import batch, newton
-from aidl_lang.solver.array_program import ArrayFreezing, ArrayProgram, Bools, Ints, Schedule
+from aidl_lang.solver.array_program import ArrayFreezing, ArrayProgram, Schedule
 from aidl_lang.solver.branches import TIGHTER, Metric
 from aidl_lang.solver.newton import Clock, End, System
-from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.operations import Bools, Floats, Ints
 from aidl_lang.solver.problem import Problem, Settings, depths, violations
 
 ROUNDS = 4
@@ -45,12 +45,14 @@ class Stage:
 
 
 class Levels:
-    """One solve of a problem, depth by depth. `x` (n,) are the values reached."""
+    """One solve of a problem, depth by depth. `x` (n,) are the values, which are moved in place."""
 
-    def __init__(self, problem: Problem, settings: Settings, clock: Clock, metric: Metric) -> None:
+    def __init__(
+        self, problem: Problem, x: Floats, settings: Settings, clock: Clock, metric: Metric
+    ) -> None:
         self.problem, self.settings, self.clock, self.metric = problem, settings, clock, metric
         self.schedule = Schedule(problem.tape)
-        self.x = problem.initial.copy()
+        self.x = x
         depth = depths(problem.parent)
         self._holder_depth = depth[problem.holder]
         self._unknown_depth = depth[problem.group]
@@ -80,13 +82,13 @@ class Levels:
 
     # -- one depth
 
-    def solve(self, depth: int) -> Iterator[Stage]:
-        """Solves what it can of the groups at `depth`, stage by stage."""
+    def solve(self, depth: int, known: Bools) -> Iterator[Stage]:
+        """Solves what it can of the groups at `depth`, stage by stage, but for those that are `known` (g,)."""
         problem = self.problem
         nodes = self.nodes()
         holds = self._holding(nodes)
         active = self.binding & (self._holder_depth >= depth)
-        held = active & (self._holder_depth == depth)
+        held = active & (self._holder_depth == depth) & ~known[problem.holder]
         if not (held & ~self._all(holds)).any():
             return
         of_constraint, of_unknown = self._parts(active)
@@ -185,8 +187,8 @@ class Levels:
     def _attempt(
         self, rows: Ints, part: Ints, free: Bools, hopeful: Bools, of_unknown: Ints
     ) -> tuple[Bools, Bools]:
-        """Solves the rows (k,) of the parts (k,) with the unknowns `free` (n,). Returns the parts that succeed,
-        whose unknowns are moved, and those that certainly cannot.
+        """Solves the rows (k,) of the parts (k,) with the unknowns `free` (n,). Returns the parts that succeed
+        and are moved, and those that certainly cannot.
         """
         problem = self.problem
         nodes = self.nodes()

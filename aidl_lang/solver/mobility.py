@@ -113,17 +113,20 @@ class Watch:
     rows: Integers
 
 
-def mobility(equations: Sparse, observables: Sparse, watch: Watch, groups: int, motions: Motions) -> Mobility:
+def mobility(
+    equations: Sparse, known: Flags, observables: Sparse, watch: Watch, groups: int, motions: Motions
+) -> Mobility:
     """Counts motions, and lists them in `motions`.
 
-    equations   unit rows over the unknowns that may move
+    equations   rows over the unknowns that may move, parts of unit rows
+    known       those which are independent of one another for sure
     observables rows over the same, in units of a typical motion, none of them zero
     """
     unknowns = len(motions.scale)
     found = Mobility(np.zeros(groups, dtype=np.int64), np.zeros(unknowns, dtype=np.bool_), motions)
     if not len(observables):
         return found
-    parts = _Parts(equations, observables, watch, unknowns)
+    parts = _Parts(equations, known, observables, watch, unknowns)
     for members in lots(parts.rows.count, parts.columns.count, parts.seen.count):
         if parts.columns.count[members[0]] > LARGE:
             for part in members.tolist():
@@ -136,8 +139,10 @@ def mobility(equations: Sparse, observables: Sparse, watch: Watch, groups: int, 
 class _Parts:
     """The unknowns that observables and equations link, numbered by part, with their rows."""
 
-    def __init__(self, equations: Sparse, observables: Sparse, watch: Watch, unknowns: int) -> None:
-        self.equations, self.observables, self.watch = equations, observables, watch
+    def __init__(
+        self, equations: Sparse, known: Flags, observables: Sparse, watch: Watch, unknowns: int
+    ) -> None:
+        self.equations, self.known, self.observables, self.watch = equations, known, observables, watch
         links = [np.concatenate(ends) for ends in zip(equations.links, observables.links, strict=True)]
         label = connected(links[0], links[1], unknowns)
         seen = np.unique(label[observables.columns])
@@ -236,7 +241,9 @@ def _large(parts: _Parts, part: int, groups: Integers) -> tuple[Floats | None, F
     from aidl_lang.solver.elimination import NullSpace, UndecidedError, rank_of
 
     width = int(parts.columns.count[part])
-    null_space = NullSpace(parts.local(parts.equations.take(parts.rows.members(part))), width)
+    rows = parts.rows.members(part)
+    known = bool(parts.known[rows].all())
+    null_space = NullSpace(parts.local(parts.equations.take(rows)), width, known=known)
     observed = parts.local(parts.observables.take(parts.seen.members(part)))
 
     def degrees_of(rows: Sparse) -> int:

@@ -339,7 +339,7 @@ class _Newton:
         """Full steps, although the residuals grow for a while, to the first point where they are smaller.
 
         In a long chain of parts a step turns what is far down the chain, which stretches it; the steps after
-        that mend it, while damped ones would creep. (The watchdog technique: Nocedal and Wright, section 15.6.)
+        that mend it, while damped ones would creep. (The watchdog technique; Nocedal and Wright, chapter 15.)
         """
         system = self.system
         if len(system.inequality) != system.size or system.inequality.any():

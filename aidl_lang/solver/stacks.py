@@ -30,7 +30,7 @@ class Sorted:
         self.first = np.cumsum(self.count) - self.count + np.count_nonzero(part < 0)
         self.place = np.empty(len(part), dtype=np.int64)
         """The number of each within its part."""
-        self.place[self.of] = np.arange(len(part)) - np.where(part >= 0, self.first[part], 0)[self.of]
+        self.place[self.of] = np.arange(len(part)) - np.append(self.first, 0)[part][self.of]
 
     def members(self, part: int) -> Integers:
         return self.of[self.first[part] : self.first[part] + self.count[part]]

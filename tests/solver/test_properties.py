@@ -31,7 +31,7 @@ from .kinds import KINDS
 from .random_expressions import HOSTILE, Tangle, tangles
 from .random_problems import Taste, kinds_where, links, profile, sketches
 from .regularity import is_regular, mentioned, neighbours
-from .sketches import Built, Circle, Link, Point, Sketch
+from .sketches import Built, Circle, Group, Link, Point, Sketch
 
 ROOT = Path(__file__).resolve().parents[2]
 CLOSE = 1e-6
@@ -480,3 +480,15 @@ def test_overflow_is_silent() -> None:
     """A size of 1e308 in units of a thousandth."""
     problem = Tangle((1e308,), (), (), ((0, "="), (0, "=")), kept=1).problem()
     assert_honest(problem, solve(problem))
+
+
+@pytest.mark.xfail(strict=True, reason="slopes that are nothing but rounding are taken for slopes")
+def test_a_frame_that_cancels_stays() -> None:
+    """The root asks for an angle within a child; by moving its frame nothing is gained."""
+    points = (
+        Point((100.0, 100.0), group=1),
+        Point((0.0, 100.0), (6.225, 0.0), 1),
+        Point((0.0, 0.0), group=1),
+    )
+    sketch = Sketch(points, groups=(Group(0),), links=(Link("angle", (0, 1, 1, 2)),))
+    assert coordinates(sketch)[6:].tolist() == [0.0, 0.0]

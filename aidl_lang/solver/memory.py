@@ -1,0 +1,128 @@
+"""Solving again after a small change: what a change cannot have reached is taken from the solve before.
+
+The values below a group, once its turn is over, follow from the constraints and unknowns of its subtree and
+from nothing else. Every subtree is therefore given a key made of all that enters into it; where the key is
+that of the last solve, so are the values, and they are taken over. Everything else is solved as if for the
+first time. The answer is the one that a first solve gives, because no step of it is left to the start.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from aidl_lang.solver.operations import Bools, Floats, Ints, Op
+from aidl_lang.solver.problem import Problem, Settings, depths
+from aidl_lang.solver.solution import StageReport
+
+
+@dataclass
+class Memory:
+    """What one solve leaves for the next; a new one remembers nothing.
+
+    keys      of each group's subtree (g,)
+    reached   by depth, all values (n,) when the groups of that depth had had their turn
+    stages    by group
+    """
+
+    keys: tuple[int, ...] = ()
+    unknowns: int = 0
+    reached: dict[int, Floats] = field(default_factory=dict)
+    stages: dict[int, list[StageReport]] = field(default_factory=dict)
+
+
+class Recollection:
+    """One solve with a memory: reads what it holds of the last one, and at the end puts this one in."""
+
+    def __init__(self, memory: Memory, problem: Problem, settings: Settings) -> None:
+        self._memory, self._problem = memory, problem
+        self._keys = subtree_keys(problem, settings)
+        self._reached: dict[int, Floats] = {}
+        alike = len(memory.keys) == len(self._keys) and memory.unknowns == len(problem.initial)
+        pairs = zip(memory.keys, self._keys, strict=True) if alike else ()
+        self.familiar = np.array([a == b for a, b in pairs] if alike else [False] * len(self._keys))
+        """Whether the subtree of each group (g,) is as it was."""
+        self._depths = depths(problem.parent)
+
+    def recall(self, depth: int, x: Floats) -> Bools:
+        """Puts into `x` (n,) what is known below the groups at `depth`; which groups (g,) need no turn."""
+        known = self.familiar & (self._depths == depth)
+        if known.any():
+            above = ancestors(self._problem.parent, self._depths, depth)[self._problem.group]
+            below = (above >= 0) & known[above]
+            x[below] = self._memory.reached[depth][below]
+        return known
+
+    def stages(self, group: int) -> list[StageReport]:
+        """What was tried for a familiar group."""
+        return self._memory.stages.get(group, [])
+
+    def note(self, depth: int, x: Floats) -> None:
+        """The values when the groups at `depth` have had their turn."""
+        self._reached[depth] = x.copy()
+
+    def close(self, stages: list[StageReport], in_full: bool) -> None:
+        """Keeps this solve, or nothing if it did not succeed in full: what failed is tried again."""
+        by_group: dict[int, list[StageReport]] = {}
+        for stage in stages:
+            by_group.setdefault(stage.group, []).append(stage)
+        kept = self._memory
+        kept.keys, kept.unknowns = (self._keys, len(self._problem.initial)) if in_full else ((), 0)
+        kept.reached, kept.stages = (self._reached, by_group) if in_full else ({}, {})
+
+
+def subtree_keys(problem: Problem, settings: Settings) -> tuple[int, ...]:
+    """A number for each group (g,) that depends on all that the solution of its subtree depends on."""
+    nodes = _node_keys(problem)
+    rows, longest = problem.rows, problem.longest
+    own: list[list[object]] = [[] for _ in problem.parent]
+    bounds = [0.0] * len(problem.initial) if longest is None else longest.tolist()
+    columns = (problem.initial, problem.scale, problem.kept, problem.frame_of)
+    for index, (group, bound, *entry) in enumerate(
+        zip(problem.group.tolist(), bounds, *(column.tolist() for column in columns), strict=True)
+    ):
+        own[group].append((index, bound, *entry))
+    holder = problem.holder.tolist()
+    for owner, expression, at_most, scale in zip(
+        rows.constraint.tolist(),
+        rows.expression.tolist(),
+        rows.at_most.tolist(),
+        rows.scale.tolist(),
+        strict=True,
+    ):
+        own[holder[owner]].append((owner, nodes[expression], at_most, scale))
+    for owner, weight in enumerate(np.nan_to_num(problem.weight, nan=-1.0).tolist()):
+        own[holder[owner]].append((owner, weight))
+    for owner, unknown in problem.placed.T.tolist():
+        own[holder[owner]].append((owner, unknown))
+    parents = problem.parent.tolist()
+    keys = [0] * len(parents)
+    for group in reversed(range(len(parents))):
+        keys[group] = hash((settings, *own[group]))
+        if parents[group] >= 0:
+            own[parents[group]].append((group, keys[group]))
+    return tuple(keys)
+
+
+def _node_keys(problem: Problem) -> list[int]:
+    """A number for each node of the tape that depends on everything below it."""
+    tape = problem.tape
+    keys: list[int] = []
+    for op, operands, constant in zip(
+        tape.op_list, tape.operand_lists, tape.constants.tolist(), strict=True
+    ):
+        if op <= Op.UNKNOWN:
+            keys.append(hash((op, constant, operands)))
+        else:
+            keys.append(hash((op, *[keys[operand] for operand in operands])))
+    return keys
+
+
+def ancestors(parent: Ints, depth: Ints, at: int) -> Ints:
+    """For each group (g,) the one above it at depth `at`, or itself; -1 for groups further up."""
+    found = np.arange(len(parent))
+    while (low := depth[found] > at).any():
+        found[low] = parent[found[low]]
+    found[depth < at] = -1
+    return found
