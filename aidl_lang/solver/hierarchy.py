@@ -233,6 +233,10 @@ class Hierarchy:
             return (1, 0) if unknown in placed else (2, 0)
         return (3, level) if self._frame[unknown] else (4, level)
 
+    @cached_property
+    def all_hard(self) -> bool:
+        return all(self._hard)
+
     def is_hard(self, index: int) -> bool:
         return self._hard[index]
 
@@ -402,7 +406,7 @@ class _Group:
         before = hierarchy.save(everything.free)
         best: Best = (np.inf, before)
         tiers = sorted({self.tier(unknown) for unknown in everything.free})
-        rigid = self._beyond_positions(part)
+        rigid = self._beyond_positions(part) if tiers and tiers[-1] > POSITIONS else []
         if not set(rigid).isdisjoint(violated):
             broken = self._settle_sizes(rigid, part)
             if broken is not None:
@@ -520,6 +524,8 @@ class _Group:
     def _weigh_preferences(self, reached: Tier) -> None:
         """Satisfies preferences as well as possible within what the winning stage had free."""
         hierarchy = self.hierarchy
+        if hierarchy.all_hard:
+            return
         limit = min(max(reached, OWN), POSITIONS)
         soft = set(self.soft)
         if reached > (0, 0):

@@ -51,8 +51,8 @@ TOLERANCE = 1e-6
 FULL_TURN = 2.0 * math.pi
 _TINY = 1e-300
 
-_POINTS = ("p", "p2", "a", "b")
-_LINES = ("l", "m", "l2", "m2")
+POINTS = ("p", "p2", "a", "b")
+LINES = ("l", "m", "l2", "m2")
 _CURVES = ("k", "k2")
 _ARCS = {"arc": "end", "arc2": "end2"}
 _NUMBERS = ("v", "x", "y")
@@ -325,9 +325,9 @@ class Evaluator:
 
 
 _READERS: tuple[tuple[Iterable[str], str, Callable[[Sketch, Any], Any]], ...] = (
-    (_POINTS, "", lambda _, value: value),
+    (POINTS, "", lambda _, value: value),
     (_NUMBERS, "", lambda _, value: float(value)),
-    (_LINES, "", lambda sketch, value: sketch.lines[value]),
+    (LINES, "", lambda sketch, value: sketch.lines[value]),
     (_ARCS, "", lambda sketch, value: sketch.arcs[value]),
     (_ARCS.values(), "", lambda _, value: 2 if value else 1),
     (_CURVES, ".centre", lambda sketch, value: sketch.curve_points(value)[0]),
@@ -347,8 +347,8 @@ def _kind(constraint: Constraint) -> str:
 
 def _mentioned(sketch: Sketch, constraint: Constraint) -> Iterator[int]:
     """The unknowns of a constraint."""
-    points = [constraint[name] for name in _POINTS if name in constraint]
-    for name in _LINES:
+    points = [constraint[name] for name in POINTS if name in constraint]
+    for name in LINES:
         if name in constraint:
             points += sketch.lines[constraint[name]]
     for name in _ARCS:
