@@ -128,6 +128,7 @@ class ArrayProgram:
     """Some rows as functions of their free unknowns, with branches fixed.
 
     columns  (k,) the unknowns, ascending
+    rows     (r,) which of the roots given to `freeze`
     indptr, indices: the pattern of the Jacobian by rows, as in `scipy.sparse.csr_array`
     affine   (r,) whether each row is an affine function of the unknowns
     plain    (r,) whether it is the same affine function whatever branches are taken
@@ -139,6 +140,7 @@ class ArrayProgram:
     indices: Ints
     affine: Bools
     plain: Bools
+    rows: Ints
     _inputs: Ints
     _batches: list[Batch]
     _steps: list[_Step]
@@ -353,6 +355,7 @@ class ArrayFreezing:
             place[layout.unknown],
             affine,
             self._plain[roots],
+            np.arange(len(roots)),
             input_of[columns],
             Graph(self._ops, self._operands, self._levels).batches(nodes),
             layout.steps,

@@ -225,9 +225,9 @@ class _Stack:
 
 
 def least_norm(jacobian: Floats, y: Floats, which: Bools) -> tuple[Floats, Floats]:
-    """The shortest points (b, k) with J z = y for J (b, m, k), y (b, m), and what of y is out of reach (b, m).
+    """The shortest z (b, k) with J z = y for J (b, m, k), y (b, m), and what of y is beyond reach (b, m).
 
-    Only those in `which` (b,) are looked for. Where J or y is not finite, everything is out of reach.
+    Only those in `which` (b,) are looked for. Where J or y is not finite, everything is beyond reach.
     """
     b, m, k = jacobian.shape
     point = np.zeros((b, k))

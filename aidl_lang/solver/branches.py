@@ -17,7 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from aidl_lang.solver import newton
-from aidl_lang.solver.freezing import ZERO, Branch, Frozen, Root, freeze
+from aidl_lang.solver.array_program import ZERO, ArrayProgram
+from aidl_lang.solver.freezing import Branch, Frozen, Root, freeze
 from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Floats, Op
 from aidl_lang.solver.problem import Relation, Row, Settings
@@ -245,7 +246,11 @@ class _Attempt:
         return next((end for end in (End.EXHAUSTED, End.INFEASIBLE) if end in ends), End.CONVERGED)
 
     def _solve_program(
-        self, program: Program, start: dict[int, float], origin: dict[int, float], restarts: int
+        self,
+        program: Program | ArrayProgram,
+        start: dict[int, float],
+        origin: dict[int, float],
+        restarts: int,
     ) -> End:
         rows = [
             self.task.rows[self.considered[i]] if i < len(self.considered) else None for i in program.rows

@@ -1,17 +1,21 @@
 """From rows of the tape to programs: fold what is constant, fix the branches, separate what is independent.
 
 `freeze` takes the rows of one attempt. What depends on no free unknown becomes a number; `abs`, `minimum`,
-`maximum` and `select` are replaced by the branch active at the current values (paper, appendix B); and rows that share no free unknown go to programs of their own.
+`maximum` and `select` are replaced by the branch active at the current values (paper, appendix B); and rows
+that share no free unknown go to programs of their own. Many rows become programs on arrays.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 import numpy as np
 
+from aidl_lang.solver.array_program import TIE, ZERO, ArrayFreezing, ArrayProgram
+from aidl_lang.solver.components import components
 from aidl_lang.solver.operations import BRANCHING, LINEAR, PARTIALS, Op
 from aidl_lang.solver.program import Program, Sweep
 from aidl_lang.solver.valuation import Valuation, compiled, evaluate
@@ -22,9 +26,8 @@ Instruction: TypeAlias = tuple[int, int, tuple[int, ...]]
 Root: TypeAlias = "int | tuple[int, int]"
 """A tape node, or the difference of two, the first of which may be `ZERO`."""
 
-ZERO = -1
-TIE = 1e-9
-"""Difference, relative to the operands, below which rounding shall not decide between branches."""
+MANY = 100
+"""Roots from which on programs work on arrays."""
 UNUSED = 0
 """Weight that is written for operands without a free unknown and never read."""
 
@@ -41,7 +44,7 @@ class Frozen:
     branches  the choices made at branching nodes that depend on free unknowns
     """
 
-    programs: list[Program]
+    programs: Sequence[Program | ArrayProgram]
     constant: list[int]
     branches: tuple[Branch, ...]
 
@@ -53,7 +56,29 @@ def freeze(
 
     The roots must have been refreshed. Branching nodes in `flipped` take the branch that is not active.
     """
-    return _Freezer(values, free, flipped).freeze(roots)
+    if len(roots) < MANY:
+        return _Freezer(values, free, flipped).freeze(roots)
+    return _freeze_to_arrays(values, roots, free, flipped)
+
+
+def _freeze_to_arrays(
+    values: Valuation, roots: Sequence[Root], free: Iterable[int], flipped: frozenset[int]
+) -> Frozen:
+    movable = np.zeros(len(values.unknowns), dtype=np.bool_)
+    movable[list(free)] = True
+    differences = [root for root in roots if not isinstance(root, int)]
+    further = itertools.count(len(values.nodes))
+    nodes = np.array([root if isinstance(root, int) else next(further) for root in roots])
+    freezing = ArrayFreezing(values.schedule, np.array(values.nodes), movable, flipped, differences)
+    varying = freezing.varies(nodes)
+    rows = np.flatnonzero(varying)
+    row, unknown = freezing.pattern(nodes[rows])
+    system = components(row, unknown + len(rows), len(rows) + len(movable))[: len(rows)]
+    programs = []
+    for members in np.split(np.argsort(system, kind="stable"), np.cumsum(np.bincount(system))[:-1]):
+        if len(members):
+            programs.append(replace(freezing.program(nodes[rows[members]]), rows=rows[members]))
+    return Frozen(programs, np.flatnonzero(~varying).tolist(), tuple(freezing.branches))
 
 
 @dataclass

@@ -28,8 +28,8 @@ from numpy.typing import NDArray
 from aidl_lang.solver import conflicts
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
 from aidl_lang.solver.gradients import gradients
-from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.memory import Recollection
+from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Bools, Floats
 from aidl_lang.solver.preferences import prefer
 from aidl_lang.solver.problem import Problem, Row, Settings, depths, violations

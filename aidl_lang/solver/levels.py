@@ -16,14 +16,13 @@ import numpy as np
 from aidl_lang.solver import batch, newton
 from aidl_lang.solver.array_program import ArrayFreezing, ArrayProgram, Schedule
 from aidl_lang.solver.branches import TIGHTER, Metric
+from aidl_lang.solver.components import components
 from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Bools, Floats, Ints
 from aidl_lang.solver.problem import Problem, Settings, depths, violations
 
 ROUNDS = 4
 """Rounds of taking up inequalities that came to be violated."""
-EDGES = 3000
-"""Edges of a graph up to which components are found without scipy."""
 STACKED = 4096
 """Entries of a Jacobian up to which systems are stacked; larger ones are solved one by one."""
 KINDS = {"placed": 1, "own": 2, "translations": 3, "positions": 4, "sizes": 5}
@@ -47,9 +46,7 @@ class Stage:
 class Levels:
     """One solve of a problem, depth by depth. `x` (n,) are the values, which are moved in place."""
 
-    def __init__(
-        self, problem: Problem, x: Floats, settings: Settings, clock: Clock, metric: Metric
-    ) -> None:
+    def __init__(self, problem: Problem, x: Floats, settings: Settings, clock: Clock, metric: Metric) -> None:
         self.problem, self.settings, self.clock, self.metric = problem, settings, clock, metric
         self.schedule = Schedule(problem.tape)
         self.x = x
@@ -83,7 +80,7 @@ class Levels:
     # -- one depth
 
     def solve(self, depth: int, known: Bools) -> Iterator[Stage]:
-        """Solves what it can of the groups at `depth`, stage by stage, but for those that are `known` (g,)."""
+        """Solves what it can of the groups at `depth`, stage by stage, except those `known` (g,)."""
         problem = self.problem
         nodes = self.nodes()
         holds = self._holding(nodes)
@@ -187,8 +184,8 @@ class Levels:
     def _attempt(
         self, rows: Ints, part: Ints, free: Bools, hopeful: Bools, of_unknown: Ints
     ) -> tuple[Bools, Bools]:
-        """Solves the rows (k,) of the parts (k,) with the unknowns `free` (n,). Returns the parts that succeed
-        and are moved, and those that certainly cannot.
+        """Solves the rows (k,) of the parts (k,) with the unknowns `free` (n,). Returns the parts (p,) that
+        succeed and are moved, and those that certainly cannot.
         """
         problem = self.problem
         nodes = self.nodes()
@@ -290,23 +287,3 @@ def _systems(program: ArrayProgram) -> batch.Systems:
     count = int(labels.max(initial=-1)) + 1
     entries = np.bincount(of_row, minlength=count) * np.bincount(of_column, minlength=count)
     return batch.Systems(of_row, of_column, entries <= STACKED)
-
-
-def components(a: Ints, b: Ints, count: int) -> Ints:
-    """To which component each of `count` vertices belongs, numbered from 0, where edges (e,) link a and b."""
-    if len(a) > EDGES:
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-
-        links = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(count, count))
-        labels: Ints = connected_components(links, directed=False)[1].astype(np.int64)
-        return labels
-    lowest = np.arange(count)
-    while True:
-        below, above = np.minimum(lowest[a], lowest[b]), np.maximum(lowest[a], lowest[b])
-        if (below == above).all():
-            break
-        np.minimum.at(lowest, above, below)
-        while (lowest != (lower := lowest[lowest])).any():
-            lowest = lower
-    return (np.cumsum(lowest == np.arange(count)) - 1)[lowest]

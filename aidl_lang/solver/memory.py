@@ -47,7 +47,7 @@ class Recollection:
 
     def recall(self, depth: int, x: Floats) -> Bools:
         """Puts into `x` (n,) what is known below the groups at `depth`; which groups (g,) need no turn."""
-        known = self.familiar & (self._depths == depth)
+        known: Bools = self.familiar & (self._depths == depth)
         if known.any():
             above = ancestors(self._problem.parent, self._depths, depth)[self._problem.group]
             below = (above >= 0) & known[above]
@@ -109,9 +109,7 @@ def _node_keys(problem: Problem) -> list[int]:
     """A number for each node of the tape that depends on everything below it."""
     tape = problem.tape
     keys: list[int] = []
-    for op, operands, constant in zip(
-        tape.op_list, tape.operand_lists, tape.constants.tolist(), strict=True
-    ):
+    for op, operands, constant in zip(tape.op_list, tape.operand_lists, tape.constants.tolist(), strict=True):
         if op <= Op.UNKNOWN:
             keys.append(hash((op, constant, operands)))
         else:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
+from aidl_lang.solver.array_program import Schedule
 from aidl_lang.solver.expression import Tape
 from aidl_lang.solver.operations import VALUE, Op
 
@@ -26,6 +28,10 @@ class Valuation:
         self.nodes = [float(value) for value in tape.constants]
         self._seen = [False] * len(tape)
         self._code: list[Compiled | None] = [None] * len(tape)
+
+    @cached_property
+    def schedule(self) -> Schedule:
+        return Schedule(self.tape)
 
     def assign(self, values: Iterable[tuple[int, float]]) -> None:
         for unknown, value in values:

@@ -29,7 +29,8 @@ class Tangle:
     initial   of the unknowns; every second one is in a child of the root, if `nested`
     constants come next
     steps     operations on what came before, by number
-    rows      what is a constraint by itself: the number of a value, and whether it is `=` or `<=`
+    rows      what is a constraint by itself: the number of a value, and whether it is `=`, `<=`, or a
+              preference `~`
     """
 
     initial: tuple[float, ...]
@@ -52,7 +53,7 @@ class Tangle:
             nodes = [found[i].node for i in operands]
             found.append(E(m.builder, getattr(m.builder, method)(*nodes)))
         for number, sense in self.rows:
-            (m.equal if sense == "=" else m.at_most)(found[number])
+            (m.at_most if sense == "<=" else m.equal)(found[number], weight=1.0 if sense == "~" else None)
         return m, found
 
     def problem(self) -> Problem:
@@ -68,7 +69,7 @@ def tangles(draw: st.DrawFn, numbers: st.SearchStrategy[float], rows: int = 0) -
         method, last = draw(st.sampled_from(sorted(ARITY))), len(initial) + len(constants) + len(steps) - 1
         steps.append((method, tuple(draw(st.integers(0, last)) for _ in range(ARITY[method]))))
     total = len(initial) + len(constants) + len(steps)
-    chosen = st.tuples(st.integers(0, total - 1), st.sampled_from(["=", "<="]))
+    chosen = st.tuples(st.integers(0, total - 1), st.sampled_from(["=", "<=", "~"]))
     return Tangle(
         initial,
         constants,

@@ -23,10 +23,6 @@ from .kinds import KINDS, OPPOSITE, Place
 
 Vector: TypeAlias = tuple[float, float]
 
-CUT = math.pi - 0.3
-"""Directions beyond this are near the place where `atan2` jumps by a turn. `mod` makes up for that, but the
-solver does not see it: `test_an_arc_may_begin_where_atan2_jumps`."""
-
 
 @dataclass(frozen=True)
 class Point:
@@ -123,8 +119,6 @@ class Sketch:
             return False
         if link.kind == "arc_length":
             start, end = (math.atan2(p[1] - at[0][1], p[0] - at[0][0]) for p in at[1:])
-            if max(abs(start), abs(end)) > CUT:
-                return False
             return 0.5 < (end - start) % (2.0 * math.pi) < 2.0 * math.pi - 0.5
         return True
 

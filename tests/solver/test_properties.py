@@ -137,8 +137,7 @@ def test_another_optimiser_finds_nothing_nearer(sketch: Sketch) -> None:
 @profile(120)
 def test_unkind_problems_are_answered_honestly_and_soon(tangle: Tangle) -> None:
     problem, began = tangle.problem(), time.perf_counter()
-    with np.errstate(all="ignore"):  # `test_overflow_is_silent`
-        solution = solve(problem, Settings(seconds=2.0))
+    solution = solve(problem, Settings(seconds=2.0))
     assert time.perf_counter() - began < 10.0
     assert_honest(problem, solution)
 
@@ -376,9 +375,8 @@ def test_sizes_stay_if_positions_suffice(sketch: Sketch) -> None:
 @given(regular(replace(EQUATIONS, kept=True, size_noise=0.5)))
 @profile(40)
 def test_sizes_that_must_change_are_reported(sketch: Sketch) -> None:
-    built = sketch.build()
-    assume(is_regular(built.problem, built.known, ~built.problem.kept))
-    assert_honest(built.problem, solved(built.problem))
+    problem = sketch.problem()
+    assert_honest(problem, solved(problem))
 
 
 # ---- preferences ----------------------------------------------------------------------------------------
@@ -453,29 +451,22 @@ def test_the_same_digits_twice_and_in_any_process(several: list[Sketch]) -> None
         assert run.stdout.decode().split() == digests
 
 
-# ---- known faults ---------------------------------------------------------------------------------------
+# ---- where it once went wrong ---------------------------------------------------------------------------
 
 
-@pytest.mark.xfail(
-    strict=True, reason="the turns of `mod` are held, so that the sweep jumps where atan2 does"
-)
 def test_an_arc_may_begin_where_atan2_jumps() -> None:
     """Its start is to the left of its centre."""
     points = (Point((0.0, 0.0)), Point((-10.0, 0.0), (0.0, 0.05)), Point((0.0, -10.0), (0.05, 0.0)))
     coordinates(Sketch(points, (Circle(0, 5.0, 0.25, kept=True),), links=(Link("arc_length", (0, 1, 2)),)))
 
 
-@pytest.mark.xfail(strict=True, reason="steps go along the flat position for ever, since sizes are dear")
 def test_a_size_may_be_all_that_helps() -> None:
     """The centres are one above the other, all but a little, and closer than the radii say."""
     points = (Point((0.0, 10.0), (0.0625, 0.0)), Point((0.0, 0.0)))
     circles = (Circle(0, 5.0, kept=True), Circle(1, 5.0, -0.0625, kept=True))
-    solved(
-        Sketch(points, circles, links=(Link("offset_y", (0, 1)), Link("tangent_outside", (0, 1)))).problem()
-    )
+    coordinates(Sketch(points, circles, links=(Link("offset_y", (0, 1)), Link("tangent_outside", (0, 1)))))
 
 
-@pytest.mark.xfail(strict=True, reason="numpy warns of overflow, here an error")
 def test_overflow_is_silent() -> None:
     """A size of 1e308 in units of a thousandth."""
     problem = Tangle((1e308,), (), (), ((0, "="), (0, "=")), kept=1).problem()

@@ -137,6 +137,16 @@ def _plane_angle(made: _PlaneSketch, c: Constraint) -> None:
     made.system.set_l2l_angle(made.lines[c["l"]], made.lines[c["m"]], angle)
 
 
+def _plane_offset(made: _PlaneSketch, c: Constraint) -> None:
+    """Its distances have no sign: the side is that of the start."""
+    (ax, ay), (bx, by) = (made.sketch.points[end] for end in made.sketch.lines[c["l"]])
+    px, py = made.sketch.points[c["p"]]
+    side = (bx - ax) * (py - ay) - (by - ay) * (px - ax)
+    if c.get("signed") and side * c["v"] < 0.0:
+        raise UnsupportedError("point_line_distance on the other side")
+    made.system.set_p2l_distance(made.points[c["p"]], made.lines[c["l"]], abs(c["v"]))
+
+
 def _plane_midpoint(made: _PlaneSketch, c: Constraint) -> None:
     a, b = (made.points[end] for end in made.sketch.lines[c["l"]])
     made.system.symmetric_point(a, b, made.points[c["p"]])
@@ -155,9 +165,7 @@ _PLANE_NUMBERS: dict[str, Callable[[_PlaneSketch, Constraint], object]] = {
     "distance": lambda made, c: made.system.set_p2p_distance(
         made.points[c["a"]], made.points[c["b"]], c["v"]
     ),
-    "point_line_distance": lambda made, c: made.system.set_p2l_distance(
-        made.points[c["p"]], made.lines[c["l"]], abs(c["v"])
-    ),
+    "point_line_distance": _plane_offset,
     "angle": _plane_angle,
     "midpoint": _plane_midpoint,
     "arc_length": lambda made, c: made.system.set_arc_length(made.arcs[c["arc"]], c["v"]),
