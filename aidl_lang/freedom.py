@@ -163,6 +163,8 @@ class _Telling:
         yield from self._changes()
         for each in things:
             yield from self._growth(*each)
+        for thing in self._near():
+            yield from self._growth_from_a_place(thing)
         yield from self._rest()
 
     def _things(self) -> list[_Masked]:
@@ -229,7 +231,9 @@ class _Telling:
         yield Motion(kind, tuple(things), words, moves)
 
     def _slides(self, thing: _Thing | None, xs: Floats, ys: Floats) -> Iterator[Motion]:
-        things = self._named(thing, xs + ys)
+        things = self._whole_things(thing, xs + ys)
+        if not things:
+            return
         before = len(self.taken)
         yield from self._told(xs, "slide", things, "slide left–right")
         yield from self._told(ys, "slide", things, "slide up–down")
@@ -244,7 +248,9 @@ class _Telling:
 
     def _turns(self, thing: _Thing | None, xs: Floats, ys: Floats) -> Iterator[Motion]:
         at_x, at_y = np.flatnonzero(xs), np.flatnonzero(ys)
-        if self.is_done or len(at_x) != len(at_y):  # x and y of a place stand side by side
+        things = self._whole_things(thing, xs + ys)
+        # The x and y of places stand side by side.
+        if self.is_done or not things or len(at_x) != len(at_y):
             return
         x, y = self.places[at_x].mean(), self.places[at_y].mean()
         turn = np.zeros(len(xs))
@@ -258,7 +264,7 @@ class _Telling:
         if np.linalg.norm(missing) > POSSIBLE:  # else it can turn about any place
             words = f"turn about ({_short(x - about[1])}, {_short(y + about[0])})"
         velocity = (turn + about[0] * xs + about[1] * ys) * DEGREE
-        yield from self._told(velocity, "turn", self._named(thing, xs + ys), words)
+        yield from self._told(velocity, "turn", things, words)
 
     def _turns_about_a_place(self, thing: _Thing) -> Iterator[Motion]:
         """Of a thing with places that stay, all of them the same."""
@@ -296,13 +302,28 @@ class _Telling:
     def _growth(self, thing: _Thing | None, xs: Floats, ys: Floats) -> Iterator[Motion]:
         missing = np.stack((self._missing(xs), self._missing(ys)), axis=1)
         for mask, words in ((xs, "grow wider"), (ys, "grow taller")):
-            if self.is_done or not mask.any():
+            if self.is_done or not mask.any() or not self._whole_things(thing, mask):
                 continue
             velocity = mask * (self.places - float(self.places @ mask) / float(mask.sum()))
             shift, *_ = np.linalg.lstsq(missing, -self._missing(velocity), rcond=1e-9)
             if np.linalg.norm(velocity) > POSSIBLE:
-                things = self._named(thing, mask)
+                things = self._whole_things(thing, mask)
                 yield from self._told(velocity + shift[0] * xs + shift[1] * ys, "grow", things, words)
+
+    def _growth_from_a_place(self, thing: _Thing) -> Iterator[Motion]:
+        """Of a thing with places that stay, all at one x or y."""
+        own = slice(thing.start, thing.stop)
+        for axis, words in ((X, "grow wider"), (Y, "grow taller")):
+            along = self.scene.axis[own] == axis
+            local, places = self.local[own][along], self.scene.places[own][along]
+            stays = local < 0
+            if self.is_done or stays.all() or not stays.any():
+                continue
+            needed = places - places[stays][0]
+            if np.abs(needed[stays]).max() <= POSSIBLE:
+                velocity = np.zeros(len(self.axis))
+                velocity[local[~stays]] = needed[~stays]
+                yield from self._told(velocity, "grow", [thing.path], words)
 
     def _rest(self) -> Iterator[Motion]:
         for column in _reduced(self.part.basis).T:
@@ -310,7 +331,7 @@ class _Telling:
                 return
             ways, *_ = np.linalg.lstsq(self.part.basis, column, rcond=None)
             velocity = self.part.velocities @ ways
-            things = self._cover(np.abs(velocity) > POSSIBLE * np.abs(velocity).max())
+            things = [path for path, _ in self._cover(np.abs(velocity) > POSSIBLE * np.abs(velocity).max())]
             words = "move together" if len(things) > 1 else "change its shape"
             if not (np.abs(velocity) * (self.axis != NUMBER)).any():
                 words = "change together"
@@ -318,42 +339,52 @@ class _Telling:
 
     # --- Naming ------------------------------------------------------------------------------------
 
-    def _named(self, thing: _Thing | None, mask: Floats) -> list[str]:
-        return [thing.path] if thing else self._cover(mask > 0.0)
+    def _whole_things(self, thing: _Thing | None, mask: Floats) -> list[str]:
+        """The names of what moves as a whole; none if some of it does not."""
+        if thing:
+            return [thing.path]
+        found = self._cover(mask > 0.0)
+        return [path for path, _ in found] if all(whole for _, whole in found) else []
 
-    def _cover(self, moving: Flags) -> list[str]:
-        """Paths of what takes part: structures of which every place does, else geometry, else numbers."""
+    def _cover(self, moving: Flags) -> list[tuple[str, bool]]:
+        """Paths of what takes part, and whether all places of it do: structures, geometry and points of which
+        that is so, then other geometry, then numbers.
+        """
         left = np.zeros(len(self.local), dtype=np.bool_)
         left[self.part.observables[moving]] = True
-        axes = set(self.axis[moving].tolist()) - {NUMBER}
-        placed = np.isin(self.scene.axis, list(axes))
+        placed = np.isin(self.scene.axis, list(set(self.axis[moving].tolist()) - {NUMBER}))
         entire = left | ~placed
-        found: list[tuple[int, str]] = []
+        found: list[tuple[int, str, bool]] = []
         things = {t for o in np.flatnonzero(left & placed).tolist() for t in self.scene.of[o]}
-        for thing in sorted(things, key=lambda t: (t.rank == GEOMETRY, t.start - t.stop)):
-            own = slice(thing.start, thing.stop)
-            structure = thing.rank in (ROOT, WHOLE) and entire[own].all()
-            if (structure or thing.rank == GEOMETRY) and (left & placed)[own].any():
-                found.append((thing.start, thing.path))
-                left[own] = False
-        found += [(o, self.scene.number[o]) for o in np.flatnonzero(left).tolist()]
-        return list(dict.fromkeys(path for _, path in sorted(found)))
+        for whole in (True, False):
+            for thing in sorted(things, key=_gladly):
+                own = slice(thing.start, thing.stop)
+                fits = entire[own].all() if whole else thing.rank == GEOMETRY
+                if fits and (left & placed)[own].any():
+                    found.append((thing.start, thing.path, whole))
+                    left[own] = False
+        found += [(o, self.scene.number[o], True) for o in np.flatnonzero(left).tolist()]
+        partly = tuple(f"{path}." for _, path, whole in found if not whole)
+        return [(path, whole) for _, path, whole in sorted(found) if not path.startswith(partly)]
+
+
+def _gladly(thing: _Thing) -> tuple[bool, int, int]:
+    """The order in which things are named: structures before geometry and points, large before small."""
+    return thing.rank in (GEOMETRY, POINT), thing.start - thing.stop, -thing.rank
 
 
 def _reduced(basis: Floats) -> Floats:
-    """The same space by vectors with few entries: each has one of its own, the greatest that was left."""
-    rows = basis.T.copy()
-    pending = np.ones(len(rows), dtype=np.bool_)
-    for _ in range(len(rows)):
-        sizes = np.abs(rows) * pending[:, None]
-        row, column = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
-        pending[row] = False
-        rows[row] /= rows[row, column]
-        factors = rows[:, column].copy()
-        factors[row] = 0.0
-        rows -= np.outer(factors, rows[row])
-    rows[np.abs(rows) < POSSIBLE] = 0.0
-    return np.ascontiguousarray(rows.T)
+    """The same space by vectors each of which has an unknown of its own, and so few entries. They do not
+    depend on the basis: these unknowns are pivots of the projection onto the space.
+    """
+    rest = np.linalg.qr(basis)[0]
+    own: list[int] = []
+    for _ in range(basis.shape[1]):
+        own.append(int(np.argmax(np.round((rest * rest).sum(axis=1), 6))))
+        direction = rest[own[-1]] / np.linalg.norm(rest[own[-1]])
+        rest = rest - np.outer(rest @ direction, direction)
+    found: Floats = basis @ np.linalg.inv(basis[own])
+    return found
 
 
 def _short(value: float) -> str:

@@ -27,6 +27,8 @@ TIE = 1e-9
 DENSE = 4096
 """Entries of a Jacobian up to which it is a dense matrix."""
 GOLDEN = 0.6180339887498949
+CANCELLED = 1e-13
+"""A sum this small beside its terms is what rounding has left of zero."""
 ALIKE = 1e-12
 """Relative difference of slopes that is rounding alone."""
 IDENTITY = 40
@@ -201,7 +203,9 @@ class ArrayProgram:
             for step in self._steps:
                 passed = adjoints[step.parents] * slopes[step.slopes]
                 if step.starts is not None:
-                    passed = np.add.reduceat(passed, step.starts)
+                    sums = np.add.reduceat(passed, step.starts)
+                    sizes = np.add.reduceat(np.abs(passed), step.starts)
+                    passed = np.where(np.abs(sums) > CANCELLED * sizes, sums, 0.0)
                 adjoints[step.low : step.high] = passed
         found = adjoints[len(adjoints) - 1 - len(self.indices) : -1]
         return found if np.isfinite(found).all() else np.nan_to_num(found)

@@ -30,6 +30,8 @@ WORK = 20_000
 """Budget of all explanations of one solve: rows times unknowns, summed over the attempts."""
 SECONDS = 2.0
 """Time for one explanation, should the budget not be spent by then."""
+PATIENCE = 4.0
+"""Seconds after the first failure for which explanations are sought at all."""
 RESTARTS = 2
 """Perturbed starts for each set that is tried."""
 THOROUGH = 5
@@ -92,8 +94,9 @@ class _Search:
     work: int = 0
 
     def __post_init__(self) -> None:
-        self.clock = Clock(min(SECONDS, self.hierarchy.clock.left / 2.0))
-        self.left = WORK - sum(failure.work for failure in self.hierarchy.failures)
+        hierarchy = self.hierarchy
+        self.clock = Clock(min(SECONDS, hierarchy.patience.left, hierarchy.clock.left / 2.0))
+        self.left = WORK - sum(failure.work for failure in hierarchy.failures)
 
     def explain(self, group: int, best: dict[int, float]) -> GroupFailure:
         hierarchy = self.hierarchy

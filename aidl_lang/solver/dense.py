@@ -121,7 +121,7 @@ class DampedSteps:
         if self._small:
             u, self._sigma, self._vt = np.linalg.svd(jacobian, full_matrices=False)
             self._target = u.T @ residuals
-            self.largest = float(self._sigma.max(initial=0.0)) ** 2
+            self.largest = float(np.square(self._sigma.max(initial=0.0)))
         else:
             self._gram = jacobian @ jacobian.T
             self.largest = float(np.abs(self._gram).sum(axis=1).max())

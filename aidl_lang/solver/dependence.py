@@ -150,15 +150,16 @@ def _sparse_relations(matrix: Sparse, columns: Integers) -> dict[int, Relation] 
     local = Sparse(matrix.starts, np.searchsorted(columns, matrix.columns), matrix.entries)
     try:
         independent = independent_rows(local, len(columns))
+        dependent = np.setdiff1d(np.arange(len(matrix)), independent)
+        if not len(dependent):
+            return {}
+        if len(dependent) > MOST:
+            return None
+        shares = combinations(local.take(independent), local.take(dependent), len(columns))
     except UndecidedError:
         return None
-    dependent = np.setdiff1d(np.arange(len(matrix)), independent)
-    if len(dependent) > MOST:
-        return None
-    if not len(dependent):
-        return {}
     left = np.zeros((len(dependent), len(matrix)))
-    left[:, independent] = -combinations(local.take(independent), local.take(dependent), len(columns))
+    left[:, independent] = -shares
     left[np.arange(len(dependent)), dependent] = 1.0
     return _reduced(left)
 

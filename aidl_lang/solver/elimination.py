@@ -110,12 +110,15 @@ def combinations(rows: Sparse, wanted: Sparse, width: int) -> Floats:
 
 
 def gram_solver(rows: scipy.sparse.csr_array) -> Callable[[Floats], Floats]:
-    """Solves with J Jᵀ, for rows that are independent."""
+    """Solves with J Jᵀ, for rows that are independent. Raises UndecidedError."""
     if not rows.shape[0]:
         return lambda right: right
     gram = scipy.sparse.csc_array(rows @ rows.T)
     options = {"SymmetricMode": True}
-    factors = scipy.sparse.linalg.splu(gram, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+    try:
+        factors = scipy.sparse.linalg.splu(gram, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+    except RuntimeError as reason:  # exactly singular, by rounding
+        raise UndecidedError from reason
     return factors.solve  # type: ignore[no-any-return]
 
 

@@ -84,6 +84,11 @@ class TapeBuilder:
             return a
         if self._is(a, 0.0):
             return self.neg(b)
+        if self._ops[a] == self._ops[b] == Op.ADD:
+            # Two places in one frame: what moves both takes no part, and must not by rounding either.
+            for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
+                if self._operands[a][i] == self._operands[b][j]:
+                    return self.sub(self._operands[a][1 - i], self._operands[b][1 - j])
         return self._node(Op.SUB, a, b)
 
     def mul(self, a: int, b: int) -> int:

@@ -137,10 +137,10 @@ class _Loading:
 
     def case(self, form: object) -> Case:
         members = Members(form, *MEMBERS)
-        for name, above in members.object("groups").items():
+        for name, above in members.table("groups").items():
             with within(f"group {quoted(name)}"):
                 self._add_group(name, above)
-        for name, entry in members.object("unknowns").items():
+        for name, entry in members.table("unknowns").items():
             with within(f"unknown {quoted(name)}"):
                 self._add_unknown(name, entry)
         self._read_lets(members)
@@ -207,7 +207,7 @@ class _Loading:
         )
 
     def _read_lets(self, members: Members) -> None:
-        for name, text in members.object("let").items():
+        for name, text in members.table("let").items():
             with within(f"let {quoted(name)}"):
                 self._check_new(name)
                 self.notation.lets[name] = self.notation.value(as_text(text))

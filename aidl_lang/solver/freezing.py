@@ -270,7 +270,8 @@ class _Freezer:
             touched = self._below(root)
             edges = [(parent, child, edge) for parent in touched for child, edge in self.edges[parent]]
             leaves = [slot for slot in touched if slot < inputs]
-            program.sweeps.append(Sweep(root, edges, leaves, touched))
+            merging = len(edges) >= len(touched)
+            program.sweeps.append(Sweep(root, edges, leaves, touched, merging))
             scatter.extend(i * width + column[slot] for slot in leaves)
         program.scatter = np.array(scatter, dtype=np.intp)
 

@@ -32,6 +32,8 @@ DENSE = 8
 """Nodes to a root up to which the whole tape is looked through for those below."""
 MANY = 100
 """Nodes to a root beyond which it is not worth it to evaluate the whole tape."""
+STEEPEST = 1e100
+"""Slopes above this are what overflow leaves."""
 BRANCHES = 4
 """Most operands that an operation has."""
 
@@ -151,7 +153,8 @@ def gradients(values: Valuation, roots: Iterable[int]) -> dict[int, Gradient]:
 def linearise(tape: Tape, at: Floats, roots: Integers) -> tuple[Floats, Sparse]:
     """The values (r,) of `roots` at the unknowns `at` (n,), and their finite partial derivatives.
 
-    Unknowns without influence on a root have no entry; entries that cancel may be zeros.
+    Unknowns without influence on a root have no entry; entries that cancel may be zeros, and products that
+    overflow count as none.
     """
     wanted = roots.tolist()
     if len(tape) <= FEW or len(wanted) * MANY < len(tape):
@@ -163,8 +166,8 @@ def linearise(tape: Tape, at: Floats, roots: Integers) -> tuple[Floats, Sparse]:
         with np.errstate(all="ignore"):
             every, slopes = _everything(tape, at)
             values, matrix = every[roots], _backward(tape, slopes, roots)
-    finite = np.nan_to_num(matrix.entries)  # products of finite slopes may still overflow
-    return values, replace(matrix, entries=finite)
+    sensible = np.abs(matrix.entries) < STEEPEST  # not for those that are not numbers
+    return values, replace(matrix, entries=np.where(sensible, matrix.entries, 0.0))
 
 
 def _sparse(rows: Sequence[Gradient]) -> Sparse:

@@ -129,6 +129,11 @@ class Hierarchy:
         return found
 
     @cached_property
+    def patience(self) -> Clock:
+        """How long failures are explained; it runs from the first one."""
+        return Clock(conflicts.PATIENCE)
+
+    @cached_property
     def values(self) -> Valuation:
         return Valuation(self.problem.tape, self.problem.initial.tolist())
 

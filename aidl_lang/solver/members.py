@@ -29,7 +29,7 @@ class Members:
         with within(name):
             return convert(self._values[name])
 
-    def object(self, name: str) -> dict[str, object]:
+    def table(self, name: str) -> dict[str, object]:
         empty: dict[str, object] = {}
         return self.read(name, as_object, empty)
 

@@ -62,5 +62,6 @@ def _cost(hierarchy: Hierarchy, soft: tuple[int, ...]) -> float:
         constraint = hierarchy.problem.constraints[index]
         hierarchy.values.refresh(hierarchy.cones[index])
         for row in constraint.rows:
-            total += (constraint.weight or 0.0) * (violation_of(row, hierarchy.values) / row.scale) ** 2
+            lack = violation_of(row, hierarchy.values) / row.scale
+            total += (constraint.weight or 0.0) * lack * lack
     return total

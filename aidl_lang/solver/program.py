@@ -14,6 +14,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.solver.array_program import CANCELLED
 from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.valuation import Compiled, run
 
@@ -23,12 +24,15 @@ Partial: TypeAlias = "tuple[Callable[..., tuple[float, ...]], tuple[int, ...], i
 
 @dataclass(frozen=True)
 class Sweep:
-    """Reverse accumulation of one row: from its root to the unknowns in it."""
+    """Reverse accumulation of one row: from its root to the unknowns in it. `merging` tells whether some slot
+    is reached in several ways, whose slopes may cancel.
+    """
 
     root: int
     edges: list[tuple[int, int, int]]
     inputs: list[int]
     touched: list[int]
+    merging: bool
 
 
 @dataclass
@@ -73,8 +77,11 @@ class Program:
         entries: list[float] = []
         for sweep in self.sweeps:
             adjoints[sweep.root] = 1.0
-            for parent, child, edge in sweep.edges:
-                adjoints[child] += adjoints[parent] * weights[edge]
+            if sweep.merging:
+                self._accumulate_with_care(sweep, adjoints)
+            else:
+                for parent, child, edge in sweep.edges:
+                    adjoints[child] += adjoints[parent] * weights[edge]
             entries.extend([adjoints[slot] for slot in sweep.inputs])
             for slot in sweep.touched:
                 adjoints[slot] = 0.0
@@ -86,3 +93,16 @@ class Program:
         matrix *= row_factors[:, None]
         matrix *= column_factors
         return matrix
+
+    def _accumulate_with_care(self, sweep: Sweep, adjoints: list[float]) -> None:
+        """Slopes that cancel become zero: a frame that moves all of a row moves nothing in it."""
+        weights, sizes = self.weights, dict.fromkeys(sweep.touched, 0.0)
+        for parent, child, edge in sweep.edges:
+            slope = adjoints[parent]
+            if abs(slope) > CANCELLED * sizes[parent]:
+                slope *= weights[edge]
+                adjoints[child] += slope
+                sizes[child] += abs(slope)
+        for slot in sweep.inputs:
+            if abs(adjoints[slot]) <= CANCELLED * sizes[slot]:
+                adjoints[slot] = 0.0

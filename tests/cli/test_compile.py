@@ -22,6 +22,16 @@ def test_default_output_stands_beside_the_program(aidl: Aidl, folder: Path) -> N
     assert (folder / "good.svg").read_text().lstrip().startswith("<")
 
 
+def test_what_can_still_move_is_told(aidl: Aidl) -> None:
+    lines = "\n".join(f"c{i} = circle(center: ({9 * i}, 0), radius: 1)" for i in range(9))
+    told = aidl("compile", "-", "-o", "x.svg", stdin=f"drawing d {{\n{lines}\n}}").err.splitlines()
+    assert told[0].startswith("x.svg: solved, 18 degrees of freedom")
+    assert told[1] == "  `c0` can slide left–right and up–down"
+    assert told[-1] == "  … and 4 more"
+    assert len(told) == 7
+    assert aidl("compile", "-", "-o", "x.svg", "--quiet", stdin=f"drawing d {{\n{lines}\n}}").err == ""
+
+
 def test_several_outputs_at_once(aidl: Aidl, folder: Path) -> None:
     assert aidl("compile", "good.aidl", "-o", "a.svg", "-o", "b.json", "--quiet") == Result(0, "", "")
     assert (folder / "a.svg").exists()

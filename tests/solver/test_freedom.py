@@ -103,6 +103,13 @@ class TestFreedom:
         freedom = freedom_of(m)
         assert (freedom.degrees, freedom.motions.parts) == (0, ())
 
+    def test_slopes_beyond_measure_are_no_obstacle(self) -> None:
+        m = Model()
+        x, y = m.unknown(1e10, visible=True), m.unknown(1e-200, visible=True)
+        m.equal(x**30.0 - 1e300, scale=1e300)
+        m.observe(0, x**30.0 * x**8.0, 1.0 / y, call("atan2", y, y * 0.0))
+        assert freedom_of(m).degrees in (1, 2)
+
     def test_a_group_is_under_constrained_if_something_in_it_is(self) -> None:
         m = Model()
         outer = m.group()
