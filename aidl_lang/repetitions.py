@@ -106,3 +106,12 @@ def _undecided(lowered: Lowered, freedom: Freedom) -> Iterator[Diagnostic]:
             owner.span,
             "some of its constraints nearly follow from others, or it is too large to tell",
         )
+    unclear = [stated for i in freedom.unclear if (stated := _stated(lowered, i)) is not None]
+    if unclear and not freedom.undecided:
+        first = min(unclear, key=lambda stated: stated.span.start)
+        yield Diagnostic(
+            "N0603",
+            f"which of {len(unclear)} constraints follow from others could not be told",
+            first.span,
+            "this is the first of them",
+        )

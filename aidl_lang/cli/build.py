@@ -46,7 +46,7 @@ class Outcome:
         if model is None or not self.compiled.ok:
             return []
         found = list(sentences(model.motions, model.root.path))
-        return found if len(found) <= most else [*found[: most - 1], f"… and {len(found) - most + 1} more"]
+        return found if len(found) <= most else [*found[: most - 1], "… and more"]
 
     def line(self, program: str) -> str:
         """The outcome in a line."""

@@ -50,7 +50,8 @@ class Freedom:
     free          unknowns that can still move (kept ones never do)
     motions       of what can move, each part by itself
     redundant     equality constraints already implied by others
-    undecided     unknowns of parts of which it could not be told what depends on what
+    undecided     unknowns of each part of which the degrees of freedom could not be counted
+    unclear       constraints of which it could not be told whether they follow from others
     """
 
     degrees: int | None
@@ -60,6 +61,7 @@ class Freedom:
     motions: Motions
     redundant: tuple[Redundancy, ...]
     undecided: tuple[tuple[int, ...], ...]
+    unclear: tuple[int, ...]
 
 
 def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = None) -> Freedom:
@@ -82,9 +84,6 @@ def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = 
         rows, clear = equations.matrix.take(new), ~np.isin(new, unclear)
         found = _mobility(problem, rows, clear, seen, node_of, values[len(equal) :][node_of])
         redundant = redundancies(problem, solution.values, equations, relations, plain) if relations else []
-    undecided = [tuple(np.sort(unknowns).tolist()) for unknowns in found.undecided]
-    if unclear and not undecided:
-        undecided.append(tuple(np.unique(equations.matrix.take(np.array(unclear)).columns).tolist()))
     return Freedom(
         degrees=found.total,
         group_degrees=tuple(None if count < 0 else count for count in found.degrees.tolist()),
@@ -92,7 +91,8 @@ def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = 
         free=tuple(np.flatnonzero(found.moving).tolist()),
         motions=found.motions,
         redundant=tuple(redundant),
-        undecided=tuple(undecided),
+        undecided=tuple(tuple(np.sort(unknowns).tolist()) for unknowns in found.undecided),
+        unclear=tuple(np.unique(equations.owner[unclear]).tolist()),
     )
 
 

@@ -242,12 +242,15 @@ class ArrayFreezing:
             self._append(differences)
         self._varies = self._find_varying()
         self._slopes = np.ones(4 * len(self._values) + 1)
-        self._used = np.zeros(len(self._values), dtype=np.bool_)
 
-    @property
-    def branches(self) -> list[tuple[int, int]]:
-        """The branching nodes that the programs made so far run through, and the choice made at each."""
-        taken = self._used[self._branching]
+    def branches(self, roots: Ints) -> list[tuple[int, int]]:
+        """The branching nodes below these nodes (r,) through active branches, and the choice made at each."""
+        below = np.zeros(len(self._values) + 1, dtype=np.bool_)  # the last one is for missing operands
+        below[roots] = True
+        added = np.arange(len(self._schedule.tape), len(self._values))
+        for nodes in (added, *reversed(self._schedule.by_level)):
+            below[self._operands[nodes[below[nodes]]]] = True
+        taken = below[self._branching]
         return list(zip(self._branching[taken].tolist(), self.choices[taken].tolist(), strict=True))
 
     def varies(self, roots: Ints) -> Bools:
@@ -341,7 +344,6 @@ class ArrayFreezing:
         layout = self._lay_out(roots)
         count, width = len(self._values), len(self._free)
         nodes = _distinct(layout.nodes, count)
-        self._used[nodes] = True
         columns = _distinct([layout.unknown], width)
         indptr = np.zeros(len(roots) + 1, dtype=np.int64)
         np.cumsum(np.bincount(layout.row, minlength=len(roots)), out=indptr[1:])

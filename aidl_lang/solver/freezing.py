@@ -68,7 +68,7 @@ def _freeze_to_arrays(
     movable[list(free)] = True
     differences = [root for root in roots if not isinstance(root, int)]
     further = itertools.count(len(values.nodes))
-    nodes = np.array([root if isinstance(root, int) else next(further) for root in roots])
+    nodes = np.array([root if isinstance(root, int) else next(further) for root in roots], dtype=np.int64)
     freezing = ArrayFreezing(values.schedule, np.array(values.nodes), movable, flipped, differences)
     varying = freezing.varies(nodes)
     rows = np.flatnonzero(varying)
@@ -78,7 +78,7 @@ def _freeze_to_arrays(
     for members in np.split(np.argsort(system, kind="stable"), np.cumsum(np.bincount(system))[:-1]):
         if len(members):
             programs.append(replace(freezing.program(nodes[rows[members]]), rows=rows[members]))
-    return Frozen(programs, np.flatnonzero(~varying).tolist(), tuple(freezing.branches))
+    return Frozen(programs, np.flatnonzero(~varying).tolist(), tuple(freezing.branches(nodes)))
 
 
 @dataclass

@@ -140,6 +140,6 @@ def _violations(problem: Problem, rows: Sequence[Row], x: np.ndarray) -> tuple[n
     found = np.where(inequality, np.maximum(values, 0.0), np.abs(values)) if rows else values
     found[np.isnan(found)] = np.inf
     low, high = found.min(axis=1), found.max(axis=1)
-    with np.errstate(invalid="ignore"):
+    with np.errstate(all="ignore"):
         spread = np.nan_to_num(high - low)
-    return np.maximum(low - spread, 0.0), high + spread
+        return np.maximum(low - spread, 0.0), high + spread

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from aidl_lang.solver import Relation, Solution, solve
+from aidl_lang.solver import Relation, Solution, freezing, hierarchy, solve
 from aidl_lang.solver.analysis import analyse
 from aidl_lang.solver.form import Case, read
 
@@ -19,11 +19,8 @@ KINDS = {
     "kept", "groups", "prefer", "empty",
 }  # fmt: skip
 FAILING = {
-    "angle-end-of-acos": "the slope of acos is capped, and steps overshoot",
-    "branch-manhattan-circle": "two branches change, in different rows",
     "branch-remainder-of-another-turn": "no other number of turns is tried",
     "far-exponential": "squares of the residuals overflow, and damping does not come down again",
-    "singular-square-from-a-point": "restarts agree on a folded square",
 }
 """What the solver does not manage yet, and why."""
 
@@ -38,8 +35,12 @@ def _cases() -> list[object]:
     ]
 
 
+@pytest.mark.parametrize("many", [10**9, 0], ids=["one by one", "all at once"])
 @pytest.mark.parametrize("path", _cases())
-def test_case(path: Path) -> None:
+def test_case(path: Path, many: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Group by group on numbers, and all groups of a depth at once on arrays."""
+    monkeypatch.setattr(hierarchy, "MANY", many)
+    monkeypatch.setattr(freezing, "MANY", many)
     case = read(path.read_text(encoding="utf-8"))
     solution = solve(case.problem)
     assert solution.status == case.expected.status

@@ -424,6 +424,16 @@ def test_a_large_chain_has_too_many_motions_to_list() -> None:
     assert freedom.motions.parts == ()
 
 
+def test_too_many_reasons_are_not_told_but_motions_are_counted() -> None:
+    m, slopes = frame_of_bars(20, 20)
+    problem, solution = unsolved(m)
+    freedom = analyse(problem, solution)
+    assert (freedom.degrees, freedom.redundant) == (3, ())
+    assert freedom.undecided == ()
+    # All but what hangs on by two bars that nothing else could replace.
+    assert len(freedom.unclear) > len(slopes) - 20
+
+
 def test_what_is_too_close_to_call_is_not_guessed() -> None:
     m = Model()
     x, y, z = (m.unknown(0.0, visible=True) for _ in range(3))
