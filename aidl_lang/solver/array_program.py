@@ -241,6 +241,7 @@ class ArrayFreezing:
         if differences:
             self._append(differences)
         self._varies = self._find_varying()
+        self._laid_out: tuple[Ints, _Layout] | None = None
         self._slopes = np.ones(4 * len(self._values) + 1)
 
     def branches(self, roots: Ints) -> list[tuple[int, int]]:
@@ -252,6 +253,11 @@ class ArrayFreezing:
             below[self._operands[nodes[below[nodes]]]] = True
         taken = below[self._branching]
         return list(zip(self._branching[taken].tolist(), self.choices[taken].tolist(), strict=True))
+
+    @property
+    def knows_all_values(self) -> bool:
+        """Whether every value follows from the unknowns of a program, whatever the others were."""
+        return not len(self._branching) and bool(self._varies[self._ops > Op.UNKNOWN].all())
 
     def varies(self, roots: Ints) -> Bools:
         """Whether each of these nodes depends on a free unknown."""
@@ -370,7 +376,12 @@ class ArrayFreezing:
         )
 
     def _lay_out(self, roots: Ints) -> _Layout:
-        """The pairs of a row and a node below it that varies, from the roots down."""
+        """The pairs of a row and a node below it that varies, from the roots down; known for the last roots."""
+        if self._laid_out is None or not np.array_equal(self._laid_out[0], roots):
+            self._laid_out = roots, self._find_pairs(roots)
+        return self._laid_out[1]
+
+    def _find_pairs(self, roots: Ints) -> _Layout:
         steps: list[_Step] = []
         count, width = len(self._values), len(self._free)
         above = _Pending()

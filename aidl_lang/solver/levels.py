@@ -64,6 +64,8 @@ class Levels:
         problem = self.problem
         everything = np.ones(len(problem.initial), dtype=np.bool_)
         freezing = ArrayFreezing(self.schedule, problem.tape.constants, everything, choosing=False)
+        self._everything = freezing if freezing.knows_all_values else None
+        """The rows with all unknowns free, for a stage at which they are; only if values play no part in it."""
         rows = np.flatnonzero(freezing.varies(problem.rows.expression))
         row, unknown = freezing.pattern(problem.rows.expression[rows])
         key = problem.rows.constraint[rows[row]] * len(everything) + unknown
@@ -190,7 +192,9 @@ class Levels:
         problem = self.problem
         nodes = self.nodes()
         holding = self._holding(nodes)[rows]
-        freezing = ArrayFreezing(self.schedule, nodes, free)
+        freezing = self._everything
+        if freezing is None or not free[self.unknowns].all():
+            freezing = ArrayFreezing(self.schedule, nodes, free)
         considered = ~problem.rows.at_most[rows]  # and those that turn out to be violated without them
         varying = freezing.varies(problem.rows.expression[rows])
         left, solved = hopeful.copy(), np.zeros(len(hopeful), dtype=np.bool_)

@@ -2,7 +2,8 @@
 
 Gradients tell what happens near by to the first order only: `distance(a, b) == 10` has the gradient of
 `b.x - a.x == 10` where both hold, and yet says more. So whatever depends on others by its gradient is tried:
-from a place a little off, where the others hold again, the row must hold as well.
+from a place a little off, where the others hold again, the row must hold as well. (If it is the same sum of
+the others everywhere, it does.)
 """
 
 from __future__ import annotations
@@ -10,11 +11,12 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from aidl_lang.solver.dependence import Relation
-from aidl_lang.solver.gradients import Integers, Sparse, below, connected, linearise
+from aidl_lang.solver.gradients import Integers, Sparse, below, linearise
 from aidl_lang.solver.operations import Floats, Op
 from aidl_lang.solver.problem import Problem
 from aidl_lang.solver.stacks import LARGE, RANK
@@ -45,9 +47,7 @@ class Equations:
 
 @dataclass(frozen=True)
 class Redundancy:
-    """A constraint that follows from others: without any one of them it would not. None are named where they
-    are too many to be told apart.
-    """
+    """A constraint that follows from others; without any one of them it would not."""
 
     constraint: int
     follows_from: tuple[int, ...]
@@ -73,15 +73,10 @@ def redundancies(
         rows = rows_of[constraint]
         if not rows or not all(row in relations for row in rows):
             continue
-        named: set[int] | None = set()
-        for row in rows:
-            support = tried.support(row, sorted(relations[row]))
-            if support is None:
-                break
-            named = named | set(support) if support and named is not None else None
-        else:
-            owners = dict.fromkeys(equations.owner[sorted(named)].tolist()) if named else ()
-            found.append(Redundancy(constraint, tuple(owners)))
+        supports = [tried.support(row, relations[row]) for row in rows]
+        if all(supports):
+            named = sorted({other for support in supports for other in support})
+            found.append(Redundancy(constraint, tuple(dict.fromkeys(equations.owner[named].tolist()))))
     return found
 
 
@@ -93,34 +88,60 @@ class _Trial:
         self.expressions = problem.rows.expression[equations.row]
         self.scales = problem.rows.scale[equations.row]
         self.dependent = dependent
-        self._label: Integers | None = None
 
-    def support(self, row: int, relation: Sequence[int]) -> Sequence[int] | None:
-        """Rows that `row` follows from, the fewest known; empty if they are too many, None if it does not."""
-        if len(relation) == 1 and self.expressions[relation[0]] == self.expressions[row]:
-            return relation
-        if self._follows(row, relation):
-            return relation
-        extra = [other for other in self._around(row) if other not in relation]
-        if not self._follows(row, [*relation, *extra]):
-            return None
-        if len(extra) > WIDER:
+    def support(self, row: int, relation: Relation) -> Sequence[int]:
+        """Rows that `row` follows from, each of them needed; none if that could not be shown."""
+        others = sorted(relation)
+        if self._is_sum(row, relation) or self._follows(row, others):
+            return others
+        extra = self._around(row, others)
+        if not self._follows(row, [*others, *extra]):
             return ()
         for other in reversed(extra):
             fewer = [kept for kept in extra if kept != other]
-            if self._follows(row, [*relation, *fewer]):
+            if self._follows(row, [*others, *fewer]):
                 extra = fewer
-        return sorted([*relation, *extra])
+        return sorted([*others, *extra])
 
-    def _around(self, row: int) -> list[int]:
-        """The independent rows that hang together with one."""
-        if self._label is None:
-            mentioned = [self._unknowns([each]) for each in range(len(self.expressions))]
-            firsts = np.repeat([each[0] for each in mentioned], [len(each) for each in mentioned])
-            label = connected(firsts, np.concatenate(mentioned), len(self.values))
-            self._label = label[[each[0] for each in mentioned]]
-        near = np.flatnonzero(self._label == self._label[row]).tolist()
-        return [other for other in near if other not in self.dependent]
+    @cached_property
+    def _mentions(self) -> list[set[int]]:
+        return [set(self._unknowns([row]).tolist()) for row in range(len(self.expressions))]
+
+    def _around(self, row: int, others: Sequence[int]) -> list[int]:
+        """The independent rows that share unknowns with these, or with those that do, the nearest."""
+        near = {row, *others}
+        columns = set().union(*(self._mentions[each] for each in near))
+        found: list[int] = []
+        while len(found) < WIDER:
+            ring = [
+                each
+                for each, mentioned in enumerate(self._mentions)
+                if each not in near and each not in self.dependent and not mentioned.isdisjoint(columns)
+            ]
+            if not ring:
+                break
+            found += ring[: WIDER - len(found)]
+            near.update(ring)
+            columns = columns.union(*(self._mentions[each] for each in ring))
+        return found
+
+    def _is_sum(self, row: int, relation: Relation) -> bool:
+        """Whether the row is the same sum of others everywhere, as between affine rows."""
+        rows = np.array([*relation, row], dtype=np.int64)
+        columns = self._unknowns(rows)
+        gradient = linearise(self.problem.tape, self.values, self.expressions[rows])[1]
+        lengths = gradient.scaled(np.ones(len(rows)), self.problem.scale).lengths()
+        shares = np.array([*relation.values(), -1.0])
+        away = AWAY * self.problem.scale[columns] * float((self.scales[rows] / lengths).max())
+        for seed in range(2):
+            place = self.values.copy()
+            place[columns] += (
+                scale * np.random.default_rng(seed).standard_normal(len(columns)) / lengths.max()
+            )
+            parts = shares * linearise(self.problem.tape, place, self.expressions[rows])[0] / lengths
+            if not abs(float(parts.sum())) <= HOLDS * float(np.abs(parts).sum()):
+                return False
+        return True
 
     def _unknowns(self, rows: Sequence[int] | Integers) -> Integers:
         """What rows mention, whether or not it has a slope here."""
@@ -132,7 +153,7 @@ class _Trial:
         rows = np.array([*others, row], dtype=np.int64)
         columns = self._unknowns(rows)
         if max(len(rows), len(columns)) > LARGE:
-            return True  # by its gradient; too large to be tried
+            return False  # not within the budget
         gradient = self._rows(self.values, rows, columns)[1]
         inverse = np.linalg.pinv(gradient[:-1], rcond=RANK)
         for seed in range(2):

@@ -31,7 +31,9 @@ REGULAR = 1e-9
 ACCURATE = 1e-11
 REFINEMENTS = 6
 GROWTH = 1e9
-"""A solution of a square system this much longer than its right-hand side betrays a singular matrix."""
+"""A solution of a square system this much longer than its right-hand side is not to be trusted."""
+SINGULAR = 1e12
+"""Multipliers this much longer than the solution betray a singular matrix, even where the rows agree."""
 
 
 class SparseMatrix:
@@ -108,7 +110,10 @@ def _square(jacobian: SparseMatrix, y: Floats) -> LeastNorm | None:
         return None
     if float(np.abs(jacobian @ z - y).max()) > 1e-9 * size:
         return None
-    return LeastNorm(z, -factors.solve(z, "T"), None, True)
+    multipliers: Floats = -factors.solve(z, "T")
+    if not float(np.abs(multipliers).max()) <= SINGULAR * float(np.abs(z).max()):
+        return None
+    return LeastNorm(z, multipliers, None, True)
 
 
 class Augmented:

@@ -43,9 +43,6 @@ class Taste:
     size_noise: float = 0.0
     kept: bool = False
     placed: bool = False
-    above: bool = False
-    """Whether links may be held higher up than need be. Frames that cancel are then among what they mention:
-    `test_a_frame_that_cancels_stays`."""
 
 
 def kinds_where(predicate: Callable[[Kind], bool]) -> tuple[str, ...]:
@@ -89,7 +86,7 @@ def links(draw: st.DrawFn, sketch: Sketch, taste: Taste) -> Link:
     sense = draw(st.sampled_from(taste.senses))
     return replace(
         link,
-        holder=draw(st.sampled_from(common)) if taste.above else common[0],
+        holder=draw(st.sampled_from(common)),
         sense=sense,
         room=0.0 if sense == "=" else draw(st.integers(0, 4)) / 4,
         placed=taste.placed and draw(st.booleans()),
