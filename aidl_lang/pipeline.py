@@ -206,7 +206,7 @@ def compile(
 ) -> Compiled:
     """Run the whole road. A program that is wrong, or does not solve, says so in `diagnostics`.
 
-    With a `memory` of the last run, structures that the changes since then do not concern are not solved again.
+    With a `memory` of the last run, structures that no change since then concerns are not solved again.
     """
     watch = _Stopwatch()
     with _working():

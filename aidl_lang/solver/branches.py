@@ -17,7 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from aidl_lang.solver import newton
-from aidl_lang.solver.array_program import ZERO, ArrayProgram
+from aidl_lang.solver.array_freezing import ZERO
+from aidl_lang.solver.array_program import ArrayProgram
 from aidl_lang.solver.freezing import Branch, Frozen, Root, freeze
 from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Floats, Op

@@ -24,7 +24,8 @@ from aidl_lang.solver.solution import Failure, Fit, GroupFailure, Member
 from aidl_lang.solver.suspects import Linearised, suspects
 
 if TYPE_CHECKING:
-    from aidl_lang.solver.hierarchy import Hierarchy, Scope
+    from aidl_lang.solver.group import Scope
+    from aidl_lang.solver.hierarchy import Hierarchy
 
 WORK = 20_000
 """Budget of all explanations of one solve: rows times unknowns, summed over the attempts."""

@@ -14,8 +14,6 @@ from aidl_lang.solver.operations import Floats
 
 RANK = 1e-10
 """Singular values below this fraction of the greatest count as zero, in steps of Newton's method."""
-MOTION = 1e-7
-"""Singular values that count as zero in degrees of freedom, where one is the size of a typical motion."""
 CONSISTENT = 1e-7
 """Part of a right-hand side that may lie out of reach, relative to all of it, by rounding."""
 NOISE = 1e-10
@@ -97,17 +95,6 @@ def _well_conditioned(gram: Floats) -> bool:
     return float(pivots.min()) > INDEPENDENT * float(pivots.max())
 
 
-def independent_rows(matrix: Floats) -> bool:
-    """Whether the rows are independent beyond doubt; False may also mean that it is not clear."""
-    if matrix.shape[0] > matrix.shape[1]:
-        return False
-    lengths = np.linalg.norm(matrix, axis=1)
-    if not lengths.all():
-        return False
-    unit = matrix / lengths[:, None]
-    return _well_conditioned(unit @ unit.T)
-
-
 class DampedSteps:
     """The steps -(JᵀJ + mu I)⁻¹ Jᵀ r of Levenberg and Marquardt at one place, for any mu.
 
@@ -134,22 +121,3 @@ class DampedSteps:
             return step
         damped = self._gram + max(mu, 1e-10 * self.largest) * np.eye(len(self._gram))
         return np.asarray(-(self._jacobian.T @ np.linalg.solve(damped, self._residuals)))
-
-
-def null_space(matrix: Floats) -> Floats:
-    """An orthonormal basis (n, n - rank) of the null space of `matrix` (m, n)."""
-    if independent_rows(matrix):
-        basis: Floats = np.linalg.qr(matrix.T, mode="complete")[0][:, len(matrix) :]
-        return basis
-    _, sigma, vt = np.linalg.svd(matrix, full_matrices=True)
-    return np.ascontiguousarray(vt[np.count_nonzero(sigma > MOTION) :].T)
-
-
-def row_space(matrix: Floats) -> Floats:
-    """An orthonormal basis (n, rank) of the rows of `matrix` (m, n)."""
-    if 0 in matrix.shape:
-        return np.zeros((matrix.shape[1], 0))
-    if matrix.shape[0] > matrix.shape[1]:
-        matrix = np.asarray(np.linalg.qr(matrix, mode="r"))
-    _, sigma, vt = np.linalg.svd(matrix, full_matrices=False)
-    return np.ascontiguousarray(vt[: np.count_nonzero(sigma > MOTION)].T)

@@ -14,7 +14,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from aidl_lang.solver.array_program import TIE, ZERO, ArrayFreezing, ArrayProgram
+from aidl_lang.solver.array_freezing import TIE, ZERO, ArrayFreezing
+from aidl_lang.solver.array_program import ArrayProgram
 from aidl_lang.solver.components import components
 from aidl_lang.solver.operations import BRANCHING, LINEAR, PARTIALS, Op
 from aidl_lang.solver.program import Program, Sweep

@@ -14,12 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from aidl_lang.solver import batch, newton
-from aidl_lang.solver.array_program import ArrayFreezing, ArrayProgram, Schedule
+from aidl_lang.solver.array_freezing import ArrayFreezing
+from aidl_lang.solver.array_program import ArrayProgram
 from aidl_lang.solver.branches import TIGHTER, Metric
 from aidl_lang.solver.components import components
 from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Bools, Floats, Ints
 from aidl_lang.solver.problem import Problem, Settings, depths, violations
+from aidl_lang.solver.schedule import Schedule
 
 ROUNDS = 4
 """Rounds of taking up inequalities that came to be violated."""
@@ -65,7 +67,7 @@ class Levels:
         everything = np.ones(len(problem.initial), dtype=np.bool_)
         freezing = ArrayFreezing(self.schedule, problem.tape.constants, everything, choosing=False)
         self._everything = freezing if freezing.knows_all_values else None
-        """The rows with all unknowns free, for a stage at which they are; only if values play no part in it."""
+        """The rows with all unknowns free, for a stage at which they are; if values play no part in it."""
         rows = np.flatnonzero(freezing.varies(problem.rows.expression))
         row, unknown = freezing.pattern(problem.rows.expression[rows])
         key = problem.rows.constraint[rows[row]] * len(everything) + unknown

@@ -135,11 +135,9 @@ class _Trial:
         away = AWAY * self.problem.scale[columns] * float((self.scales[rows] / lengths).max())
         for seed in range(2):
             place = self.values.copy()
-            place[columns] += (
-                scale * np.random.default_rng(seed).standard_normal(len(columns)) / lengths.max()
-            )
+            place[columns] += away * np.random.default_rng(seed).standard_normal(len(columns))
             parts = shares * linearise(self.problem.tape, place, self.expressions[rows])[0] / lengths
-            if not abs(float(parts.sum())) <= HOLDS * float(np.abs(parts).sum()):
+            if not abs(float(parts.sum())) <= HOLDS * float(np.abs(parts).max()):
                 return False
         return True
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
-from aidl_lang.solver.array_program import Schedule
 from aidl_lang.solver.expression import Tape
 from aidl_lang.solver.operations import VALUE, Op
+from aidl_lang.solver.schedule import Schedule
 
 Compiled: TypeAlias = "tuple[Callable[..., float], int | tuple[int, ...], int, int]"
 """Function, first operand (all of them for more than two), second operand or -1, result."""

@@ -10,10 +10,11 @@ from hypothesis import assume, given, note
 from hypothesis import strategies as st
 
 from aidl_lang.solver import Problem, arrays
-from aidl_lang.solver.array_program import ArrayFreezing, Schedule
+from aidl_lang.solver.array_freezing import ArrayFreezing
 from aidl_lang.solver.freezing import freeze
 from aidl_lang.solver.gradients import linearise
 from aidl_lang.solver.operations import ARITY, BRANCHING, PARTIALS, VALUE, Op
+from aidl_lang.solver.schedule import Schedule
 from aidl_lang.solver.valuation import Valuation, evaluate
 
 from .check import values_of

@@ -424,6 +424,17 @@ def test_a_large_chain_has_too_many_motions_to_list() -> None:
     assert freedom.motions.parts == ()
 
 
+def test_a_long_circle_of_sums_is_explained_and_a_distance_that_says_more_is_not() -> None:
+    m = Model()
+    at = [m.point(10.0 * i, 0.0) for i in range(400)]
+    steps = [m.equal(q[0] - p[0] - 10.0) for p, q in pairwise(at)]
+    m.equal(distance(at[0], at[-1]) - 3990.0)
+    around = m.equal(at[-1][0] - at[0][0] - 3990.0)
+    freedom = analyse(*unsolved(m))
+    assert redundant(freedom) == {around: tuple(steps)}
+    assert freedom.degrees == 401
+
+
 def test_too_many_reasons_are_not_told_but_motions_are_counted() -> None:
     m, slopes = frame_of_bars(20, 20)
     problem, solution = unsolved(m)

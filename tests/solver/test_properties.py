@@ -495,7 +495,12 @@ UNBOUNDED = {
 }
 
 
-@pytest.mark.parametrize("name", UNBOUNDED)
+ENDLESS = pytest.mark.xfail(strict=True, reason="damping grows from nothing to nothing for ever")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(k, marks=ENDLESS if k.startswith("no slope") else ()) for k in UNBOUNDED]
+)
 def test_overflow_is_silent_and_soon_over(name: str) -> None:
     problem = UNBOUNDED[name].problem()
     with at_most(10.0):

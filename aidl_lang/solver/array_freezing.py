@@ -1,0 +1,328 @@
+"""From rows of the tape to programs on arrays: branches chosen, what varies told from what does not.
+
+The counterpart of `freezing` for large systems.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.solver.array_program import IDENTITY, ArrayProgram, Step
+from aidl_lang.solver.operations import BRANCHING, LINEAR, Bools, Floats, Ints, Op
+from aidl_lang.solver.schedule import Batch, Graph, Schedule
+
+ZERO = -1
+"""First member of a difference that is 0."""
+TIE = 1e-9
+"""Difference, relative to the operands, below which rounding shall not decide between branches."""
+GOLDEN = 0.6180339887498949
+ALIKE = 1e-12
+"""Relative difference of slopes that is rounding alone."""
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """steps; rows and nodes of the pairs above the unknowns, by level; row and unknown of each entry"""
+
+    steps: list[Step]
+    rows: list[Ints]
+    nodes: list[Ints]
+    row: Ints
+    unknown: Ints
+
+
+class ArrayFreezing:
+    """The rows of a tape at one place, with branches chosen; makes programs of some of them.
+
+    `values` (m,) are those of all nodes at that place. Branching nodes in `flipped` take the branch that is
+    not active. Each of `differences` becomes a further node, numbered from m on. The programs share memory:
+    no two of them may have unknowns in common. Without `choosing`, every branch counts as active, which is
+    good for patterns only.
+    """
+
+    def __init__(
+        self,
+        schedule: Schedule,
+        values: Floats,
+        free: Bools,
+        flipped: Collection[int] = (),
+        differences: Sequence[tuple[int, int]] = (),
+        choosing: bool = True,
+    ) -> None:
+        tape = schedule.tape
+        self._schedule, self._free = schedule, free
+        self._ops, self._operands, self._levels = tape.ops, tape.operands, tape.levels
+        self._values = values.copy()
+        self._branches = _BRANCHES[tape.ops]
+        self._branching = np.flatnonzero(self._branches)
+        self.choices = np.zeros(len(self._branching), dtype=np.int64)
+        if choosing and len(self._branching):
+            self._choose(flipped)
+        if differences:
+            self._append(differences)
+        self._varies = self._find_varying()
+        self._laid_out: tuple[Ints, _Layout] | None = None
+        self._slopes = np.ones(4 * len(self._values) + 1)
+
+    def branches(self, roots: Ints) -> list[tuple[int, int]]:
+        """The branching nodes below these nodes (r,) through active branches, and the choice made at each."""
+        below = np.zeros(len(self._values) + 1, dtype=np.bool_)  # the last one is for missing operands
+        below[roots] = True
+        added = np.arange(len(self._schedule.tape), len(self._values))
+        for nodes in (added, *reversed(self._schedule.by_level)):
+            below[self._operands[nodes[below[nodes]]]] = True
+        taken = below[self._branching]
+        return list(zip(self._branching[taken].tolist(), self.choices[taken].tolist(), strict=True))
+
+    @property
+    def knows_all_values(self) -> bool:
+        """Whether every value follows from the unknowns of a program, whatever the others were."""
+        return not len(self._branching) and bool(self._varies[self._ops > Op.UNKNOWN].all())
+
+    def varies(self, roots: Ints) -> Bools:
+        """Whether each of these nodes depends on a free unknown."""
+        return self._varies[roots]
+
+    # -- branches
+
+    def _choose(self, flipped: Collection[int]) -> None:
+        nodes, values = self._branching, self._values
+        ops = self._ops[nodes]
+        operands = self._operands[nodes].astype(np.int64)
+        first, second = values[operands[:, 0]], values[operands[:, 1]]
+        second[ops == Op.ABS] = 0.0
+        with np.errstate(all="ignore"):
+            ahead = np.where(ops == Op.MINIMUM, first - second, second - first)
+            choice = (ahead > TIE * (1.0 + np.abs(first))).astype(np.int64)
+            choice[ops == Op.SELECT] = ~(first[ops == Op.SELECT] >= 0.0)
+        if flipped:
+            choice ^= np.isin(nodes, list(flipped))
+        choice[ops == Op.SELECT] += 1
+        self._ops, self._operands = self._ops.copy(), self._operands.copy()
+        self._ops[nodes] = IDENTITY
+        self._ops[nodes[(ops == Op.ABS) & (choice == 1)]] = Op.NEG
+        taken = np.where(ops == Op.ABS, 0, choice)
+        chosen = np.full((len(nodes), 4), -1)
+        chosen[:, 0] = operands[np.arange(len(nodes)), taken]
+        self._operands[nodes] = chosen
+        self.choices = choice
+
+    def _append(self, differences: Sequence[tuple[int, int]]) -> None:
+        pairs = np.array(differences, dtype=np.int32)
+        from_zero = pairs[:, 0] == ZERO
+        operands = np.full((len(pairs), 4), -1, dtype=np.int32)
+        operands[:, :2] = pairs
+        operands[from_zero, 0], operands[from_zero, 1] = pairs[from_zero, 1], -1
+        values = self._values[pairs]
+        values[from_zero, 0] = 0.0
+        self._ops = np.append(self._ops, np.where(from_zero, Op.NEG, Op.SUB).astype(np.int8))
+        self._operands = np.vstack((self._operands, operands))
+        top = np.full(len(pairs), self._levels.max(initial=0) + 1, dtype=np.int32)
+        self._levels = np.append(self._levels, top)
+        self._branches = np.append(self._branches, np.zeros(len(pairs), dtype=np.bool_))
+        self._values = np.append(self._values, values[:, 0] - values[:, 1])
+
+    def _find_varying(self) -> Bools:
+        """Nodes that depend on a free unknown through active branches."""
+        count = len(self._values)
+        found = np.zeros(count + 1, dtype=np.bool_)  # the last one is what missing operands refer to
+        schedule = self._schedule
+        found[schedule.inputs] = self._free[schedule.unknowns]
+        added = np.arange(len(schedule.tape), count)
+        for nodes in (*schedule.by_level, added):
+            found[nodes] = found[self._operands[nodes]].any(axis=1)
+        return found[:-1]
+
+    @cached_property
+    def _plain(self) -> Bools:
+        """Whether each node (m,) is an affine function of the free unknowns that branches have no part in.
+
+        The least of several coordinates of one rigid part is such a function, as all of them move alike: two
+        branches are taken for one if they change alike in a direction in which no two unknowns change alike.
+        """
+        tape, schedule = self._schedule.tape, self._schedule
+        values, slopes, plain = (
+            self._values,
+            np.zeros(len(self._values)),
+            np.ones(len(self._values), np.bool_),
+        )
+        turn = np.mod(schedule.unknowns * GOLDEN, 1.0) + 0.5
+        slopes[schedule.inputs] = np.where(self._free[schedule.unknowns], turn, 0.0)
+        with np.errstate(all="ignore"):
+            for batch in schedule.batches:
+                nodes, operands = batch.nodes, batch.operands
+                slopes[nodes], known = _slope(batch, values, slopes)
+                for operand in operands:
+                    known = known & plain[operand]
+                plain[nodes] = known
+        plain[len(tape) :] = False
+        return plain
+
+    # -- programs
+
+    def pattern(self, roots: Ints) -> tuple[Ints, Ints]:
+        """Row and unknown (e,) of each entry of the Jacobian of these nodes (r,), each of which varies."""
+        layout = self._lay_out(roots)
+        return layout.row, layout.unknown
+
+    def program(self, roots: Ints) -> ArrayProgram:
+        """The rows at these nodes (r,), each of which varies."""
+        layout = self._lay_out(roots)
+        count, width = len(self._values), len(self._free)
+        nodes = _distinct(layout.nodes, count)
+        columns = _distinct([layout.unknown], width)
+        indptr = np.zeros(len(roots) + 1, dtype=np.int64)
+        np.cumsum(np.bincount(layout.row, minlength=len(roots)), out=indptr[1:])
+        affine = np.ones(len(roots), dtype=np.bool_)
+        for rows, members in zip(layout.rows, layout.nodes, strict=True):
+            affine[rows[self._curved(members)]] = False
+        place = np.empty(width, dtype=np.int64)
+        place[columns] = np.arange(len(columns))
+        input_of = np.empty(width, dtype=np.int64)
+        input_of[self._schedule.unknowns] = self._schedule.inputs
+        return ArrayProgram(
+            roots,
+            columns,
+            indptr,
+            place[layout.unknown],
+            affine,
+            self._plain[roots],
+            np.arange(len(roots)),
+            input_of[columns],
+            Graph(self._ops, self._operands, self._levels).batches(nodes),
+            layout.steps,
+            self._values,
+            self._slopes,
+        )
+
+    def _lay_out(self, roots: Ints) -> _Layout:
+        """The pairs of a row and a node below it that varies; remembered for the last roots."""
+        if self._laid_out is None or not np.array_equal(self._laid_out[0], roots):
+            self._laid_out = roots, self._find_pairs(roots)
+        return self._laid_out[1]
+
+    def _find_pairs(self, roots: Ints) -> _Layout:
+        steps: list[Step] = []
+        count, width = len(self._values), len(self._free)
+        above = _Pending()
+        rows = np.arange(len(roots))
+        above.add(self._levels[roots], rows, roots, np.full(len(roots), -1), np.full(len(roots), 4 * count))
+        low = 0
+        visited_rows, visited = [], []
+        row, second = rows[:0], roots[:0]
+        for level in above.descending():
+            row, node, parent, slope = above.take(level)
+            second = node if level else self._operands[node, 0].astype(np.int64)
+            key = row * max(count, width) + second
+            order = np.argsort(key, kind="stable")
+            key = key[order]
+            starts = np.flatnonzero(np.diff(key, prepend=-1))
+            unique = order[starts]
+            row, second = row[unique], second[unique]
+            single = len(starts) == len(order)
+            high = low + len(starts)
+            steps.append(Step(low, high, parent[order], slope[order], None if single else starts))
+            if level:
+                visited_rows.append(row)
+                visited.append(second)
+                self._descend(above, row, second, low)
+            low = high
+        return _Layout(steps, visited_rows, visited, row, second)
+
+    def _descend(self, above: _Pending, row: Ints, node: Ints, low: int) -> None:
+        """Adds the pairs below those of one level, which are numbered from `low` on."""
+        count = len(self._values)
+        pair = np.arange(low, low + len(node))
+        for k in range(4):
+            child = self._operands[node, k].astype(np.int64)
+            below = np.flatnonzero((child >= 0) & self._varies[child])
+            if len(below) == 0:
+                continue
+            child = child[below]
+            above.add(self._levels[child], row[below], child, pair[below], k * count + node[below])
+
+    def _curved(self, nodes: Ints) -> Bools:
+        """Whether each node is not an affine function of those of its operands that vary."""
+        ops, operands = self._ops[nodes], self._operands[nodes]
+        second = self._varies[operands[:, 1]] & (operands[:, 1] >= 0)
+        straight = _STRAIGHT[ops]
+        straight |= (ops == Op.DIV) & ~second
+        straight |= (ops == Op.MUL) & ~(second & self._varies[operands[:, 0]])
+        return ~straight
+
+
+class _Pending:
+    """Pairs still to be visited, by level: row, node, pair above, place of the slope between them."""
+
+    def __init__(self) -> None:
+        self._levels: dict[int, list[tuple[Ints, ...]]] = {}
+
+    def add(self, levels: NDArray[np.int32], *columns: Ints) -> None:
+        low, high = int(levels.min(initial=1 << 30)), int(levels.max(initial=-1))
+        if low == high:
+            self._levels.setdefault(low, []).append(columns)
+            return
+        for level in np.unique(levels).tolist():
+            members = np.flatnonzero(levels == level)
+            self._levels.setdefault(level, []).append(tuple(column[members] for column in columns))
+
+    def descending(self) -> Iterable[int]:
+        """The levels that are left, from above; taking one may add lower ones."""
+        while self._levels:
+            yield max(self._levels)
+
+    def take(self, level: int) -> tuple[Ints, ...]:
+        pieces = self._levels.pop(level)
+        if len(pieces) == 1:
+            return pieces[0]
+        return tuple(np.concatenate(column) for column in zip(*pieces, strict=True))
+
+
+def _table(ops: Iterable[int]) -> Bools:
+    """Whether each code of an operation is among `ops`."""
+    found = np.zeros(64, dtype=np.bool_)
+    found[list(ops)] = True
+    return found
+
+
+_BRANCHES = _table(BRANCHING)
+_STRAIGHT = _table([*LINEAR, IDENTITY])
+
+
+def _distinct(pieces: Sequence[Ints], count: int) -> Ints:
+    """The different numbers below `count` that occur, ascending."""
+    found = np.zeros(count, dtype=np.bool_)
+    for piece in pieces:
+        found[piece] = True
+    return np.flatnonzero(found)
+
+
+def _slope(batch: Batch, values: Floats, slopes: Floats) -> tuple[Floats, Bools]:
+    """The slope of each node in the direction of which `slopes` has those of its operands, and whether it is
+    the same everywhere.
+    """
+    op, operands = batch.op, batch.operands
+    inner = [slopes[a] for a in operands]
+    steady = np.ones(len(batch.nodes), dtype=np.bool_)
+    match op:
+        case Op.ADD:
+            return inner[0] + inner[1], steady
+        case Op.SUB:
+            return inner[0] - inner[1], steady
+        case Op.NEG:
+            return -inner[0], steady
+        case Op.MUL:
+            a, b = (values[operand] for operand in operands)
+            return inner[0] * b + inner[1] * a, (inner[0] == 0.0) | (inner[1] == 0.0)
+        case Op.DIV:
+            return inner[0] / values[operands[1]], inner[1] == 0.0
+        case Op.MINIMUM | Op.MAXIMUM:
+            return inner[0], np.abs(inner[0] - inner[1]) <= ALIKE * np.abs(inner[0])
+    for slope in inner:
+        steady &= slope == 0.0
+    return np.zeros(len(batch.nodes)), steady
