@@ -1,10 +1,11 @@
 """The constraint solver: `solve(problem) -> Solution`. It knows nothing of the language.
 
-In the order of reading: `operations`, `expression` (the tape), `problem`; `valuation`, `freezing`, `program` (some
-rows, on numbers); `schedule`, `arrays`, `array_freezing`, `array_program` (many rows, on arrays); `dense`, `sparse`,
-`linear`, `quadratic`; `newton` (one smooth system), `batch` (many small ones), `branches` (one attempt); `group`
-(the stages), `levels` (the same for all groups of a depth), `hierarchy`, `memory`; `preferences`, `suspects`,
-`conflicts`, `solution`. What is said of a solution afterwards is in `analysis`; `form` reads problem files.
+In the order of reading: `operations`, `expression` (the tape), `problem`; `valuation`, `freezing`,
+`program` (some rows, on numbers); `schedule`, `arrays`, `array_freezing`, `array_program` (many rows, on
+arrays); `dense`, `sparse`, `linear`, `quadratic`; `newton` (one smooth system), `batch` (many small ones),
+`branches` (one attempt); `group` (the stages), `levels` (the same for all groups of a depth), `hierarchy`,
+`memory`; `preferences`, `suspects`, `conflicts`, `solution`. What is said of a solution afterwards is in
+`analysis`; `form` reads problem files.
 """
 
 from __future__ import annotations

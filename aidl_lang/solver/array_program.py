@@ -1,8 +1,8 @@
 """Many rows as functions of their free unknowns, on whole arrays.
 
 The counterpart of `program` for large systems: nodes are evaluated a level and an operation at a time, and
-derivatives are accumulated in reverse for all rows at once. They live by *pairs* of a row and a node below it;
-which pairs there are, and in which order they are visited, is laid out once, by `array_freezing`.
+derivatives are accumulated in reverse for all rows at once. They live by *pairs* of a row and a node below
+it; which pairs there are, and in which order they are visited, is laid out once, by `array_freezing`.
 """
 
 from __future__ import annotations

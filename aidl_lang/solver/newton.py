@@ -306,7 +306,8 @@ class _Newton:
         rows = ~system.inequality | (residuals > 0.0)
         damped = damped_steps(jacobian[rows], residuals[rows])
         largest = damped.largest
-        if damped.slope <= FLAT * np.sqrt(largest * merit):
+        # Written so that overflow ends it as well.
+        if not FLAT * np.sqrt(largest * merit) < damped.slope < np.inf or not 0.0 < largest < np.inf:
             return None
         mu = max(damping, 1e-12) * largest
         while mu <= 1e8 * largest:
