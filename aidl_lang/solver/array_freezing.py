@@ -194,11 +194,16 @@ class ArrayFreezing:
             self._plain[roots],
             np.arange(len(roots)),
             input_of[columns],
-            Graph(self._ops, self._operands, self._levels).batches(nodes),
+            self._batches(nodes),
             layout.steps,
             self._values,
             self._slopes,
         )
+
+    def _batches(self, nodes: Ints) -> list[Batch]:
+        if self._operands is self._schedule.tape.operands and len(nodes) == self._schedule.size:
+            return self._schedule.batches
+        return Graph(self._ops, self._operands, self._levels).batches(nodes)
 
     def _lay_out(self, roots: Ints) -> _Layout:
         """The pairs of a row and a node below it that varies; remembered for the last roots."""

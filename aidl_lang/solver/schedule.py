@@ -56,6 +56,11 @@ class Schedule:
         """Which unknowns they are."""
 
     @cached_property
+    def size(self) -> int:
+        """The number of nodes that are computed."""
+        return int(np.count_nonzero(self.tape.ops > Op.UNKNOWN))
+
+    @cached_property
     def batches(self) -> list[Batch]:
         """All other nodes, in an order in which they can be evaluated."""
         tape = self.tape

@@ -30,6 +30,8 @@ REGULAR = 1e-9
 """ε relative to the greatest square of a row."""
 ACCURATE = 1e-11
 REFINEMENTS = 6
+SCATTERED = {"relax": 1, "panel_size": 1}
+"""Options for matrices with a few entries in a row, whose factors have no dense blocks worth the search."""
 GROWTH = 1e9
 """A solution of a square system this much longer than its right-hand side is not to be trusted."""
 SINGULAR = 1e12
@@ -60,7 +62,7 @@ class SparseMatrix:
         if self.shape[0] != self.shape[1]:
             return None
         try:
-            return splu(self.matrix.tocsc())
+            return splu(self.matrix.tocsc(), **SCATTERED)
         except RuntimeError:  # exactly singular
             return None
 
@@ -125,7 +127,7 @@ class Augmented:
             [[sp.eye_array(self._columns), jacobian.T], [jacobian.matrix, -epsilon * sp.eye_array(rows)]],
             format="csc",
         )
-        self._factors: SuperLU = splu(matrix)
+        self._factors: SuperLU = splu(matrix, **SCATTERED)
 
     def solve(self, y: Floats, above: Floats | None = None) -> tuple[Floats, Floats]:
         right = np.concatenate((np.zeros(self._columns) if above is None else above, y))
