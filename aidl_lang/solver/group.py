@@ -160,9 +160,8 @@ class Group:
         before = hierarchy.save(everything.free)
         best: Best = (np.inf, before)
         tiers = sorted({self.tier(unknown) for unknown in everything.free})
-        rigid = self._beyond_positions(part) if tiers and tiers[-1] > POSITIONS else []
-        if not set(rigid).isdisjoint(violated):
-            broken = self._settle_sizes(rigid, part)
+        if self._beyond_positions(violated):
+            broken = self._settle_sizes(self._beyond_positions(part), part)
             if broken is not None:
                 seeds = sorted({*part, *broken})
                 positions = [tier for tier in tiers if tier <= POSITIONS]
@@ -215,6 +214,8 @@ class Group:
         hierarchy = self.hierarchy
         found: list[int] = []
         for index in constraints:
+            if all(self.tier(unknown) <= POSITIONS for unknown in hierarchy.cones[index].unknowns):
+                continue
             roots = [row.expression for row in hierarchy.rows([index])]
             hierarchy.values.refresh(hierarchy.cones[index])
             for gradient in gradients(hierarchy.values, roots).values():

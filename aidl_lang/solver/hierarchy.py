@@ -93,8 +93,9 @@ class Hierarchy:
         return Valuation(self.problem.tape, self.problem.initial.tolist())
 
     @cached_property
-    def cones(self) -> Cones:
-        return Cones(self.problem, self.values)
+    def cones(self) -> Mapping[int, Cone]:
+        """What each constraint is made of, by its index; found when first asked for."""
+        return _Cones(self.problem, self.values)
 
     @cached_property
     def _mentioned_by(self) -> dict[int, list[int]]:
@@ -256,16 +257,12 @@ class Hierarchy:
         return {unknown: self.values.unknowns[unknown] for unknown in unknowns}
 
 
-class Cones:
-    """What each constraint is made of, by its index; found when first asked for."""
-
+class _Cones(dict[int, Cone]):
     def __init__(self, problem: Problem, values: Valuation) -> None:
+        super().__init__()
         self._problem, self._values = problem, values
-        self._known: dict[int, Cone] = {}
 
-    def __getitem__(self, index: int) -> Cone:
-        found = self._known.get(index)
-        if found is None:
-            rows = self._problem.constraints[index].rows
-            found = self._known[index] = self._values.cone(row.expression for row in rows)
+    def __missing__(self, index: int) -> Cone:
+        rows = self._problem.constraints[index].rows
+        found = self[index] = self._values.cone(row.expression for row in rows)
         return found
