@@ -59,7 +59,7 @@ _VALUE: dict[int, Callable[..., Floats]] = {
     Op.ADD: np.add,
     Op.SUB: np.subtract,
     Op.MUL: np.multiply,
-    Op.DIV: np.divide,
+    Op.DIV: lambda a, b: a / (b + 0.0),  # zero has no sign
     Op.NEG: np.negative,
     Op.SIN: np.sin,
     Op.COS: np.cos,
@@ -71,8 +71,8 @@ _VALUE: dict[int, Callable[..., Floats]] = {
     Op.ABS: np.abs,
     Op.SQUARE: np.square,
     Op.HYPOT: np.hypot,
-    Op.MINIMUM: np.minimum,
-    Op.MAXIMUM: np.maximum,
+    Op.MINIMUM: lambda a, b: np.where(a <= b, a, np.where(b < a, b, np.nan)),
+    Op.MAXIMUM: lambda a, b: np.where(a >= b, a, np.where(b > a, b, np.nan)),
     Op.MOD: lambda a, b: a - b * whole_turns(a, b),
     Op.SELECT: _select,
 }

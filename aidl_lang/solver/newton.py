@@ -34,6 +34,8 @@ FLAT = 1e-11
 """Slopes below this (relative to what the residuals could give) lead nowhere."""
 ROUNDED = 1e-14
 """A violation, in units of its row, that is rounding alone."""
+TINY = 1e-200
+"""Squares of slopes below this are none."""
 POLISHED = 1e-10
 POLISHING_STEPS = 40
 MEMORY = 5
@@ -306,8 +308,8 @@ class _Newton:
         rows = ~system.inequality | (residuals > 0.0)
         damped = damped_steps(jacobian[rows], residuals[rows])
         largest = damped.largest
-        # Written so that overflow ends it as well.
-        if not FLAT * np.sqrt(largest * merit) < damped.slope < np.inf or not 0.0 < largest < np.inf:
+        # Written so that it ends with what overflows or vanishes as well.
+        if not FLAT * np.sqrt(largest * merit) < damped.slope < np.inf or not TINY < largest < np.inf:
             return None
         mu = max(damping, 1e-12) * largest
         while mu <= 1e8 * largest:

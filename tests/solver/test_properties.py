@@ -137,7 +137,7 @@ def test_another_optimiser_finds_nothing_nearer(sketch: Sketch) -> None:
 
 @contextmanager
 def at_most(seconds: float) -> Iterator[None]:
-    """Ends what takes longer, so that a solve that hangs is a failure and no more."""
+    """Ends what takes longer, so that a solve that hangs is a failure and no more than that."""
 
     def late(*_: object) -> None:
         raise AssertionError(f"not done after {seconds} s")
@@ -496,15 +496,10 @@ UNBOUNDED = {
 }
 
 
-ENDLESS = pytest.mark.xfail(strict=True, reason="damping grows from nothing to nothing for ever")
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(k, marks=ENDLESS if k == "a slope of 1e-160" else ()) for k in UNBOUNDED]
-)
+@pytest.mark.parametrize("name", UNBOUNDED)
 def test_overflow_is_silent_and_soon_over(name: str) -> None:
     problem = UNBOUNDED[name].problem()
-    with at_most(10.0):
+    with at_most(5.0):
         assert_honest(problem, solve(problem, Settings(seconds=1.0)))
 
 
