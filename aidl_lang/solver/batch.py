@@ -37,11 +37,14 @@ class Scaling:
 
 @dataclass(frozen=True)
 class Systems:
-    """To which system each row (r,) and each column (k,) of a program belongs, and which are to be solved."""
+    """To which system each row (r,) and each column (k,) of a program belongs, which are to be solved, and
+    whether each has as many rows as columns.
+    """
 
     of_row: Ints
     of_column: Ints
     wanted: Bools
+    square: bool
 
 
 def solve(

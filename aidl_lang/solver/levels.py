@@ -251,7 +251,10 @@ class Levels:
             x[columns] = np.where(solved[systems.of_column], reached, x[columns])
         choosy = np.zeros(len(solved), dtype=np.bool_)  # which inequalities bind has to be searched for
         choosy[systems.of_row[listed.at_most[rows]]] = True
-        for system in np.flatnonzero(~systems.wanted | (choosy & ~solved & ~hopeless)).tolist():
+        if not systems.wanted.any() and systems.square and len(solved) > 1:
+            # Where nothing is left to choose, nothing is lost by solving them as one.
+            solved[:] = self._solve_alone(program, rows, x) is End.CONVERGED
+        for system in np.flatnonzero((~systems.wanted | choosy) & ~solved & ~hopeless).tolist():
             members = np.flatnonzero(systems.of_row == system)
             whole = len(members) == len(rows)
             alone = program if whole else freezing.program(listed.expression[rows[members]])
@@ -291,5 +294,5 @@ def _systems(program: ArrayProgram) -> batch.Systems:
     labels = components(program.entry_rows, program.indices + rows, rows + columns)
     of_row, of_column = labels[:rows], labels[rows:]
     count = int(labels.max(initial=-1)) + 1
-    entries = np.bincount(of_row, minlength=count) * np.bincount(of_column, minlength=count)
-    return batch.Systems(of_row, of_column, entries <= STACKED)
+    height, width = np.bincount(of_row, minlength=count), np.bincount(of_column, minlength=count)
+    return batch.Systems(of_row, of_column, height * width <= STACKED, bool((height == width).all()))
