@@ -17,6 +17,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import structural_rank
 from scipy.sparse.linalg import SuperLU, splu
 
 from aidl_lang.solver.dense import LeastNorm
@@ -29,6 +30,10 @@ NOISE = 1e-10
 REGULAR = 1e-9
 """ε relative to the greatest square of a row."""
 ACCURATE = 1e-11
+HUGE = 1e150
+"""What a slope is taken for that is beyond the range of numbers."""
+TINY = 1e-150
+"""The least ε: with it, the augmented matrix has a diagonal without zeros, whatever J is."""
 REFINEMENTS = 6
 SCATTERED = {"relax": 1, "panel_size": 1}
 """Options for matrices with a few entries in a row, whose factors have no dense blocks worth the search."""
@@ -42,6 +47,8 @@ class SparseMatrix:
     """A matrix (m, n) by rows, that remembers its factors."""
 
     def __init__(self, matrix: sp.csr_array) -> None:
+        if not np.isfinite(matrix.data).all():  # finite slopes times their scales may overflow
+            np.nan_to_num(matrix.data, copy=False, posinf=HUGE, neginf=-HUGE)
         self.matrix = matrix
         self.shape: tuple[int, int] = matrix.shape
 
@@ -61,14 +68,18 @@ class SparseMatrix:
         """The factors of a square matrix, None if it is singular."""
         if self.shape[0] != self.shape[1]:
             return None
+        matrix = self.matrix.tocsc()
+        matrix.eliminate_zeros()
+        if structural_rank(matrix) < self.shape[0]:
+            return None  # SuperLU may write where it should not when a whole column cancels
         try:
-            return splu(self.matrix.tocsc(), **SCATTERED)
+            return splu(matrix, **SCATTERED)
         except RuntimeError:  # exactly singular
             return None
 
     @cached_property
     def augmented(self) -> Augmented:
-        return Augmented(self, REGULAR * self.largest)
+        return Augmented(self, max(REGULAR * self.largest, TINY))
 
     @cached_property
     def largest(self) -> float:
@@ -127,11 +138,14 @@ class Augmented:
             [[sp.eye_array(self._columns), jacobian.T], [jacobian.matrix, -epsilon * sp.eye_array(rows)]],
             format="csc",
         )
-        self._factors: SuperLU = splu(matrix, **SCATTERED)
+        try:
+            self._factors: SuperLU | None = splu(matrix, **SCATTERED)
+        except RuntimeError:  # exactly singular, which takes slopes beyond all measure
+            self._factors = None
 
     def solve(self, y: Floats, above: Floats | None = None) -> tuple[Floats, Floats]:
         right = np.concatenate((np.zeros(self._columns) if above is None else above, y))
-        both = self._factors.solve(right)
+        both = np.zeros(len(right)) if self._factors is None else self._factors.solve(right)
         return both[: self._columns], both[self._columns :]
 
 
@@ -144,4 +158,4 @@ class DampedSteps:
         self.slope = float(np.linalg.norm(jacobian.T @ residuals))
 
     def step(self, mu: float) -> Floats:
-        return Augmented(self._jacobian, max(mu, 1e-12 * self.largest)).solve(-self._residuals)[0]
+        return Augmented(self._jacobian, max(mu, 1e-12 * self.largest, TINY)).solve(-self._residuals)[0]

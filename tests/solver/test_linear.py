@@ -54,6 +54,33 @@ def test_the_shortest_solution(way: str, kind: str, seed: int) -> None:
     assert not found.unique or np.linalg.matrix_rank(matrix) == matrix.shape[1]
 
 
+@given(
+    seed=st.integers(0, 100_000), kind=st.sampled_from(["column", "row", "copy", "stored zeros", "overflow"])
+)
+@settings(max_examples=100, deadline=None)
+def test_singular_square_matrices_are_no_danger(seed: int, kind: str) -> None:
+    """SuperLU itself may crash on a matrix with an empty column."""
+    random = np.random.default_rng(seed)
+    n = int(random.integers(2, 30))
+    matrix = random.uniform(-2.0, 2.0, (n, n)) * (random.uniform(size=(n, n)) < random.uniform(0.03, 0.5))
+    sparse_matrix = csr_array(matrix)
+    if kind == "copy":
+        matrix[-1] = matrix[0]
+    elif kind != "overflow":
+        matrix[(slice(None), -1) if kind != "row" else -1] = 0.0
+    if kind == "stored zeros":
+        sparse_matrix.data[sparse_matrix.indices == n - 1] = 0.0
+    else:
+        sparse_matrix = csr_array(matrix)
+    if kind == "overflow" and len(sparse_matrix.data):
+        sparse_matrix.data[0] = np.inf
+    with np.errstate(all="ignore"):
+        found = sparse.least_norm(SparseMatrix(sparse_matrix), np.ones(n))
+    assert found.point.shape == (n,)
+    if kind != "overflow" and found.outside is None:
+        assert np.abs(matrix @ found.point - 1.0).max() <= 1e-6
+
+
 @pytest.mark.parametrize("way", ["dense", "sparse"])
 @given(seed=st.integers(0, 10_000))
 @settings(max_examples=20, deadline=None)
