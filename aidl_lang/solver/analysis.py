@@ -15,13 +15,12 @@ from enum import StrEnum
 import numpy as np
 
 from aidl_lang.solver.dependence import dependent_rows
-from aidl_lang.solver.gradients import Integers, Sparse, below, linearise
+from aidl_lang.solver.gradients import Sparse, below, linearise
 from aidl_lang.solver.mobility import SEEN, Mobility, Motions, Watch, mobility
-from aidl_lang.solver.operations import Floats, Op
+from aidl_lang.solver.operations import Bools, Floats, Ints, Op
 from aidl_lang.solver.problem import Problem
 from aidl_lang.solver.redundancy import Equations, Redundancy, redundancies
 from aidl_lang.solver.solution import Solution
-from aidl_lang.solver.stacks import Flags
 
 SINGULAR = 1e-7
 """Slope of a row, in units of its scale, below which it has none: that says nothing about the constraint."""
@@ -96,7 +95,7 @@ def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = 
     )
 
 
-def _equal_rows(problem: Problem, holding: Flags, order: Sequence[int] | None) -> Integers:
+def _equal_rows(problem: Problem, holding: Bools, order: Sequence[int] | None) -> Ints:
     """The equations of the constraints that are `holding`, in the order that is preferred."""
     rows = problem.rows
     equal = np.flatnonzero(holding[rows.constraint] & ~rows.at_most)
@@ -107,7 +106,7 @@ def _equal_rows(problem: Problem, holding: Flags, order: Sequence[int] | None) -
     return equal[np.argsort(rank[rows.constraint[equal]], kind="stable")]
 
 
-def _equations(problem: Problem, equal: Integers, slopes: Sparse) -> tuple[Equations, list[int]]:
+def _equations(problem: Problem, equal: Ints, slopes: Sparse) -> tuple[Equations, list[int]]:
     """The equations that have a slope, and the constraints that consist of nothing else."""
     rows = problem.rows
     matrix = slopes.scaled(1.0 / rows.scale[equal], problem.scale)
@@ -124,7 +123,7 @@ def _equations(problem: Problem, equal: Integers, slopes: Sparse) -> tuple[Equat
 
 
 def _mobility(
-    problem: Problem, rows: Sparse, clear: Flags, seen: Sparse, node_of: Integers, places: Floats
+    problem: Problem, rows: Sparse, clear: Bools, seen: Sparse, node_of: Ints, places: Floats
 ) -> Mobility:
     """What can move, with the equations `rows`, of which those that are `clear` are known to be independent.
 
@@ -146,7 +145,7 @@ def _mobility(
     return mobility(jacobian, known, observables, watch, len(problem.parent), motions)
 
 
-def _mentioned(problem: Problem) -> Flags:
+def _mentioned(problem: Problem) -> Bools:
     """The unknowns that occur in any constraint."""
     found = np.zeros(len(problem.initial), dtype=np.bool_)
     tape = problem.tape
@@ -155,7 +154,7 @@ def _mentioned(problem: Problem) -> Flags:
     return found
 
 
-def _distinct(matrix: Sparse) -> tuple[Integers, Integers]:
+def _distinct(matrix: Sparse) -> tuple[Ints, Ints]:
     """The first of all rows that are equal, and for each row its place among these; -1 for an empty one."""
     known: dict[tuple[object, ...], int] = {}
     firsts: list[int] = []
@@ -172,7 +171,7 @@ def _distinct(matrix: Sparse) -> tuple[Integers, Integers]:
 
 
 def _states(
-    problem: Problem, broken: Flags, redundant: Sequence[Redundancy], degrees: Integers
+    problem: Problem, broken: Bools, redundant: Sequence[Redundancy], degrees: Ints
 ) -> tuple[State, ...]:
     contradictory = set(problem.holder[broken].tolist())
     moving, unclear = (degrees > 0).tolist(), (degrees < 0).tolist()

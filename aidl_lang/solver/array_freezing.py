@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.solver.array_program import IDENTITY, ArrayProgram, Step
+from aidl_lang.solver.newton import GOLDEN
 from aidl_lang.solver.operations import BRANCHING, LINEAR, Bools, Floats, Ints, Op
 from aidl_lang.solver.schedule import Batch, Graph, Schedule
 
@@ -20,7 +21,6 @@ ZERO = -1
 """First member of a difference that is 0."""
 TIE = 1e-9
 """Difference, relative to the operands, below which rounding shall not decide between branches."""
-GOLDEN = 0.6180339887498949
 ALIKE = 1e-12
 """Relative difference of slopes that is rounding alone."""
 
@@ -58,8 +58,7 @@ class ArrayFreezing:
         self._schedule, self._free = schedule, free
         self._ops, self._operands, self._levels = tape.ops, tape.operands, tape.levels
         self._values = values.copy()
-        self._branches = _BRANCHES[tape.ops]
-        self._branching = np.flatnonzero(self._branches)
+        self._branching = np.flatnonzero(_BRANCHES[tape.ops])
         self.choices = np.zeros(len(self._branching), dtype=np.int64)
         if choosing and len(self._branching):
             self._choose(flipped)
@@ -124,7 +123,6 @@ class ArrayFreezing:
         self._operands = np.vstack((self._operands, operands))
         top = np.full(len(pairs), self._levels.max(initial=0) + 1, dtype=np.int32)
         self._levels = np.append(self._levels, top)
-        self._branches = np.append(self._branches, np.zeros(len(pairs), dtype=np.bool_))
         self._values = np.append(self._values, values[:, 0] - values[:, 1])
 
     def _find_varying(self) -> Bools:

@@ -63,7 +63,6 @@ class ArrayProgram:
     _steps: list[Step]
     _values: Floats
     _slopes: Floats
-    _factors: tuple[Floats, Floats] | None = None
 
     @property
     def linear(self) -> bool:
@@ -85,9 +84,7 @@ class ArrayProgram:
 
     def jacobian(self, row_factors: Floats, column_factors: Floats) -> Matrix:
         """The (r, k) partial derivatives where `residuals` was last evaluated, times these factors."""
-        if self._factors is None:
-            self._factors = row_factors[self.entry_rows], column_factors[self.indices]
-        entries = self.entries() * self._factors[0] * self._factors[1]
+        entries = self.entries() * row_factors[self.entry_rows] * column_factors[self.indices]
         rows, columns = self.shape
         if rows * columns <= DENSE:
             matrix = np.zeros((rows, columns))

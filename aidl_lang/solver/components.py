@@ -19,12 +19,17 @@ def components(a: Ints, b: Ints, count: int) -> Ints:
         links = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(count, count))
         labels: Ints = connected_components(links, directed=False)[1].astype(np.int64)
         return labels
+    lowest = connected(a, b, count)
+    return (np.cumsum(lowest == np.arange(count)) - 1)[lowest]
+
+
+def connected(a: Ints, b: Ints, count: int) -> Ints:
+    """For each of `count` vertices the least one that it hangs together with, by edges (e,) from a to b."""
     lowest = np.arange(count)
     while True:
         below, above = np.minimum(lowest[a], lowest[b]), np.maximum(lowest[a], lowest[b])
         if (below == above).all():
-            break
+            return lowest
         np.minimum.at(lowest, above, below)
         while (lowest != (lower := lowest[lowest])).any():
             lowest = lower
-    return (np.cumsum(lowest == np.arange(count)) - 1)[lowest]

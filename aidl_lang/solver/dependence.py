@@ -13,8 +13,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from aidl_lang.solver.gradients import Integers, Sparse, connected
-from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.components import connected
+from aidl_lang.solver.gradients import Sparse
+from aidl_lang.solver.operations import Floats, Ints
 from aidl_lang.solver.stacks import DOUBT, LARGE, RANK, Sorted, lots, stacked
 
 OWN = 1e-3
@@ -81,7 +82,7 @@ def _pairs(matrix: Sparse, row: int) -> list[tuple[int, float]]:
     return list(zip(matrix.columns[here].tolist(), matrix.entries[here].tolist(), strict=True))
 
 
-def _entangled(matrix: Sparse, width: int) -> Integers:
+def _entangled(matrix: Sparse, width: int) -> Ints:
     """What is left when rows with an unknown that no other mentions are taken away, again and again."""
     matrix = matrix.only(matrix.entries != 0.0)
     # How many rows mention a column, and the sum of their numbers: with one left, this is its number.
@@ -108,7 +109,7 @@ def _entangled(matrix: Sparse, width: int) -> Integers:
     return np.flatnonzero(left)
 
 
-def _doubtful_parts(matrix: Sparse, width: int) -> Iterable[Integers]:
+def _doubtful_parts(matrix: Sparse, width: int) -> Iterable[Ints]:
     """The rows by what they share, without parts that are clearly independent."""
     if not len(matrix):
         return []
@@ -144,7 +145,7 @@ def _relations(matrix: Sparse) -> dict[int, Relation] | None:
     return _reduced(u[:, np.count_nonzero(sigma >= RANK) :].T)
 
 
-def _sparse_relations(matrix: Sparse, columns: Integers) -> dict[int, Relation] | None:
+def _sparse_relations(matrix: Sparse, columns: Ints) -> dict[int, Relation] | None:
     from aidl_lang.solver.elimination import UndecidedError, combinations, independent_rows
 
     local = Sparse(matrix.starts, np.searchsorted(columns, matrix.columns), matrix.entries)

@@ -19,8 +19,8 @@ import scipy.sparse
 import scipy.sparse.linalg
 from numpy.typing import NDArray
 
-from aidl_lang.solver.gradients import Integers, Sparse
-from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.gradients import Sparse
+from aidl_lang.solver.operations import Floats, Ints
 from aidl_lang.solver.stacks import DOUBT, RANK
 
 STABLE = 0.1
@@ -47,13 +47,13 @@ def as_csr(matrix: Sparse, width: int) -> scipy.sparse.csr_array:
     return scipy.sparse.csr_array((matrix.entries, matrix.columns, matrix.starts), shape=shape)
 
 
-def independent_rows(matrix: Sparse, width: int) -> Integers:
+def independent_rows(matrix: Sparse, width: int) -> Ints:
     """As many rows of a matrix of unit rows as are independent, ascending.
 
     Raises UndecidedError.
     """
     rest, names = as_csr(matrix, width), np.arange(len(matrix))
-    chosen: list[Integers] = []
+    chosen: list[Ints] = []
     for _ in range(ROUNDS):
         rest, names = _without_zeros(rest, names)
         columns = np.count_nonzero(np.bincount(rest.indices))
@@ -122,7 +122,7 @@ def gram_solver(rows: scipy.sparse.csr_array) -> Callable[[Floats], Floats]:
     return factors.solve  # type: ignore[no-any-return]
 
 
-def _without_zeros(rest: scipy.sparse.csr_array, names: Integers) -> tuple[scipy.sparse.csr_array, Integers]:
+def _without_zeros(rest: scipy.sparse.csr_array, names: Ints) -> tuple[scipy.sparse.csr_array, Ints]:
     """Without rounding errors, and without rows of which nothing is left."""
     rest.data[np.abs(rest.data) < ROUNDING] = 0.0
     rest.eliminate_zeros()
@@ -134,7 +134,7 @@ def _without_zeros(rest: scipy.sparse.csr_array, names: Integers) -> tuple[scipy
     return (rest, names) if left.all() else (rest[left], names[left])
 
 
-def _pivots(rest: scipy.sparse.csr_array) -> tuple[Integers, Integers]:
+def _pivots(rest: scipy.sparse.csr_array) -> tuple[Ints, Ints]:
     """Rows and columns of entries that can be eliminated at the same time; at least one."""
     starts, columns, sizes = rest.indptr[:-1], rest.indices, np.abs(rest.data)
     lengths = np.diff(rest.indptr)
@@ -154,18 +154,18 @@ def _pivots(rest: scipy.sparse.csr_array) -> tuple[Integers, Integers]:
 
 
 def _untouched(
-    rows: Integers,
-    columns: Integers,
-    by_column: Integers,
-    starts: Integers,
-    candidate: Integers,
+    rows: Ints,
+    columns: Ints,
+    by_column: Ints,
+    starts: Ints,
+    candidate: Ints,
     priority: Floats,
     width: int,
-) -> tuple[Integers, Integers]:
+) -> tuple[Ints, Ints]:
     """The candidates (one to a row) that come before all those they touch, and of the rest again the same."""
     column_starts = np.flatnonzero(np.diff(columns[by_column], prepend=-1))
     column_names = columns[by_column][column_starts]
-    taken: list[Integers] = []
+    taken: list[Ints] = []
     for _ in range(TRIES):
         wanted = np.full(width, np.inf)
         np.minimum.at(wanted, candidate, priority)
@@ -189,8 +189,8 @@ def _untouched(
 
 
 def _eliminate(
-    rest: scipy.sparse.csr_array, names: Integers, rows: Integers, pivots: Integers
-) -> tuple[scipy.sparse.csr_array, Integers]:
+    rest: scipy.sparse.csr_array, names: Ints, rows: Ints, pivots: Ints
+) -> tuple[scipy.sparse.csr_array, Ints]:
     """The Schur complement of the pivots: the other rows without the part along the pivots' columns."""
     place = np.full(rest.shape[1], -1)
     place[pivots] = np.arange(len(pivots))

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from aidl_lang.solver import arrays
 from aidl_lang.solver.expression import Tape
-from aidl_lang.solver.operations import ARITY, PARTIALS, VALUE, Floats, Op
+from aidl_lang.solver.operations import PARTIALS, VALUE, Floats, Ints, Op
+from aidl_lang.solver.schedule import Schedule
 from aidl_lang.solver.valuation import Valuation
 
-Integers: TypeAlias = NDArray[np.int64]
 Values: TypeAlias = "Mapping[int, float] | Sequence[float]"
 """The value of each node, by its number."""
 Gradient: TypeAlias = dict[int, float]
@@ -37,7 +37,7 @@ STEEPEST = 1e100
 BRANCHES = 4
 """Most operands that an operation has."""
 
-_Adjoints: TypeAlias = tuple[Integers, Integers, Floats]
+_Adjoints: TypeAlias = tuple[Ints, Ints, Floats]
 """Roots, nodes, and the derivatives of the former along the latter."""
 
 
@@ -50,15 +50,15 @@ class Sparse:
     entries (e,)
     """
 
-    starts: Integers
-    columns: Integers
+    starts: Ints
+    columns: Ints
     entries: Floats
 
     def __len__(self) -> int:
         return len(self.starts) - 1
 
     @cached_property
-    def rows(self) -> Integers:
+    def rows(self) -> Ints:
         """(e,) the row of each entry."""
         return np.repeat(np.arange(len(self)), np.diff(self.starts))
 
@@ -79,7 +79,7 @@ class Sparse:
         """Every entry times the factors of its row and its column."""
         return Sparse(self.starts, self.columns, self.entries * rows[self.rows] * columns[self.columns])
 
-    def take(self, rows: Integers) -> Sparse:
+    def take(self, rows: Ints) -> Sparse:
         """The given rows, in their order."""
         counts = self.starts[rows + 1] - self.starts[rows]
         starts = _starts(counts)
@@ -92,31 +92,20 @@ class Sparse:
         return Sparse(starts, self.columns[entries], self.entries[entries])
 
     @property
-    def links(self) -> tuple[Integers, Integers]:
+    def links(self) -> tuple[Ints, Ints]:
         """Pairs of columns that share a row, enough of them to connect all that do."""
         firsts = self.columns[np.minimum(self.starts[:-1], max(len(self.columns) - 1, 0))[self.rows]]
         return firsts, self.columns
 
-    def dense(self, columns: Integers) -> Floats:
+    def dense(self, columns: Ints) -> Floats:
         """The given columns, which are ascending and hold every entry."""
         matrix = np.zeros((len(self), len(columns)))
         matrix[self.rows, np.searchsorted(columns, self.columns)] = self.entries
         return matrix
 
 
-def _starts(counts: NDArray[np.intp]) -> Integers:
+def _starts(counts: NDArray[np.intp]) -> Ints:
     return np.concatenate((np.zeros(1, dtype=np.int64), np.cumsum(counts, dtype=np.int64)))
-
-
-def connected(a: Integers, b: Integers, count: int) -> Integers:
-    """For each of `count` things the least one that it hangs together with, by links `a[i]` to `b[i]`."""
-    label = np.arange(count)
-    while (label[a] != label[b]).any():
-        low, high = np.minimum(label[a], label[b]), np.maximum(label[a], label[b])
-        np.minimum.at(label, high, low)
-        while (label[label] != label).any():
-            label = label[label]
-    return label
 
 
 def below(tape: Tape, roots: Iterable[int]) -> list[int]:
@@ -150,7 +139,7 @@ def gradients(values: Valuation, roots: Iterable[int]) -> dict[int, Gradient]:
     return {root: found[root] for root in wanted}
 
 
-def linearise(tape: Tape, at: Floats, roots: Integers) -> tuple[Floats, Sparse]:
+def linearise(tape: Tape, at: Floats, roots: Ints) -> tuple[Floats, Sparse]:
     """The values (r,) of `roots` at the unknowns `at` (n,), and their finite partial derivatives.
 
     Unknowns without influence on a root have no entry; entries that cancel may be zeros, and products that
@@ -222,22 +211,16 @@ def _forward(tape: Tape, values: Values, nodes: Iterable[int]) -> dict[int, Grad
 
 def _everything(tape: Tape, at: Floats) -> tuple[Floats, Floats]:
     """The value (m,) of every node of the tape, and the slope (m, 4) of each along its operands."""
-    values, slopes = tape.constants.copy(), np.zeros((len(tape), BRANCHES))
-    unknowns = np.flatnonzero(tape.ops == Op.UNKNOWN)
-    values[unknowns] = at[tape.operands[unknowns, 0]]
-    kind = tape.levels.astype(np.int64) * len(Op) + tape.ops
-    order = np.argsort(kind, kind="stable")
-    for nodes in np.split(order, np.flatnonzero(np.diff(kind[order])) + 1):
-        op = int(tape.ops[nodes[0]])
-        if op > Op.UNKNOWN:
-            operands = tuple(values[a] for a in tape.operands[nodes, : ARITY[op]].T)
-            values[nodes] = arrays.values(op, operands)
-            for k, slope in enumerate(arrays.partials(op, operands, values[nodes])[: ARITY[op]]):
-                slopes[nodes, k] = slope
+    schedule = Schedule(tape)
+    values, slopes = schedule.evaluate(at), np.zeros((len(tape), BRANCHES))
+    for batch in schedule.batches:
+        operands = tuple(values[a] for a in batch.operands)
+        for k, slope in enumerate(arrays.partials(batch.op, operands, values[batch.nodes])[: len(operands)]):
+            slopes[batch.nodes, k] = slope
     return values, slopes
 
 
-def _backward(tape: Tape, slopes: Floats, roots: Integers) -> Sparse:
+def _backward(tape: Tape, slopes: Floats, roots: Ints) -> Sparse:
     """The adjoints of all roots at once, from the highest level of the tape to the unknowns."""
     operands, level = tape.operands.astype(np.int64), tape.levels
     pending: dict[int, list[_Adjoints]] = {}

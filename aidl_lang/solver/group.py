@@ -46,7 +46,7 @@ LAST_RESTARTS = 5
 MOST_FAILURES = 20
 """Conflicts that are explained and worked around; after that, only the best effort is kept."""
 
-_NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "sizes"}
+NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "sizes"}
 
 
 def stage_name(tier: Tier) -> str:
@@ -54,7 +54,7 @@ def stage_name(tier: Tier) -> str:
     kind, level = tier
     if kind == 5:
         return ("placed sizes", "own sizes")[level] if level < 2 else f"sizes {level - 1}"
-    return _NAMES[kind] if kind < 3 else f"{_NAMES[kind]} {level}"
+    return NAMES[kind] if kind < 3 else f"{NAMES[kind]} {level}"
 
 
 @dataclass(frozen=True)

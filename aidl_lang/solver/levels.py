@@ -18,6 +18,7 @@ from aidl_lang.solver.array_freezing import ArrayFreezing
 from aidl_lang.solver.array_program import ArrayProgram
 from aidl_lang.solver.branches import TIGHTER, Metric
 from aidl_lang.solver.components import components
+from aidl_lang.solver.group import NAMES
 from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Bools, Floats, Ints
 from aidl_lang.solver.problem import Problem, Settings, depths, violations
@@ -27,7 +28,7 @@ ROUNDS = 4
 """Rounds of taking up inequalities that came to be violated."""
 STACKED = 4096
 """Entries of a Jacobian up to which systems are stacked; larger ones are solved one by one."""
-KINDS = {"placed": 1, "own": 2, "translations": 3, "positions": 4, "sizes": 5}
+KINDS = {name: kind for kind, name in NAMES.items()}
 DEPTHS = 1 << 20
 """A tier (kind, level) as one number is kind * DEPTHS + level."""
 
@@ -86,14 +87,13 @@ class Levels:
     def solve(self, depth: int, known: Bools) -> Iterator[Stage]:
         """Solves what it can of the groups at `depth`, stage by stage, except those `known` (g,)."""
         problem = self.problem
-        nodes = self.nodes()
-        holds = self._holding(nodes)
+        holds = self._all(self._holding(self.nodes()))
         active = self.binding & (self._holder_depth >= depth)
         held = active & (self._holder_depth == depth) & ~known[problem.holder]
-        if not (held & ~self._all(holds)).any():
+        violated = held & ~holds
+        if not violated.any():
             return
         of_constraint, of_unknown = self._parts(active)
-        violated = held & ~self._all(holds)
         left = np.zeros(int(max(of_constraint.max(), of_unknown.max(initial=0))) + 1, dtype=np.bool_)
         left[of_constraint[violated]] = True
         tier = self._tiers(depth, held)

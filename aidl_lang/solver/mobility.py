@@ -13,9 +13,10 @@ from functools import cached_property
 
 import numpy as np
 
-from aidl_lang.solver.gradients import Integers, Sparse, connected
-from aidl_lang.solver.operations import Floats
-from aidl_lang.solver.stacks import DOUBT, LARGE, RANK, Flags, Sorted, lots, stacked
+from aidl_lang.solver.components import connected
+from aidl_lang.solver.gradients import Sparse
+from aidl_lang.solver.operations import Bools, Floats, Ints
+from aidl_lang.solver.stacks import DOUBT, LARGE, RANK, Sorted, lots, stacked
 
 SEEN = 1e-7
 """Motions of observables that count as none, where one is the size of a typical motion."""
@@ -36,9 +37,9 @@ class Part:
     velocities  (o, d) what they see of it
     """
 
-    unknowns: Integers
+    unknowns: Ints
     basis: Floats
-    observables: Integers
+    observables: Ints
     velocities: Floats
 
 
@@ -53,15 +54,15 @@ class Motions:
 
     scale: Floats
     values: Floats
-    row: Integers
-    found: list[tuple[Integers, Floats, Integers, Floats]] = field(default_factory=list, repr=False)
+    row: Ints
+    found: list[tuple[Ints, Floats, Ints, Floats]] = field(default_factory=list, repr=False)
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
         same = Sorted(self.row, int(self.row.max(initial=-1)) + 1)
         return tuple(self._part(same, *each) for each in sorted(self.found, key=lambda each: int(each[0][0])))
 
-    def _part(self, same: Sorted, columns: Integers, basis: Floats, rows: Integers, seen: Floats) -> Part:
+    def _part(self, same: Sorted, columns: Ints, basis: Floats, rows: Ints, seen: Floats) -> Part:
         moving = np.abs(basis).max(axis=1) > NOTHING
         watching = np.flatnonzero(np.abs(seen).max(axis=1) > SEEN)
         alike = [same.members(row) for row in rows[watching].tolist()]
@@ -83,23 +84,23 @@ class Mobility:
     undecided  unknowns of each part of which the rank could not be told
     """
 
-    degrees: Integers
-    moving: Flags
+    degrees: Ints
+    moving: Bools
     motions: Motions
     total: int | None = 0
-    undecided: list[Integers] = field(default_factory=list)
+    undecided: list[Ints] = field(default_factory=list)
 
-    def count(self, groups: Integers, degrees: Integers, total: int) -> None:
+    def count(self, groups: Ints, degrees: Ints, total: int) -> None:
         counted = self.degrees[groups] >= 0
         np.add.at(self.degrees, groups[counted], degrees[counted])
         if self.total is not None:
             self.total += total
 
-    def add(self, columns: Integers, basis: Floats, rows: Integers, velocities: Floats) -> None:
+    def add(self, columns: Ints, basis: Floats, rows: Ints, velocities: Floats) -> None:
         self.moving[columns[np.abs(basis).max(axis=1) > NOTHING]] = True
         self.motions.found.append((columns, basis, rows, velocities))
 
-    def give_up(self, unknowns: Integers, groups: Integers) -> None:
+    def give_up(self, unknowns: Ints, groups: Ints) -> None:
         self.undecided.append(unknowns)
         self.degrees[groups] = -1
         self.total = None
@@ -109,12 +110,12 @@ class Mobility:
 class Watch:
     """Who sees what: groups (p,) and rows (p,) of the observables' Jacobian, each pair once."""
 
-    groups: Integers
-    rows: Integers
+    groups: Ints
+    rows: Ints
 
 
 def mobility(
-    equations: Sparse, known: Flags, observables: Sparse, watch: Watch, groups: int, motions: Motions
+    equations: Sparse, known: Bools, observables: Sparse, watch: Watch, groups: int, motions: Motions
 ) -> Mobility:
     """Counts motions, and lists them in `motions`.
 
@@ -140,7 +141,7 @@ class _Parts:
     """The unknowns that observables and equations link, numbered by part, with their rows."""
 
     def __init__(
-        self, equations: Sparse, known: Flags, observables: Sparse, watch: Watch, unknowns: int
+        self, equations: Sparse, known: Bools, observables: Sparse, watch: Watch, unknowns: int
     ) -> None:
         self.equations, self.known, self.observables, self.watch = equations, known, observables, watch
         links = [np.concatenate(ends) for ends in zip(equations.links, observables.links, strict=True)]
@@ -161,11 +162,11 @@ class _Parts:
         """With the columns numbered within their part."""
         return Sparse(matrix.starts, self.columns.place[matrix.columns], matrix.entries)
 
-    def groups(self, part: int) -> Integers:
+    def groups(self, part: int) -> Ints:
         return np.unique(self.watch.groups[self.pairs.members(part)])
 
 
-def _part_of_rows(matrix: Sparse, part: Integers) -> Integers:
+def _part_of_rows(matrix: Sparse, part: Ints) -> Ints:
     found = np.full(len(matrix), -1)
     filled = np.diff(matrix.starts) > 0
     found[filled] = part[matrix.columns[matrix.starts[:-1][filled]]]
@@ -175,7 +176,7 @@ def _part_of_rows(matrix: Sparse, part: Integers) -> Integers:
 # --- Small parts ---------------------------------------------------------------------------------
 
 
-def _settle_small(parts: _Parts, members: Integers, found: Mobility) -> None:
+def _settle_small(parts: _Parts, members: Ints, found: Mobility) -> None:
     slot = np.full(len(parts.columns.count), -1)
     slot[members] = np.arange(len(members))
     jacobian = stacked(parts.equations, parts.equation_part, parts.rows, parts.columns, slot)
@@ -202,9 +203,7 @@ def _settle_small(parts: _Parts, members: Integers, found: Mobility) -> None:
         found.add(columns, basis[i, : len(columns), : total[i]], rows, velocities[i, : len(rows), : total[i]])
 
 
-def _by_group(
-    parts: _Parts, slot: Integers, velocities: Floats, total: Integers
-) -> tuple[Integers, Integers]:
+def _by_group(parts: _Parts, slot: Ints, velocities: Floats, total: Ints) -> tuple[Ints, Ints]:
     """Groups that see some of a part in `slot`, and the rank of what each sees of it."""
     part = parts.observable_part[parts.watch.rows]
     pairs = np.flatnonzero(slot[part] >= 0)
@@ -236,7 +235,7 @@ def _settle_large(parts: _Parts, part: int, found: Mobility) -> None:
         found.add(columns, basis, rows, _times(parts.local(parts.observables.take(rows)), basis))
 
 
-def _large(parts: _Parts, part: int, groups: Integers) -> tuple[Floats | None, Flags, Integers, int]:
+def _large(parts: _Parts, part: int, groups: Ints) -> tuple[Floats | None, Bools, Ints, int]:
     """Its motions (None if they are too many), which of its columns move, and degrees by group and in all."""
     from aidl_lang.solver.elimination import NullSpace, UndecidedError, rank_of
 
@@ -286,7 +285,7 @@ def _times(matrix: Sparse, dense: Floats) -> Floats:
     return product
 
 
-def _ranks(rows: Floats, key: Integers, keys: int, least: float) -> Integers:
+def _ranks(rows: Floats, key: Ints, keys: int, least: float) -> Ints:
     """The rank of the rows (p, d) of each key."""
     order = Sorted(key, keys)
     found = np.zeros(keys, dtype=np.int64)

@@ -16,8 +16,8 @@ from functools import cached_property
 import numpy as np
 
 from aidl_lang.solver.dependence import Relation
-from aidl_lang.solver.gradients import Integers, Sparse, below, linearise
-from aidl_lang.solver.operations import Floats, Op
+from aidl_lang.solver.gradients import Sparse, below, linearise
+from aidl_lang.solver.operations import Floats, Ints, Op
 from aidl_lang.solver.problem import Problem
 from aidl_lang.solver.stacks import LARGE, RANK
 
@@ -40,8 +40,8 @@ class Equations:
     matrix unit rows over all unknowns, in units of their scales
     """
 
-    row: Integers
-    owner: Integers
+    row: Ints
+    owner: Ints
     matrix: Sparse
 
 
@@ -141,7 +141,7 @@ class _Trial:
                 return False
         return True
 
-    def _unknowns(self, rows: Sequence[int] | Integers) -> Integers:
+    def _unknowns(self, rows: Sequence[int] | Ints) -> Ints:
         """What rows mention, whether or not it has a slope here."""
         tape = self.problem.tape
         nodes = np.array(below(tape, self.expressions[rows].tolist()), dtype=np.int64)
@@ -165,7 +165,7 @@ class _Trial:
                 return False
         return True
 
-    def _holds_at(self, rows: Integers, columns: Integers, move: Floats) -> bool:
+    def _holds_at(self, rows: Ints, columns: Ints, move: Floats) -> bool:
         """Whether the last of `rows` holds where the others hold again, after a move away."""
         place = self.values.copy()
         scale = self.problem.scale[columns]
@@ -179,7 +179,7 @@ class _Trial:
             place[columns] -= scale * np.linalg.lstsq(gradient[:-1], residuals[:-1], rcond=RANK)[0]
         return False
 
-    def _rows(self, place: Floats, rows: Integers, columns: Integers) -> tuple[Floats, Floats]:
+    def _rows(self, place: Floats, rows: Ints, columns: Ints) -> tuple[Floats, Floats]:
         """Residuals and gradients of rows in units of their scales."""
         values, matrix = linearise(self.problem.tape, place, self.expressions[rows])
         dense = matrix.dense(columns) * self.problem.scale[columns]

@@ -20,13 +20,9 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import structural_rank
 from scipy.sparse.linalg import SuperLU, splu
 
-from aidl_lang.solver.dense import LeastNorm
+from aidl_lang.solver.dense import CONSISTENT, NOISE, LeastNorm
 from aidl_lang.solver.operations import Floats
 
-CONSISTENT = 1e-7
-"""Part of a right-hand side that may lie out of reach, relative to all of it, by rounding."""
-NOISE = 1e-10
-"""Part of a right-hand side, in units of its rows, that is below what any row is asked to meet."""
 REGULAR = 1e-9
 """ε relative to the greatest square of a row."""
 ACCURATE = 1e-11

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from aidl_lang.solver.gradients import Integers, Sparse
-from aidl_lang.solver.operations import Floats
-
-Flags: TypeAlias = NDArray[np.bool_]
+from aidl_lang.solver.gradients import Sparse
+from aidl_lang.solver.operations import Floats, Ints
 
 RANK = 1e-6
 """Singular values of unit rows above this count."""
@@ -24,7 +20,7 @@ LARGE = 300
 class Sorted:
     """Things sorted by the part they belong to: `of[first[p] : first[p] + count[p]]` are those of part p."""
 
-    def __init__(self, part: Integers, parts: int) -> None:
+    def __init__(self, part: Ints, parts: int) -> None:
         self.of = np.argsort(part, kind="stable")
         self.count = np.bincount(part[part >= 0], minlength=parts)
         self.first = np.cumsum(self.count) - self.count + np.count_nonzero(part < 0)
@@ -32,11 +28,11 @@ class Sorted:
         """The number of each within its part."""
         self.place[self.of] = np.arange(len(part)) - np.append(self.first, 0)[part][self.of]
 
-    def members(self, part: int) -> Integers:
+    def members(self, part: int) -> Ints:
         return self.of[self.first[part] : self.first[part] + self.count[part]]
 
 
-def lots(*sizes: Integers) -> list[Integers]:
+def lots(*sizes: Ints) -> list[Ints]:
     """Parts by their sizes, each rounded up to a power of two."""
     exponents = np.ceil(np.log2(np.maximum(np.stack(sizes), 0.5))).astype(np.int64)
     found: dict[tuple[int, ...], list[int]] = defaultdict(list)
@@ -45,7 +41,7 @@ def lots(*sizes: Integers) -> list[Integers]:
     return [np.array(parts) for parts in found.values()]
 
 
-def stacked(matrix: Sparse, of_row: Integers, rows: Sorted, columns: Sorted, slot: Integers) -> Floats:
+def stacked(matrix: Sparse, of_row: Ints, rows: Sorted, columns: Sorted, slot: Ints) -> Floats:
     """The rows of each part that has a slot as one matrix of a stack, filled up with zeros.
 
     of_row  the part of each row, -1 for none

@@ -29,7 +29,7 @@ def _cases() -> list[object]:
     reasons = {path: FAILING.get(path.stem) for path in CORPUS}
     return [
         pytest.param(
-            path, id=path.stem, marks=[pytest.mark.xfail(reason=reason, strict=False)] if reason else []
+            path, id=path.stem, marks=[pytest.mark.xfail(reason=reason, strict=True)] if reason else []
         )
         for path, reason in reasons.items()
     ]
