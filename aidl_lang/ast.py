@@ -144,11 +144,12 @@ class Membership(Node):
 
 @dataclass(frozen=True, eq=False)
 class Range(Node):
-    """`start..end` (both ends) or `start..<end` (without the last)."""
+    """`start..end` (both ends) or `start..<end` (without the last); what is run through may have a `step`."""
 
     start: Expression
     end: Expression
     exclusive: bool
+    step: Expression | None = None
 
 
 @dataclass(frozen=True, eq=False)

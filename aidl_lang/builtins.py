@@ -31,6 +31,14 @@ floor(value)
 ceil(value)
 round(value)
 len(values: list)
+record(**)
+str(value)
+range(end: number)
+range(start: number, end: number, step: number?)
+enumerate(values: list)
+zip(a: list, b: list)
+zip(a: list, b: list, c: list)
+reversed(values: list)
 choice(word: text, words: list)
 fixed(value)
 guess(value)
@@ -55,8 +63,10 @@ overlaps(a, b)
 
 
 def _signature(declaration: str) -> Signature:
-    """`name(parameter: type, optional: type?)`"""
+    """`name(parameter: type, optional: type?)`; `name(**)` takes arguments of any name."""
     name, _, inside = declaration.rstrip(")").partition("(")
+    if inside == "**":
+        return Signature(name, (), takes_any=True)
     parameters = []
     for item in inside.split(", "):
         word, _, kind = item.partition(": ")

@@ -172,7 +172,8 @@ class ExpressionPrinter:
             case ast.Range():
                 start, end = self.expression(node.start, SUM), self.expression(node.end, SUM)
                 dots = "..<" if node.exclusive else ".."
-                return CONDITION, doc(start, dots + (" " if end.flat().startswith(".") else ""), end)
+                step = doc(" step ", self.expression(node.step, SUM)) if node.step else doc()
+                return CONDITION, doc(start, dots + (" " if end.flat().startswith(".") else ""), end, step)
             case ast.Conditional():
                 then, otherwise = self.expression(node.then), self.expression(node.otherwise)
                 return CHOICE, doc("if ", self.expression(node.test, OR), " then ", then, " else ", otherwise)

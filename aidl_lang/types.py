@@ -61,6 +61,12 @@ class RangeType:
 
 
 @dataclass(frozen=True)
+class RecordType:
+    def __str__(self) -> str:
+        return "record"
+
+
+@dataclass(frozen=True)
 class ListType:
     """A list or an array; `length` where it is known."""
 
@@ -102,6 +108,7 @@ Type: TypeAlias = (
     | TruthType
     | PointType
     | RangeType
+    | RecordType
     | ListType
     | GeometryType
     | StructureType
@@ -125,6 +132,7 @@ PARAMETER_TYPES: Mapping[str, Type] = {
     "boolean": TruthType(),
     "point": PointType(),
     "list": ListType(ANY),
+    "record": RecordType(),
     "geometry": GeometryType(""),
     "structure": StructureType(),
     "box": BoxType(),
@@ -210,12 +218,15 @@ class Given:
 
 @dataclass(frozen=True)
 class Signature:
-    """A callable: `node` is its definition, None for one that is built in."""
+    """A callable: `node` is its definition, None for one that is built in. One that `takes_any` takes every
+    named argument.
+    """
 
     name: str
     parameters: tuple[tuple[str, Type, bool], ...]
     """name, type, and whether it has a default"""
     node: ast.Callable | None = None
+    takes_any: bool = False
 
     @cached_property
     def by_fold(self) -> Mapping[str, str]:
@@ -232,6 +243,7 @@ class Signature:
             name + ("" if isinstance(kind, AnyType) else f": {kind}") + (" = …" if optional else "")
             for name, kind, optional in self.parameters
         ]
+        shown += ["name: value", "…"] if self.takes_any else []
         return f"{self.name}({', '.join(shown)})"
 
 
@@ -292,6 +304,8 @@ def _bind(signature: Signature, given: Sequence[Given], *, gather: bool) -> Bind
         if argument.name is None:
             continue
         target = signature.by_fold.get(fold(argument.name))
+        if target is None and signature.takes_any:
+            target = argument.name
         if target is None:
             return Mismatch(signature, f"has no parameter `{argument.name}`", index)
         if target in arguments:

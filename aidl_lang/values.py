@@ -18,6 +18,7 @@ from aidl_lang.types import (
     NumberType,
     PointType,
     RangeType,
+    RecordType,
     Signature,
     StructureType,
     TextType,
@@ -82,11 +83,19 @@ class RangeVal:
     start: Num
     end: Num
     exclusive: bool
+    step: Num | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class ListVal:
     items: tuple[Value, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RecordVal:
+    """Values under names of their own: `record(clearance: 3.4, tap: 2.5)`."""
+
+    fields: Mapping[str, Value]
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,6 +156,7 @@ if TYPE_CHECKING:
         | Condition
         | RangeVal
         | ListVal
+        | RecordVal
         | Array
         | Geometry
         | Structure
@@ -204,6 +214,8 @@ def type_of(value: Value) -> Type:
             return TruthType()
         case RangeVal():
             return RangeType()
+        case RecordVal():
+            return RecordType()
         case ListVal() | Array():
             items = members(value) or ()
             kinds = {type_of(item) for item in items}

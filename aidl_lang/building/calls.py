@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from aidl_lang import ast
 from aidl_lang.boxes import box_of
@@ -10,8 +10,9 @@ from aidl_lang.building.blocks import run_block
 from aidl_lang.building.coerce import as_point, edge_coordinate
 from aidl_lang.building.conditions import all_of, replace_placed, value_unknowns
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, size, turn
-from aidl_lang.building.evaluate import evaluate, iterate, range_items, truth, turn_scope
+from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
+from aidl_lang.building.lists import run
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.builtins import SIGNATURES, is_word
@@ -39,6 +40,7 @@ from aidl_lang.values import (
     Num,
     PointVal,
     RangeVal,
+    RecordVal,
     Text,
     Value,
     members,
@@ -147,6 +149,8 @@ def bound(
         if value is None:
             return None
         result[name] = value
+    if binding.signature.takes_any:
+        result |= {name: values[indices[0]] for name, indices in binding.arguments.items()}
     return result
 
 
@@ -169,7 +173,7 @@ def _as_kind(it: Interpreter, value: Value, kind: object, node: ast.Node, env: E
         case ListType() if isinstance(value, Array):
             return ListVal(tuple(value.items()))
         case ListType() if isinstance(value, RangeVal):
-            items = range_items(it, value, node)
+            items = run(it, value, node)
             return ListVal(tuple(items)) if items is not None else None
     return value
 
@@ -341,18 +345,18 @@ def _bind_shape(
     scope: Scope,
 ) -> None:
     """Number and point arguments become one unknown each (or what they refer to); the rest is constant."""
-    points = _literal_points(given)
+    # A point given by itself comes before those in lists: it is where an outline begins.
+    order = sorted(given.items(), key=lambda item: not isinstance(item[1], PointVal))
+    points = [found for name, value in order for found in _points_in(name, value)]
     placed = positions(it, [p for _, p in points], geometry, [n for n, _ in points], geometry.owner)
     moved = dict(zip((n for n, _ in points), placed, strict=True))
     for parameter, (name, kind, _) in zip(parameters, signature.parameters, strict=True):
         value = given[name]
         word = parameter.type.text if parameter.type else ""
-        if isinstance(value, PointVal):
-            value = moved[name]
-        elif isinstance(value, ListVal) and any(isinstance(i, PointVal) for i in value.items):
-            value = ListVal(tuple(moved.get(f"{name}[{i}]", item) for i, item in enumerate(value.items)))
-        elif isinstance(value, Num):
+        if isinstance(value, Num):
             value = _bind_number(it, value, kind, word, name, given, geometry)
+        else:
+            value = _bind_inside(it, value, name, moved, geometry)
         scope.values[name] = value
 
 
@@ -378,11 +382,42 @@ def _bind_number(
     return bound
 
 
-def _literal_points(given: Mapping[str, Value]) -> list[tuple[str, PointVal]]:
-    found: list[tuple[str, PointVal]] = []
-    for name, value in given.items():
-        if isinstance(value, PointVal):
-            found.append((name, value))
-        elif isinstance(value, ListVal):
-            found += [(f"{name}[{i}]", p) for i, p in enumerate(value.items) if isinstance(p, PointVal)]
-    return found
+def _points_in(name: str, value: Value) -> Iterator[tuple[str, PointVal]]:
+    """The points of an argument with their paths, those in lists and records too."""
+    match value:
+        case PointVal():
+            yield name, value
+        case ListVal(items):
+            for i, item in enumerate(items):
+                yield from _points_in(f"{name}[{i}]", item)
+        case RecordVal(fields):
+            for key, item in fields.items():
+                yield from _points_in(f"{name}.{key}", item)
+
+
+def _bind_inside(
+    it: Interpreter, value: Value, name: str, moved: Mapping[str, PointVal], geometry: Geometry
+) -> Value:
+    """An argument that is no number: its points where they were placed, and the numbers that stand in
+    records as sizes. Lists of numbers stay constants.
+    """
+    match value:
+        case PointVal():
+            return moved[name]
+        case ListVal(items) if any(isinstance(i, PointVal | ListVal | RecordVal) for i in items):
+            inner = (_bind_inside(it, v, f"{name}[{i}]", moved, geometry) for i, v in enumerate(items))
+            return ListVal(tuple(inner))
+        case RecordVal(fields):
+            return RecordVal(
+                {k: _bind_field(it, v, f"{name}.{k}", moved, geometry) for k, v in fields.items()}
+            )
+        case _:
+            return value
+
+
+def _bind_field(
+    it: Interpreter, value: Value, name: str, moved: Mapping[str, PointVal], geometry: Geometry
+) -> Value:
+    if isinstance(value, Num):
+        return _bind_number(it, value, ANY, "", name, {}, geometry)
+    return _bind_inside(it, value, name, moved, geometry)

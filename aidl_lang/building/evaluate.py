@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from aidl_lang import ast, units
 from aidl_lang import expression as ex
+from aidl_lang.building import lists
 from aidl_lang.building.coerce import as_point, as_written, constant, coordinate, numeric, whole
 from aidl_lang.building.conditions import compare, conjunction, holds, negation
 from aidl_lang.building.members import member, no_index, not_built, read
@@ -24,7 +25,7 @@ from aidl_lang.values import (
     Num,
     PointVal,
     RangeVal,
-    Status,
+    RecordVal,
     Text,
     Value,
     kind_of,
@@ -81,9 +82,9 @@ def _comprehension(it: Interpreter, node: ast.Comprehension, env: Env) -> Value:
 def iterate(it: Interpreter, node: ast.Expression, env: Env) -> list[Value] | None:
     """What a `for` runs through; None after an error."""
     value = evaluate(it, node, env)
-    if isinstance(value, RangeVal):
-        return range_items(it, value, node)
-    items = members(value)
+    items = lists.items_of(it, value, node)
+    if items is None and isinstance(value, RangeVal):
+        return None
     if items is None and not isinstance(value, Nothing):
         it.report(
             "E0304",
@@ -93,23 +94,6 @@ def iterate(it: Interpreter, node: ast.Expression, env: Env) -> list[Value] | No
         )
         return None
     return list(items) if items is not None else None
-
-
-def range_items(it: Interpreter, value: RangeVal, node: ast.Node) -> list[Value] | None:
-    start, end = (
-        constant(it, n, node, "the ends of a range that is run through") for n in (value.start, value.end)
-    )
-    if start is None or end is None:
-        return None
-    tolerance = min(1e-9 * max(1.0, abs(start), abs(end)), 0.01)
-    count = math.ceil(end - start - tolerance) if value.exclusive else math.floor(end - start + tolerance) + 1
-    if count > it.limits.items:
-        it.report("E0805", f"this range has {count} members; at most {it.limits.items} are allowed", node)
-        return None
-    status = max(value.start.status, value.end.status)
-    return [
-        number(start + i, value.start.dimension, min(status, Status.NUMBER)) for i in range(max(count, 0))
-    ]
 
 
 def turn_scope(
@@ -189,6 +173,8 @@ def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
     index = evaluate(it, node.index, env)
     if isinstance(value, Nothing) or isinstance(index, Nothing):
         return NOTHING
+    if isinstance(value, RecordVal) and isinstance(index, Text):
+        return lists.entry(it, value, index.value, node.index)
     items = members(value)
     if items is None:
         it.report("E0305", f"`{node.value.span.text}` is {kind_of(value)} and has no members by number", node)
@@ -237,6 +223,8 @@ def _binary(it: Interpreter, node: ast.Binary, env: Env) -> Value:
     right = evaluate(it, node.right, env)
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
+    if node.operator == "+" and (together := lists.joined(left, right)) is not None:
+        return together
     a, b = (as_point(it, v, n, env) for v, n in ((left, node.left), (right, node.right)))
     if a is not None or b is not None:
         return _vector(it, node, a if a is not None else left, b if b is not None else right, env)
@@ -343,10 +331,12 @@ def _membership(it: Interpreter, node: ast.Membership, env: Env) -> Value:
 
 def _range(it: Interpreter, node: ast.Range, env: Env) -> Value:
     start, end = (numeric(it, evaluate(it, n, env), n, env) for n in (node.start, node.end))
-    if start is None or end is None:
+    step = numeric(it, evaluate(it, node.step, env), node.step, env) if node.step is not None else None
+    if start is None or end is None or (node.step is not None and step is None):
         return NOTHING
     try:
         dimension = units.add(start.dimension, end.dimension)
+        dimension = units.add(dimension, step.dimension) if step is not None else dimension
     except ValueError as reason:
         it.report("E0308", f"a range does not join {reason}", node)
         return NOTHING
@@ -354,6 +344,7 @@ def _range(it: Interpreter, node: ast.Range, env: Env) -> Value:
         Num(start.expression, dimension, start.status),
         Num(end.expression, dimension, end.status),
         node.exclusive,
+        step,
     )
 
 

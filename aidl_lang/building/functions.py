@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from aidl_lang import ast, units
 from aidl_lang import expression as ex
 from aidl_lang.boxes import spelled_out
+from aidl_lang.building import lists
 from aidl_lang.building.coerce import as_point, as_written, constant, numeric
 from aidl_lang.building.conditions import compare_numbers
 from aidl_lang.building.state import Env, Interpreter
@@ -312,6 +313,7 @@ FUNCTIONS: dict[str, Function] = {
     "ceil": _rounded(math.ceil),
     "round": _rounded(_half_up),
     "len": _len,
+    **lists.FUNCTIONS,
     "choice": _choice,
     "fixed": _mark(Status.FIXED),
     "guess": _mark(Status.GUESS),

@@ -6,6 +6,7 @@ from aidl_lang import ast, boxes, primitives
 from aidl_lang import expression as ex
 from aidl_lang.boxes import Box
 from aidl_lang.building.coerce import as_written, may_read
+from aidl_lang.building.lists import entry
 from aidl_lang.building.params import read_param
 from aidl_lang.building.scopes import Binding, LetBinding, ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.building.state import Env, Interpreter, Reach
@@ -21,6 +22,7 @@ from aidl_lang.values import (
     Nothing,
     Num,
     PointVal,
+    RecordVal,
     Value,
     kind_of,
     members,
@@ -85,6 +87,8 @@ def is_same_everywhere(value: Value) -> bool:
             return x.expression.is_constant and y.expression.is_constant
         case ListVal(items):
             return all(map(is_same_everywhere, items))
+        case RecordVal(fields):
+            return all(map(is_same_everywhere, fields.values()))
         case Condition() | Box():
             return False
         case _:
@@ -105,6 +109,8 @@ def member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env)
             found = _geometry_member(it, value, name, node, env)
         case Box():
             found = _box_field(it, value, name, node, env)
+        case RecordVal():
+            return entry(it, value, name, node.name)
         case Namespace():
             key = find(name, value.values)
             found = read(it, value.values[key], node, env) if key else None  # type: ignore[arg-type]

@@ -5,7 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from aidl_lang.names import fold
-from aidl_lang.types import ANY, BoxType, GeometryType, NumberType, PointType, Type
+from aidl_lang.types import (
+    ANY,
+    BoxType,
+    GeometryType,
+    ListType,
+    NumberType,
+    PointType,
+    RecordType,
+    TextType,
+    Type,
+)
 from aidl_lang.units import ANGLE, LENGTH
 
 _LENGTH, _ANGLE, _POINT = NumberType(LENGTH), NumberType(ANGLE), PointType()
@@ -70,6 +80,9 @@ RESULTS: Mapping[str, Type] = {
     **dict.fromkeys(("asin", "acos", "atan", "atan2"), _ANGLE),
     **dict.fromkeys(("floor", "ceil", "round", "abs", "min", "max", "sum"), ANY),
     "len": NumberType(None, whole=True),
+    "record": RecordType(),
+    "str": TextType(),
+    **dict.fromkeys(("range", "enumerate", "zip", "reversed"), ListType(ANY)),
     **dict.fromkeys(("line", "arc", "circle", "bezier", "ellipse"), ANY),
     **{kind: GeometryType(kind) for kind in PRIMITIVE if kind != "point"},
     "point": GeometryType("point"),

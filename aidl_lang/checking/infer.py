@@ -25,6 +25,7 @@ from aidl_lang.types import (
     NumberType,
     PointType,
     RangeType,
+    RecordType,
     TextType,
     TruthType,
     Type,
@@ -198,6 +199,8 @@ class Inference:
     def _range(self, node: ast.Range) -> Fact:
         start, end = self.numeric(node.start), self.numeric(node.end)
         self.same_dimension(start, end, node, "a range does not join")
+        if node.step is not None:
+            self.same_dimension(start, self.numeric(node.step), node, "a range does not join")
         return Fact(RangeType(), start.reads | end.reads)
 
     def _conditional(self, node: ast.Conditional) -> Fact:
@@ -209,6 +212,8 @@ class Inference:
 
     def _index(self, node: ast.Index) -> Fact:
         fact = self.fact(node.value)
+        if isinstance(fact.type, RecordType | AnyType) and isinstance(self.fact(node.index).type, TextType):
+            return Fact(ANY, fact.reads)
         self.whole(node.index, "an index")
         match fact.type:
             case ListType():

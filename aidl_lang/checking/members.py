@@ -14,7 +14,17 @@ from aidl_lang.checking.wording import a, shown
 from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.names import find, nearest
 from aidl_lang.resolving.symbols import Symbol, SymbolKind
-from aidl_lang.types import ANY, AnyType, BoxType, GeometryType, ListType, PointType, StructureType, Type
+from aidl_lang.types import (
+    ANY,
+    AnyType,
+    BoxType,
+    GeometryType,
+    ListType,
+    PointType,
+    RecordType,
+    StructureType,
+    Type,
+)
 
 if TYPE_CHECKING:
     from aidl_lang.checking.infer import Inference
@@ -43,7 +53,7 @@ def member_of(check: Inference, base: Fact, node: ast.Member) -> Fact:
     """`base.name`"""
     name = node.name.text
     match base.type:
-        case AnyType():
+        case AnyType() | RecordType():
             return Fact(ANY, base.reads)
         case ListType():
             return _mapped(check, base, node)

@@ -36,6 +36,8 @@ def binary(check: Inference, node: ast.Binary) -> Fact:
     reads = left.reads | right.reads
     if left.is_any or right.is_any or isinstance(left.type, ListType) or isinstance(right.type, ListType):
         return Fact(ANY, reads)
+    if node.operator == "+" and isinstance(left.type, TextType) and isinstance(right.type, TextType):
+        return Fact(TextType(), reads)
     if is_point(left.type) or is_point(right.type):
         return _vector(check, node, left, right)
     left, right = check.numeric(node.left), check.numeric(node.right)

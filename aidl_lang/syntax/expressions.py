@@ -123,11 +123,20 @@ class ExpressionBuilder:
     ) -> ast.Unary:
         return self.negated(start, end, self.membership(start, end, value, container))
 
-    def range(self, start: int, end: int, first: ast.Expression, last: ast.Expression) -> ast.Range:
-        return ast.Range(first, last, False, span=Span(self.source, start, end))
+    def range(
+        self,
+        start: int,
+        end: int,
+        first: ast.Expression,
+        last: ast.Expression,
+        step: ast.Expression | None = None,
+        *,
+        exclusive: bool = False,
+    ) -> ast.Range:
+        return ast.Range(first, last, exclusive, step, span=Span(self.source, start, end))
 
-    def exclusive_range(self, start: int, end: int, first: ast.Expression, last: ast.Expression) -> ast.Range:
-        return ast.Range(first, last, True, span=Span(self.source, start, end))
+    def exclusive_range(self, start: int, end: int, *parts: ast.Expression) -> ast.Range:
+        return self.range(start, end, *parts, exclusive=True)
 
     # --- Comprehensions ---
 
