@@ -18,13 +18,14 @@ from dataclasses import dataclass
 from aidl_lang import ast
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.modules import run_module
-from aidl_lang.building.scopes import Candidate, LetBinding, Scope
+from aidl_lang.building.scopes import Binding, Candidate, LetBinding, Scope
 from aidl_lang.building.state import DEFAULT_LIMITS, Interpreter, Limits, Stop
 from aidl_lang.building.statements import EXECUTORS
 from aidl_lang.builtins import SIGNATURES
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.model import Model, Structure
 from aidl_lang.typecheck import Program
+from aidl_lang.values import NOTHING
 
 
 @dataclass(frozen=True)
@@ -66,5 +67,18 @@ def _library_scope(program: Program) -> Scope:
 
     scope.supply = supply
     scope.aliases = dict(library.aliases)
-    scope.values = {name: LetBinding(let.value, scope) for name, let in library.constants.items()}
+    scope.values = _Constants(library.constants, scope)
     return scope
+
+
+class _Constants(dict[str, Binding]):
+    """The library's constants by name; a program reads few, so each is looked up when it is first read."""
+
+    def __init__(self, constants: Mapping[str, ast.Let], scope: Scope) -> None:
+        super().__init__(dict.fromkeys(constants, NOTHING))
+        self._constants, self._scope = constants, scope
+
+    def __getitem__(self, name: str) -> Binding:
+        if super().__getitem__(name) is NOTHING:
+            self[name] = LetBinding(self._constants[name].value, self._scope)
+        return super().__getitem__(name)

@@ -53,6 +53,11 @@ texts = st.text(st.characters(codec="utf-8", exclude_categories=["Cs"]), max_siz
 leaves = numbers() | _node(ast.Name, names) | _node(ast.String, texts) | _node(ast.Boolean, st.booleans())
 
 
+def _run_through(inner: st.SearchStrategy[ast.Node]) -> st.SearchStrategy[ast.Node]:
+    """What a loop runs through: there a range may have a step."""
+    return inner | _node(ast.Range, inner, inner, st.booleans(), inner)
+
+
 def _compound(inner: st.SearchStrategy[ast.Node]) -> st.SearchStrategy[ast.Node]:
     maybe = st.none() | inner
     argument = _node(ast.Argument, st.none() | identifiers, inner)
@@ -69,7 +74,7 @@ def _compound(inner: st.SearchStrategy[ast.Node]) -> st.SearchStrategy[ast.Node]
         _node(ast.Call, identifiers, maybe, _tuples(argument)),
         _node(ast.Point, inner, inner),
         _node(ast.List, _tuples(inner)),
-        _node(ast.Comprehension, inner, _tuples(identifiers, 1, 2), inner, maybe),
+        _node(ast.Comprehension, inner, _tuples(identifiers, 1, 2), _run_through(inner), maybe),
         _node(ast.Unary, st.sampled_from(["-", "+", "not"]), inner),
         _node(ast.Binary, st.sampled_from(["+", "-", "*", "/", "%", "^", "and", "or"]), inner, inner),
         comparison,
@@ -139,7 +144,7 @@ def _blocks(statement: st.SearchStrategy[ast.Node]) -> st.SearchStrategy[ast.Nod
 
 def _control(statement: st.SearchStrategy[ast.Node]) -> st.SearchStrategy[ast.Node]:
     block = _blocks(statement)
-    return _node(ast.For, _tuples(identifiers, 1, 2), simple, block) | _node(
+    return _node(ast.For, _tuples(identifiers, 1, 2), _run_through(simple), block) | _node(
         ast.If, expressions, block, st.none() | block
     )
 
