@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format bench bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test lint format reference bench bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -28,6 +28,9 @@ lint: $(READY) ## style, format, types and the direction of imports
 format: $(READY) ## put all Python code into its canonical form
 	$(BIN)/ruff check --fix-only --quiet .
 	$(BIN)/ruff format .
+
+reference: $(READY) ## write docs/reference, docs/guide.md and llms.txt anew from the library
+	$(BIN)/python -m aidl_lang.reference .
 
 bench: $(READY) ## measure the command and the stages
 	$(BIN)/python benchmarks/run.py

@@ -7,13 +7,15 @@ meets the box of one of its descendants there leaves that descendant out (paper,
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
-from aidl_lang.model import Geometry, Structure, chain, convert
-from aidl_lang.primitives import clockwise, defining, direction, number, sweep, view, xy
+from aidl_lang.lettering import box_around
+from aidl_lang.model import Geometry, Measurement, Recipe, Structure, chain, convert
+from aidl_lang.primitives import clockwise, defining, direction, number, on_text, sweep, view, xy
 from aidl_lang.values import Array, ListVal, Num, PointVal, Value, length, members, point
 
 SIDES = ("left", "right", "top", "bottom")
@@ -164,10 +166,8 @@ def _extremes(
     elif isinstance(source, Geometry):
         if source.type == "point":
             yield xy(view(source, here)["at"])[side in ("top", "bottom")]
-        elif source.construction and not source.is_compound:
-            yield from _curve(source, here, side)
         else:
-            for primitive in source.primitives():
+            for primitive in source.primitives(even_construction=True):
                 yield from _curve(primitive, here, side)
     elif source not in ignored:
         yield from _structure(source, here, side, ignored)
@@ -191,6 +191,9 @@ def _structure(
 
 def _curve(primitive: Geometry, here: Structure, side: str) -> Iterator[Expression]:
     """Candidates for the extreme of one curve towards a side."""
+    if primitive.recipe is not None:
+        yield from _made(primitive, primitive.recipe, here, side)
+        return
     core = view(primitive, here)
     axis = side in ("top", "bottom")
     positive = side in ("right", "top")
@@ -204,6 +207,11 @@ def _curve(primitive: Geometry, here: Structure, side: str) -> Iterator[Expressi
             yield _arc_extreme(core, clockwise(primitive, here), side)
         case "ellipse":
             yield _ellipse_extreme(core, axis, positive)
+        case "glyphs" if primitive.glyphs:
+            at = on_text(primitive, here)
+            left, bottom, right, top = box_around(primitive.glyphs)
+            for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
+                yield at(corner)[axis]
         case "bezier":
             controls = [xy(core[p])[axis] for p in ("p0", "p1", "p2", "p3")]
             if positive:
@@ -211,6 +219,30 @@ def _curve(primitive: Geometry, here: Structure, side: str) -> Iterator[Expressi
             else:
                 opposite = [ex.apply("neg", c) for c in controls]
                 yield ex.apply("neg", ex.apply("cubic_max", *opposite))
+
+
+_AS_WIDE = frozenset({"hull", "union", "shell"})
+"""Outlines whose box is the box of what they are made of."""
+
+
+def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iterator[Expression]:
+    """Of an outline made of others: theirs, or theirs moved out by as much as a disc reaches around them; any
+    other has a box only once it is drawn.
+    """
+    grown: Expression | None = None
+    match recipe.kind:
+        case kind if kind in _AS_WIDE:
+            grown = ex.ZERO
+        case "thick" if recipe.words["caps"] == recipe.words["joins"] == "round":
+            grown = ex.half(recipe.numbers["width"].expression)
+        case "offset" if recipe.words["corners"] == "round" and (out := recipe.numbers["distance"]).value >= 0:
+            grown = out.expression
+    if grown is None:
+        yield Expression("measure", (), math.nan, Measurement(side, (outline,), here))
+        return
+    for source in (s for group in recipe.operands for s in group):
+        for extreme in _extremes(source, here, side, frozenset()):
+            yield ex.apply("add" if side in ("right", "top") else "sub", extreme, grown)
 
 
 _TOWARDS = {"right": 0.0, "top": 90.0, "left": 180.0, "bottom": 270.0}

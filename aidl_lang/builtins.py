@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 
 from aidl_lang import ast
 from aidl_lang.names import fold
+from aidl_lang.synonyms import PARAMETERS
 from aidl_lang.types import PARAMETER_TYPES, Signature, TextType
 
 _DECLARATIONS = """
@@ -55,9 +56,46 @@ arc(start: point, end: point, radius: length, large: bool?, clockwise: bool?)
 arc(center: point?, radius: length, start_angle: angle, end_angle: angle, clockwise: bool?)
 bezier(p0: point, p1: point, p2: point, p3: point)
 ellipse(center: point?, rx: length, ry: length, angle: turn?)
+glyphs(text: text, start: point, height: length, angle: angle, align: text, line_spacing: number)
+ink(text: text, align: text, line_spacing: number)
+where(value, positive, negative)
+shown(value)
+sizes(of)
+convex_corners(of)
+refuse(why: text)
+offset(of, distance: length, corners: text?)
+shell(of, thickness: length, corners: text?)
+thick(of, width: length, caps: text?, joins: text?)
+hull(of: list)
+union(of: list)
+intersect(of: list)
+difference(of: list)
+cut(of: list)
+cut(of, by)
+clip(of, by)
+fillet(of, radius: length)
+chamfer(of, size: length, second: length?)
+chamfer(of, distance: length, second: length?)
+mirror(x, about: geometry)
+mirror(x, about: text)
+copy(x, by: point?, angle: angle?, about: point?, scale: number?)
+copy(x, angle: angle?, scale: number?, at: point)
+move(x, by: point)
+move(x, dx: length, dy: length?)
+move(x, dx: length?, dy: length)
+translate(x, by: point)
+translate(x, dx: length, dy: length?)
+translate(x, dx: length?, dy: length)
+rotate(x, angle: angle, about: point?)
+scale(x, factor: number, about: point?)
+linear_array(x, n: integer, pitch: length, angle: angle?, center: point?, start: point?)
+linear_array(x, n: integer, by: point, center: point?, start: point?)
+grid(x, columns: integer, rows: integer, pitch: length, center: point?, start: point?)
+grid(x, columns: integer, rows: integer, pitch_x: length, pitch_y: length, center: point?, start: point?)
+polar_array(x, n: integer, radius: length?, center: point?, start: angle?, sweep: angle?, turn: bool?)
 area(of)
 perimeter(of)
-clearance(a, b)
+outline_clearance(a, b)
 overlaps(a, b)
 """
 
@@ -85,14 +123,38 @@ def _table() -> dict[str, tuple[Signature, ...]]:
 
 SIGNATURES: Mapping[str, tuple[Signature, ...]] = _table()
 
+OUTLINES = frozenset(
+    ("offset", "shell", "thick", "hull", "union", "intersect", "difference", "cut", "clip")
+)
+"""Operations that make an outline of others by exact geometry, after solving."""
+
+EDITS = frozenset({"move", "translate", "rotate", "scale"})
+"""Statements that change what was written; as expressions they make copies."""
+
+PATTERNS = frozenset({"linear_array", "grid", "polar_array"})
+"""Operations that make members of an array."""
+
+COPYING = frozenset({"mirror", "copy"}) | EDITS
+"""Operations that give what they are given, elsewhere."""
+
+DERIVING = COPYING | OUTLINES
+"""Operations that make new geometry, or a new structure, of one that is there, an ancestor's included."""
+
+FINISHES = frozenset({"fillet", "chamfer"})
+"""Statements that change the corners of outlines after solving."""
+
 WORDS = frozenset(
     ("x", "y", "left", "right", "center", "top", "bottom", "middle", "horizontal", "vertical", "both")
+    + ("sharp", "round", "butt", "square")
 )
 """Words that may stand bare as an argument, as in `axis: x` and `align: left`."""
 
 
 EVERYWHERE = ("self", "origin", "x_axis", "y_axis")
 """Names that every structure has."""
+
+MATH = ("math", "np", "numpy")
+"""Modules of other languages whose functions are known here by the same names: `math.sqrt(2)`, `np.pi`."""
 
 ATTRIBUTES = ("orientation", "color", "colour", "layer", "thickness", "material", "detached", "note")
 """What may stand behind `@` before a definition; `colour` is another spelling of `color`."""
@@ -105,9 +167,10 @@ def is_word(argument: ast.Argument, candidates: Iterable[Signature]) -> bool:
     """Whether a bare name is the word itself: given by name to a parameter that takes a text."""
     if argument.name is None or not isinstance(argument.value, ast.Name) or argument.value.text not in WORDS:
         return False
-    wanted = fold(argument.name.text)
+    word = fold(argument.name.text)
+    wanted = {word, *map(fold, PARAMETERS.get(word, ()))}
     return any(
-        fold(name) == wanted and isinstance(kind, TextType)
+        fold(name) in wanted and isinstance(kind, TextType)
         for candidate in candidates
         for name, kind, _ in candidate.parameters
     )

@@ -21,11 +21,11 @@ from aidl_lang.building.modules import run_module
 from aidl_lang.building.scopes import Binding, Candidate, LetBinding, Scope
 from aidl_lang.building.state import DEFAULT_LIMITS, Interpreter, Limits, Stop
 from aidl_lang.building.statements import EXECUTORS
-from aidl_lang.builtins import SIGNATURES
+from aidl_lang.builtins import MATH, SIGNATURES
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.model import Model, Structure
 from aidl_lang.typecheck import Program
-from aidl_lang.values import NOTHING
+from aidl_lang.values import NOTHING, Namespace
 
 
 @dataclass(frozen=True)
@@ -75,10 +75,13 @@ class _Constants(dict[str, Binding]):
     """The library's constants by name; a program reads few, so each is looked up when it is first read."""
 
     def __init__(self, constants: Mapping[str, ast.Let], scope: Scope) -> None:
-        super().__init__(dict.fromkeys(constants, NOTHING))
+        super().__init__(dict.fromkeys([*constants, *MATH], NOTHING))
         self._constants, self._scope = constants, scope
 
     def __getitem__(self, name: str) -> Binding:
         if super().__getitem__(name) is NOTHING:
-            self[name] = LetBinding(self._constants[name].value, self._scope)
+            if name in MATH:
+                self[name] = Namespace({**{key: self[key] for key in self._constants}, "": self._scope})
+            else:
+                self[name] = LetBinding(self._constants[name].value, self._scope)
         return super().__getitem__(name)

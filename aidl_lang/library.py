@@ -15,19 +15,23 @@ import io
 import os
 import pickle
 import stat
+import struct
 import sys
 import tempfile
+import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from aidl_lang import ast, resources
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.types import ANY, Signature, parameter_type
 
-_FORMAT = b"aidl-library-1\n"
+_FORMAT = b"aidl-library-2\n"
+_HEAD = struct.Struct(">II32s")
+_Place: TypeAlias = tuple[int, int, int]
 
 
 @dataclass(frozen=True)
@@ -193,17 +197,18 @@ def _write_private(path: Path, blob: bytes) -> None:
 
 
 def _to_cache(modules: Sequence[ast.Module], sources: Sequence[SourceFile]) -> bytes:
-    """The format line, the length of the index, the index, and the trees at the offsets the index tells.
+    """The format line, the lengths of index and trees, a checksum of the index, the index, and the trees.
 
-    The index maps a name to the offsets of its overloads, and each alias to its target.
+    The index maps a name to the places of its overloads, and each alias to its target. A place is where a
+    tree begins and ends, and its checksum: what is not used is not read, however large the library grows.
     """
     definitions, aliases, constants = _collect(modules)
     body = bytearray()
 
-    def store(node: ast.Node) -> tuple[int, int]:
-        start = len(body)
-        body.extend(_encode(node, sources))
-        return start, len(body)
+    def store(node: ast.Node) -> _Place:
+        start, tree = len(body), _encode(node, sources)
+        body.extend(tree)
+        return start, len(body), zlib.crc32(tree)
 
     index = {
         "definitions": {name: [store(node) for node in nodes] for name, nodes in definitions.items()},
@@ -212,34 +217,42 @@ def _to_cache(modules: Sequence[ast.Module], sources: Sequence[SourceFile]) -> b
         "aliases": aliases,
     }
     head = pickle.dumps(index, protocol=5)
-    checksum = hashlib.sha256(head + body).digest()
-    return _FORMAT + checksum + len(head).to_bytes(4, "big") + head + bytes(body)
+    return _FORMAT + _HEAD.pack(len(head), len(body), hashlib.sha256(head).digest()) + head + bytes(body)
 
 
 def _from_cache(blob: bytes, sources: tuple[SourceFile, ...]) -> Library | None:
-    """None when the file is not what `_to_cache` wrote."""
-    start = len(_FORMAT) + 32
-    if (
-        not blob.startswith(_FORMAT)
-        or hashlib.sha256(blob[start + 4 :]).digest() != blob[len(_FORMAT) : start]
-    ):
+    """None when the file is not what `_to_cache` wrote. A tree that was damaged since is parsed anew."""
+    start = len(_FORMAT) + _HEAD.size
+    if not blob.startswith(_FORMAT) or len(blob) < start:
         return None
-    length = int.from_bytes(blob[start : start + 4], "big")
-    start += 4
-    index = _Trees(blob[start : start + length], sources).load()
-    body = blob[start + length :]
+    length, rest, checksum = _HEAD.unpack_from(blob, len(_FORMAT))
+    head, body = blob[start : start + length], memoryview(blob)[start + length :]
+    if len(body) != rest or hashlib.sha256(head).digest() != checksum:
+        return None
+    index = _Trees(head, sources).load()
+    parsed = functools.cache(lambda: from_modules(*_parse(sources)))
 
-    def tree(place: tuple[int, int]) -> Any:
-        return _Trees(body[place[0] : place[1]], sources).load()
+    def trees(places: Sequence[_Place]) -> list[Any] | None:
+        found = [(body[start:end], check) for start, end, check in places]
+        if any(zlib.crc32(tree) != check for tree, check in found):
+            return None
+        return [_Trees(tree, sources).load() for tree, _ in found]
 
     def overloads(name: str) -> tuple[Signature, ...]:
-        return tuple(signature(tree(place), index["shapes"]) for place in index["definitions"][name])
+        nodes = trees(index["definitions"][name])
+        if nodes is None:
+            return parsed().callables[name]
+        return tuple(signature(node, index["shapes"]) for node in nodes)
+
+    def constant(name: str) -> ast.Let:
+        nodes = trees([index["constants"][name]])
+        return nodes[0] if nodes else parsed().constants[name]
 
     return Library(
         sources=sources,
         callables=_Lazy(tuple(index["definitions"]), overloads),
         aliases=index["aliases"],
-        constants=_Lazy(tuple(index["constants"]), lambda name: tree(index["constants"][name])),
+        constants=_Lazy(tuple(index["constants"]), constant),
         _modules=lambda: _parse(sources)[0],
     )
 
@@ -290,7 +303,7 @@ def _source(index: int) -> SourceFile:
 class _Trees(pickle.Unpickler):
     """Decodes syntax trees and nothing else."""
 
-    def __init__(self, blob: bytes, sources: Sequence[SourceFile]) -> None:
+    def __init__(self, blob: bytes | memoryview, sources: Sequence[SourceFile]) -> None:
         super().__init__(io.BytesIO(blob))
         self._sources = sources
 

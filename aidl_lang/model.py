@@ -7,12 +7,13 @@ frame of the structure that holds it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
+from aidl_lang.lettering import Glyph
 from aidl_lang.source import Span
 from aidl_lang.units import MaybeDimension
 from aidl_lang.values import Array, ListVal, Num, PointVal, members
@@ -20,7 +21,9 @@ from aidl_lang.values import Array, ListVal, Num, PointVal, members
 if TYPE_CHECKING:
     from aidl_lang.values import Value
 
-SIZES = frozenset({"radius", "diameter", "width", "height", "length", "rx", "ry"})
+SIZES = frozenset(
+    {"radius", "diameter", "width", "height", "length", "rx", "ry", "thickness", "fillet", "chamfer"}
+)
 """Names of sizes, which are never negative."""
 
 KINDS = ("assembly", "solid", "hole", "drawing")
@@ -69,7 +72,14 @@ class Geometry:
     scope      names of a compound shape: its parts, arguments and lets (see scopes)
     arguments  names of the arguments of a compound shape
     parts      named geometry inside a compound shape, in order of writing
-    clockwise  for an arc
+    clockwise  for an arc; for a text, that it reads in a mirror
+    source     what it is a copy of
+    known_as   of what is copied and has no name itself, the copy
+    reach      the ancestor of its owner that the source of a copy belongs to
+    glyphs     for a text, its characters in units of its height
+    recipe     how its curves come from other outlines after solving
+    finishes   sizes of the fillets and chamfers of its corners: `fillet` of a point or a whole outline,
+               `end.fillet` of the end of a curve
     """
 
     type: str
@@ -80,13 +90,26 @@ class Geometry:
     scope: object = None
     arguments: tuple[str, ...] = ()
     clockwise: bool = False
+    glyphs: tuple[Glyph, ...] = ()
     name: str | None = None
     container: Geometry | Structure | None = None
     construction: bool = False
+    source: Geometry | None = None
+    known_as: Geometry | None = None
+    reach: Structure | None = None
+    recipe: Recipe | None = None
+    finishes: dict[str, Num] = field(default_factory=dict)
     views: dict[Structure, dict[str, Value]] = field(default_factory=dict, repr=False)
 
     @property
+    def bound_to(self) -> Structure:
+        """The structure whose unknowns it depends on, which alone (and those around it) may constrain it."""
+        return self.reach or self.owner
+
+    @property
     def path(self) -> str:
+        if self.name is None and self.known_as is not None:
+            return self.known_as.path
         container = self.container or self.owner
         return f"{container.path}.{self.name or self.type}"
 
@@ -94,14 +117,64 @@ class Geometry:
     def is_compound(self) -> bool:
         return self.scope is not None
 
-    def primitives(self) -> Iterator[Geometry]:
-        """The primitives that are drawn, in order of writing."""
-        if self.construction:
+    def primitives(self, *, even_construction: bool = False) -> Iterator[Geometry]:
+        """The primitives that are drawn, in order of writing; of construction geometry only if asked for."""
+        if self.construction and not even_construction:
             return
         if not self.is_compound:
             yield self
         for part in own_geometry(self.parts, self):
             yield from part.primitives()
+
+
+@dataclass(frozen=True, eq=False)
+class Recipe:
+    """How the curves of an outline come from others, by exact geometry after solving.
+
+    kind      one of `builtins.OUTLINES`
+    operands  each some geometry that is one outline together
+    numbers   its distance, thickness or width
+    words     how it makes corners, joints and ends
+    """
+
+    kind: str
+    operands: tuple[tuple[Geometry, ...], ...]
+    numbers: Mapping[str, Num] = field(default_factory=dict)
+    words: Mapping[str, str] = field(default_factory=dict)
+
+    def made_of(self, copy: Callable[[Geometry], Geometry], measure: Callable[[Num], Num]) -> Recipe:
+        """The same of copies."""
+        operands = tuple(tuple(map(copy, group)) for group in self.operands)
+        return replace(self, operands=operands, numbers={n: measure(v) for n, v in self.numbers.items()})
+
+
+@dataclass(frozen=True, eq=False)
+class Finish:
+    """A fillet or chamfer, which is applied after solving.
+
+    of     the geometry whose corner it is; empty for a bare point
+    at     the corner, in the frame of the structure that lists it; None for all corners of `of`
+    sizes  radius, or one distance or two
+    text   the corner as it was written
+    """
+
+    kind: str
+    of: tuple[Geometry, ...]
+    at: PointVal | None
+    sizes: tuple[Num, ...]
+    text: str
+    span: Span
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A number that only the finished drawing has: area, perimeter, clearance, overlaps (1 or 0), or a side of
+    the box of an outline made of others, in the frame of `here`.
+    """
+
+    kind: str
+    of: tuple[Structure | Geometry, ...]
+    here: Structure | None = None
 
 
 @dataclass(eq=False)
@@ -110,8 +183,10 @@ class Structure:
     members     everything that has a name in it: geometry, arrays, children, numbers
     geometry    what it draws itself; children: structures directly inside
     plan        the box of its own that an empty structure has: left, bottom, width, height
+    source      the structure it is a copy of
     extents     sides of its box that were worked out (see boxes)
     scope       the names its body sees (see interp)
+    finishes    fillets and chamfers of its geometry
     """
 
     kind: str
@@ -125,7 +200,9 @@ class Structure:
     children: list[Structure] = field(default_factory=list)
     scope: object = None
     plan: tuple[Expression, Expression, Expression, Expression] | None = None
+    source: Structure | None = None
     extents: dict[object, Expression] = field(default_factory=dict, repr=False)
+    finishes: list[Finish] = field(default_factory=list)
     doc: str | None = None
     is_complete: bool = False
 

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 from aidl_lang.building.conditions import holds
-from aidl_lang.building.functions import Measurement
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.expression import Evaluator
 from aidl_lang.failures import failure_notes
+from aidl_lang.boxes import SIDES
 from aidl_lang.geometry.boolean import clearance, overlap_area
 from aidl_lang.geometry.drawing import Drawing, draw
+from aidl_lang.geometry.evaluate import bounds, inward
 from aidl_lang.geometry.measures import area, perimeter
+from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Region
 from aidl_lang.lower import Lowered
-from aidl_lang.model import Assertion, Comparison, Condition, Geometry, Model, Structure
+from aidl_lang.model import Assertion, Comparison, Condition, Geometry, Measurement, Model, Structure
 from aidl_lang.remedies import short
 from aidl_lang.repetitions import repetition_notes
 from aidl_lang.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
@@ -100,6 +103,8 @@ class _Measure:
 
     def __call__(self, payload: object) -> float:
         assert isinstance(payload, Measurement)
+        if payload.kind in SIDES:
+            return self._side(payload)
         regions = [self._region(thing) for thing in payload.of]
         match payload.kind:
             case "area":
@@ -111,11 +116,26 @@ class _Measure:
             case _:
                 return float(overlap_area(*regions) > _TOLERANCE * self.drawing.size)
 
+    def _side(self, payload: Measurement) -> float:
+        """A side of the box of an outline that was worked out after solving, as a structure sees it."""
+        assert payload.here is not None
+        found = [g for g in _all_geometry(self.model.root) if g.path == payload.of[0].path]
+        curves = [c for g in found for c in replace(g, construction=False).curves()]
+        frames, here = [], self.model.root
+        while here.path != payload.here.path:
+            here = next(s for s in here.structures if f"{payload.here.path}.".startswith(f"{s.path}."))
+            frames.append(here.frame)
+        for frame in frames:
+            curves = [inward(c, (frame.x, frame.y), frame.rotation, frame.mirrored) for c in curves]
+        left, bottom, right, top = union_bounds([bounds(c) for c in curves])
+        return {"left": left, "bottom": bottom, "right": right, "top": top}[payload.kind]
+
     def _region(self, thing: Structure | Geometry) -> Region:
         """What a structure covers in the drawing; what a geometry would cover as a solid of its own."""
         if isinstance(thing, Structure):
             return self.drawing.regions.get(thing.path, Region(()))
-        geometry = tuple(g for g in _all_geometry(self.model.root) if g.path == thing.path)
+        found = (g for g in _all_geometry(self.model.root) if g.path == thing.path)
+        geometry = tuple(replace(g, construction=False) for g in found)
         frame = Frame(0.0, 0.0, 0.0)
         alone = SolvedStructure("it", "it", "solid", "top", frame, {}, {}, geometry, (), None, False, 0, None)
         drawing, _ = draw(SolvedModel(self.model.status, alone, (), 0, (), ()))
@@ -124,7 +144,7 @@ class _Measure:
 
 def _all_geometry(root: SolvedStructure) -> Iterator[SolvedGeometry]:
     for structure in root.walk():
-        stack = list(structure.geometry)
+        stack = list(structure.drawn)
         while stack:
             yield (top := stack.pop())
             stack.extend(top.parts)

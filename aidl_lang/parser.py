@@ -16,6 +16,7 @@ from aidl_lang.diagnostics import Diagnostic, ordered
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.automaton import Automaton, Checkpoint
 from aidl_lang.syntax.errors import explain, spaced_call
+from aidl_lang.syntax.foreign import understood
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import END, Token, Tokens, tokenize
 from aidl_lang.syntax.tree import Builder
@@ -79,6 +80,7 @@ class _Reader:
         self.limits = limits
         self.automaton = Automaton(load_tables(), builder)
         self.diagnostics = [spaced_call(source, token) for token in tokens.spaced_calls]
+        self.diagnostics += understood(source, self.tokens)
         self.automaton.enter_block()
         self.last = Checkpoint(
             0, self.automaton.states[:], self.automaton.values[:], self.automaton.starts[:], 0

@@ -227,6 +227,7 @@ def _finish(
     memory: Memory | None,
 ) -> Compiled:
     from aidl_lang.geometry.drawing import draw
+    from aidl_lang.geometry.outlines import complete
     from aidl_lang.lower import lower
     from aidl_lang.outcome import assertion_notes, solution_notes
     from aidl_lang.readout import read_out
@@ -243,7 +244,9 @@ def _finish(
     with watch("read out"):
         model, evaluator = read_out(built.model, lowered, solution, freedom)
     with watch("regions"):
+        model, found = complete(model)
         drawing, notes = draw(model)
+        notes = [*found, *notes]
     with watch("asserts"):
         found = solution_notes(lowered, solution, freedom, model)
         found += assertion_notes(

@@ -7,13 +7,15 @@ structure that asks, and everything else a primitive is asked for follows from t
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression
+from aidl_lang.lettering import Vec
 from aidl_lang.model import Geometry, Structure, chain, common_ancestor, convert_angle, convert_point
 from aidl_lang.units import ANGLE, LENGTH
-from aidl_lang.values import Num, PointVal, Status, length, point
+from aidl_lang.values import ListVal, Num, PointVal, Status, length, point
 
 if TYPE_CHECKING:
     from aidl_lang.values import Value
@@ -180,6 +182,7 @@ FIELDS: dict[str, tuple[str, ...]] = {
     "circle": ("center", "radius", "diameter"),
     "bezier": ("p0", "p1", "p2", "p3", "start", "end"),
     "ellipse": ("center", "rx", "ry", "angle"),
+    "glyphs": ("start", "height", "angle", "glyph"),
 }
 """What each primitive can be asked for, for messages and completion."""
 
@@ -189,9 +192,33 @@ def field(geometry: Geometry, name: str, here: Structure) -> Value | None:
     core = view(geometry, here)
     if name in core:
         return core[name]
+    if geometry.type == "glyphs" and name == "glyph":
+        return ListVal(tuple(_single(geometry, i) for i in range(len(geometry.glyphs))))
     derive = _DERIVED.get(geometry.type)
     sense = geometry.type == "arc" and clockwise(geometry, here)
     return derive(name, core, sense) if derive else None
+
+
+def _single(text: Geometry, number: int) -> Geometry:
+    """One character of a text, to be measured: it is drawn with the others."""
+    return replace(text, glyphs=(text.glyphs[number],), name=f"glyph[{number}]", container=text, views={})
+
+
+def on_text(geometry: Geometry, here: Structure) -> Callable[[Vec], tuple[Expression, Expression]]:
+    """From units of the height of a text to the frame of `here`."""
+    core = view(geometry, here)
+    (x, y), height, angle = xy(core["start"]), number(core["height"]), number(core["angle"])
+    along = ex.mul(height, ex.cos(angle)), ex.mul(height, ex.sin(angle))
+    up = -1.0 if clockwise(geometry, here) else 1.0
+
+    def at(p: Vec) -> tuple[Expression, Expression]:
+        u, v = ex.constant(p[0]), ex.constant(up * p[1])
+        return (
+            ex.add(x, ex.sub(ex.mul(along[0], u), ex.mul(along[1], v))),
+            ex.add(y, ex.add(ex.mul(along[1], u), ex.mul(along[0], v))),
+        )
+
+    return at
 
 
 def defining(geometry: Geometry, here: Structure) -> list[Expression]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -15,7 +15,17 @@ from aidl_lang.geometry import curves
 from aidl_lang.geometry.curves import Curve, Vec
 from aidl_lang.geometry.evaluate import bounds
 from aidl_lang.lower import Lowered
-from aidl_lang.model import Constraint, Geometry, Model, Structure, convert, own_geometry
+from aidl_lang.model import (
+    Constraint,
+    Finish,
+    Geometry,
+    Model,
+    Recipe,
+    Structure,
+    convert,
+    convert_point,
+    own_geometry,
+)
 from aidl_lang.primitives import clockwise, number, translate, view, xy
 from aidl_lang.solved import (
     Box,
@@ -28,6 +38,8 @@ from aidl_lang.solved import (
     SolvedModel,
     SolvedStructure,
 )
+from aidl_lang.solved import Finish as SolvedFinish
+from aidl_lang.solved import Recipe as SolvedRecipe
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.solution import Solution
 from aidl_lang.values import Num, PointVal, Text, Value
@@ -108,6 +120,7 @@ class _Reader:
             degrees=self.degrees[s],
             state=str(self.states[s]),
             span=s.span,
+            finishes=tuple(self._finish(s, f) for f in s.finishes),
             doc=s.doc,
         )
 
@@ -172,16 +185,61 @@ class _Reader:
 
     def geometry(self, g: Geometry) -> SolvedGeometry:
         core = g.fields if g.is_compound else view(g, self.model.root)
-        curve = None if g.is_compound or g.type == "point" else self._curve(g, core)
+        if g.type == "glyphs":
+            return self._text(g, core)
+        recipe = self._recipe(g.recipe) if g.recipe is not None else None
+        is_plain = not g.is_compound and recipe is None and g.type != "point"
+        curve = self._curve(g, core) if is_plain else None
         return SolvedGeometry(
             name=g.name or g.type,
             path=g.path,
             type=g.type,
-            values=self._shape_values(g) if g.is_compound else self._values(g, core, curve),
+            values=self._own_values(g, core, curve, recipe),
             curve=curve,
             parts=tuple(self.geometry(part) for part in own_geometry(g.parts, g)),
             construction=g.construction,
             span=g.span,
+            recipe=recipe,
+        )
+
+    def _recipe(self, recipe: Recipe) -> SolvedRecipe:
+        return SolvedRecipe(
+            recipe.kind,
+            tuple(tuple(self.geometry(g) for g in group) for group in recipe.operands),
+            {name: self._number(value) for name, value in recipe.numbers.items()},
+            recipe.words,
+        )
+
+    def _finish(self, s: Structure, finish: Finish) -> SolvedFinish:
+        at = None
+        if finish.at is not None:
+            at = self._at(convert_point(finish.at, s, self.model.root))
+        of = tuple(g.path for g in finish.of)
+        sizes = tuple(map(self._number, finish.sizes))
+        return SolvedFinish(finish.kind, of, at, sizes, finish.text, finish.span)
+
+    def _text(self, g: Geometry, core: Mapping[str, Value]) -> SolvedGeometry:
+        """A text with its characters as parts, and the curves of each as theirs."""
+        (x, y), height = self._at(core["start"]), self._number(core["height"])
+        c, s = ex.exact_turn(self._number(core["angle"]))
+        up = -1.0 if clockwise(g, self.model.root) else 1.0
+
+        def at(p: Vec) -> Vec:
+            u, v = height * p[0], up * height * p[1]
+            return x + u * c - v * s, y + u * s + v * c
+
+        glyphs = tuple(
+            _part(
+                g,
+                f"glyph[{i}]",
+                "glyph",
+                parts=tuple(_edge(g, f"glyph[{i}].edge[{k}]", [at(p) for p in c]) for k, c in enumerate(glyph.curves)),
+            )
+            for i, glyph in enumerate(g.glyphs)
+        )
+        values = {"start": (x, y), "height": height, "angle": math.degrees(math.atan2(s, c))}
+        return SolvedGeometry(
+            g.name or g.type, g.path, g.type, values, None, glyphs, g.construction, g.span
         )
 
     def _at(self, value: Value) -> Vec:
@@ -190,6 +248,13 @@ class _Reader:
 
     def _number(self, value: Value) -> float:
         return self.evaluate(number(value))
+
+    def _own_values(
+        self, g: Geometry, core: Mapping[str, Value], curve: Curve | None, recipe: SolvedRecipe | None
+    ) -> dict[str, Scalar | Vec | tuple[Vec, ...]]:
+        if g.is_compound:
+            return self._shape_values(g)
+        return dict(recipe.numbers) if recipe else self._values(g, core, curve)
 
     def _shape_values(self, g: Geometry) -> dict[str, Scalar | Vec | tuple[Vec, ...]]:
         """The number and point arguments of a compound shape."""
@@ -247,3 +312,26 @@ class _Reader:
         if sweep < 1e-12:
             sweep = _FULL_TURN
         return curves.Arc(center, self._number(core["radius"]), start, end, -sweep if is_clockwise else sweep)
+
+
+
+def _part(
+    text: Geometry,
+    name: str,
+    kind: str,
+    values: dict[str, Scalar | Vec | tuple[Vec, ...]] | None = None,
+    curve: Curve | None = None,
+    parts: tuple[SolvedGeometry, ...] = (),
+) -> SolvedGeometry:
+    """A part of a text, by its path in it."""
+    path = f"{text.path}.{name}"
+    own = name.rpartition(".")[2]
+    return SolvedGeometry(own, path, kind, values or {}, curve, parts, text.construction, text.span)
+
+
+def _edge(text: Geometry, name: str, points: Sequence[Vec]) -> SolvedGeometry:
+    """One curve of a character."""
+    if len(points) == 2:
+        start, end = points
+        return _part(text, name, "line", {"start": start, "end": end}, curves.Line(start, end))
+    return _part(text, name, "bezier", {"points": tuple(points)}, curves.Bezier(*points))

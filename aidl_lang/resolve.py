@@ -26,6 +26,7 @@ from aidl_lang.library import Library
 from aidl_lang.names import nearest
 from aidl_lang.resolving import complaints
 from aidl_lang.resolving.declare import Declarer, is_definition
+from aidl_lang.resolving.foreign import without_idle
 from aidl_lang.resolving.imports import ImportedModules, load_imports
 from aidl_lang.resolving.resolution import Resolution, library_scope
 from aidl_lang.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind, word_meant
@@ -38,16 +39,18 @@ if TYPE_CHECKING:
 def resolve(module: ast.Module, world: World | None, library: Library) -> Resolution:
     """Find what every name of a file, and of the files it imports, means. Never raises for what they say."""
     loaded = load_imports(module, world)
+    main, notes = without_idle(module, loaded.modules)
+    modules = tuple(main if m is module else m for m in loaded.modules)
     resolution = Resolution(
-        main=module,
+        main=main,
         library=library,
-        modules=loaded.modules,
+        modules=modules,
         imports=loaded.targets,
-        diagnostics=list(loaded.diagnostics),
+        diagnostics=[*loaded.diagnostics, *notes],
         library_scope=library_scope(library),
     )
     resolution.enter_library = Resolver(resolution, is_library=True).of_library
-    for each in loaded.modules:
+    for each in modules:
         Resolver(resolution).module(each, loaded)
     resolution.diagnostics = ordered(resolution.diagnostics)
     return resolution

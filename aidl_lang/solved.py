@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeAlias
 
-from aidl_lang.geometry.curves import Curve, Vec
+from aidl_lang.geometry.curves import Piece, Vec
 from aidl_lang.source import Span
 
 Scalar: TypeAlias = float | int | bool | str
@@ -43,6 +43,32 @@ class Frame:
 
 
 @dataclass(frozen=True)
+class Recipe:
+    """How the curves of an outline come from others (see `model.Recipe`); they are worked out by `outlines`."""
+
+    kind: str
+    operands: tuple[tuple[SolvedGeometry, ...], ...]
+    numbers: Mapping[str, float]
+    words: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Finish:
+    """A fillet or chamfer: of the corner `at`, or of all corners of the geometry at the paths `of`.
+
+    `corners` are the places where it was carried out.
+    """
+
+    kind: str
+    of: tuple[str, ...]
+    at: Vec | None
+    sizes: tuple[float, ...]
+    text: str
+    span: Span
+    corners: tuple[Vec, ...] = ()
+
+
+@dataclass(frozen=True)
 class SolvedGeometry:
     """A named geometry. `name` carries its index (`dot[3]`), `path` is the dotted path from the root.
 
@@ -56,12 +82,13 @@ class SolvedGeometry:
     path: str
     type: str
     values: dict[str, Scalar | Vec | tuple[Vec, ...]]
-    curve: Curve | None
+    curve: Piece | None
     parts: tuple[SolvedGeometry, ...]
     construction: bool
     span: Span | None
+    recipe: Recipe | None = None
 
-    def curves(self) -> Iterator[Curve]:
+    def curves(self) -> Iterator[Piece]:
         """The drawn curves in order of writing; none of construction geometry."""
         if self.construction:
             return
@@ -94,6 +121,13 @@ class SolvedStructure:
     span: Span | None
     doc: str | None = None
     state: str = "unknown"
+    finishes: tuple[Finish, ...] = ()
+    finished: tuple[SolvedGeometry, ...] | None = None
+
+    @property
+    def drawn(self) -> tuple[SolvedGeometry, ...]:
+        """The geometry as it is drawn: with its corners finished."""
+        return self.geometry if self.finished is None else self.finished
 
     def walk(self) -> Iterator[SolvedStructure]:
         """This structure and all below it, parents first, in order of writing."""

@@ -14,6 +14,7 @@ from aidl_lang import ast
 from aidl_lang.checking.conditions import check_condition, check_operation
 from aidl_lang.checking.cycles import find_cycles
 from aidl_lang.checking.facts import Fact
+from aidl_lang.checking.habits import check_square, check_unused_geometry
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.operators import compare
@@ -67,6 +68,7 @@ def check(resolution: Resolution) -> Program:
         checker.run(module)
         violations += check_validity(module, inference)
     find_cycles(inference)
+    check_unused_geometry(inference)
     return Program(
         main=resolution.main,
         imports=resolution.imports,
@@ -109,6 +111,7 @@ class Checker:
                 self._attributes(node.attributes)
                 self._indices(node.indices)
                 self.infer.fact(node.value)
+                check_square(self.infer, node.value)
                 self._placement(node.placement)
             case ast.Constrain(items):
                 self._items(items)
@@ -214,6 +217,8 @@ class Checker:
             hints = []
             if first == PointType() and isinstance(fact.type, NumberType):
                 hints = [f"as in `at ({shown(node)}, 0)`"]
+            elif what == "a `var`":
+                hints = ["`var gap = 5` is an unknown number; shapes are defined without `var`"]
             elif isinstance(fact.type, GeometryType):
                 hints = [f"name a part of it: `{shown(node)}.center`"]
             self.infer.report("E0302", f"{what} wants {needs}, and this is {a(fact.type)}", node, hints=hints)

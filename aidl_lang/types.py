@@ -248,10 +248,22 @@ class Signature:
 
 
 @dataclass(frozen=True)
+class Source:
+    """Where an argument comes from: the one at `index` of the call, one of its two parts, or the point of it
+    as x and of `other` as y.
+    """
+
+    index: int
+    part: int | None = None
+    other: int | None = None
+
+
+@dataclass(frozen=True)
 class Binding:
     """Which argument goes to which parameter: parameter name → indices into the arguments.
 
-    Several indices (or `gathered`) make a list. `positional` are the indices given without a name.
+    Several indices (or `gathered`) make a list. `positional` are the indices given without a name. Where
+    `sources` are told, they are the arguments, made of those of the call.
     """
 
     signature: Signature
@@ -259,15 +271,24 @@ class Binding:
     gathered: str | None
     cost: tuple[int, int]
     positional: tuple[int, ...] = ()
+    sources: tuple[Source, ...] = ()
+
+    def parameter_of(self, index: int) -> str | None:
+        """The parameter that gets an argument of the call, whole."""
+        places = {i for i, s in enumerate(self.sources) if s == Source(index)} if self.sources else {index}
+        return next((name for name, taken in self.arguments.items() if places & set(taken)), None)
 
 
 @dataclass(frozen=True)
 class Mismatch:
-    """Why a candidate does not fit; `argument` is the index of the argument to blame, if one is."""
+    """Why a candidate does not fit; `argument` is the index of the argument to blame, if one is; `meanings`
+    are the parameters between which its name does not choose.
+    """
 
     signature: Signature
     reason: str
     argument: int | None = None
+    meanings: tuple[str, ...] = ()
 
 
 _GATHERED = 20
@@ -336,21 +357,6 @@ def _fitted(
                 return Mismatch(signature, f"needs `{name}` to be {wanted}, not {got}", index)
             distance += step
     return Binding(signature, arguments, gathered, (distance, defaulted), positional)
-
-
-def select(candidates: Sequence[Signature], given: Sequence[Given]) -> Binding | list[Mismatch]:
-    """The candidate that fits best (least conversion, then fewest defaults, then first written), or why none
-    does.
-    """
-    fits: list[Binding] = []
-    misses: list[Mismatch] = []
-    for candidate in candidates:
-        outcome = bind(candidate, given)
-        if isinstance(outcome, Binding):
-            fits.append(outcome)
-        else:
-            misses.append(outcome)
-    return min(fits, key=lambda b: b.cost) if fits else misses
 
 
 def with_article(kind: object) -> str:

@@ -138,6 +138,30 @@ class Array:
         return row if row.members else None
 
 
+class Pattern(Array):
+    """Members laid out by a rule; `settings` holds its centre, pitch and the like, which have names too."""
+
+    def __init__(self, name: str, settings: Geometry) -> None:
+        super().__init__(name)
+        self.settings = settings
+
+
+@dataclass(frozen=True, eq=False)
+class StructureCopy:
+    """A structure yet to be made as a copy of another, waiting for the name it is assigned to.
+
+    source  what is copied: a structure, or a template that is instantiated for the purpose
+    motion  what places it, in the frame of the structure that holds it (see building.motion)
+    node    the call that asks for it
+    is_laid the motion alone says where the instance of a template stands
+    """
+
+    source: Structure | Instantiation
+    motion: object
+    node: ast.Call
+    is_laid: bool = False
+
+
 class Namespace:
     """What `import "p" as name` gives."""
 
@@ -163,6 +187,7 @@ if TYPE_CHECKING:
         | Box
         | Namespace
         | Instantiation
+        | StructureCopy
         | Nothing
     )
 else:
@@ -212,6 +237,8 @@ def type_of(value: Value) -> Type:
             return TextType()
         case bool() | Condition():
             return TruthType()
+        case Instantiation():
+            return StructureType()
         case RangeVal():
             return RangeType()
         case RecordVal():

@@ -1,4 +1,5 @@
-"""End-to-end measurements: the cold command beside its named peers, the warm compile, and each stage.
+"""End-to-end measurements: the cold command beside its named peers, the warm compile, each stage, and the
+standard library.
 
     python benchmarks/run.py [--runs N] [PROGRAM]
 
@@ -20,7 +21,7 @@ from functools import partial
 from pathlib import Path
 from statistics import median, quantiles
 
-from aidl_lang import pipeline
+from aidl_lang import library, pipeline
 from aidl_lang.source import SourceFile
 from aidl_lang.world import DiskWorld
 
@@ -37,6 +38,7 @@ def main() -> None:
     print(f"{machine()}. Medians of {runs} runs, with quartiles.\n")
     print_cold(arguments.program, runs)
     print_warm(arguments.program, runs)
+    print_library(runs)
 
 
 def machine() -> str:
@@ -82,6 +84,49 @@ def print_warm(program: Path, runs: int) -> None:
     times = sample(calls, runs)
     parts = {f"- {stage}": taken[1:] for stage, taken in stages.items()}
     _print_table(f"{program.name}, warm", {"compile": times.pop("compile"), **parts, **times})
+
+
+def print_library(runs: int) -> None:
+    """Opening the standard library without and with its cache, and its size."""
+    sources = library.load().sources
+    with tempfile.TemporaryDirectory() as folder:
+        kept = os.environ.get("XDG_CACHE_HOME")
+        os.environ["XDG_CACHE_HOME"] = folder
+        try:
+            calls = {
+                "cold cache: parsed and kept": partial(_open_library, Path(folder), forget=True),
+                "warm cache": partial(_open_library, Path(folder), forget=False),
+                "warm cache, every definition read": partial(_read_library, Path(folder)),
+            }
+            times = sample(calls, runs)
+            (cache,) = Path(folder).glob("aidl/library-*.pickle")
+            size = cache.stat().st_size
+        finally:
+            if kept is None:
+                del os.environ["XDG_CACHE_HOME"]
+            else:
+                os.environ["XDG_CACHE_HOME"] = kept
+    _print_table("library", times)
+    text = sum(len(source.text.encode()) for source in sources)
+    names = library.load().callables
+    count = sum(len(overloads) for overloads in names.values())
+    print(
+        f"The library: {count} definitions of {len(names)} names in {len(sources)} files; "
+        f"{text} bytes of text, {size} bytes of cache."
+    )
+
+
+def _open_library(folder: Path, *, forget: bool) -> library.Library:
+    if forget:
+        for cache in folder.glob("aidl/library-*.pickle"):
+            cache.unlink()
+    library.load.cache_clear()
+    return library.load()
+
+
+def _read_library(folder: Path) -> None:
+    for overloads in _open_library(folder, forget=False).callables.values():
+        assert overloads
 
 
 def sample(calls: Mapping[str, Callable[[], object]], runs: int) -> dict[str, list[float]]:

@@ -60,33 +60,3 @@ fn arc(start: point, mid: point, end: point) = arc(
     end: end,
     clockwise: cross(mid - start, end - start) < 0
 )
-
-// --- Measures ------------------------------------------------------------------------------------
-
-/// The distance between points, centres of round things, or perpendicular to a line.
-fn distance(a: point, b: point) = norm(b - a)
-fn distance(a: circle, b: circle) = norm(b.center - a.center)
-fn distance(a: point, b: circle) = norm(b.center - a)
-fn distance(a: circle, b: point) = norm(b - a.center)
-fn distance(a: arc, b: arc) = norm(b.center - a.center)
-fn distance(a: point, l: line) = abs(offset_from(a, l))
-fn distance(l: line, a: point) = abs(offset_from(a, l))
-fn distance(c: circle, l: line) = abs(offset_from(c.center, l))
-fn distance(l: line, c: circle) = abs(offset_from(c.center, l))
-fn distance(a: line, b: line) = abs(offset_from(b.midpoint, a))
-
-/// How far a point lies to the left of a line, negative to the right.
-fn offset_from(p: point, l: line) = cross(l.end - l.start, p - l.start) / l.length
-
-/// How far apart two points are from left to right, and from bottom to top.
-fn horizontal_distance(a: point, b: point) = abs(b.x - a.x)
-fn vertical_distance(a: point, b: point) = abs(b.y - a.y)
-
-/// The room between two boxes: 0 when they touch or overlap.
-fn gap(a: box, b: box) = hypot(
-    max(0, a.left - b.right, b.left - a.right),
-    max(0, a.bottom - b.top, b.bottom - a.top)
-)
-
-/// The angle from the direction of one line to that of another, counter-clockwise.
-fn angle(a: line, b: line) = b.angle - a.angle

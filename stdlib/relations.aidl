@@ -1,171 +1,268 @@
-// Relations between boxes: structures, geometry, and lists of them.
+// Relations between two boxes: structures, geometry, and lists of them (a list is one group).
 
-/// The box of anything that has one; of a list, the box around all of it.
+// The box of anything that has one; of a list, the box around all of it.
 fn box(of: box) = of
 
-/// a lies above b: its bottom at or beyond the top of b. `gap` is exact, `at_least` a minimum.
-constraint above(a: box, b: box) { a.bottom >= b.top }
-constraint above(a: box, b: box, gap: length) { a.bottom == b.top + gap }
-constraint above(a: box, b: box, at_least: length) { a.bottom >= b.top + at_least }
+// --- Beyond a side ---------------------------------------------------------------------------------
 
-/// a lies below b.
-constraint below(a: box, b: box) { a.top <= b.bottom }
-constraint below(a: box, b: box, gap: length) { a.top == b.bottom - gap }
-constraint below(a: box, b: box, at_least: length) { a.top <= b.bottom - at_least }
+/// a lies above b: its bottom at or beyond the top of b.
+///
+/// `gap` is exact, `at_least` a minimum; `align` (left, center, right) also lines them up across.
+///
+/// ```aidl
+/// drawing d {
+///     base = rectangle(center: fixed((0, 0)), width: 60, height: 16)
+///     lid  = rectangle(center: (5, 30), width: 50, height: 10)
+///     constrain above(lid, base, gap: 4, align: center)
+/// }
+/// ```
+constraint above(a: box, b: box, gap: length, align: text = "free") {
+    a.bottom == b.top + gap
+    lined_up(a, b, align)
+}
+constraint above(a: box, b: box, at_least: length = 0, align: text = "free") {
+    a.bottom >= b.top + at_least
+    lined_up(a, b, align)
+}
 
-/// a lies to the left of b.
-constraint left_of(a: box, b: box) { a.right <= b.left }
-constraint left_of(a: box, b: box, gap: length) { a.right == b.left - gap }
-constraint left_of(a: box, b: box, at_least: length) { a.right <= b.left - at_least }
+/// a lies below b: its top at or beyond the bottom of b.
+///
+/// `gap` is exact, `at_least` a minimum; `align` (left, center, right) also lines them up across.
+///
+/// ```aidl
+/// drawing d {
+///     roof = rectangle(center: fixed((0, 0)), width: 60, height: 16)
+///     door = rectangle(center: (5, -30), width: 14, height: 24)
+///     constrain below(door, roof, gap: 0, align: left)
+/// }
+/// ```
+constraint below(a: box, b: box, gap: length, align: text = "free") {
+    a.top == b.bottom - gap
+    lined_up(a, b, align)
+}
+constraint below(a: box, b: box, at_least: length = 0, align: text = "free") {
+    a.top <= b.bottom - at_least
+    lined_up(a, b, align)
+}
 
-/// a lies to the right of b.
-constraint right_of(a: box, b: box) { a.left >= b.right }
-constraint right_of(a: box, b: box, gap: length) { a.left == b.right + gap }
-constraint right_of(a: box, b: box, at_least: length) { a.left >= b.right + at_least }
+/// a lies to the left of b: its right side at or beyond the left side of b.
+///
+/// `gap` is exact, `at_least` a minimum; `align` (top, center, bottom) also lines them up.
+///
+/// ```aidl
+/// drawing d {
+///     house  = rectangle(center: fixed((0, 0)), width: 40, height: 50)
+///     garage = rectangle(center: (-40, 5), width: 30, height: 20)
+///     constrain left_of(garage, house, gap: 2, align: bottom)
+/// }
+/// ```
+constraint left_of(a: box, b: box, gap: length, align: text = "free") {
+    a.right == b.left - gap
+    level_up(a, b, align)
+}
+constraint left_of(a: box, b: box, at_least: length = 0, align: text = "free") {
+    a.right <= b.left - at_least
+    level_up(a, b, align)
+}
 
-/// a stands on b: touching, and over it sideways.
+/// a lies to the right of b: its left side at or beyond the right side of b.
+///
+/// `gap` is exact, `at_least` a minimum; `align` (top, center, bottom) also lines them up.
+///
+/// ```aidl
+/// drawing d {
+///     house = rectangle(center: fixed((0, 0)), width: 40, height: 50)
+///     shed  = rectangle(center: (40, 5), width: 20, height: 16)
+///     constrain right_of(shed, house, at_least: 6, align: bottom)
+/// }
+/// ```
+constraint right_of(a: box, b: box, gap: length, align: text = "free") {
+    a.left == b.right + gap
+    level_up(a, b, align)
+}
+constraint right_of(a: box, b: box, at_least: length = 0, align: text = "free") {
+    a.left >= b.right + at_least
+    level_up(a, b, align)
+}
+
+/// a lies to the left or to the right of b, on the side where it is.
+///
+/// `gap` is exact, `at_least` a minimum; `align` (top, center, bottom) also lines them up.
+///
+/// ```aidl
+/// drawing d {
+///     dial = circle(center: fixed((0, 0)), radius: 20)
+///     a = circle(center: (-40, 5), radius: 6)
+///     b = circle(center: (35, 5), radius: 6)
+///     constrain {
+///         beside(a, dial, gap: 3, align: center)
+///         beside(b, dial, gap: 3, align: center)
+///     }
+/// }
+/// ```
+constraint beside(a: box, b: box, gap: length, align: text = "free") {
+    if written(a.center_x - b.center_x) < 0 {
+        left_of(a, b, gap: gap, align: align)
+    } else {
+        right_of(a, b, gap: gap, align: align)
+    }
+}
+constraint beside(a: box, b: box, at_least: length = 0, align: text = "free") {
+    if written(a.center_x - b.center_x) < 0 {
+        left_of(a, b, at_least: at_least, align: align)
+    } else {
+        right_of(a, b, at_least: at_least, align: align)
+    }
+}
+
+/// a stands on b: touching, and over it sideways, or as `align` says (left, center, right).
+///
+/// ```aidl
+/// drawing d {
+///     table  = rectangle(center: fixed((0, 0)), width: 80, height: 8)
+///     bottle = rectangle(center: (60, 30), width: 12, height: 30)
+///     book   = rectangle(center: (-20, 30), width: 30, height: 6)
+///     constrain {
+///         on_top_of(bottle, table)
+///         on_top_of(book, table, align: left)
+///     }
+/// }
+/// ```
 constraint on_top_of(a: box, b: box) {
     a.bottom == b.top
     a.center_x >= b.left
     a.center_x <= b.right
 }
-constraint on_top_of(a: box, b: box, align: text) {
-    let side = choice(align, ["left", "center", "right"])
-    a.bottom == b.top
-    if side == "left" {
-        a.left == b.left
-    } else if side == "right" {
-        a.right == b.right
-    } else {
-        a.center_x == b.center_x
-    }
-}
+constraint on_top_of(a: box, b: box, align: text) { above(a, b, gap: 0, align: align) }
 
 /// a stands on b, both centred.
-constraint stacked_on(a: box, b: box) {
-    a.bottom == b.top
-    a.center_x == b.center_x
+///
+/// ```aidl
+/// drawing d {
+///     foot = rectangle(center: fixed((0, 0)), width: 60, height: 10)
+///     bowl = circle(center: (20, 40), radius: 20)
+///     constrain stacked_on(bowl, foot)
+/// }
+/// ```
+constraint stacked_on(a: box, b: box) { above(a, b, gap: 0, align: "center") }
+
+// Lined up across, for things one above the other and side by side.
+constraint lined_up(a: box, b: box, align: text) {
+    let side = choice(align, ["free", "left", "center", "right"])
+    if side == "left" { a.left == b.left }
+    if side == "center" { a.center_x == b.center_x }
+    if side == "right" { a.right == b.right }
+}
+constraint level_up(a: box, b: box, align: text) {
+    let side = choice(align, ["free", "top", "center", "bottom"])
+    if side == "top" { a.top == b.top }
+    if side == "center" { a.center_y == b.center_y }
+    if side == "bottom" { a.bottom == b.bottom }
 }
 
-/// The box of a lies within the box of b, `margin` or more from its border.
-constraint inside(a: box, b: box, margin: length = 0) {
-    a.left >= b.left + margin
-    a.right <= b.right - margin
-    a.bottom >= b.bottom + margin
-    a.top <= b.top - margin
+// --- Within ----------------------------------------------------------------------------------------
+
+/// The box of a lies within the box of b, `margin` or more from its border; `(dx, dy)` for both ways.
+///
+/// ```aidl
+/// drawing d {
+///     panel = rectangle(center: fixed((0, 0)), width: 60, height: 40)
+///     knob  = circle(center: (40, 30), radius: 6)
+///     constrain inside(knob, panel, margin: 3)
+/// }
+/// ```
+constraint inside(a: box, b: box, margin: length = 0) { inside(a, b, margin: (margin, margin)) }
+constraint inside(a: box, p: point) { refuse("nothing lies inside a point; `coincident` and `centered_in` put it there") }
+constraint inside(a: box, b: box, margin: point) {
+    a.left >= b.left + margin.x
+    a.right <= b.right - margin.x
+    a.bottom >= b.bottom + margin.y
+    a.top <= b.top - margin.y
 }
+
+/// The box of b holds the box of a: `inside` the other way round, and b is held.
+///
+/// ```aidl
+/// drawing d {
+///     panel = rectangle(center: fixed((0, 0)), width: 60, height: 40)
+///     knob  = circle(center: (40, 30), radius: 6)
+///     constrain contains(panel, knob, margin: 3)
+/// }
+/// ```
+constraint contains(p: point, a: box) { inside(a, p) }
 constraint contains(b: box, a: box, margin: length = 0) { inside(a, b, margin: margin) }
+constraint contains(b: box, a: box, margin: point) { inside(a, b, margin: margin) }
 
-/// The centres of a and b agree.
-constraint centered_in(a: box, b: box) {
-    a.center_x == b.center_x
-    a.center_y == b.center_y
-}
-constraint centered_horizontally(a: box, b: box) { a.center_x == b.center_x }
-constraint centered_vertically(a: box, b: box) { a.center_y == b.center_y }
-
-/// The left sides (right, top, … ) of all agree; the last one is held. `inset` moves the others inwards.
-constraint align_left(things: list, inset: length = 0) {
-    for i in 0..<len(things) - 1 { box(things[i]).left == box(things[-1]).left + inset }
-}
-constraint align_right(things: list, inset: length = 0) {
-    for i in 0..<len(things) - 1 { box(things[i]).right == box(things[-1]).right - inset }
-}
-constraint align_top(things: list, inset: length = 0) {
-    for i in 0..<len(things) - 1 { box(things[i]).top == box(things[-1]).top - inset }
-}
-constraint align_bottom(things: list, inset: length = 0) {
-    for i in 0..<len(things) - 1 { box(things[i]).bottom == box(things[-1]).bottom + inset }
-}
-constraint align_center_x(things: list) {
-    for i in 0..<len(things) - 1 { box(things[i]).center_x == box(things[-1]).center_x }
-}
-constraint align_center_y(things: list) {
-    for i in 0..<len(things) - 1 { box(things[i]).center_y == box(things[-1]).center_y }
+/// The centres of a and b agree; `by` moves a away from there.
+///
+/// ```aidl
+/// drawing d {
+///     panel = rectangle(center: fixed((0, 0)), width: 60, height: 40)
+///     dial  = circle(center: (20, 9), radius: 14)
+///     lamp  = circle(center: (1, 1), radius: 2)
+///     constrain {
+///         centered_in(dial, panel)
+///         centered_in(lamp, panel, by: (20, 10))
+///     }
+/// }
+/// ```
+constraint centered_in(a: box, b: box, by: point = (0, 0)) {
+    a.center_x == b.center_x + by.x
+    a.center_y == b.center_y + by.y
 }
 
-/// All have the width (height, or both) of the last.
-constraint same_width(things: list) {
-    for i in 0..<len(things) - 1 { box(things[i]).width == box(things[-1]).width }
-}
-constraint same_height(things: list) {
-    for i in 0..<len(things) - 1 { box(things[i]).height == box(things[-1]).height }
-}
-constraint same_size(things: list) {
-    for i in 0..<len(things) - 1 {
-        box(things[i]).width == box(things[-1]).width
-        box(things[i]).height == box(things[-1]).height
-    }
-}
+/// The centres agree from left to right; `by` moves a to the right of there.
+///
+/// ```aidl
+/// drawing d {
+///     panel = rectangle(center: fixed((0, 0)), width: 60, height: 40)
+///     lamp  = circle(center: (9, 12), radius: 4)
+///     constrain centered_horizontally(lamp, panel)
+/// }
+/// ```
+constraint centered_horizontally(a: box, b: box, by: length = 0) { a.center_x == b.center_x + by }
 
-/// a is at least as wide (tall, …) as b.
-constraint wider(a: box, b: box) { a.width >= b.width }
-constraint narrower(a: box, b: box) { a.width <= b.width }
-constraint taller(a: box, b: box) { a.height >= b.height }
-constraint shorter(a: box, b: box) { a.height <= b.height }
+/// The centres agree from bottom to top; `by` moves a above there.
+///
+/// ```aidl
+/// drawing d {
+///     panel = rectangle(center: fixed((0, 0)), width: 60, height: 40)
+///     lamp  = circle(center: (20, 3), radius: 4)
+///     constrain centered_vertically(lamp, panel)
+/// }
+/// ```
+constraint centered_vertically(a: box, b: box, by: length = 0) { a.center_y == b.center_y + by }
 
-/// From left to right (top to bottom) with exact gaps; `align` also lines them up across.
-constraint row(things: list, gap: length) {
-    for i in 1..<len(things) { box(things[i]).left == box(things[i - 1]).right + gap }
-}
-constraint row(things: list, gap: length, align: text) {
-    let side = choice(align, ["top", "center", "bottom"])
-    for i in 1..<len(things) {
-        box(things[i]).left == box(things[i - 1]).right + gap
-        if side == "top" {
-            box(things[i]).top == box(things[i - 1]).top
-        } else if side == "bottom" {
-            box(things[i]).bottom == box(things[i - 1]).bottom
-        } else {
-            box(things[i]).center_y == box(things[i - 1]).center_y
-        }
-    }
-}
-constraint column(things: list, gap: length) {
-    for i in 1..<len(things) { box(things[i]).top == box(things[i - 1]).bottom - gap }
-}
-constraint column(things: list, gap: length, align: text) {
-    let side = choice(align, ["left", "center", "right"])
-    for i in 1..<len(things) {
-        box(things[i]).top == box(things[i - 1]).bottom - gap
-        if side == "left" {
-            box(things[i]).left == box(things[i - 1]).left
-        } else if side == "right" {
-            box(things[i]).right == box(things[i - 1]).right
-        } else {
-            box(things[i]).center_x == box(things[i - 1]).center_x
-        }
-    }
-}
-
-/// Equal gaps in the order written; along the axis in which the first guesses spread most, unless it is said.
-constraint evenly_spaced(things: list) { evenly_spaced(things, axis: longer_spread(things)) }
-constraint evenly_spaced(things: list, axis: text) {
+/// a stands between b and c with the same room on both sides, along the axis on which they are further apart.
+///
+/// ```aidl
+/// drawing d {
+///     left_wall  = rectangle(center: fixed((-40, 0)), width: 10, height: 40)
+///     right_wall = rectangle(center: fixed((30, 0)), width: 20, height: 40)
+///     ball = circle(center: (0, -10), radius: 8)
+///     constrain centered_between(ball, left_wall, right_wall)
+/// }
+/// ```
+constraint centered_between(a: box, b: box, c: box) { amid(a, from: b, to: c) }
+constraint centered_between(a: box, b: box, c: box, axis: text) { amid(a, from: b, to: c, axis: axis) }
+constraint amid(a: box, from: box, to: box) { amid(a, from: from, to: to, axis: longer_way([from, to])) }
+constraint amid(a: box, from: box, to: box, axis: text) {
     let way = choice(axis, ["x", "y"])
-    let up = len(things) < 2 or spread(things, way) >= 0
-    for i in 2..<len(things) {
-        let one = room_between(things[i - 2], things[i - 1], way, up)
-        let next = room_between(things[i - 1], things[i], way, up)
-        next == one
-    }
+    let up = way_along([from, to], way) >= 0
+    room_between(from, a, way, up) == room_between(a, to, way, up)
 }
 
-/// How far it is from the first thing of a list to the last, as written, and along which axis it is further.
-fn spread(things: list, axis: text) = written(along(things[-1], axis) - along(things[0], axis))
-fn along(a: box, axis: text) = if axis == "x" then a.center_x else a.center_y
-fn longer_spread(a: list) = if len(a) > 1 and abs(spread(a, "x")) < abs(
-    spread(a, "y")
-) then "y" else "x"
-
-/// The gap from one thing to the next, which lies beyond it (`up`) or before it along the axis.
-fn room_between(a: box, b: box, axis: text, up: bool) = if up then room(a, b, axis) else room(
-    b,
-    a,
-    axis
-)
-fn room(a: box, b: box, axis: text) = if axis == "x" then b.left - a.right else b.bottom - a.top
+// --- Contact ---------------------------------------------------------------------------------------
 
 /// The boxes share a border: the nearest pair of sides meets.
+///
+/// ```aidl
+/// drawing d {
+///     a = rectangle(center: fixed((0, 0)), width: 40, height: 20)
+///     b = rectangle(center: (34, 8), width: 20, height: 20)
+///     constrain touching(b, a)
+/// }
+/// ```
 constraint touching(a: box, b: box) {
     let over = written(a.bottom - b.top)
     let under = written(b.bottom - a.top)
@@ -190,10 +287,34 @@ constraint touching(a: box, b: box) {
     }
 }
 
-/// The boxes are apart (share a part): along the direction in which the first guesses are furthest apart.
-constraint no_overlap(a: box, b: box) {
-    max(a.bottom - b.top, b.bottom - a.top, a.left - b.right, b.left - a.right) >= 0
+/// The boxes are apart, `at_least` so much, in whatever direction; of several things, each from each.
+///
+/// ```aidl
+/// drawing d {
+///     a = rectangle(center: fixed((0, 0)), width: 30, height: 20)
+///     b = rectangle(center: (20, 4), width: 20, height: 20)
+///     c = rectangle(center: (4, 16), width: 20, height: 16)
+///     constrain no_overlap(c, b, a)
+/// }
+/// ```
+constraint no_overlap(a: box, b: box, at_least: length = 0) {
+    max(a.bottom - b.top, b.bottom - a.top, a.left - b.right, b.left - a.right) >= at_least
 }
+constraint no_overlap(things: list, at_least: length = 0) {
+    for i in 1..<len(things) {
+        for j in 0..<i { no_overlap(box(things[j]), box(things[i]), at_least: at_least) }
+    }
+}
+
+/// The boxes share a part, or touch.
+///
+/// ```aidl
+/// drawing d {
+///     a = rectangle(center: fixed((0, 0)), width: 30, height: 20)
+///     b = rectangle(center: (50, 14), width: 20, height: 20)
+///     constrain overlapping(b, a)
+/// }
+/// ```
 constraint overlapping(a: box, b: box) {
     a.left <= b.right
     a.right >= b.left
@@ -202,21 +323,59 @@ constraint overlapping(a: box, b: box) {
 }
 
 alias over = above
-alias on_top = on_top_of
+alias higher_than = above
 alias under = below
 alias beneath = below
 alias underneath = below
+alias lower_than = below
 alias to_the_left_of = left_of
 alias to_left_of = left_of
+alias left_from = left_of
 alias to_the_right_of = right_of
 alias to_right_of = right_of
-alias within = inside
-alias center_inside = centered_in
-alias centered = centered_in
-alias center_horizontally = centered_horizontally
-alias center_vertically = centered_vertically
-alias equal_width = same_width
-alias equal_height = same_height
-alias equal_size = same_size
+alias right_from = right_of
+alias next_to = beside
+alias alongside = beside
+alias on_top = on_top_of
+alias atop = on_top_of
+alias sits_on = on_top_of
+alias stands_on = on_top_of
+alias rests_on = on_top_of
 alias stacked = stacked_on
+alias stack_on = stacked_on
+alias within = inside
+alias inside_of = inside
+alias fits_in = inside
+alias contained_in = inside
+alias encloses = contains
+alias surrounds = contains
+alias center_inside = centered_in
+alias centre_inside = centered_in
+alias centred_in = centered_in
+alias centered = centered_in
+alias centred = centered_in
+alias center_in = centered_in
+alias centered_on = centered_in
+alias centered_at = centered_in
+alias same_centers = centered_in
+alias center_horizontally = centered_horizontally
+alias centre_horizontally = centered_horizontally
+alias centred_horizontally = centered_horizontally
+alias centered_x = centered_horizontally
+alias center_vertically = centered_vertically
+alias centre_vertically = centered_vertically
+alias centred_vertically = centered_vertically
+alias centered_y = centered_vertically
+alias centred_between = centered_between
+alias halfway_between = centered_between
+alias adjacent = touching
+alias adjacent_to = touching
+alias touch = touching
+alias abuts = touching
 alias not_overlapping = no_overlap
+alias non_overlapping = no_overlap
+alias no_overlaps = no_overlap
+alias apart = no_overlap
+alias separate = no_overlap
+alias overlap = overlapping
+alias intersecting = overlapping

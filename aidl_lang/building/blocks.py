@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from aidl_lang import ast
 from aidl_lang.building.scopes import Candidate, LetBinding, ParamBinding, Scope
-from aidl_lang.building.state import Interpreter
+from aidl_lang.building.state import Ahead, Interpreter
 from aidl_lang.library import signature
 from aidl_lang.model import Structure
 
@@ -15,8 +15,13 @@ def run_block(it: Interpreter, statements: Sequence[ast.Statement], scope: Scope
     """Run the statements of a body. Callables and constants are visible in the whole of it."""
     hoist_callables(scope, statements)
     hoist_values(scope, statements, here)
-    for statement in statements:
-        execute(it, statement, scope, here)
+    ahead = Ahead(statements, scope, here)
+    it.ahead.append(ahead)
+    try:
+        for ahead.next, statement in enumerate(statements, start=1):
+            execute(it, statement, scope, here)
+    finally:
+        it.ahead.pop()
 
 
 def hoist_callables(scope: Scope, statements: Iterable[ast.Statement]) -> None:

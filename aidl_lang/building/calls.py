@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from aidl_lang import ast
+from aidl_lang.binding import select
 from aidl_lang.boxes import box_of
+from aidl_lang.building.arguments import arranged
 from aidl_lang.building.blocks import run_block
 from aidl_lang.building.coerce import as_point, edge_coordinate
 from aidl_lang.building.conditions import all_of, replace_placed, value_unknowns
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, size, turn
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
+from aidl_lang.building.outlines import remember, usable
 from aidl_lang.building.lists import run
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
@@ -28,7 +31,7 @@ from aidl_lang.types import (
     NumberType,
     PointType,
     Signature,
-    select,
+    with_article,
 )
 from aidl_lang.values import (
     NOTHING,
@@ -43,6 +46,7 @@ from aidl_lang.values import (
     RecordVal,
     Text,
     Value,
+    kind_of,
     members,
     type_of,
 )
@@ -77,21 +81,27 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
     ]
     nodes: list[ast.Node] = [node.receiver] if first and node.receiver is not None else []
     nodes += [a.value for a in node.arguments]
-    chosen = select(signatures, given)
+    candidates = usable(candidates, values, env)
+    chosen = select([c.signature for c in candidates], given)
     if isinstance(chosen, list):
         if not any(isinstance(v, Nothing) for v in values):
-            _no_overload(it, node, chosen, nodes)
+            _no_overload(it, node, chosen, nodes, values)
         return NOTHING
     candidate = next(c for c in candidates if c.signature is chosen.signature)
     if any(isinstance(v, Nothing) for v in values):
         return NOTHING
+    values, nodes = arranged(chosen, values, nodes)
     arguments = bound(it, chosen, values, nodes, env)
     if arguments is None:
         return NOTHING
+    if (edit := it.edits.get(node)) is not None:
+        arguments = edit(chosen, arguments)
     if not it.enter(node, candidate.signature.node):
         return NOTHING
     try:
-        return invoke(it, candidate, arguments, chosen, values, node, env)
+        result = invoke(it, candidate, arguments, chosen, values, node, env)
+        remember(result, candidate.signature.name, arguments)
+        return result
     finally:
         it.leave()
 
@@ -118,11 +128,23 @@ def _unknown_callable(it: Interpreter, node: ast.Call, env: Env) -> None:
 
 
 def _no_overload(
-    it: Interpreter, node: ast.Call, misses: Sequence[Mismatch], nodes: Sequence[ast.Node]
+    it: Interpreter,
+    node: ast.Call,
+    misses: Sequence[Mismatch],
+    nodes: Sequence[ast.Node],
+    values: Sequence[Value],
 ) -> None:
     if node in it.program.rejected:
         return  # the checker has said so
     name = node.callee.text
+    if it.place(node) is not node.span:
+        # What the library asks of a pair of things is told of the author's call, in the author's words.
+        things = [v for v in values if not isinstance(v, Text | bool)]
+        pairs = [[kind for _, kind, _ in m.signature.parameters] for m in misses]
+        known = dict.fromkeys(" and ".join(map(with_article, kinds[:2])) for kinds in pairs if ANY not in kinds)
+        hints = [f"it takes {', '.join(list(known)[:8])}"] if known else []
+        it.refuse(node, f"it does not go with {' and '.join(map(kind_of, things))}", hints)
+        return
     closest = max(misses, key=lambda m: m.argument is not None)
     at = nodes[closest.argument] if len(misses) == 1 and closest.argument is not None else node
     if len(misses) == 1:
@@ -200,6 +222,8 @@ def invoke(
         case ast.ConstraintDefinition():
             scope = _body_scope(it, candidate, arguments, definition.parameters, env)
             condition = run_items(it, definition.body, Env(scope, env.here, env.reach))
+            if condition is True and binding.gathered and len(values) == len(binding.arguments) == 1:
+                _says_nothing(it, node, values[0])
             return _placing(condition, definition, binding, values, env)
         case ast.ShapeDefinition():
             return _shape(it, candidate, definition, arguments, node, env)
@@ -265,6 +289,13 @@ def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
     return all_of(found)
 
 
+def _says_nothing(it: Interpreter, node: ast.Call, only: Value) -> None:
+    """A relation of several things that gets one; a list of one is no mistake, since its length may vary."""
+    if members(only) is None:
+        hint = f"name what it is related to, as in `{node.callee.text}(a, b)`"
+        it.report("E0343", f"`{node.span.one_line}` says nothing: it relates two things or more", node, hints=[hint])
+
+
 def hoist_lets(scope: Scope, block: ast.Block) -> None:
     for statement in block.statements:
         if isinstance(statement, ast.Let | ast.Assign):
@@ -288,6 +319,8 @@ def _placing(
     if not isinstance(condition, Condition) or delegates:
         return condition
     positional = [values[i] for i in binding.positional]
+    if len(positional) > 2 and isinstance(positional[-1], Num) and not isinstance(positional[-2], Num):
+        positional.pop()  # the value that a measure is set to
     flat = [item for value in positional for item in _spliced(value)] if binding.gathered else positional
     placed = flat[:-1] if len(flat) > 1 else flat
     unknowns = frozenset(u for value in placed for u in value_unknowns(value, env.here))

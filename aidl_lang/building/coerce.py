@@ -51,7 +51,7 @@ def may_read(it: Interpreter, owner: Structure, node: ast.Node, env: Env) -> boo
 def look(it: Interpreter, geometry: Geometry, node: ast.Node, env: Env) -> dict[str, Value]:
     """What defines a primitive, in the frame of the structure that asks."""
     core = primitives.view(geometry, env.here)
-    if may_read(it, geometry.owner, node, env):
+    if may_read(it, geometry.bound_to, node, env):
         return core
     return {name: as_written(value) for name, value in core.items()}
 

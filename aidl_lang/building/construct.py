@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.building.conditions import all_of, compare_numbers
+from aidl_lang.building.lettering import typeset
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.expression import Expression
 from aidl_lang.model import SIZES, Constraint, Geometry, Structure
@@ -294,6 +295,14 @@ def _ellipse(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     g.fields["angle"] = turn(it, angle, g, "angle", rotatable=False)
 
 
+def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
+    assert g.span is not None
+    g.glyphs = typeset(it, a, g.span)
+    it.count_entity(None, len(g.glyphs))
+    g.fields = _points(it, g, a, ("start",))
+    g.fields |= {"height": _size(it, g, a, "height"), "angle": _size(it, g, a, "angle", ANGLE)}
+
+
 CONSTRUCTORS: dict[str, Callable[[Interpreter, Geometry, Arguments, Env], None]] = {
     "point": _point,
     "line": _line,
@@ -301,6 +310,7 @@ CONSTRUCTORS: dict[str, Callable[[Interpreter, Geometry, Arguments, Env], None]]
     "arc": _arc,
     "bezier": _bezier,
     "ellipse": _ellipse,
+    "glyphs": _glyphs,
 }
 
 
@@ -316,7 +326,7 @@ def hidden_constraints(it: Interpreter) -> list[Constraint]:
     """The equations of geometry that became part of the model."""
     found: list[Constraint] = []
     for g, comparisons in it.hidden:
-        if g.name is not None and g.span is not None:
+        if (g.name or g.known_as) and g.span is not None:
             text = f"{g.path.removeprefix(g.owner.path + '.')} is an arc of one radius"
             found.append(Constraint(g.owner, comparisons, text, g.span))
     return found

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 from aidl_lang import ast, units
 from aidl_lang import expression as ex
 from aidl_lang.boxes import spelled_out
-from aidl_lang.building import lists
+from aidl_lang.building import copies, lists, patterns, shapes
 from aidl_lang.building.coerce import as_point, as_written, constant, numeric
 from aidl_lang.building.conditions import compare_numbers
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.lettering import ink
+from aidl_lang.building.outlines import OPERATIONS
+from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.expression import DEGREE, Expression
-from aidl_lang.model import Geometry, Structure
+from aidl_lang.model import Geometry, Measurement, Structure
 from aidl_lang.names import find, nearest
 from aidl_lang.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension
 from aidl_lang.values import (
@@ -32,14 +33,6 @@ from aidl_lang.values import (
 
 Arguments = Mapping[str, Value]
 Function = Callable[[Interpreter, Arguments, ast.Call, Env], Value]
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """A number that only the finished drawing has: area, perimeter, clearance, overlaps (1 or 0)."""
-
-    kind: str
-    of: tuple[Structure | Geometry, ...]
 
 
 def _checked(it: Interpreter, result: Num, node: ast.Node) -> Value:
@@ -272,6 +265,26 @@ def _nearest(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     return chosen
 
 
+def _where(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """One of two numbers by the sign of a third, which the solver may decide."""
+    test, yes, no = (_num(it, a, name, node, env) for name in ("value", "positive", "negative"))
+    if test is None or yes is None or no is None:
+        return NOTHING
+    kind = _common(it, [yes, no], node)
+    if kind is None:
+        return NOTHING
+    status = max(kind[1], test.status)
+    return Num(ex.apply("select", test.expression, yes.expression, no.expression), kind[0], status)
+
+
+def _shown(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """A measure that tells a solver how to get out of an overlap, and a reader that there is no room."""
+    value = _num(it, a, "value", node, env)
+    if value is None or env.reach is not Reach.READ:
+        return value if value is not None else NOTHING
+    return Num(ex.apply("maximum", value.expression, ex.ZERO), value.dimension, value.status)
+
+
 _YES = number(1.0, PLAIN)
 
 
@@ -315,12 +328,19 @@ FUNCTIONS: dict[str, Function] = {
     "len": _len,
     **lists.FUNCTIONS,
     "choice": _choice,
+    "ink": ink,
     "fixed": _mark(Status.FIXED),
     "guess": _mark(Status.GUESS),
     "written": _written,
     "nearest": _nearest,
+    "where": _where,
+    "shown": _shown,
+    **shapes.FUNCTIONS,
+    **OPERATIONS,
+    **copies.FUNCTIONS,
+    **patterns.FUNCTIONS,
     "area": _measure("area", AREA),
     "perimeter": _measure("perimeter", LENGTH),
-    "clearance": _measure("clearance", LENGTH),
+    "outline_clearance": _measure("clearance", LENGTH),
     "overlaps": _measure("overlaps", PLAIN),
 }

@@ -12,7 +12,7 @@ from aidl_lang.building.conditions import RELATIONS, all_of, compare_numbers, pl
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.wording import Wording
-from aidl_lang.model import Assertion, Comparison, Condition, Constraint, Geometry, Structure
+from aidl_lang.model import Assertion, Comparison, Condition, Constraint, Geometry, Measurement, Structure
 from aidl_lang.names import fold
 from aidl_lang.primitives import defining
 from aidl_lang.units import LENGTH
@@ -21,7 +21,7 @@ from aidl_lang.values import Array, ListVal, Nothing, Num, PointVal, Text, Value
 
 def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None = None) -> None:
     """`constrain EXPR` or, with a weight, `prefer EXPR`: constant conditions are checked on the spot."""
-    if isinstance(node, ast.Call) and fold(node.callee.text) == "fixed":
+    if isinstance(node, ast.Call) and _named(it, node) == "fixed":
         value = _held(it, node, env)
     else:
         value = _read(it, node, env)
@@ -55,7 +55,7 @@ def _as_relation(node: ast.Expression) -> ast.Expression:
         case ast.Comparison(operands=(ast.Call() as call, value), operators=("==",)):
             named = any(a.name is not None for a in call.arguments)
             count = len(call.arguments) + (call.receiver is not None)
-            if fold(call.callee.text) == "angle" and count == 2 and not named:
+            if fold(call.callee.text) in ("angle", "anglebetween") and 1 <= count <= 3 and not named:
                 given = ast.Argument(None, value, span=value.span)
                 return ast.Call(call.callee, call.receiver, (*call.arguments, given), span=node.span)
     return node
@@ -95,15 +95,26 @@ def _impose_condition(
             return
         if isinstance(part, Comparison):
             comparisons.append(part)
-    if any(n.op == "measure" for c in comparisons for n in ex.nodes([c.left, c.right])):
+    measured = [n.payload for n in ex.nodes(e for c in comparisons for e in (c.left, c.right))]
+    found = [m for m in measured if isinstance(m, Measurement)]
+    if found and found[0].kind in SIDES:
+        _box_unknown(it, found[0], node)
+        return
+    if found:
         it.report(
             "E0512",
             "areas, perimeters and clearances of outlines are known after solving only",
             node,
-            hints=["put it in an `assert`, or constrain boxes and distances instead"],
+            hints=[
+                "put it in an `assert`, or constrain boxes and distances instead",
+                "`clearance` constrains between points, lines, circles, slots and convex shapes; name these",
+            ],
         )
         return
-    if comparisons:
+    shape = env.scope.declaring().container
+    if comparisons and isinstance(shape, Geometry) and node.span.source in it.library_sources:
+        _impose_within(it, shape, tuple(comparisons), node, env)
+    elif comparisons:
         comparisons = _placed_in_call(it, node, comparisons, env)
         it.add_constraint(
             Constraint(
@@ -116,6 +127,33 @@ def _impose_condition(
                 Wording(node, it, env, _read),
             )
         )
+
+
+def _box_unknown(it: Interpreter, box: Measurement, node: ast.Expression) -> None:
+    """A side of the box of an outline that is worked out after solving."""
+    (outline,) = box.of
+    assert isinstance(outline, Geometry)
+    assert outline.recipe is not None
+    sources = [s.name or s.type for group in outline.recipe.operands for s in group]
+    hint = f"constrain what it is made of: `{sources[0]}`"
+    if outline.recipe.kind == "difference":
+        hint += ", or cut with a `hole`, which leaves the box as it is"
+    it.report(
+        "E0519",
+        f"`{node.span.one_line}` needs the box of `{outline.path}`, which is known after solving only",
+        node,
+        label=f"`{outline.name}` is worked out by `{outline.type}` when everything has its place",
+        hints=[hint, "an `assert` may speak of the box"],
+    )
+
+
+def _impose_within(
+    it: Interpreter, shape: Geometry, comparisons: tuple[Comparison, ...], node: ast.Expression, env: Env
+) -> None:
+    """What a shape of the library holds for itself is a constraint named after it, at its author's line."""
+    if shape.name is not None and shape.span is not None:
+        text = f"{shape.path.removeprefix(env.here.path + '.')}: {node.span.one_line}"
+        it.add_constraint(Constraint(env.here, comparisons, text, shape.span, None, ", ".join(env.scope.labels)))
 
 
 def _read(it: Interpreter, node: ast.Expression, env: Env) -> Value:
@@ -160,6 +198,11 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, *, at_once: bo
             ", ".join(env.scope.labels),
         )
     )
+
+
+def _named(it: Interpreter, node: ast.Call) -> str:
+    """The name that is called, an alias being none of its own."""
+    return it.program.resolution.canonical.get(node.callee, node.callee.text)
 
 
 # --- constrain fixed(x) ----------------------------------------------------------------------------

@@ -7,13 +7,25 @@ from aidl_lang import expression as ex
 from aidl_lang.boxes import Box
 from aidl_lang.building.coerce import as_written, may_read
 from aidl_lang.building.lists import entry
+from aidl_lang.building.outlines import finish_size
 from aidl_lang.building.params import read_param
-from aidl_lang.building.scopes import Binding, LetBinding, ParamBinding, PassedBinding, Scope, VarBinding
+from aidl_lang.building.scopes import (
+    Binding,
+    CopiedBinding,
+    LetBinding,
+    ParamBinding,
+    PassedBinding,
+    Scope,
+    VarBinding,
+)
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.templates import read_passed
 from aidl_lang.diagnostics import Label
 from aidl_lang.model import Condition, Geometry, Structure
-from aidl_lang.names import find, nearest
+from aidl_lang.builtins import FINISHES
+from aidl_lang.names import find, fold, nearest
+from aidl_lang.synonyms import MEMBERS
+from aidl_lang.units import ANGLE
 from aidl_lang.values import (
     NOTHING,
     Array,
@@ -21,6 +33,7 @@ from aidl_lang.values import (
     Namespace,
     Nothing,
     Num,
+    Pattern,
     PointVal,
     RecordVal,
     Value,
@@ -54,6 +67,10 @@ def read(it: Interpreter, binding: Binding, node: ast.Node, env: Env) -> Value:
             return value if reached else as_written(value)
         case PassedBinding():
             return read_passed(it, binding, env)
+        case CopiedBinding(name, inner, source, carry):
+            assert isinstance(source.scope, Scope)
+            value = read(it, inner, node, Env(source.scope, source.owner, Reach.OWN))
+            return carry(name, value, source.owner)
         case _:
             return binding
 
@@ -96,11 +113,23 @@ def is_same_everywhere(value: Value) -> bool:
 
 
 def member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Value:
-    """`value.name`"""
+    """`value.name`, as written or in another word for it."""
+    for word in (name, *MEMBERS.get(fold(name), ())):
+        if (found := _member(it, value, word, node, env)) is not None:
+            return found
+    _no_member(it, value, name, node)
+    return NOTHING
+
+
+def _member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Value | None:
+    """None when there is none of that name."""
     found: Value | None = None
     match value:
         case Nothing():
             return NOTHING
+        case Pattern(settings=settings) if (key := find(name, settings.fields)) is not None:
+            found = primitives.field(settings, key, env.here)
+            return found if found is None or may_read(it, settings.owner, node, env) else as_written(found)
         case PointVal(x, y):
             found = {"x": x, "y": y}.get(name.casefold())
         case Structure():
@@ -119,16 +148,18 @@ def member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env)
         case ListVal() | Array():
             items = [member(it, item, name, node, env) for item in members(value) or ()]
             return NOTHING if any(isinstance(i, Nothing) for i in items) else ListVal(tuple(items))
-    if found is None:
-        _no_member(it, value, name, node)
-        return NOTHING
-    return found
+    return found if found is not None else finish_size(it, value, name, node, env)
 
 
 def _no_member(it: Interpreter, value: Value, name: str, node: ast.Member) -> None:
+    if it.place(node) is not node.span:
+        it.refuse(node, f"{kind_of(value)} has no `{name}`")  # the library's expression tells an author nothing
+        return
     known = member_names(value)
     like = nearest(name, known)
-    if like:
+    if (kind := fold(name)) in FINISHES:
+        hint = f"it has one once it is finished: `{kind}({node.value.span.text}, 5)`"
+    elif like:
         hint = f"did you mean `{like[0]}`?"
     elif known:
         hint = "it has " + ", ".join(f"`{k}`" for k in known[:12])
@@ -150,7 +181,7 @@ def member_names(value: Value) -> list[str]:
         case Geometry(scope=Scope() as scope):
             return [*scope.values, "bb", *boxes.FIELDS]
         case Geometry():
-            return [*primitives.FIELDS[value.type], "bb", *boxes.FIELDS]
+            return [*primitives.FIELDS.get(value.type, value.fields), "bb", *boxes.FIELDS]
         case _:
             return []
 
@@ -172,9 +203,9 @@ def _geometry_member(it: Interpreter, g: Geometry, name: str, node: ast.Node, en
         if (key := find(name, g.scope.values)) is not None:
             return _shape_member(it, g, key, node, env)
     else:
-        fields = dict.fromkeys(primitives.FIELDS[g.type])
+        fields = dict.fromkeys((*primitives.FIELDS.get(g.type, ()), *g.fields))
         key = find(name, fields) or name
-        reached = may_read(it, g.owner, node, env)
+        reached = may_read(it, g.bound_to, node, env)
         value = primitives.field(g, key, env.here)
         if value is not None:
             return value if reached else as_written(value)
@@ -188,7 +219,7 @@ def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: E
     value = read(it, g.scope.values[key], node, Env(g.scope, g.owner, Reach.OWN))
     value = primitives.translate(key, value, g.owner, env.here)
     if isinstance(value, Num | PointVal) and not is_same_everywhere(value):
-        if not may_read(it, g.owner, node, env):
+        if not may_read(it, g.bound_to, node, env):
             return as_written(value)
         if env.reach is Reach.SUBTREE and isinstance(value, Num):
             _unlock(value)
@@ -197,9 +228,9 @@ def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: E
 
 def _unlock(value: Num) -> None:
     """A constraint names an angle that was exact only because nothing asked it to turn."""
-    payload = value.expression.payload
-    if isinstance(payload, ex.Unknown) and payload.locked:
-        payload.exact = False
+    if value.dimension == ANGLE:
+        for unknown in ex.unknowns([value.expression]):
+            unknown.exact &= not unknown.locked
 
 
 def _box_field(it: Interpreter, box: Box, name: str, node: ast.Node, env: Env) -> Value | None:
@@ -209,7 +240,7 @@ def _box_field(it: Interpreter, box: Box, name: str, node: ast.Node, env: Env) -
     if key is None:
         return None
     value = box.field(key)
-    owners = (s if isinstance(s, Structure) else getattr(s, "owner", None) for s in box.sources)
+    owners = (s if isinstance(s, Structure) else getattr(s, "bound_to", None) for s in box.sources)
     reached = all(may_read(it, owner, node, env) for owner in owners if owner is not None)
     return value if reached or value is None else as_written(value)
 

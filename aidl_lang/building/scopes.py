@@ -73,7 +73,17 @@ class PassedBinding:
     tied: dict[Structure, Value] = field(default_factory=dict)
 
 
-Binding: TypeAlias = "Value | LetBinding | ParamBinding | VarBinding | PassedBinding"
+@dataclass(eq=False)
+class CopiedBinding:
+    """A name in a copied shape: what it stands for in the source, as `carry` moves it."""
+
+    name: str
+    binding: Binding
+    source: Geometry
+    carry: Callable[[str, Value, Structure], Value]
+
+
+Binding: TypeAlias = "Value | LetBinding | ParamBinding | VarBinding | PassedBinding | CopiedBinding"
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from aidl_lang.expression import Unknown
 from aidl_lang.model import Assertion, Comparison, Constraint, Geometry, Knob, Structure
 from aidl_lang.source import Span
 from aidl_lang.typecheck import Program
+from aidl_lang.types import Binding
 from aidl_lang.units import ANGLE, MaybeDimension
 from aidl_lang.values import Num, PointVal, Value
 
@@ -61,6 +62,16 @@ Executor = Callable[..., None]
 
 
 @dataclass
+class Ahead:
+    """A body that is being run; `next` is the statement after the one that is run now."""
+
+    statements: Sequence[ast.Statement]
+    scope: Scope
+    here: Structure
+    next: int = 0
+
+
+@dataclass
 class Interpreter:
     """The state of one run."""
 
@@ -82,6 +93,12 @@ class Interpreter:
     call_sites: list[ast.Node] = field(default_factory=list)
     hidden: list[tuple[Geometry, tuple[Comparison, ...]]] = field(default_factory=list)
     runaway: set[ast.Node] = field(default_factory=set)
+    ahead: list[Ahead] = field(default_factory=list)
+    edits: dict[ast.Call, Callable[[Binding, dict[str, Value]], dict[str, Value]]] = field(default_factory=dict)
+    """calls that are run with their arguments changed"""
+    edited: set[tuple[ast.Call, tuple[str, ...]]] = field(default_factory=set)
+    """edits that were applied, and in which turns of the loops around"""
+    edited_names: dict[int, frozenset[str]] = field(default_factory=dict)
     root: Structure | None = None
     entities: int = 0
     turns: int = 0
@@ -115,6 +132,13 @@ class Interpreter:
                 return  # one cause, met again further on
         self.diagnostics.append(Diagnostic(code, message, span, label, tuple(secondary), tuple(hints), fix))
 
+    def refuse(self, node: ast.Node, why: str, hints: Sequence[str] = ()) -> None:
+        """A call makes no sense of its arguments; said of the call that the author wrote."""
+        span = self.place(node)
+        text = f"`{span.one_line}`" if span is not None else "this"
+        if not any(d.code == "E0342" and d.span == span for d in self.diagnostics):
+            self.diagnostics.append(Diagnostic("E0342", f"{text} says nothing: {why}", span, hints=tuple(hints)))
+
     @property
     def library_sources(self) -> tuple[object, ...]:
         return self.program.library.sources
@@ -125,8 +149,8 @@ class Interpreter:
 
     # --- Limits --------------------------------------------------------------------------------
 
-    def count_entity(self, node: ast.Node | None) -> None:
-        self.entities += 1
+    def count_entity(self, node: ast.Node | None, count: int = 1) -> None:
+        self.entities += count
         if self.entities > self.limits.entities:
             self._stop(
                 node, f"this program builds more than {self.limits.entities} structures and geometries"

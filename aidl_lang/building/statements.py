@@ -10,12 +10,14 @@ from aidl_lang.building.blocks import declared_names, run_block
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.construct import loose_point
 from aidl_lang.building.declare import adopt, declare, give_name, index_values
+from aidl_lang.building.edits import check_edit, edited, edits_on, is_edit
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.impose import record_assertion
 from aidl_lang.building.params import read_param
 from aidl_lang.building.scopes import LetBinding, ParamBinding, Scope, VarBinding
 from aidl_lang.building.state import Env, Executor, Interpreter, Reach
-from aidl_lang.building.structures import build_structure, instantiate
+from aidl_lang.building.settle import Settling
+from aidl_lang.building.structures import build_structure
 from aidl_lang.model import Geometry, Structure
 from aidl_lang.values import (
     NOTHING,
@@ -24,8 +26,10 @@ from aidl_lang.values import (
     ListVal,
     Nothing,
     Num,
+    Pattern,
     PointVal,
     Status,
+    StructureCopy,
     kind_of,
 )
 
@@ -36,12 +40,15 @@ def _assign(it: Interpreter, node: ast.Assign, scope: Scope, here: Structure) ->
         return
     env = Env(scope, here, Reach.OWN)
     value = evaluate(it, node.value, env)
+    if not isinstance(value, Nothing | Instantiation) and (edits := edits_on(it, node.name.text, indices, scope)):
+        value = edited(it, node, value, edits, env)
     if isinstance(value, Nothing):
         declare(it, scope, node.name, indices, NOTHING, node)
         return
-    if isinstance(value, Instantiation):
-        made = instantiate(it, node, value, scope, here, indices)
-        declare(it, scope, node.name, indices, made, node)
+    is_new = isinstance(value, Instantiation | StructureCopy | Pattern)
+    value = Settling(it, node, scope, here).value(value, indices)
+    if is_new:
+        declare(it, scope, node.name, indices, value, node)
         return
     if node.placement is not None:
         it.report(
@@ -135,6 +142,14 @@ def _if(it: Interpreter, node: ast.If, scope: Scope, here: Structure) -> None:
         run_block(it, taken.statements, scope, here)
 
 
+def _expression(it: Interpreter, node: ast.ExpressionStatement, scope: Scope, here: Structure) -> None:
+    """An edit was applied where the thing was made; everything else is a constraint."""
+    if isinstance(node.value, ast.Call) and is_edit(it, node.value, scope):
+        check_edit(it, node.value, Env(scope, here, Reach.OWN))
+    else:
+        _defer(it, node, scope, here)
+
+
 def _defer(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) -> None:
     it.pending.setdefault(here, []).append((node, scope))
 
@@ -155,7 +170,7 @@ EXECUTORS: Mapping[type, Executor] = {
     ast.For: _for,
     ast.If: _if,
     ast.Constrain: _defer,
-    ast.ExpressionStatement: _defer,
+    ast.ExpressionStatement: _expression,
     ast.Prefer: _defer,
     ast.Assert: _assert,
 }

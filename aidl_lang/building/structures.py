@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.building.attributes import read_attributes
 from aidl_lang.building.blocks import run_block
 from aidl_lang.building.calls import default_of
 from aidl_lang.building.coerce import as_point, numeric
+from aidl_lang.building.edits import Edit, edits_on, frame_edited
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.scopes import Scope, indexed
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.stated import read_constraint
 from aidl_lang.building.templates import passed
+from aidl_lang.builtins import FINISHES
 from aidl_lang.model import Frame, Geometry, Structure
 from aidl_lang.units import ANGLE, LENGTH
 from aidl_lang.values import (
     NOTHING,
     Instantiation,
     Nothing,
+    Num,
     PointVal,
     Status,
     kind_of,
@@ -37,7 +42,8 @@ def build_structure(
     name = indexed(node.name.text, indices)
     structure = _new(it, node.kind, name, parent, node)
     structure.doc = node.doc
-    _place(it, structure, node.placement, scope)
+    edits = edits_on(it, node.name.text, indices, scope) if parent is not None else ()
+    _place(it, structure, node.placement, scope, edits)
     read_attributes(it, structure, node.attributes, scope)
     body = Scope(_around(scope, node.name.text, structure), structure, labels=scope.labels)
     structure.scope = body
@@ -54,8 +60,9 @@ def instantiate(
     scope: Scope,
     here: Structure,
     indices: tuple[int, ...],
+    framed: Callable[[Frame], Frame] | None = None,
 ) -> Structure | Nothing:
-    """An instance of a template under the name it is assigned to."""
+    """An instance of a template under the name it is assigned to; `framed` moves its frame elsewhere."""
     definition = template.definition
     name = indexed(node.name.text, indices)
     if not it.enter(template.node, definition):
@@ -63,7 +70,7 @@ def instantiate(
     try:
         structure = _new(it, definition.kind, name, here, node)
         structure.doc = definition.doc
-        _place(it, structure, node.placement, scope)
+        _place(it, structure, node.placement, scope, edits_on(it, node.name.text, indices, scope))
         assert isinstance(template.scope, Scope)
         around = _around(template.scope, definition.name.text, structure)
         body = Scope(around, structure, labels=scope.labels)
@@ -80,6 +87,8 @@ def instantiate(
             body.values[key] = passed(it, key, value, structure, here, where)
         if definition.placement is not None:
             _place(it, structure, definition.placement, body)
+        if framed is not None:
+            structure.frame = framed(structure.frame)
         run_block(it, definition.body.statements, body, structure)
         finish(it, structure)
     finally:
@@ -119,7 +128,13 @@ def own_names(scope: Scope, structure: Structure) -> None:
         scope.values[name] = axis
 
 
-def _place(it: Interpreter, s: Structure, placement: ast.Placement | None, scope: Scope) -> None:
+def _place(
+    it: Interpreter,
+    s: Structure,
+    placement: ast.Placement | None,
+    scope: Scope,
+    edits: Sequence[Edit] = (),
+) -> None:
     """The frame: `at` is a position, `rotated` is exact unless it is a guess or an unknown."""
     if s.parent is None:
         if placement is not None:
@@ -135,29 +150,32 @@ def _place(it: Interpreter, s: Structure, placement: ast.Placement | None, scope
         if at is None and not isinstance(value, Nothing):
             it.report("E0302", f"`at` wants a point, not {kind_of(value)}", placement.at)
     at = at or PointVal(number(0.0, LENGTH), number(0.0, LENGTH))
+    turn = _rotation(it, placement, env)
+    if edits:
+        at, turn = frame_edited(it, edits, s, at, turn)
     x, y = (
         n.expression
         if n.status >= Status.FIXED
         else it.unknown(n.value, s, axis, owner=s.parent, dimension=LENGTH, frame_of=s)
         for n, axis in ((at.x, "x"), (at.y, "y"))
     )
-    s.frame = Frame(x, y, _rotation(it, s, placement, env))
+    rotation = turn.expression if turn is not None else ex.ZERO
+    if turn is not None and turn.status is Status.GUESS:
+        rotation = it.unknown(turn.value, s, "rotation", owner=s.parent, dimension=ANGLE, frame_of=s)
+    s.frame = Frame(x, y, rotation)
 
 
-def _rotation(it: Interpreter, s: Structure, placement: ast.Placement | None, env: Env) -> ex.Expression:
+def _rotation(it: Interpreter, placement: ast.Placement | None, env: Env) -> Num | None:
     if placement is None or placement.rotated is None:
-        return ex.ZERO
+        return None
     value = evaluate(it, placement.rotated, env)
     found = numeric(it, value, placement.rotated, env)
     if found is None:
-        return ex.ZERO
+        return None
     if found.dimension not in (None, ANGLE):
         it.report("E0301", "`rotated` wants an angle", placement.rotated, hints=["as in `rotated 45deg`"])
-        return ex.ZERO
-    if found.status is Status.GUESS:
-        assert s.parent is not None
-        return it.unknown(found.value, s, "rotation", owner=s.parent, dimension=ANGLE, frame_of=s)
-    return found.expression
+        return None
+    return found
 
 
 def finish(it: Interpreter, structure: Structure) -> None:
@@ -165,8 +183,17 @@ def finish(it: Interpreter, structure: Structure) -> None:
     if structure.is_empty and structure.parent is not None:
         _plan(it, structure)
     structure.is_complete = True
-    for node, scope in it.pending.pop(structure, []):
+    pending = it.pending.pop(structure, [])
+    # Finished corners first: constraints may speak of their sizes, wherever they are written.
+    for node, scope in sorted(pending, key=lambda item: not _finishes(it, item[0])):
         read_constraint(it, node, scope, structure)
+
+
+def _finishes(it: Interpreter, node: ast.Statement) -> bool:
+    """Whether a statement rounds corners or cuts them off."""
+    if not isinstance(node, ast.ExpressionStatement) or not isinstance(call := node.value, ast.Call):
+        return False
+    return it.program.resolution.canonical.get(call.callee, call.callee.text) in FINISHES
 
 
 def _plan(it: Interpreter, s: Structure) -> None:

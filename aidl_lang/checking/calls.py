@@ -7,10 +7,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang import ast, units
+from aidl_lang.binding import outcomes
+from aidl_lang.builtins import COPYING, PATTERNS
 from aidl_lang.checking import fields
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, Place, joined
-from aidl_lang.diagnostics import Edit, Fix
-from aidl_lang.names import fold, nearest
+from aidl_lang.checking.habits import check_habits
+from aidl_lang.checking.misfits import no_overload
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.types import (
     ANY,
@@ -25,7 +27,6 @@ from aidl_lang.types import (
     StructureType,
     TruthType,
     Type,
-    bind,
 )
 
 if TYPE_CHECKING:
@@ -46,13 +47,16 @@ def call(check: Inference, node: ast.Call) -> Fact:
     if candidates is None:
         return Fact(reads=reads)
     given = _given(node, nodes, facts)
-    outcomes = [bind(candidate, given) for candidate in candidates]
-    fits = [o for o in outcomes if isinstance(o, Binding)]
+    found = outcomes(candidates, given)
+    fits = [o for o in found if isinstance(o, Binding)]
     if not fits:
-        _no_overload(check, node, nodes, given, [o for o in outcomes if isinstance(o, Mismatch)])
+        check.rejected.append(node)
+        no_overload(check, node, nodes, given, [o for o in found if isinstance(o, Mismatch)])
         return UNKNOWN
     fits.sort(key=lambda b: b.cost)
+    check_habits(check, node, nodes, fits[0])
     _serve(check, fits, nodes, facts)
+    _spell(check, node, nodes, fits)
     if len(fits) > 1 and any(isinstance(f.type, AnyType) for f in facts):
         results = [_result(check, fit.signature, nodes, facts, reads) for fit in fits]
         result = results[0]
@@ -60,9 +64,6 @@ def call(check: Inference, node: ast.Call) -> Fact:
             result = joined(result, other)
         return result
     chosen = fits[0].signature
-    for name in (a.name for a in node.arguments if a.name is not None):
-        if (spelling := chosen.by_fold.get(fold(name.text), name.text)) != name.text:
-            check.resolution.canonical[name] = spelling
     if chosen.node is not None and (symbol := check.resolution.of_definition.get(chosen.node)) is not None:
         check.resolution.uses[node] = symbol
     return _result(check, chosen, nodes, facts, reads)
@@ -79,6 +80,16 @@ def arguments(check: Inference, node: ast.Call) -> list[ast.Expression]:
         if symbol is not None and symbol.kind is SymbolKind.NAMESPACE:
             return nodes
     return [receiver, *nodes]
+
+
+def _spell(
+    check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], fits: Sequence[Binding]
+) -> None:
+    """Note the parameters that argument names stand for."""
+    for index, argument in enumerate(node.arguments, len(nodes) - len(node.arguments)):
+        meant = parameter_of(index, fits) if argument.name is not None else None
+        if meant is not None and argument.name is not None and meant != argument.name.text:
+            check.resolution.canonical[argument.name] = meant
 
 
 def _given(node: ast.Call, nodes: Sequence[ast.Expression], facts: Sequence[Fact]) -> list[Given]:
@@ -112,8 +123,9 @@ def _serve(
 
 
 def _dimension_for(fit: Binding, index: int) -> units.MaybeDimension:
+    taken = fit.parameter_of(index)
     for name, kind, _ in fit.signature.parameters:
-        if index in fit.arguments.get(name, ()) and isinstance(kind, NumberType):
+        if name == taken and isinstance(kind, NumberType):
             return kind.dimension
     return None
 
@@ -172,80 +184,15 @@ def _built_in(
         kind = kinds.pop() if len(kinds) == 1 else ANY
         one = len(facts) == 1
         return Fact(kind, reads, facts[0].of if one else None, bare=facts[0].bare if one else None)
+    if name in COPYING:
+        return replace(facts[0], reads=reads, place=None, bare=None)
+    if name in PATTERNS:
+        listed = replace(facts[0], reads=reads, place=None).listed(2 if name == "grid" else 1)
+        return replace(listed, pattern=name)
     return Fact(fields.RESULTS.get(name, ANY), reads)
 
 
-# --- What to say of a call that no overload fits ----------------------------------------------------
-
-
-def _no_overload(
-    check: Inference,
-    node: ast.Call,
-    nodes: Sequence[ast.Expression],
-    given: Sequence[Given],
-    misses: Sequence[Mismatch],
-) -> None:
-    name = node.callee.text
-    check.rejected.append(node)
-    if _unknown_parameter(check, node, misses):
-        return
-    if _not_together(check, node, misses):
-        return
-    closest = max(misses, key=lambda m: _closeness(m, given))
-    at: ast.Node = node.callee
-    if closest.argument is not None and closest.argument < len(nodes):
-        at = nodes[closest.argument]
-    also = [m.signature for m in misses if m is not closest]
-    hints = [f"it is called as `{closest.signature}`"]
-    hints += [f"or as `{signature}`" for signature in also[:4]]
-    check.report("E0311", f"`{name}` {closest.reason}", at, label=f"in this call of `{name}`", hints=hints)
-
-
-def _not_together(check: Inference, node: ast.Call, misses: Sequence[Mismatch]) -> bool:
-    """Report named arguments that are known to some overloads, but never all to one; whether that is so."""
-    written = [a.name for a in node.arguments if a.name is not None]
-    if len(written) < 2 or any(all(fold(n.text) in m.signature.by_fold for n in written) for m in misses):
-        return False
-    name = node.callee.text
-    check.report(
-        "E0311",
-        f"`{name}` does not take {' and '.join(f'`{n.text}`' for n in written)} together",
-        written[-1],
-        label=f"in this call of `{name}`",
-        hints=[f"it is called as `{m.signature}`" for m in misses[:5]],
-    )
-    return True
-
-
-def _closeness(miss: Mismatch, given: Sequence[Given]) -> tuple[int, int, int]:
-    """How near a candidate comes: named arguments that it knows, then the number of its parameters."""
-    names = {fold(name) for name, _, _ in miss.signature.parameters}
-    known = sum(1 for g in given if g.name is not None and fold(g.name) in names)
-    room = -abs(len(miss.signature.parameters) - len(given))
-    return known, int(miss.argument is not None), room
-
-
-def _unknown_parameter(check: Inference, node: ast.Call, misses: Sequence[Mismatch]) -> bool:
-    """Report argument names that no overload knows; whether there is one."""
-    names = list(dict.fromkeys(name for m in misses for name, _, _ in m.signature.parameters))
-    folded = {fold(name) for name in names}
-    wrong = [a.name for a in node.arguments if a.name is not None and fold(a.name.text) not in folded]
-    taken = {fold(a.name.text) for a in node.arguments if a.name is not None}
-    for identifier in wrong:
-        like = nearest(identifier.text, [n for n in names if fold(n) not in taken])
-        free = ", ".join(f"`{n}`" for n in names)
-        check.report(
-            "E0324",
-            f"`{node.callee.text}` has no parameter `{identifier.text}`"
-            + (f"; did you mean `{like[0]}`?" if like else ""),
-            identifier,
-            hints=() if like else (f"its parameters are {free}" if names else "it takes no arguments",),
-            fix=Fix(f"write `{like[0]}`", (Edit(identifier.span, like[0]),)) if like else None,
-        )
-    return bool(wrong)
-
-
-def parameter_of(node: ast.Call, index: int, fits: Sequence[Binding]) -> str | None:
+def parameter_of(index: int, fits: Sequence[Binding]) -> str | None:
     """The parameter that gets an argument, if all fitting overloads agree on it."""
-    found = {next((name for name, places in fit.arguments.items() if index in places), None) for fit in fits}
+    found = {fit.parameter_of(index) for fit in fits}
     return found.pop() if len(found) == 1 else None

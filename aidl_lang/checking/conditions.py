@@ -11,7 +11,7 @@ from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.source import Span
 from aidl_lang.types import AnyType, GeometryType, NumberType, PointType, StructureType, TruthType
 
-_OPERATIONS = frozenset({"rotate", "move", "scale", "fillet", "chamfer"})
+_OPERATIONS = frozenset({"rotate", "move", "translate", "scale", "fillet", "chamfer"})
 """Calls that are statements of their own: they edit what was written, and are no conditions."""
 
 

@@ -30,6 +30,7 @@ class Fact:
     of     the definition whose members it has (a list: its elements): structure, template, shape, or file
     place  for a structure, where it stands
     bare   the param or let whose number without a unit it is
+    pattern  the operation that laid the members of an array out
     """
 
     type: Type = ANY
@@ -37,6 +38,7 @@ class Fact:
     of: ast.Node | None = None
     place: Place | None = None
     bare: Symbol | None = None
+    pattern: str = ""
 
     @property
     def is_any(self) -> bool:
@@ -50,12 +52,12 @@ class Fact:
         kind = self.type
         for _ in range(times):
             kind = ListType(kind)
-        return replace(self, type=kind, bare=None)
+        return replace(self, type=kind, bare=None, pattern="" if times else self.pattern)
 
     def element(self) -> Fact:
         """A member of a list of such values."""
         kind = self.type.element if isinstance(self.type, ListType) else ANY
-        return replace(self, type=kind)
+        return replace(self, type=kind, pattern="")
 
 
 UNKNOWN = Fact()

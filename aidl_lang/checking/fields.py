@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from aidl_lang.builtins import FINISHES
 from aidl_lang.names import fold
 from aidl_lang.types import (
     ANY,
@@ -36,6 +37,7 @@ PRIMITIVE: Mapping[str, Mapping[str, Type]] = {
     "circle": _fields("center", "radius diameter"),
     "bezier": _fields("p0 p1 p2 p3 start end"),
     "ellipse": _fields("center", "rx ry", "angle"),
+    "glyphs": _fields("start", "height", "angle") | {"glyph": ListType(GeometryType("glyphs"))},
 }
 
 BOX: Mapping[str, Type] = _fields(
@@ -48,6 +50,13 @@ STRUCTURE: Mapping[str, Type] = {
     "x_axis": GeometryType("line"),
     "y_axis": GeometryType("line"),
 }
+
+PATTERN: Mapping[str, Mapping[str, Type]] = {
+    "linear_array": _fields("center start", "pitch", "angle"),
+    "grid": _fields("center start", "pitch pitch_x pitch_y"),
+    "polar_array": _fields("center", "radius", "start sweep"),
+}
+"""What a pattern can be asked for, beside its members."""
 
 OUTLINE = frozenset(
     [
@@ -71,6 +80,10 @@ OUTLINE = frozenset(
 """Names that operations give to shapes beside what their definitions declare; the builder knows better."""
 
 
+FINISH: Mapping[str, Type] = dict.fromkeys(sorted(FINISHES), _LENGTH)
+"""The sizes of finished corners: of a point, the end of a curve, or a whole outline."""
+
+
 def is_box_name(name: str) -> bool:
     return fold(name) in ("bb", "box", "boundingbox")
 
@@ -81,6 +94,7 @@ RESULTS: Mapping[str, Type] = {
     **dict.fromkeys(("floor", "ceil", "round", "abs", "min", "max", "sum"), ANY),
     "len": NumberType(None, whole=True),
     "record": RecordType(),
+    "ink": RecordType(),
     "str": TextType(),
     **dict.fromkeys(("range", "enumerate", "zip", "reversed"), ListType(ANY)),
     **dict.fromkeys(("line", "arc", "circle", "bezier", "ellipse"), ANY),

@@ -12,8 +12,9 @@ from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, Place
 from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.wording import a, shown
 from aidl_lang.diagnostics import Edit, Fix
-from aidl_lang.names import find, nearest
+from aidl_lang.names import find, fold, nearest
 from aidl_lang.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.synonyms import MEMBERS
 from aidl_lang.types import (
     ANY,
     AnyType,
@@ -79,6 +80,9 @@ def member_of(check: Inference, base: Fact, node: ast.Member) -> Fact:
 
 def _mapped(check: Inference, base: Fact, node: ast.Member) -> Fact:
     """`a.rim` of a list runs through its members; sides of a list may be those of its group."""
+    settings = fields.PATTERN.get(base.pattern, {})
+    if (key := find(node.name.text, settings)) is not None:
+        return Fact(settings[key], base.reads)
     element = base.element()
     if element.is_any or fields.is_box_name(node.name.text) or find(node.name.text, fields.BOX):
         return Fact(ANY, base.reads)
@@ -137,12 +141,27 @@ def _field(
     name = node.name.text
     if fields.is_box_name(name):
         return Fact(BoxType(), base.reads)
-    for table in (own, fields.BOX):
+    for table in (own, fields.BOX, fields.FINISH):
         key = find(name, table)
         if key is not None:
             _means(check, node, Symbol(key, SymbolKind.FIELD))
             return Fact(table[key], base.reads)
-    return _no_member(check, node, a(base.type), [*known, *own, *fields.BOX])
+    names = [*known, *own, *fields.BOX]
+    meant = next((m for m in MEMBERS.get(fold(name), ()) if find(m, dict.fromkeys(names))), None)
+    if meant is not None:
+        return _in_other_words(check, base, node, meant)
+    return _no_member(check, node, a(base.type), names)
+
+
+def _in_other_words(check: Inference, base: Fact, node: ast.Member, meant: str) -> Fact:
+    """`c.r` for `c.radius`"""
+    name = ast.Identifier(meant, span=node.name.span)
+    other = ast.Member(node.value, name, span=node.span)
+    fact = member_of(check, base, other)
+    check.resolution.canonical[node.name] = check.resolution.canonical.get(name, meant)
+    if (symbol := check.resolution.uses.get(other)) is not None:
+        check.resolution.uses[node] = symbol
+    return fact
 
 
 def _means(check: Inference, node: ast.Member, symbol: Symbol) -> None:
@@ -151,8 +170,33 @@ def _means(check: Inference, node: ast.Member, symbol: Symbol) -> None:
         check.resolution.canonical[node.name] = symbol.name
 
 
+def _function_or_coordinate(check: Inference, node: ast.Member, known: Sequence[str]) -> Fact | None:
+    """`plate.area`, which is a function here, and `c.x` of something that has a width."""
+    name, of = node.name.text, node.value.span.text
+    if fold(name) in ("area", "perimeter", "circumference"):
+        function = "area" if fold(name) == "area" else "perimeter"
+        return check.report(
+            "E0206",
+            f"`{function}` is a function and has to be called: `{function}({shown(node.value)})`",
+            node.name,
+            fix=Fix(f"write `{function}(…)`", (Edit(node.span, f"{function}({of})"),)),
+        )
+    if fold(name) in ("x", "y") and "center" in known and "width" in known:
+        side = "left" if fold(name) == "x" else "bottom"
+        return check.report(
+            "E0202",
+            f"`{shown(node.value)}` has no `{name}`: it has a centre and sides",
+            node.name,
+            hints=[f"write `{shown(node.value)}.center.{name}`, or a side, as `{shown(node.value)}.{side}`"],
+            fix=Fix(f"write `center.{name}`", (Edit(node.name.span, f"center.{name}"),)),
+        )
+    return None
+
+
 def _no_member(check: Inference, node: ast.Member, what: str, known: Sequence[str]) -> Fact:
     name = node.name.text
+    if (answer := _function_or_coordinate(check, node, known)) is not None:
+        return answer
     like = nearest(name, known)
     shown_names = ", ".join(f"`{n}`" for n in list(dict.fromkeys(known))[:8])
     return check.report(

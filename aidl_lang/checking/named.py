@@ -10,7 +10,7 @@ from aidl_lang.checking import fields
 from aidl_lang.checking.facts import UNKNOWN, Fact, Place, joined
 from aidl_lang.names import find
 from aidl_lang.resolving.symbols import Symbol, SymbolKind
-from aidl_lang.types import ANY, PARAMETER_TYPES, NumberType, RangeType, StructureType, Type
+from aidl_lang.types import ANY, PARAMETER_TYPES, ListType, NumberType, RangeType, StructureType, Type
 
 if TYPE_CHECKING:
     from aidl_lang.checking.infer import Inference
@@ -115,14 +115,23 @@ def _value_of(check: Inference, symbol: Symbol, node: ast.Node) -> Fact:
             return Fact(StructureType(), frozenset({place}), node, place).listed(len(indices))
         case ast.Assign(value=value, indices=indices):
             fact = check.fact(value)
-            if isinstance(fact.type, StructureType):
+            is_made = symbol.kind is SymbolKind.GEOMETRY
+            if isinstance(fact.type, StructureType) or (is_made and _holds_structures(fact.type)):
                 place = Place(home, (symbol.name,))
                 fact = replace(fact, reads=frozenset({place}), place=place)
-            elif symbol.kind is SymbolKind.GEOMETRY:
-                fact = fact.reading(frozenset({Place(home)}))
+            elif is_made:
+                # A copy of an ancestor's geometry is the ancestor's to constrain.
+                far = {p for p in fact.reads if p.holder is not home}
+                fact = fact.reading(frozenset({Place(home), *far}))
             return fact.listed(len(indices))
         case _:
             return UNKNOWN
+
+
+def _holds_structures(kind: Type) -> bool:
+    while isinstance(kind, ListType):
+        kind = kind.element
+    return isinstance(kind, StructureType)
 
 
 def _param(check: Inference, node: ast.Param) -> Fact:

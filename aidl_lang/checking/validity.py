@@ -14,14 +14,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from aidl_lang import ast
-from aidl_lang.checking.calls import arguments, parameter_of
+from aidl_lang.binding import select
+from aidl_lang.builtins import DERIVING, PATTERNS
+from aidl_lang.checking.calls import arguments
 from aidl_lang.checking.facts import Fact, Place, is_point
 from aidl_lang.checking.fields import PRIMITIVE
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.relocate import Site, member_path
 from aidl_lang.checking.violations import Target, Violation
-from aidl_lang.resolving.declare import DERIVING, PATTERNS
-from aidl_lang.types import Binding, GeometryType, Given, StructureType, bind
+from aidl_lang.types import Binding, GeometryType, Given, NumberType, PointType, StructureType
 
 
 def check_validity(module: ast.Module, infer: Inference) -> list[Violation]:
@@ -101,17 +102,22 @@ class _Walker:
         name = self.infer.resolution.canonical.get(call.callee, call.callee.text)
         if isinstance(fact.type, StructureType) or not self._makes_geometry(fact, name):
             return
-        reach = (DERIVING | PATTERNS) if name in DERIVING | PATTERNS else None
+        reach = name in DERIVING | PATTERNS
+        path = None if name in DERIVING else path  # a copy has no parameters to constrain
         for index, node in enumerate(arguments(self.infer, call)):
             if isinstance(node, ast.Call) and self._makes_geometry(self.infer.fact(node), node.callee.text):
                 self._made(node, None, site)
                 continue
-            if reach is not None and self._may_derive(node, site):
+            if reach and self._is_thing(node) and self._may_derive(node, site):
                 continue
             self._geometry(self._targets(call, index, node, path), node, site)
 
     def _makes_geometry(self, fact: Fact, name: str) -> bool:
         return isinstance(fact.type, GeometryType) or name in DERIVING | PATTERNS or is_point(fact.type)
+
+    def _is_thing(self, node: ast.Expression) -> bool:
+        """Whether it may be what is copied, or a line to mirror about, and no number or coordinates."""
+        return not isinstance(self.infer.fact(node).type, NumberType | PointType)
 
     def _may_derive(self, node: ast.Expression, site: Site) -> bool:
         """Whether a copy may be made of this: something of an ancestor itself, or of a child."""
@@ -154,9 +160,8 @@ class _Walker:
             a.name.text if a.name else None for a in call.arguments
         ]
         given = [Given(n, self.infer.fact(e).type) for n, e in zip(names, nodes, strict=True)]
-        outcomes = [bind(s, given) for s in self.infer.resolution.candidates.get(call, ())]
-        fits = sorted((o for o in outcomes if isinstance(o, Binding)), key=lambda b: b.cost)
-        return parameter_of(call, index, fits[:1])
+        chosen = select(self.infer.resolution.candidates.get(call, ()), given)
+        return chosen.parameter_of(index) if isinstance(chosen, Binding) else None
 
     def _is_field(self, call: ast.Call, name: str) -> bool:
         """Whether what a call makes can be asked for its parameter by name."""

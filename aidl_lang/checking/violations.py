@@ -13,7 +13,7 @@ from aidl_lang.checking.relocate import Move, Site, insertion_after, removal
 from aidl_lang.checking.wording import shown
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.resolving.symbols import SymbolKind
-from aidl_lang.types import NumberType
+from aidl_lang.types import GeometryType, NumberType, StructureType
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +134,9 @@ class Violation:
         if self.rule == 2:
             said = f": `{relation}`" if relation is not None else ", and call things there by their paths"
             return f"say it in {where}, which holds both{said}"
+        kind = self.infer.fact(self.target.node).type
+        if isinstance(kind, GeometryType | StructureType) and not self.target.is_point:
+            return f"make the copy in {where}, which holds both"
         if relation is None:
             return f"write a first guess here, and the relation as a constraint in {where}"
         return f"write a first guess here, `{self._guess(written)}`, and in {where} `{relation}`"

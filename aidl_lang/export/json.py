@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from aidl_lang.diagnostics import Diagnostic
@@ -15,7 +15,7 @@ from aidl_lang.export.numbers import significant
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.render.data import to_dict as diagnostic_dict
-from aidl_lang.solved import Box, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.solved import Box, Finish, SolvedGeometry, SolvedModel, SolvedStructure
 
 VERSION = 1
 _NUMBERS = re.compile(r"\[\n\s*[-+.\deE]+(?:,\n\s*[-+.\deE]+)*\n\s*\]")
@@ -28,6 +28,7 @@ _FIELDS = {
     "arc": ("center", "radius", "start", "end", "clockwise"),
     "bezier": ("points",),
     "ellipse": ("center", "rx", "ry", "angle"),
+    "ellipse_arc": ("center", "rx", "ry", "angle", "start", "end", "clockwise"),
 }
 
 
@@ -125,11 +126,20 @@ def _structure(s: SolvedStructure) -> Json:
     attributes = {name: list(values) for name, values in s.attributes.items() if name != "orientation"}
     if attributes:
         entry["attributes"] = attributes
+    if s.finishes:
+        entry["finishes"] = [finish for f in s.finishes for finish in _finishes(f)]
     if s.is_empty:
         entry["empty"] = True
     if s.doc:
         entry["doc"] = s.doc
     return entry
+
+
+def _finishes(f: Finish) -> Iterator[Json]:
+    """One entry for each corner that is finished."""
+    names = ("radius",) if f.kind == "fillet" else ("size", "second")
+    for at in f.corners:
+        yield {"kind": f.kind, "at": at} | dict(zip(names, f.sizes, strict=False))
 
 
 def _box(box: Box) -> Json:

@@ -46,10 +46,10 @@ def _combined(a: Region, b: Region, operation: Callable[[Section, Section], Sect
     pieces: list[Piece] = [p for region in (a, b) for loop in region.loops for p in loop.pieces]
     network = Network(pieces)
     first = sum(len(loop.pieces) for loop in a.loops)
-    return trace(network, operation(_section(network, a, 0), _section(network, b, first))).region
+    return trace(network, operation(section_of(network, a, 0), section_of(network, b, first))).region
 
 
-def _section(network: Network, region: Region, number: int) -> Section:
+def section_of(network: Network, region: Region, number: int) -> Section:
     """A region as polygons; its pieces are the curves of the network from `number` on."""
     polygons = []
     for loop in region.loops:

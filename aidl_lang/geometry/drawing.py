@@ -159,7 +159,7 @@ def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[list[Curve
     shapes: dict[str, list[Shape]] = {}
     for structure in root.walk():
         own = shapes.setdefault(structure.path, [])
-        for geometry in structure.geometry:
+        for geometry in structure.drawn:
             leaves = []
             vanished = []
             for leaf in _leaves(geometry):

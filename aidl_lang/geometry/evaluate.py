@@ -142,6 +142,35 @@ def reverse(curve: Piece) -> Piece:
     return curve
 
 
+def inward(curve: Piece, origin: Vec, rotation: float, mirrored: bool) -> Piece:
+    """A curve in the frame at an origin, turned by degrees and then mirrored: the inverse of that placement."""
+    angle = math.radians(rotation)
+    c, s = math.cos(angle), math.sin(angle)
+    flip = -1.0 if mirrored else 1.0
+
+    def at(p: Vec) -> Vec:
+        x, y = p[0] - origin[0], p[1] - origin[1]
+        return flip * (c * x + s * y), c * y - s * x
+
+    def turned(direction: float) -> float:
+        return math.pi - (direction - angle) if mirrored else direction - angle
+
+    match curve:
+        case Line(start, end):
+            return Line(at(start), at(end))
+        case Arc(center, radius, start, end, sweep):
+            return Arc(at(center), radius, at(start), at(end), flip * sweep)
+        case Circle(center, radius):
+            return Circle(at(center), radius)
+        case Bezier(p0, p1, p2, p3):
+            return Bezier(at(p0), at(p1), at(p2), at(p3))
+        case Ellipse(center, rx, ry, axis):
+            return Ellipse(at(center), rx, ry, turned(axis))
+        case EllipseArc(center, rx, ry, axis, start, end, first, sweep):
+            turn = turned(axis)
+            return EllipseArc(at(center), rx, ry, turn, at(start), at(end), flip * first, flip * sweep)
+
+
 def part(curve: Piece, t0: float, t1: float, start: Vec, end: Vec) -> Piece:
     """The piece from t0 to t1 (backwards if t1 < t0) with the given ends, which lie on it within tolerance.
 
@@ -256,7 +285,7 @@ def _polish_nearest(curve: Piece, p: Vec, t: float) -> float:
     if not wraps:
         low, high = max(0.0, low), min(1.0, high)
     for _ in range(60):
-        (x, y), (dx, dy), (ax, ay) = point(curve, t), derivative(curve, t), _second_derivative(curve, t)
+        (x, y), (dx, dy), (ax, ay) = point(curve, t), derivative(curve, t), second_derivative(curve, t)
         slope = (x - p[0]) * dx + (y - p[1]) * dy
         bend = dx * dx + dy * dy + (x - p[0]) * ax + (y - p[1]) * ay
         low, high = (t, high) if slope < 0 else (low, t)
@@ -268,7 +297,7 @@ def _polish_nearest(curve: Piece, p: Vec, t: float) -> float:
     return t % 1.0 if wraps else t
 
 
-def _second_derivative(curve: Piece, t: float) -> Vec:
+def second_derivative(curve: Piece, t: float) -> Vec:
     if isinstance(curve, Bezier):
         a, b = 6 * (1 - t), 6 * t
         p0, p1, p2, p3 = curve.p0, curve.p1, curve.p2, curve.p3

@@ -57,13 +57,13 @@ def _round_candidates(a: Line | Arc | Circle, b: Line | Arc | Circle, tolerance:
     """Meeting points of the endless lines and whole circles that carry the two curves."""
     if isinstance(a, Line):
         assert not isinstance(b, Line)
-        return _line_circle(a, b, tolerance)
+        return line_circle(a, b, tolerance)
     if isinstance(b, Line):
-        return _line_circle(b, a, tolerance)
-    return _circle_circle(a, b, tolerance)
+        return line_circle(b, a, tolerance)
+    return circle_circle(a, b, tolerance)
 
 
-def _line_circle(line: Line, circle: Arc | Circle, tolerance: float) -> list[Vec]:
+def line_circle(line: Line, circle: Arc | Circle, tolerance: float) -> list[Vec]:
     (x, y), r = circle.center, circle.radius
     dx, dy = line.end[0] - line.start[0], line.end[1] - line.start[1]
     length = math.hypot(dx, dy)
@@ -79,7 +79,7 @@ def _line_circle(line: Line, circle: Arc | Circle, tolerance: float) -> list[Vec
     return [(foot[0] + k * dx, foot[1] + k * dy) for k in (-half, half)]
 
 
-def _circle_circle(a: Arc | Circle, b: Arc | Circle, tolerance: float) -> list[Vec]:
+def circle_circle(a: Arc | Circle, b: Arc | Circle, tolerance: float) -> list[Vec]:
     dx, dy = b.center[0] - a.center[0], b.center[1] - a.center[1]
     d, ra, rb = math.hypot(dx, dy), a.radius, b.radius
     if d <= tolerance or d > ra + rb + tolerance or d < abs(ra - rb) - tolerance:

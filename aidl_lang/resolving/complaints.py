@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 from aidl_lang import ast
 from aidl_lang.builtins import WORDS
 from aidl_lang.diagnostics import Edit, Fix, Label
-from aidl_lang.names import nearest
+from aidl_lang.names import fold, nearest
+from aidl_lang.resolving.foreign import call_answer, value_hint
 from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind, word_meant
 from aidl_lang.source import Span
+from aidl_lang.synonyms import FIELDS
 from aidl_lang.types import Signature
 
 if TYPE_CHECKING:
@@ -49,9 +51,10 @@ def unknown_name(resolver: Resolver, node: ast.Name, scope: Scope) -> None:
             label="a name alone means a value",
         )
         return
-    like = scope.near_values(name)
-    hints: tuple[str, ...] = ()
-    if not like:
+    hint = value_hint(name)
+    like = ["self"] if fold(name) == "this" else scope.near_values(name) if hint is None else []
+    hints: tuple[str, ...] = (hint,) if hint else ()
+    if not like and not hints:
         hints = ("names are declared with `param`, `let` or `name = …`",)
     declared = scope.value(like[0]) if like else None
     secondary = (
@@ -88,6 +91,14 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: Scope) -> None:
             hints=(hint,),
         )
         return
+    if (answer := call_answer(node)) is not None:
+        code, headline, hint = answer
+        resolver.report(code, headline, node.callee, hints=(hint,) if hint else ())
+        return
+    if node.receiver is not None and not node.arguments and fold(name) in FIELDS:
+        message, fix = called_field(node)
+        resolver.report("E0206", message, node.callee, fix=fix)
+        return
     like = nearest(name, scope.callable_names())
     hints = () if like else ("define it with `fn`, `shape`, `constraint` or as a template",)
     resolver.report(
@@ -97,6 +108,14 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: Scope) -> None:
         hints=hints,
         fix=respell(node.callee, like),
     )
+
+
+def called_field(node: ast.Call) -> tuple[str, Fix]:
+    """What to say of `c.center()`."""
+    at = node.callee.span
+    parentheses = Edit(Span(at.source, at.end, node.span.end), "")
+    message = f"`{node.callee.text}` is a field, which is named without parentheses"
+    return message, Fix("leave out the parentheses", (parentheses,))
 
 
 def declared_twice(resolver: Resolver, name: ast.Identifier, earlier: Symbol) -> None:

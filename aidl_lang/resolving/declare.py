@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from aidl_lang import ast
+from aidl_lang.builtins import DERIVING, PATTERNS
 from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.library import signature
 from aidl_lang.names import fold, nearest
@@ -19,11 +20,6 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 Branch: TypeAlias = tuple[tuple[int, bool], ...]
 """The `if`s around a declaration, and which way each has to go for it."""
-
-DERIVING = frozenset({"mirror", "copy", "offset"})
-"""Operations that make new geometry, or a new structure, of one that is there."""
-
-PATTERNS = frozenset({"linear_array", "grid", "polar_array"})
 
 _MAKERS = DERIVING | PATTERNS | frozenset({"path", *PRIMITIVES})
 
@@ -48,7 +44,7 @@ def made_by(value: ast.Expression, scope: Scope) -> SymbolKind:
             kinds = {type(s.node) for s in signatures}
             if ast.Structure in kinds:
                 return SymbolKind.STRUCTURE
-            is_maker = ast.ShapeDefinition in kinds or name in _MAKERS
+            is_maker = ast.ShapeDefinition in kinds or (name in _MAKERS and signatures[0].node is None)
             return SymbolKind.GEOMETRY if is_maker else SymbolKind.LET
         case ast.Conditional(then=then, otherwise=otherwise):
             kind = made_by(then, scope)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from aidl_lang import ast
-from aidl_lang.builtins import EVERYWHERE, SIGNATURES
+from aidl_lang.builtins import EVERYWHERE, MATH, SIGNATURES
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.library import Library
 from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind
@@ -65,6 +65,9 @@ def library_scope(library: Library) -> Scope:
         scope.values[name] = Symbol(name, SymbolKind.BUILTIN)
     for name in BUILTIN_NAMES:
         scope.values.setdefault(name, Symbol(name, SymbolKind.BUILTIN))
+    for name in MATH:
+        scope.values[name] = Symbol(name, SymbolKind.NAMESPACE, scope=scope)
+        scope.spaces[name] = scope
     return scope
 
 

@@ -6,16 +6,25 @@ from collections.abc import Callable
 
 from aidl_lang.diagnostics import Diagnostic, Label
 from aidl_lang.source import SourceFile, Span
-from aidl_lang.syntax import brackets, missing, spelling
+from aidl_lang.syntax import brackets, foreign, missing, spelling
 from aidl_lang.syntax.tokens import END, Token
 from aidl_lang.syntax.trouble import Problem, Trouble, replaced
 from aidl_lang.syntax.words import describe
 
 _QUESTIONS: tuple[Callable[[Trouble], Problem | None], ...] = (
+    foreign.import_of_module,
+    foreign.documentation_text,
+    foreign.inches,
     spelling.unclosed_comment,
     spelling.unclosed_string,
     spelling.unknown_unit,
     spelling.foreign_character,
+    foreign.foreign_loop,
+    foreign.arrow_function,
+    foreign.object_literal,
+    foreign.loose_point,
+    foreign.word_for_sign,
+    foreign.several_names,
     spelling.operator_spelling,
     spelling.spaced_unit,
     spelling.foreign_statement,
@@ -37,6 +46,7 @@ _QUESTIONS: tuple[Callable[[Trouble], Problem | None], ...] = (
     missing.choice_without_parentheses,
     missing.import_without_path,
     missing.missing_value,
+    foreign.indented_block,
     missing.missing_block,
     missing.bare_value,
     missing.attribute_out_of_place,

@@ -73,6 +73,12 @@ def unknown_unit(t: Trouble) -> Problem | None:
             ),
             Repair(t.position, t.position + 1),
         )
+    if text[0] == "_" and (digits := text.replace("_", "")).isdigit():
+        whole = Token("NUMBER", number + digits, before.start, t.token.end)
+        span = t.span(before, t.token)
+        fix = replaced(f"write `{whole.text}`", span, whole.text)
+        problem = Diagnostic("E0105", f"`{number}{text}` is written `{whole.text}`", span, fix=fix)
+        return Problem(problem, Repair(t.position - 1, t.position + 1, (whole,)))
     meant = UNIT_WORDS.get(text.lower())
     return Problem(
         Diagnostic(
@@ -100,7 +106,7 @@ def foreign_character(t: Trouble) -> Problem | None:
     shown = char if char.isprintable() else "?"
     if sign is None:
         message = f"the character `{shown}`{point} has no meaning in the language"
-        fix = replaced("remove it", t.span(), "")
+        fix = replaced("remove it", t.span(), "") if char != "?" else None
     else:
         message = f"`{shown}` is written `{sign}`"
         fix = replaced(f"write `{sign}`", t.span(), sign if not sign.isalpha() else f" {sign} ")
@@ -229,6 +235,20 @@ def foreign_statement(t: Trouble) -> Problem | None:
     message, right = entry
     span = Span(t.source, first.start, first.start + len(word))
     fix = repair = None
+    following = [token.kind for token in t.tokens[t.begin + 1 : t.begin + 4]]
+    if right == "let" and following == ["NAME", "=", "CALL"] and not t.in_constraints:
+        # What is made by a call is drawn if it is defined without `let`.
+        rest = Span(t.source, first.start, t.tokens[t.begin + 1].start)
+        name = t.tokens[t.begin + 1].text
+        return Problem(
+            Diagnostic(
+                "E0113",
+                f"there is no `{word}`: a definition begins with its name, `{name} = …`",
+                span,
+                fix=replaced(f"leave out `{word}`", rest, ""),
+            ),
+            Repair(t.begin, t.begin + 1),
+        )
     if right:
         fix = replaced(f"write `{right}`", span, right)
         stand_in = [Token(part, part, first.start, first.end) for part in right.split()]

@@ -77,6 +77,7 @@ FOREIGN_WORDS: dict[str, tuple[str, str | None]] = {
     "while": ("programs repeat with `for i in 0..9 { … }`", None),
     "return": ("a function is one expression: `fn f(x) = 2 * x`", None),
     "class": ("what is made more than once is a template: `solid washer(outer = 20) { … }`", None),
+    "with": ("a structure is written `solid base { … }`", None),
     "struct": ("a structure begins with its kind: `solid washer { … }`", None),
     "include": ("other files are named by `import \"file.aidl\"`", "import"),
     "use": ("other files are named by `import \"file.aidl\"`", "import"),

@@ -104,6 +104,21 @@ def test_a_damaged_cache_is_parsed_anew(cache: Path, damage: bytes | None) -> No
     assert kept.read_bytes() == whole
 
 
+def test_a_damaged_tree_is_parsed_anew(cache: Path) -> None:
+    fresh()
+    (kept,) = files(cache)
+    whole = bytearray(kept.read_bytes())
+    for place in range(len(whole) // 2, len(whole)):  # the trees, not the index before them
+        whole[place] ^= 1
+    kept.write_bytes(whole)
+    damaged = fresh()
+    parsed = library.from_modules(damaged.modules)
+    for name, overloads in parsed.callables.items():
+        assert [str(s) for s in damaged.callables[name]] == [str(s) for s in overloads]
+    for name, constant in parsed.constants.items():
+        assert ast.same(damaged.constants[name], constant)
+
+
 def test_a_cache_that_others_can_write_is_not_opened(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     fresh()
     (kept,) = files(cache)

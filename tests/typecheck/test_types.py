@@ -62,7 +62,7 @@ PLATE = "solid s {{\n r = rectangle(width: 60, height: 20)\n c = circle(radius: 
         ('param n = "a" in ["a", "b"]', None),
         ('param n = "a" in 1..2', "E0314 4: a range fits a number, and `n` is a text"),
         ("d = circle(radius: 30deg)", "E0311 4: `circle` needs `radius` to be a length, not an angle"),
-        ("d = circle(centre: (0, 0), radius: 4)", "E0324 4: `circle` has no parameter `centre`; did you mean "
+        ("d = circle(centr: (0, 0), radius: 4)", "E0324 4: `circle` has no parameter `centr`; did you mean "
          "`center`?"),
         ("d = circle(center: (10 * cos(30deg), 10 * sin(30)), radius: 4)", None),
         ("d = circle(center: (30deg, 0), radius: 4)",
@@ -103,16 +103,16 @@ def test_one_mistake_is_told_once() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "shape f() { c = circle(radius: 3)\n d = line(c.centre, (0, 0)) }",
-        "solid t(n = 3) { c = circle(radius: n)\n d = line(c.centre, (0, 0)) }",
-        "constraint k(c: circle) { c.radius == 2\n c.centre == (0, 0) }",
-        "fn k(c: circle) = \n c.centre",
-        "solid s { c = circle(radius: 3)\n if false { d = line(c.centre, (0, 0)) } }",
-        "solid s { c = circle(radius: 3)\n for i in 0..<0 { d[i] = line(c.centre, (0, 0)) } }",
+        "shape f() { c = circle(radius: 3)\n d = line(c.centr, (0, 0)) }",
+        "solid t(n = 3) { c = circle(radius: n)\n d = line(c.centr, (0, 0)) }",
+        "constraint k(c: circle) { c.radius == 2\n c.centr == (0, 0) }",
+        "fn k(c: circle) = \n c.centr",
+        "solid s { c = circle(radius: 3)\n if false { d = line(c.centr, (0, 0)) } }",
+        "solid s { c = circle(radius: 3)\n for i in 0..<0 { d[i] = line(c.centr, (0, 0)) } }",
     ],
 )
 def test_every_body_is_checked(text: str) -> None:
-    assert messages(text) == ["E0202 2: `c` has no `centre`; did you mean `center`?"]
+    assert messages(text) == ["E0202 2: `c` has no `centr`; did you mean `center`?"]
 
 
 def test_members_through_templates_arrays_and_the_library() -> None:

@@ -1,0 +1,39 @@
+"""Arguments as a binding asks for them: a pair taken apart, two coordinates made one point."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from aidl_lang import ast
+from aidl_lang.types import Binding, Source
+from aidl_lang.units import LENGTH
+from aidl_lang.values import NOTHING, ListVal, Num, PointVal, Value
+
+
+def arranged(
+    binding: Binding, values: Sequence[Value], nodes: Sequence[ast.Node]
+) -> tuple[list[Value], list[ast.Node]]:
+    """The values that a binding speaks of by index, and the text each comes from."""
+    if not binding.sources:
+        return list(values), list(nodes)
+    return [_value(s, values) for s in binding.sources], [nodes[s.index] for s in binding.sources]
+
+
+def _value(source: Source, values: Sequence[Value]) -> Value:
+    value = values[source.index]
+    if source.other is not None:
+        x, y = value, values[source.other]
+        return (
+            PointVal(_coordinate(x), _coordinate(y)) if isinstance(x, Num) and isinstance(y, Num) else NOTHING
+        )
+    match value:
+        case PointVal(x, y) if source.part is not None:
+            return (x, y)[source.part]
+        case ListVal(items) if source.part is not None:
+            return items[source.part]
+        case _:
+            return value
+
+
+def _coordinate(value: Num) -> Num:
+    return Num(value.expression, LENGTH, value.status)

@@ -1,0 +1,235 @@
+"""Copies of geometry and structures, derived for good: other coordinates over the same unknowns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from aidl_lang import expression as ex
+from aidl_lang.building.motion import STILL, Motion
+from aidl_lang.building.scopes import Binding, CopiedBinding, LetBinding, Scope
+from aidl_lang.building.state import Interpreter
+from aidl_lang.builtins import EVERYWHERE
+from aidl_lang.model import Frame, Geometry, Structure, chain
+from aidl_lang.primitives import DIRECTIONS, clockwise, translate
+from aidl_lang.source import Span
+from aidl_lang.values import Array, ListVal, Num, Pattern, PointVal, RecordVal
+
+if TYPE_CHECKING:
+    from aidl_lang.values import Value
+
+_OPPOSITE = {"left": "right", "right": "left", "top": "bottom", "bottom": "top"}
+_SIDES = frozenset(_OPPOSITE)
+
+
+@dataclass(eq=False)
+class Copier:
+    """Makes the copies that belong together: what they share in the source they share here.
+
+    owner       the structure that gets copied geometry; None while a structure is copied as a whole, whose
+                contents are in the frame of their own copy what they are in that of the source
+    motion      in the frame of the owner; of a structure's contents, their scale
+    reach       an ancestor of the owner whose unknowns the copies depend on
+    """
+
+    it: Interpreter
+    owner: Structure | None
+    motion: Motion
+    reach: Structure | None = None
+    span: Span | None = None
+    made: dict[Geometry, Geometry] = field(default_factory=dict)
+    structures: dict[Structure, Structure] = field(default_factory=dict)
+
+    # --- Geometry ------------------------------------------------------------------------------
+
+    def geometry(self, source: Geometry) -> Geometry:
+        if (known := self.made.get(source)) is not None:
+            return known
+        self.it.count_entity(None)
+        is_turned_over = self.motion.mirrored
+        if self.owner is not None:
+            is_turned_over = clockwise(source, self.owner) != is_turned_over
+        else:
+            is_turned_over = source.clockwise
+        copy = replace(
+            source,
+            owner=self.owner or self.structures[source.owner],
+            span=self.span or source.span,
+            fields={},
+            parts={},
+            scope=None,
+            clockwise=is_turned_over,
+            name=None,
+            container=None,
+            source=source,
+            known_as=None,
+            reach=self.reach or source.reach,
+            views={},
+        )
+        self.made[source] = copy
+        if source.name is None and source.known_as is None:
+            source.known_as = copy
+        self._place(source, copy)
+        copy.fields = {name: self.value(name, v, source.owner) for name, v in source.fields.items()}
+        if isinstance(source.scope, Scope):
+            self._contents(source, source.scope, copy)
+        return copy
+
+    def _place(self, source: Geometry, copy: Geometry) -> None:
+        """A part belongs to the copy of what the source is a part of; what stands alone waits for a name."""
+        if isinstance(source.container, Geometry) and source.container in self.made:
+            names = source.container.scope
+            assert isinstance(names, Scope)
+            copy.container = self.made[source.container]
+            copy.name = self._renamed(source.name or "", names)
+        elif isinstance(source.container, Structure) and source.container in self.structures:
+            copy.container, copy.name = self.structures[source.container], source.name
+
+    def _contents(self, source: Geometry, names: Scope, copy: Geometry) -> None:
+        copy.scope = scope = Scope(names.parent, copy)
+        for name, binding in names.values.items():
+            new = self._renamed(name, names)
+            if name == "angle" and self._swaps_sides and self._is_boxed(names) and isinstance(binding, Num):
+                # With left and right exchanged, the direction from left to right is what it was.
+                turned = self._number(name, binding, source.owner)
+                half_turn = ex.constant(180.0)
+                scope.values[new] = replace(turned, expression=ex.sub(turned.expression, half_turn))
+            elif isinstance(binding, Geometry | Array | ListVal | RecordVal | PointVal | Num):
+                scope.values[new] = self.value(name, binding, source.owner)
+            else:
+                scope.values[new] = CopiedBinding(name, binding, source, self.value)
+        copy.parts = {
+            self._renamed(name, names): self.value(name, part, source.owner)
+            for name, part in source.parts.items()
+        }
+
+    # --- Names that say a side -----------------------------------------------------------------
+
+    @property
+    def _swaps_sides(self) -> bool:
+        """Whether left becomes right; otherwise a reflection exchanges top and bottom."""
+        return self.owner is not None and self.motion.mirrored and self.motion.cos.value > 1e-9
+
+    def _renamed(self, name: str, names: Scope) -> str:
+        """The name of a part after a reflection: what is called left is on the left again."""
+        if self.owner is None or not self.motion.mirrored:
+            return name
+        sides = ("left", "right") if self._swaps_sides else ("top", "bottom")
+        stem, bracket, index = name.partition("[")
+        words = [_OPPOSITE[w] if w in sides else w for w in stem.split("_")]
+        new = "_".join(words)
+        return new + bracket + index if new in names.values else name
+
+    @staticmethod
+    def _is_boxed(names: Scope) -> bool:
+        return names.values.keys() >= _SIDES
+
+    # --- Values --------------------------------------------------------------------------------
+
+    def value(self, name: str, value: Value, owner: Structure) -> Value:
+        """What a value of the source is in the copy. `name`: angles that are directions turn."""
+        match value:
+            case Geometry():
+                return self.geometry(value)
+            case Structure():
+                return self.structures.get(value, value)
+            case Array():
+                return self._array(name, value, owner)
+            case ListVal(items):
+                return ListVal(tuple(self.value(name, item, owner) for item in items))
+            case RecordVal(fields):
+                return RecordVal({key: self.value(key, item, owner) for key, item in fields.items()})
+            case PointVal():
+                return self._point(value, owner)
+            case Num():
+                return self._number(name, value, owner)
+            case _:
+                return value
+
+    def _array(self, name: str, source: Array, owner: Structure) -> Array:
+        copy = Array(source.name)
+        if isinstance(source, Pattern):
+            copy = Pattern(source.name, self.geometry(source.settings))
+        copy.members = {index: self.value(name, item, owner) for index, item in source.members.items()}
+        return copy
+
+    def _point(self, p: PointVal, owner: Structure) -> PointVal:
+        if self.owner is not None:
+            seen = translate("", p, owner, self.owner)
+            assert isinstance(seen, PointVal)
+            p = seen
+        return p if self.motion is STILL else self.motion.point(p)
+
+    def _number(self, name: str, value: Num, owner: Structure) -> Num:
+        if self.motion is STILL:
+            return value
+        if name in DIRECTIONS:
+            if self.owner is not None:
+                seen = translate(name, value, owner, self.owner)
+                assert isinstance(seen, Num)
+                value = seen
+            return replace(value, expression=self.motion.direction(value.expression))
+        return replace(value, expression=self.motion.measure(value.expression, value.dimension))
+
+    # --- Structures ----------------------------------------------------------------------------
+
+    def structure(self, source: Structure, parent: Structure, name: str, frame: Frame) -> Structure:
+        """The copy of a structure with all it holds, its constraints aside: they are about the unknowns,
+        which are the source's.
+        """
+        self.it.count_entity(None)
+        copy = Structure(source.kind, name, parent, self.span or source.span, frame)
+        copy.source, copy.doc, copy.is_complete = source, source.doc, source.is_complete
+        copy.attributes = dict(source.attributes)
+        parent.children.append(copy)
+        self.structures[source] = copy
+        if source.plan is not None:
+            x, y, width, height = source.plan
+            grown = (ex.mul(self.motion.scale, e) for e in (width, height))
+            copy.plan = (*self.motion.place(x, y), *grown)  # type: ignore[assignment]
+        for child in source.children:
+            self.structure(child, copy, child.name, self._inner(child.frame))
+        self._members(source, copy)
+        return copy
+
+    def _inner(self, frame: Frame) -> Frame:
+        x, y = self.motion.place(frame.x, frame.y)
+        return Frame(x, y, frame.rotation, frame.mirrored)
+
+    def _members(self, source: Structure, copy: Structure) -> None:
+        from aidl_lang.building.structures import own_names  # which instantiate what is copied
+
+        names = source.scope
+        assert isinstance(names, Scope)
+        copy.scope = scope = Scope(_around(names.parent, source, copy), copy, labels=names.labels)
+        own_names(scope, copy)
+        for name, binding in names.values.items():
+            if name not in EVERYWHERE:
+                scope.values[name] = self._binding(name, binding, source, scope)
+        copy.members = {name: self.value(name, v, source) for name, v in source.members.items()}
+        copy.geometry = {name: self.value(name, v, source) for name, v in source.geometry.items()}
+
+    def _binding(self, name: str, binding: Binding, source: Structure, scope: Scope) -> Binding:
+        """A `let` reads the members of the copy; what is no geometry is the source's own."""
+        if isinstance(binding, LetBinding):
+            return LetBinding(binding.node, scope)
+        if isinstance(binding, Geometry | Structure | Array | ListVal | RecordVal | PointVal):
+            return self.value(name, binding, source)
+        return binding
+
+
+def _around(scope: Scope | None, source: Structure, copy: Structure) -> Scope:
+    """What the body of the source sees around it, with its own name for the copy."""
+    around = Scope(scope.parent if scope else None)
+    if scope is not None:
+        around.callables, around.aliases = scope.callables, scope.aliases
+        around.values = {n: copy if v is source else v for n, v in scope.values.items()}
+    return around
+
+
+def outermost(owners: Iterable[Structure], here: Structure) -> Structure | None:
+    """Of the structures whose unknowns a copy depends on, the ancestor of its own that is furthest out."""
+    above = chain(here)[1:]
+    found = [above.index(owner) for owner in owners if owner in above]
+    return above[max(found)] if found else None

@@ -1,0 +1,63 @@
+"""Lettering in a program: `glyphs(…)` makes one geometry of a whole text, `ink(…)` tells how large it is.
+
+A text is a single primitive: its place, height and angle are solved for, its curves follow when the solution is
+read out. Dozens of letters then cost the solver no more than one circle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from aidl_lang import ast, lettering
+from aidl_lang.building.coerce import constant
+from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.lettering import Glyph
+from aidl_lang.source import Span
+from aidl_lang.values import NOTHING, Num, RecordVal, Text, Value, number
+
+Arguments = Mapping[str, Value]
+
+
+def typeset(it: Interpreter, a: Arguments, node: ast.Node | Span) -> tuple[Glyph, ...]:
+    """The characters of a text in units of its height; none after an error, reported here."""
+    text, align, spacing = a["text"], a["align"], a["line_spacing"]
+    assert isinstance(text, Text)
+    assert isinstance(align, Text)
+    assert isinstance(spacing, Num)
+    apart = constant(it, spacing, node, "the spacing of lines")
+    if apart is None:
+        return ()
+    if unknown := lettering.unknown_characters(text.value):
+        _report_unknown(it, unknown, node)
+        return ()
+    glyphs = lettering.typeset(text.value, align.value, apart)
+    if not glyphs:
+        hint = "write what is to be drawn, or leave the text out"
+        _report(it, "E0351", "there is nothing to draw in this text", node, [hint])
+    return glyphs
+
+
+def _report(it: Interpreter, code: str, message: str, node: ast.Node | Span, hints: list[str]) -> None:
+    """Once for a text, in the words of its author and not of the library."""
+    span = it.place(node)
+    if not any(d.code == code and d.span == span for d in it.diagnostics):
+        it.report(code, message, span, hints=hints)
+
+
+def _report_unknown(it: Interpreter, unknown: list[str], node: ast.Node | Span) -> None:
+    names = ", ".join(lettering.described(c) for c in unknown[:5])
+    rest = f" and {len(unknown) - 5} more" if len(unknown) > 5 else ""
+    instead = [
+        f"write `{other}` for `{c}`" for c in unknown[:5] if (other := lettering.replacement(c)) is not None
+    ]
+    has = "the font has Latin, Greek and Cyrillic letters, digits, punctuation, and signs such as `±` `°` `Ø` `→`"
+    _report(it, "E0350", f"the font has no {names}{rest}", node, [*instead, has])
+
+
+def ink(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+    """The box of the letters around the start of the first line, in heights of a capital."""
+    glyphs = typeset(it, a, node)
+    if not glyphs:
+        return NOTHING
+    sides = zip(("left", "bottom", "right", "top"), lettering.box_around(glyphs), strict=True)
+    return RecordVal({name: number(value) for name, value in sides})

@@ -1,0 +1,145 @@
+"""Motions of the plane that keep shapes: moved, turned, mirrored and scaled, over expressions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from aidl_lang import expression as ex
+from aidl_lang.expression import Expression
+from aidl_lang.model import Frame
+from aidl_lang.primitives import direction, xy
+from aidl_lang.units import MaybeDimension
+from aidl_lang.values import Num, PointVal
+
+Place = tuple[Expression, Expression]
+
+NOWHERE: Place = (ex.ZERO, ex.ZERO)
+_HALF_TURN = ex.constant(180.0)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """p ↦ to + scale · turned(p - about), where a mirrored motion reflects x before it turns.
+
+    about, to  coordinates in mm in the frame of one structure; `turn` in degrees; cos, sin of it
+    """
+
+    about: Place = NOWHERE
+    to: Place = NOWHERE
+    turn: Expression = ex.ZERO
+    cos: Expression = ex.ONE
+    sin: Expression = ex.ZERO
+    scale: Expression = ex.ONE
+    mirrored: bool = False
+
+    def place(self, x: Expression, y: Expression) -> Place:
+        u, v = self._from(x, self.about[0]), self._from(y, self.about[1])
+        if self.mirrored:
+            u = ex.apply("neg", u)
+        s, t = (
+            ex.sub(ex.mul(self.cos, u), ex.mul(self.sin, v)),
+            ex.add(ex.mul(self.sin, u), ex.mul(self.cos, v)),
+        )
+        return ex.add(self.to[0], ex.mul(self.scale, s)), ex.add(self.to[1], ex.mul(self.scale, t))
+
+    @staticmethod
+    def _from(a: Expression, b: Expression) -> Expression:
+        """The difference of two coordinates; exactly nothing for one and the same."""
+        return ex.ZERO if a is b else ex.sub(a, b)
+
+    def point(self, p: PointVal) -> PointVal:
+        x, y = self.place(*xy(p))
+        return PointVal(Num(x, p.x.dimension, p.x.status), Num(y, p.y.dimension, p.y.status))
+
+    def direction(self, angle: Expression) -> Expression:
+        """A direction in degrees, seen after the motion."""
+        if self.mirrored:
+            return ex.sub(_in_turn(ex.add(self.turn, _HALF_TURN)), angle)
+        return ex.add(angle, self.turn)
+
+    def measure(self, value: Expression, dimension: MaybeDimension) -> Expression:
+        """A length, an area, …: it grows with the scale, and nothing else changes it."""
+        for _ in range(dimension.length if dimension else 0):
+            value = ex.mul(self.scale, value)
+        return value
+
+    def frame(self, frame: Frame) -> Frame:
+        """The frame that a moved structure has; the scale is its contents' affair."""
+        x, y = self.place(frame.x, frame.y)
+        turned = ex.sub if self.mirrored else ex.add
+        return Frame(x, y, _in_turn(turned(self.turn, frame.rotation)), frame.mirrored != self.mirrored)
+
+    @property
+    def is_still(self) -> bool:
+        """Whether it moves nothing."""
+        parts = (*self.about, *self.to, self.turn, self.scale)
+        return (
+            not self.mirrored
+            and all(p.is_constant for p in parts)
+            and [a.value for a in self.about] == [a.value for a in self.to]
+            and self.turn.value % 360.0 == 0.0
+            and self.scale.value == 1.0
+        )
+
+
+STILL = Motion()
+"""What leaves everything where it is."""
+
+
+def _in_turn(angle: Expression) -> Expression:
+    """A constant angle between -180 (left out) and 180."""
+    if not angle.is_constant:
+        return angle
+    return ex.constant(180.0 - (180.0 - angle.value) % 360.0)
+
+
+def translation(by: Place) -> Motion:
+    return Motion(to=by)
+
+
+def turned(angle: Expression, about: Place = NOWHERE, to: Place | None = None) -> Motion:
+    return Motion(about, to or about, angle, ex.cos(angle), ex.sin(angle))
+
+
+def mirrored_at_point(about: Place) -> Motion:
+    return turned(_HALF_TURN, about)
+
+
+def mirrored_at_line(start: PointVal, end: PointVal) -> Motion:
+    """The reflection about the endless line through two points.
+
+    About a line of direction φ it is the reflection of x, then the turn by 2φ + 180°.
+    """
+    at = xy(start)
+    (ax, ay), (bx, by) = at, xy(end)
+    turn = ex.add(ex.mul(ex.constant(2.0), direction(start, end)), _HALF_TURN)
+    if turn.is_constant:
+        turn = _in_turn(turn)
+        return Motion(at, at, turn, ex.cos(turn), ex.sin(turn), mirrored=True)
+    dx, dy = ex.sub(bx, ax), ex.sub(by, ay)
+    xx, yy, xy_ = ex.apply("square", dx), ex.apply("square", dy), ex.mul(dx, dy)
+    whole = ex.add(xx, yy)
+    cos = ex.div(ex.sub(yy, xx), whole)
+    sin = ex.div(ex.mul(ex.constant(-2.0), xy_), whole)
+    return Motion(at, at, turn, cos, sin, mirrored=True)
+
+
+def after(first: Motion, second: Motion) -> Motion:
+    """One motion, then another."""
+    way = ex.sub if second.mirrored else ex.add
+    turn = _in_turn(way(second.turn, first.turn))
+    return Motion(
+        first.about,
+        second.place(*first.to),
+        turn,
+        ex.cos(turn),
+        ex.sin(turn),
+        ex.mul(second.scale, first.scale),
+        first.mirrored != second.mirrored,
+    )
+
+
+def of_frame(frame: Frame) -> Motion:
+    """From the coordinates of a frame to those of the frame around it."""
+    turn = frame.rotation
+    return Motion(NOWHERE, (frame.x, frame.y), turn, ex.cos(turn), ex.sin(turn), mirrored=frame.mirrored)

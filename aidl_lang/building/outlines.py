@@ -1,0 +1,309 @@
+"""Outlines made of others, and the finishing of corners: recorded here, carried out after solving."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from aidl_lang import ast
+from aidl_lang.building.coerce import as_written, may_read
+from aidl_lang.building.construct import size
+from aidl_lang.building.scopes import Candidate
+from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.builtins import FINISHES, OUTLINES
+from aidl_lang.model import Finish, Geometry, Recipe, Structure, convert_point
+from aidl_lang.names import find, fold
+from aidl_lang.units import LENGTH
+from aidl_lang.values import NOTHING, ListVal, Num, PointVal, Status, Text, Value, kind_of, length, members
+
+Arguments = Mapping[str, Value]
+Function = Callable[[Interpreter, Arguments, ast.Call, Env], Value]
+
+_WORDS: Mapping[str, tuple[str, ...]] = {
+    "corners": ("sharp", "round"),
+    "joins": ("round", "sharp"),
+    "caps": ("round", "butt", "square"),
+}
+"""What the words of an outline may be; the first is meant if none is said."""
+_SYNONYMS = {"miter": "sharp", "mitre": "sharp", "mitred": "sharp", "rounded": "round", "flat": "butt"}
+
+
+# --- Outlines made of others -------------------------------------------------------------------------
+
+
+def _outline(kind: str, *words: str) -> Function:
+    def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+        geometry = Geometry(kind, env.here, it.place(node))
+        operands: list[tuple[Geometry, ...]] = []
+        for value in _operands(kind, a):
+            group = _sources(it, kind, value, node, env)
+            if group is None:
+                return NOTHING
+            operands.append(tuple(group))
+        said = {name: _word(it, name, a.get(name), node) for name in words}
+        if None in said.values() or (len(operands) < 2 and kind in ("union", "intersect", "difference")):
+            return _too_few(it, kind, node) if None not in said.values() else NOTHING
+        if _negative(it, a, node):
+            return NOTHING
+        it.count_entity(node)
+        numbers = {n: size(it, v, geometry, n) for n, v in a.items() if isinstance(v, Num)}
+        geometry.fields = dict(numbers)
+        geometry.recipe = Recipe(kind, tuple(operands), numbers, {n: w for n, w in said.items() if w})
+        _take_over(geometry, env)
+        return geometry
+
+    return function
+
+
+def _negative(it: Interpreter, a: Arguments, node: ast.Call) -> bool:
+    """Report a size that is less than nothing; only an offset has a direction."""
+    for name, value in a.items():
+        if isinstance(value, Num) and value.expression.is_constant and value.value < 0 and node.callee.text != "offset":
+            it.report(
+                "E0515",
+                f"the {name} of this `{node.callee.text}` is {value.value:g}, and sizes are never negative",
+                node,
+                hints=[f"write {-value.value:g}"],
+            )
+            return True
+    return False
+
+
+def _operands(kind: str, a: Arguments) -> list[Value]:
+    if kind in ("union", "intersect") or (kind == "difference" and "by" not in a):
+        return list(members(a["of"]) or ())
+    return [a["of"], a["by"]] if "by" in a else [a["of"]]
+
+
+def _too_few(it: Interpreter, kind: str, node: ast.Call) -> Value:
+    name = node.callee.text
+    it.report("E0337", f"`{name}` takes two outlines or more", node, hints=[f"as in `{name}(a, b)`"])
+    return NOTHING
+
+
+def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> str | None:
+    allowed = _WORDS[name]
+    if value is None:
+        return allowed[0]
+    written = value.value if isinstance(value, Text) else ""
+    meant = find(_SYNONYMS.get(fold(written), written), dict.fromkeys(allowed))
+    if meant is None:
+        choices = ", ".join(f"`{w}`" for w in allowed)
+        it.report("E0516", f'`{name}: "{written}"` is not known', node, hints=[f"it is one of {choices}"])
+    return meant
+
+
+def _sources(it: Interpreter, kind: str, value: Value, node: ast.Call, env: Env) -> list[Geometry] | None:
+    """The geometry in an argument; None after an error."""
+    found: list[Geometry] = []
+    for item in _flat(value):
+        if isinstance(item, PointVal) and kind == "hull":
+            item = Geometry("point", env.here, it.place(node), {"at": item})
+        if not isinstance(item, Geometry) or (item.type == "point" and kind != "hull"):
+            hint = (
+                "name the outline in it, as in `plate.outline`"
+                if isinstance(item, Structure)
+                else (
+                    "give it a circle, a shape such as `rectangle(…)`, or a list of curves that are one outline"
+                )
+            )
+            message = f"`{node.callee.text}` takes outlines, and this is {kind_of(item)}"
+            it.report("E0337", message, node, hints=[hint])
+            return None
+        found.append(item)
+    if not found:
+        it.report("E0337", f"`{node.callee.text}` got no outline", node)
+        return None
+    return found
+
+
+def _flat(value: Value) -> Iterator[Value]:
+    items = members(value)
+    if items is None:
+        yield value
+    else:
+        for item in items:
+            yield from _flat(item)
+
+
+def _take_over(geometry: Geometry, env: Env) -> None:
+    """The sources guide what is made of them and are not drawn themselves; that of an offset is.
+
+    Sources without a name become parts of the result.
+    """
+    assert geometry.recipe is not None
+    here = env.scope.declaring().container or env.here
+    unnamed: list[Value] = []
+    for source in dict.fromkeys(s for group in geometry.recipe.operands for s in group):
+        if source.name is None:
+            source.name, source.container, source.construction = f"source[{len(unnamed)}]", geometry, True
+            unnamed.append(source)
+        elif source.container is here and geometry.recipe.kind != "offset":
+            source.construction = True
+    if unnamed:
+        geometry.parts = {"source": ListVal(tuple(unnamed))}
+
+
+def usable(candidates: list[Candidate], values: Sequence[Value], env: Env) -> list[Candidate]:
+    """Without the overloads of the library where an outline is not of this structure: they would read its
+    unknowns.
+    """
+    if not candidates or candidates[0].signature.name not in OUTLINES:
+        return candidates
+    far = any(isinstance(v, Geometry) and v.owner is not env.here for v in values)
+    return [c for c in candidates if c.signature.node is None] if far else candidates
+
+
+def remember(result: Value, name: str, arguments: Arguments) -> None:
+    """What the library made by an operation knows its source: it is drawn by the same exact geometry."""
+    if name not in OUTLINES or not isinstance(result, Geometry) or result.recipe or result.name:
+        return
+    sources = tuple(v for v in arguments.values() if isinstance(v, Geometry))
+    numbers = {n: v for n, v in arguments.items() if isinstance(v, Num)}
+    result.recipe = Recipe(name, (sources,), numbers, {"corners": "sharp"})
+
+
+# --- Fillets and chamfers ----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Target:
+    """A corner or (without `at`) a whole outline of a structure.
+
+    of   the geometry that is named; `key` the field of it that is the corner, if it is no point itself
+    at   the place, in the frame of the owner
+    """
+
+    owner: Structure
+    of: tuple[Geometry, ...]
+    key: str
+    at: PointVal | None
+    text: str
+
+
+def _finish(kind: str) -> Function:
+    def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+        given = [x.value for x in node.arguments if x.name is None or fold(x.name.text) == "of"]
+        targets = list(_targets(it, a["of"], node.receiver or (given[0] if given else node), env))
+        if not targets:
+            it.report("E0337", f"`{kind}` got no corner", node)
+        found = [t for t in targets if t is not None]
+        if not found or len(found) < len(targets) or _negative(it, a, node):
+            return NOTHING
+        sizes = _sizes(it, kind, a, found[0])
+        for target in found:
+            for g in target.of:
+                g.finishes[_named(target.key, kind)] = sizes[0]
+            top = target.of if target.at is None else tuple(map(_outermost, target.of))
+            span = it.place(node) or node.span
+            target.owner.finishes.append(Finish(kind, top, target.at, sizes, target.text, span))
+        return True
+
+    return function
+
+
+def _named(key: str, kind: str) -> str:
+    return f"{key}.{kind}" if key else kind
+
+
+def _sizes(it: Interpreter, kind: str, a: Arguments, target: _Target) -> tuple[Num, ...]:
+    """The sizes by the table of exactness; a literal one is a parameter of the first corner."""
+    given = [a[name] for name in ("radius", "size", "distance", "second") if name in a]
+    numbers = [v for v in given if isinstance(v, Num)]
+    if target.of:
+        names = (_named(target.key, kind), _named(target.key, f"{kind}_second"))
+        return tuple(size(it, v, target.of[0], n) for v, n in zip(numbers, names, strict=False))
+    # A bare point belongs to no geometry: its structure keeps the size.
+    index = len(target.owner.finishes)
+    return tuple(
+        length(
+            it.unknown(
+                v.value, target.owner, f"{kind}[{index}]", owner=target.owner, dimension=LENGTH, kept=True
+            )
+        )
+        if v.expression.is_constant and v.status is Status.NUMBER
+        else v
+        for v in numbers
+    )
+
+
+def _targets(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Iterator[_Target | None]:
+    items = members(value)
+    if items is None:
+        yield _target(it, value, node, env, node.span.one_line)
+        return
+    curves = [item for item in items if isinstance(item, Geometry) and item.type != "point"]
+    if len(curves) == len(items) > 0 and all(g.owner is curves[0].owner for g in curves):
+        reached = may_read(it, curves[0].owner, node, env)
+        yield _Target(curves[0].owner, tuple(curves), "", None, node.span.one_line) if reached else None
+        return
+    for k, item in enumerate(items):
+        inner = node.items[k] if isinstance(node, ast.List) and len(node.items) == len(items) else node
+        if members(item) is not None:
+            yield from _targets(it, item, inner, env)
+        else:
+            text = inner.span.one_line if inner is not node else f"{node.span.one_line}[{k}]"
+            yield _target(it, item, inner, env, text)
+
+
+def _target(it: Interpreter, value: Value, node: ast.Node, env: Env, text: str) -> _Target | None:
+    if isinstance(value, Geometry):
+        if not may_read(it, value.owner, node, env):
+            return None
+        at = value.fields["at"] if value.type == "point" else None
+        assert at is None or isinstance(at, PointVal)
+        return _Target(value.owner, (value,), "", at, text)
+    if isinstance(value, PointVal):
+        base, key = _base(it, node, env)
+        if base is None:
+            return _Target(env.here, (), "", value, text)
+        return _Target(base.owner, (base,), key, convert_point(value, env.here, base.owner), text)
+    it.report(
+        "E0337",
+        f"`{text}` is {kind_of(value)}, and only corners and outlines are rounded or cut off",
+        node,
+        hints=["name a corner (`plate.top_left`), a list of corners, or the outline itself"],
+    )
+    return None
+
+
+def _base(it: Interpreter, node: ast.Node, env: Env) -> tuple[Geometry | None, str]:
+    """The geometry that a point was named as a field of, and the field, if it has a name of its own."""
+    key = node.name.text if isinstance(node, ast.Member) else ""
+    while isinstance(node, ast.Index):
+        node = node.value
+    base = it.evaluate(node.value, env) if isinstance(node, ast.Member) else None
+    return (base, key) if isinstance(base, Geometry) else (None, "")
+
+
+def _outermost(geometry: Geometry) -> Geometry:
+    while isinstance(geometry.container, Geometry):
+        geometry = geometry.container
+    return geometry
+
+
+def finish_size(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Num | None:
+    """`plate.top_left.fillet`: the size of a finish, by its corner or by the outline that it is part of."""
+    key, kind = "", find(name, dict.fromkeys(FINISHES))
+    if isinstance(value, PointVal):
+        value, key = _base(it, node.value, env)  # type: ignore[assignment]
+    while kind is not None and isinstance(value, Geometry):
+        if (found := value.finishes.get(_named(key, kind))) is not None:
+            return found if may_read(it, value.owner, node, env) else as_written(found)  # type: ignore[return-value]
+        value, key = value.container, ""  # type: ignore[assignment]
+    return None
+
+
+OPERATIONS: Mapping[str, Function] = {
+    "offset": _outline("offset", "corners"),
+    "shell": _outline("shell", "corners"),
+    "thick": _outline("thick", "caps", "joins"),
+    "hull": _outline("hull"),
+    "union": _outline("union"),
+    "intersect": _outline("intersect"),
+    "difference": _outline("difference"),
+    "cut": _outline("difference"),
+    "clip": _outline("clip"),
+    "fillet": _finish("fillet"),
+    "chamfer": _finish("chamfer"),
+}

@@ -1,0 +1,250 @@
+"""`linear_array`, `grid` and `polar_array`: many of a thing, laid out by a centre, a pitch, a radius.
+
+They are built in because they make structures, which no definition of the language can do. A template is
+instantiated once; the other members are copies over the same unknowns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from itertools import product
+
+from aidl_lang import ast
+from aidl_lang import expression as ex
+from aidl_lang.building.coerce import whole
+from aidl_lang.building.construct import positions, size
+from aidl_lang.building.copies import centre_of, copied
+from aidl_lang.building.motion import NOWHERE, Motion, Place, turned
+from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.expression import Expression
+from aidl_lang.model import Geometry, Structure
+from aidl_lang.primitives import defining, xy
+from aidl_lang.units import ANGLE, LENGTH
+from aidl_lang.values import (
+    NOTHING,
+    Instantiation,
+    Nothing,
+    Num,
+    Pattern,
+    PointVal,
+    StructureCopy,
+    Value,
+    kind_of,
+    length,
+    number,
+    point,
+)
+
+Arguments = Mapping[str, Value]
+Index = tuple[int, ...]
+
+_ORIGIN = PointVal(number(0.0, LENGTH), number(0.0, LENGTH))
+
+
+@dataclass(frozen=True)
+class _Call:
+    """One call of a pattern; `settings` holds what the pattern is made with, and is known by its name."""
+
+    it: Interpreter
+    a: Arguments
+    node: ast.Call
+    env: Env
+    settings: Geometry
+
+    def wrong(self, message: str, hint: str) -> Nothing:
+        self.it.report("E0332", message, self.node, hints=[hint])
+        return NOTHING
+
+    def count(self, name: str) -> int | None:
+        found = whole(self.it, self.a[name], self.node, f"`{name}`")
+        if found is not None and found < 0:
+            self.wrong(f"`{name}` is a number of members, and this is {found}", "write 1 or more")
+            return None
+        if found is not None and found > self.it.limits.entities:
+            self.it.report(
+                "E0805",
+                f"this pattern has {found} members; at most {self.it.limits.entities} are allowed",
+                self.node,
+            )
+            return None
+        return found
+
+    def size(self, name: str) -> Expression:
+        """A number that belongs to the pattern: kept if literal."""
+        value = self.a[name]
+        assert isinstance(value, Num)
+        dimension = value.dimension or LENGTH
+        made = size(self.it, value, self.settings, name, dimension)
+        self.settings.fields[name] = made
+        return made.expression
+
+    def position(self, name: str) -> Place:
+        """A position of the pattern: a first guess if literal, the origin if missing."""
+        value = self.a.get(name, _ORIGIN)
+        assert isinstance(value, PointVal)
+        (made,) = positions(self.it, [value], self.settings, [name], self.settings.owner)
+        self.settings.fields[name] = made
+        return xy(made)
+
+    @property
+    def thing(self) -> Value:
+        return self.a["x"]
+
+    @property
+    def has_place(self) -> bool:
+        """Whether the thing stands somewhere already, so that the pattern goes on from there."""
+        return not isinstance(self.thing, Instantiation)
+
+    def centre(self) -> Place:
+        """What comes to lie on the places of a pattern: the middle of a thing with a name, else the origin
+        it is written about, whose distance to it is exact then.
+        """
+        thing = self.thing
+        if isinstance(thing, Structure) or (isinstance(thing, Geometry) and thing.name is not None):
+            return centre_of(self.it, thing, self.node, self.env)
+        if isinstance(thing, Geometry):
+            for unknown in ex.unknowns(defining(thing, self.env.here)):
+                if unknown.field.rpartition(".")[2] in ("x", "y"):
+                    unknown.exact = True
+        return NOWHERE
+
+    def laid_out(self, motions: Iterable[tuple[Index, Motion | None]]) -> Value:
+        """The members; without a motion it is the thing itself."""
+        made = Pattern(self.node.callee.text, self.settings)
+        for index, motion in motions:
+            member = self.thing
+            if motion is not None and isinstance(member, Instantiation):
+                member = StructureCopy(member, motion, self.node, is_laid=True)
+            elif motion is not None:
+                member = copied(self.it, member, motion, self.node, self.env)
+            if isinstance(member, Nothing):
+                return NOTHING
+            made.members[index] = member
+        return made
+
+
+def _pattern(lay_out: Callable[[_Call], Value]) -> Callable[[Interpreter, Arguments, ast.Call, Env], Value]:
+    def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
+        thing = a["x"]
+        if not isinstance(thing, Geometry | Structure | Instantiation):
+            it.report(
+                "E0331",
+                f"`{node.callee.text}` repeats a geometry or a structure, and this is {kind_of(thing)}",
+                node,
+                hints=["put several things into a template, and repeat that"],
+            )
+            return NOTHING
+        settings = Geometry(node.callee.text, env.here, it.place(node))
+        return lay_out(_Call(it, a, node, env, settings))
+
+    return function
+
+
+# --- Rows and grids ------------------------------------------------------------------------------
+
+
+def _linear_array(call: _Call) -> Value:
+    n = call.count("n")
+    if n is None:
+        return NOTHING
+    if "by" in call.a:
+        step = xy(call.a["by"])
+    else:
+        pitch = call.size("pitch")
+        angle = call.size("angle") if "angle" in call.a else ex.ZERO
+        step = ex.mul(pitch, ex.cos(angle)), ex.mul(pitch, ex.sin(angle))
+    return _in_steps(call, ((n, step),))
+
+
+def _grid(call: _Call) -> Value:
+    columns, rows = call.count("columns"), call.count("rows")
+    if columns is None or rows is None:
+        return NOTHING
+    if "pitch" in call.a:
+        across = up = call.size("pitch")
+    else:
+        across, up = call.size("pitch_x"), call.size("pitch_y")
+    return _in_steps(call, ((columns, (across, ex.ZERO)), (rows, (ex.ZERO, up))))
+
+
+def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
+    """Members at whole numbers of steps from the first, in one direction or in two."""
+    if "center" in call.a and "start" in call.a:
+        return call.wrong(
+            "a pattern is placed by its `center` or by the `start` of its first member, not by both",
+            "leave one of them out",
+        )
+    span = _total((ex.constant((n - 1) / 2), step) for n, step in ways)
+    goes_on = call.has_place and "center" not in call.a and "start" not in call.a
+    about = centre_of(call.it, call.thing, call.node, call.env) if goes_on else call.centre()
+    if goes_on:
+        start = about
+    elif "center" in call.a:
+        start = _total([(ex.ONE, call.position("center")), (ex.constant(-1.0), span)])
+    else:
+        start = call.position("start")
+    call.settings.fields.setdefault("start", point(*start))
+    call.settings.fields.setdefault("center", point(*_total([(ex.ONE, start), (ex.ONE, span)])))
+
+    def motion(index: Index) -> Motion | None:
+        away = _total((ex.constant(float(i)), step) for i, (_, step) in zip(index, ways, strict=True))
+        if goes_on:
+            return Motion(to=away) if any(index) else None
+        return Motion(about, _total([(ex.ONE, start), (ex.ONE, away)]))
+
+    return call.laid_out((index, motion(index)) for index in product(*(range(n) for n, _ in ways)))
+
+
+def _total(parts: Iterable[tuple[Expression, Place]]) -> Place:
+    x, y = ex.ZERO, ex.ZERO
+    for factor, (dx, dy) in parts:
+        x, y = ex.add(x, ex.mul(factor, dx)), ex.add(y, ex.mul(factor, dy))
+    return x, y
+
+
+# --- Circles -------------------------------------------------------------------------------------
+
+
+def _polar_array(call: _Call) -> Value:
+    n = call.count("n")
+    if n is None:
+        return NOTHING
+    if "radius" not in call.a and not call.has_place:
+        return call.wrong("a template is laid out on a circle, whose `radius` is not said", "as in `radius: 20`")
+    center = call.position("center")
+    start = call.size("start") if "start" in call.a else ex.ZERO
+    step = _step(call, n)
+    turns = call.a.get("turn") is not False
+    radius = call.size("radius") if "radius" in call.a else None
+    about = call.centre() if radius is not None else centre_of(call.it, call.thing, call.node, call.env)
+
+    def motion(i: int) -> Motion | None:
+        angle = ex.add(start, ex.mul(ex.constant(float(i)), step))
+        if radius is None:
+            if i == 0 and "start" not in call.a:
+                return None
+            round_about = turned(angle, center)
+            return round_about if turns else Motion(about, round_about.place(*about))
+        out = ex.mul(radius, ex.cos(angle)), ex.mul(radius, ex.sin(angle))
+        to = ex.add(center[0], out[0]), ex.add(center[1], out[1])
+        return turned(angle, about, to) if turns else Motion(about, to)
+
+    return call.laid_out(((i,), motion(i)) for i in range(n))
+
+
+def _step(call: _Call, n: int) -> Expression:
+    """From one member to the next: a full turn has no last member on its first, a part of one has ends."""
+    sweep = call.a.get("sweep", number(360.0, ANGLE))
+    assert isinstance(sweep, Num)
+    is_full = abs(abs(sweep.value) - 360.0) < 1e-9
+    if is_full and sweep.expression.is_constant:
+        return ex.constant(sweep.value / max(n, 1))
+    return ex.div(call.size("sweep"), ex.constant(float(n if is_full else max(n - 1, 1))))
+
+
+FUNCTIONS = {
+    "linear_array": _pattern(_linear_array),
+    "grid": _pattern(_grid),
+    "polar_array": _pattern(_polar_array),
+}

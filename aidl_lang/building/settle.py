@@ -1,0 +1,148 @@
+"""Structures that wait for the name they are assigned to: instances of templates, and copies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from aidl_lang import ast
+from aidl_lang import expression as ex
+from aidl_lang.building.attributes import read_attributes
+from aidl_lang.building.declare import give_name
+from aidl_lang.building.derive import Copier
+from aidl_lang.building.motion import STILL, Motion, of_frame
+from aidl_lang.building.scopes import Scope, indexed
+from aidl_lang.building.state import Interpreter
+from aidl_lang.building.structures import instantiate
+from aidl_lang.model import Frame, Geometry, Structure
+from aidl_lang.values import (
+    NOTHING,
+    Instantiation,
+    ListVal,
+    Nothing,
+    Pattern,
+    StructureCopy,
+    Value,
+)
+
+
+_WAITING = Instantiation | StructureCopy | Pattern | ListVal
+
+
+@dataclass
+class Settling:
+    """The making of what one assignment names.
+
+    first  instances of templates that other members of a pattern are copies of, with the frame each had of
+           its own
+    """
+
+    it: Interpreter
+    node: ast.Assign
+    scope: Scope
+    here: Structure
+    first: dict[Instantiation, tuple[Structure, Frame]] = field(default_factory=dict)
+
+    def value(self, value: Value, indices: tuple[int, ...]) -> Value:
+        """The value with every structure in it made, and every geometry of a pattern named."""
+        match value:
+            case Instantiation():
+                return instantiate(self.it, self.node, value, self.scope, self.here, indices)
+            case StructureCopy():
+                self._stands(value)
+                return self._copy(value, indices)
+            case ListVal(items) if any(isinstance(i, _WAITING) for i in items):
+                return ListVal(tuple(self.value(item, (*indices, i)) for i, item in enumerate(items)))
+            case Pattern(settings=settings) if settings.name is None:
+                self._stands(value)
+                return self._pattern(value, indices)
+            case _:
+                return value
+
+    def _stands(self, value: StructureCopy | Pattern) -> None:
+        """Report an `at` of what has its place from elsewhere."""
+        if self.node.placement is None:
+            return
+        name = self.node.name.text
+        if isinstance(value, Pattern):
+            message, hint = f"the place of `{name}` is that of its members", "give it a `center` or a `start`"
+        else:
+            source = value.source.name if isinstance(value.source, Structure) else "what it mirrors"
+            message = f"`{name}` is a copy, and its place follows from `{source}`"
+            hint = "say where it goes in the copy: `copy(x, by: (10, 0))`, `mirror(x, about: y_axis)`"
+        self.it.report("E0330", message, self.node.placement, hints=[hint])
+
+    def _pattern(self, pattern: Pattern, indices: tuple[int, ...]) -> Pattern:
+        container = self.scope.declaring().container or self.here
+        name = self.node.name.text
+        give_name(pattern.settings, name, indices, container, self.node)
+        pattern.name = indexed(name, indices)
+        for index, member in pattern.members.items():
+            place = (*indices, *index)
+            if isinstance(member, Geometry):
+                if member.name is None:
+                    give_name(member, name, place, container, self.node)
+            else:
+                pattern.members[index] = self.value(member, place)
+        self._moves_as_frame(pattern)
+        return pattern
+
+    def _moves_as_frame(self, pattern: Pattern) -> None:
+        """The position of a pattern of structures is a frame: it counts only where something mentions it."""
+        for structure, _ in self.first.values():
+            for unknown in ex.unknowns([structure.frame.x, structure.frame.y]):
+                if unknown.holder is pattern.settings and not unknown.kept:
+                    unknown.frame_of = structure
+
+    def _copy(self, copy: StructureCopy, indices: tuple[int, ...]) -> Value:
+        motion, source = copy.motion, copy.source
+        assert isinstance(motion, Motion)
+        if isinstance(source, Structure):
+            return self._of(source, _framed(source, self.here), motion, indices)
+        if (known := self.first.get(source)) is not None:
+            return self._of(known[0], known[1], motion, indices)
+        return self._instance(source, motion, indices, copy)
+
+    def _instance(
+        self, template: Instantiation, motion: Motion, indices: tuple[int, ...], copy: StructureCopy
+    ) -> Structure | Nothing:
+        """A template that is instantiated in order to be moved."""
+        if not (motion.scale.is_constant and motion.scale.value == 1.0):
+            self.it.report(
+                "E0334",
+                f"`{template.signature.name}` makes a structure of the sizes that it is given",
+                copy.node,
+                hints=["pass it other sizes, or name the structure first and scale a copy of it"],
+            )
+            return NOTHING
+        own: list[Frame] = []
+
+        def framed(frame: Frame) -> Frame:
+            own.append(_as_written(frame) if copy.is_laid else frame)
+            return motion.frame(own[0])
+
+        made = instantiate(self.it, self.node, template, self.scope, self.here, indices, framed)
+        if isinstance(made, Structure):
+            self.first[template] = made, own[0]
+        return made
+
+    def _of(self, source: Structure, frame: Frame, motion: Motion, indices: tuple[int, ...]) -> Structure:
+        scale = motion.scale
+        inside = STILL if scale.is_constant and scale.value == 1.0 else replace(STILL, scale=scale)
+        copier = Copier(self.it, None, inside, span=self.node.span)
+        name = indexed(self.node.name.text, indices)
+        made = copier.structure(source, self.here, name, motion.frame(frame))
+        read_attributes(self.it, made, self.node.attributes, self.scope)
+        return made
+
+
+def _framed(source: Structure, here: Structure) -> Frame:
+    """The frame of a structure as one above it sees it."""
+    frame, around = source.frame, source.parent
+    while around is not None and around is not here:
+        frame, around = of_frame(around.frame).frame(frame), around.parent
+    return frame
+
+
+def _as_written(frame: Frame) -> Frame:
+    x, y = ex.constant(frame.x.value), ex.constant(frame.y.value)
+    return Frame(x, y, frame.rotation, frame.mirrored)

@@ -1,0 +1,209 @@
+"""Calls that read well and mean something else elsewhere: squares, angles, corners and flags."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from aidl_lang import ast
+from aidl_lang.builtins import MATH
+from aidl_lang.checking.wording import shown
+from aidl_lang.diagnostics import Edit, Fix
+from aidl_lang.resolving.declare import made_by
+from aidl_lang.resolving.symbols import SymbolKind
+from aidl_lang.source import Span
+from aidl_lang.types import AnyType, Binding, ListType, NumberType, PointType
+from aidl_lang.units import ANGLE, PLAIN
+
+if TYPE_CHECKING:
+    from aidl_lang.checking.infer import Inference
+
+
+def check_habits(check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], fit: Binding) -> None:
+    """Say how a call was read where the same words mean something else elsewhere."""
+    _check_angles(check, node, nodes, fit)
+    _check_corner(check, node, fit)
+    if not fit.sources:
+        return
+    first = len(nodes) - len(node.arguments)
+    used = {index for s in fit.sources for index in (s.index, s.other)}
+    for index, argument in enumerate(node.arguments, first):
+        is_true = isinstance(argument.value, ast.Boolean) and argument.value.value
+        if index not in used and not is_true:
+            check.report(
+                "E0347",
+                f"`{shown(argument)}` says nothing: a `{node.callee.text}` is placed by its centre",
+                argument,
+                hints=["to place a corner, constrain it, as in `plate.bottom_left == (0, 0)`"],
+            )
+    name = fit.signature.name
+    if name == "square" and first == 0 and not any(a.name for a in node.arguments[:1]):
+        value = node.arguments[0].value
+        check.report(
+            "N0502",
+            f"`{shown(node)}` is about its centre, here as everywhere",
+            node,
+            hints=["for one that begins at the origin: `constrain s.bottom_left == origin`"],
+            fix=Fix("name the size", (Edit(_before(value), "size: "),)),
+        )
+    pair = next((s for s in fit.sources if s.other is not None and "width" in fit.signature.by_fold), None)
+    if pair is not None and pair.other is not None:
+        x, y = node.arguments[pair.index - first], node.arguments[pair.other - first]
+        point = f"center: ({x.value.span.text}, {y.value.span.text})"
+        is_both = pair.other == pair.index + 1
+        both = Span(x.span.source, x.span.start, y.span.end)
+        check.report(
+            "N0503",
+            f"`{shown(x)}` and `{shown(y)}` are read as the centre of the `{node.callee.text}`",
+            x,
+            hints=["to place a corner, constrain it, as in `plate.bottom_left == (0, 0)`"],
+            fix=Fix(f"write `{point}`", (Edit(both, point),)) if is_both else None,
+        )
+
+
+def _check_corner(check: Inference, node: ast.Call, fit: Binding) -> None:
+    """`rectangle(5, 5, 40, 20)`: a corner and a size, or four sides?"""
+    names = [name for name, _, _ in fit.signature.parameters]
+    if fit.signature.name != "rectangle" or len(node.arguments) != 4 or "left" not in names[:1]:
+        return
+    if any(argument.name is not None for argument in node.arguments):
+        return
+    x, y, w, h = (shown(argument.value) for argument in node.arguments)
+    right = f"left: {x}, bottom: {y}, width: {w}, height: {h}"
+    span = Span(node.span.source, node.arguments[0].span.start, node.arguments[-1].span.end)
+    check.report(
+        "E0344",
+        f"`{shown(node)}` could mean a corner and a size, or four sides",
+        node,
+        label="say which",
+        hints=["name them: `left`, `bottom` with `width`, `height` or with `right`, `top`"],
+        fix=Fix(f"write `{right}`", (Edit(span, right),)),
+    )
+
+
+def check_unused_geometry(check: Inference) -> None:
+    """`let c = circle(…)` that nothing refers to, which draws nothing by itself."""
+    resolution = check.resolution
+    used = {symbol for node, symbol in resolution.uses.items() if isinstance(node, ast.Name | ast.Member)}
+    for symbol in resolution.symbols:
+        node, scope = symbol.node, symbol.scope
+        if not isinstance(node, ast.Let) or not isinstance(node.value, ast.Call) or symbol in used:
+            continue
+        if scope is None or not isinstance(scope.owner, ast.Structure | ast.Module):
+            continue
+        if made_by(node.value, scope) in (SymbolKind.GEOMETRY, SymbolKind.STRUCTURE):
+            word = Span(node.span.source, node.span.start, node.name.span.start)
+            check.report(
+                "N0505",
+                f"`{symbol.name}` is not drawn: nothing refers to it",
+                node.name,
+                label="`let` only names it",
+                hints=[f"`{symbol.name} = {shown(node.value)}` makes it a part of the drawing"],
+                fix=Fix("leave out `let`", (Edit(word, ""),)),
+            )
+
+
+def _check_angles(check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], fit: Binding) -> None:
+    """Numbers of radians where a number is read as degrees, and the reverse."""
+    wanted = {name: kind for name, kind, _ in fit.signature.parameters}
+    for index, value in enumerate(nodes):
+        kind = wanted.get(fit.parameter_of(index) or "")
+        if isinstance(kind, NumberType) and kind.dimension == ANGLE and _called(check, value) == "radians":
+            assert isinstance(value, ast.Call)
+            inner = value.arguments[0].value
+            _not_degrees(check, value, inner, "deg", f"`{shown(value)}` is a plain number")
+        elif _called(check, node) in _TRIGONOMETRY and _is_module(check, node) and _is_plain(check, value):
+            _not_degrees(check, value, value, "rad", f"`{shown(node)}` is read in radians elsewhere")
+        elif _called(check, node) == "degrees" and _is_written(check, value):
+            _not_degrees(check, node, value, "deg", f"`{shown(node)}` turns radians into an angle")
+
+
+_TRIGONOMETRY = ("sin", "cos", "tan")
+
+
+def _not_degrees(
+    check: Inference, place: ast.Expression, value: ast.Expression, unit: str, message: str
+) -> None:
+    """An angle says its unit: the fix puts the one that is meant behind the number."""
+    text = value.span.text
+    if check.fact(value).type == NumberType(ANGLE):
+        right = text
+    elif isinstance(value, ast.Number):
+        right = text + unit
+    else:
+        right = (
+            f"{text} * 1{unit}"
+            if isinstance(value, ast.Name | ast.Member | ast.Call)
+            else f"({text}) * 1{unit}"
+        )
+    check.report(
+        "E0348",
+        f"{message}; an angle is written with its unit: `{right}`",
+        place,
+        hints=["a number without a unit is in degrees where an angle is due"],
+        fix=Fix(f"write `{right}`", (Edit(place.span, right),)),
+    )
+
+
+def _called(check: Inference, node: ast.Expression) -> str | None:
+    """The name that an expression calls, an alias being none of its own."""
+    if not isinstance(node, ast.Call):
+        return None
+    return check.resolution.canonical.get(node.callee, node.callee.text)
+
+
+def _is_module(check: Inference, node: ast.Call) -> bool:
+    receiver = node.receiver
+    symbol = check.resolution.uses.get(receiver) if isinstance(receiver, ast.Name) else None
+    return symbol is not None and symbol.kind is SymbolKind.NAMESPACE and symbol.name in MATH
+
+
+def _is_written(check: Inference, node: ast.Expression) -> bool:
+    """A number that somebody wrote down without a unit, rather than one that was worked out."""
+    bare = check.fact(node).bare
+    if isinstance(node, ast.Number):
+        return not node.unit
+    return bare is not None and bare.kind is SymbolKind.PARAM
+
+
+def _is_plain(check: Inference, node: ast.Expression) -> bool:
+    kind = check.fact(node).type
+    return isinstance(kind, NumberType) and kind.dimension in (None, PLAIN)
+
+
+def check_square(check: Inference, node: ast.Expression) -> None:
+    """`s = square(10)`, which could be a shape or a number."""
+    if _called(check, node) != "square" or not isinstance(node, ast.Call) or len(node.arguments) != 1:
+        return
+    value = node.arguments[0].value
+    kind = check.fact(value).type
+    text = shown(value)
+    if not isinstance(check.fact(node).type, NumberType | AnyType) or node.arguments[0].name is not None:
+        return
+    if isinstance(kind, NumberType):
+        check.report(
+            "E0344",
+            f"`{shown(node)}` could mean a square of that size, or the number multiplied by itself",
+            node,
+            label="say which",
+            hints=[f"write `square(size: {text})` for the shape, `{text} ^ 2` for the number"],
+            fix=Fix("make it the shape", (Edit(_before(value), "size: "),)),
+        )
+    elif isinstance(kind, PointType) or (isinstance(kind, ListType) and kind.length == 2):
+        two_sizes(check, node, node.arguments[0])
+
+
+def _before(node: ast.Node) -> Span:
+    return Span(node.span.source, node.span.start, node.span.start)
+
+
+def two_sizes(check: Inference, node: ast.Call, argument: ast.Argument) -> None:
+    start = argument.span.start
+    name = Span(node.span.source, start, argument.value.span.start)
+    check.report(
+        "E0345",
+        f"a square has one size; two make a rectangle: `rectangle(size: {shown(argument.value)})`",
+        argument.value,
+        label="two sizes",
+        fix=Fix("make it a rectangle", (Edit(node.callee.span, "rectangle"), Edit(name, "size: "))),
+    )

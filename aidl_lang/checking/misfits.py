@@ -1,0 +1,275 @@
+"""What to say of a call that no overload fits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from aidl_lang import ast
+from aidl_lang.checking.habits import two_sizes
+from aidl_lang.checking.wording import shown
+from aidl_lang.diagnostics import Edit, Fix
+from aidl_lang.names import fold, nearest
+from aidl_lang.resolving.complaints import called_field
+from aidl_lang.source import Span
+from aidl_lang.synonyms import FIELDS, PAIRS, PARAMETERS
+from aidl_lang.types import (
+    Given,
+    ListType,
+    Mismatch,
+    NumberType,
+    PointType,
+    Signature,
+    accepts,
+)
+
+if TYPE_CHECKING:
+    from aidl_lang.checking.infer import Inference
+
+
+def no_overload(
+    check: Inference,
+    node: ast.Call,
+    nodes: Sequence[ast.Expression],
+    given: Sequence[Given],
+    misses: Sequence[Mismatch],
+) -> None:
+    if node.receiver is not None and not node.arguments and fold(node.callee.text) in FIELDS:
+        message, fix = called_field(node)
+        check.report("E0206", message, node.callee, fix=fix)
+        return
+    for answer in _ANSWERS:
+        if answer(check, node, given, misses):
+            return
+    name = node.callee.text
+    closest = max(misses, key=lambda m: _closeness(m, given))
+    at: ast.Node = node.callee
+    if closest.argument is not None and closest.argument < len(nodes):
+        at = nodes[closest.argument]
+    others = [m.signature for m in misses if m is not closest]
+    check.report(
+        "E0311",
+        f"`{name}` {closest.reason}",
+        at,
+        label=f"in this call of `{name}`",
+        hints=_called_as([closest.signature, *others[:4]]),
+    )
+
+
+def _called_as(signatures: Sequence[Signature]) -> list[str]:
+    """How a callable is called, by its signatures and the first example that has one."""
+    hints = [f"{'or as' if i else 'it is called as'} `{s}`" for i, s in enumerate(signatures)]
+    example = next((e for s in signatures if (e := example_of(s)) is not None), None)
+    return hints + ([f"for example `{example}`"] if example else [])
+
+
+def example_of(signature: Signature) -> str | None:
+    """The first call in the documentation of a definition, if it stands on one line."""
+    doc = getattr(signature.node, "doc", None)
+    inside = (doc or "").partition("```aidl")[2].partition("```")[0]
+    start = inside.find(f"{signature.name}(")
+    if start < 0:
+        return None
+    depth = 0
+    for i, char in enumerate(inside[start:], start):
+        depth += (char == "(") - (char == ")")
+        if char == "\n" or (char == ")" and depth == 0):
+            return inside[start : i + 1] if char == ")" else None
+    return None
+
+
+def _closeness(miss: Mismatch, given: Sequence[Given]) -> tuple[int, int, int, int]:
+    """How near a candidate comes: named arguments that it knows, then how little is left to give."""
+    known = sum(1 for g in given if g.name is not None and _knows(miss.signature, g.name))
+    needed = sum(1 for _, _, optional in miss.signature.parameters if not optional)
+    room = -abs(len(miss.signature.parameters) - len(given))
+    return known, int(miss.argument is not None), min(0, len(given) - needed), room
+
+
+def _knows(signature: Signature, word: str) -> bool:
+    """Whether a word is a parameter, by its name or by another."""
+    known = signature.by_fold
+    pair = PAIRS.get(fold(word), ("", ""))
+    meanings = (word, *PARAMETERS.get(fold(word), ()))
+    return any(fold(m) in known for m in meanings) or all(p in known for p in pair)
+
+
+def _ambiguous(check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]) -> bool:
+    """A word that may mean several parameters."""
+    miss = next((m for m in misses if m.meanings), None)
+    if miss is None or miss.argument is None:
+        return False
+    word = given[miss.argument].name or ""
+    argument = next(a for a in node.arguments if a.name is not None and a.name.text == word)
+    assert argument.name is not None
+    names = " or ".join(f"`{name}`" for name in miss.meanings)
+    check.report(
+        "E0344",
+        f"`{word}` of `{node.callee.text}` could mean {names}",
+        argument.name,
+        label="say which",
+        hints=[f"write `{name}: {shown(argument.value)}`" for name in miss.meanings],
+    )
+    return True
+
+
+def _loose_coordinates(
+    check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
+) -> bool:
+    """`line(0, 0, 10, 5)`, `circle(0, 0, 5)`: numbers where points are wanted."""
+    if not given or len(given) != len(node.arguments) or any(g.name is not None for g in given):
+        return False
+    if not all(isinstance(g.type, NumberType) for g in given):
+        return False
+    for miss in misses:
+        points = 0
+        for _, kind, _ in miss.signature.parameters:
+            if not isinstance(kind, PointType):
+                break
+            points += 1
+        sizes = [kind for _, kind, _ in miss.signature.parameters[points:]]
+        rest = [g.type for g in given[2 * points :]]
+        needed = sum(1 for _, _, optional in miss.signature.parameters[points:] if not optional)
+        if not points or len(given) < 2 * points or not needed <= len(rest) <= len(sizes):
+            continue
+        if any(accepts(wanted, got) is None for wanted, got in zip(sizes, rest, strict=False)):
+            continue
+        values = [a.value for a in node.arguments]
+        edits, texts = [], [shown(v) for v in values]
+        for i in range(0, 2 * points, 2):
+            first, second = values[i].span, values[i + 1].span
+            edits += [
+                Edit(Span(first.source, first.start, first.start), "("),
+                Edit(Span(second.source, second.end, second.end), ")"),
+            ]
+            texts[i], texts[i + 1] = f"({texts[i]}", f"{texts[i + 1]})"
+        call = f"{node.callee.text}({', '.join(texts)})"
+        check.report(
+            "E0346",
+            f"a point is written in parentheses: `{call}`",
+            node.callee,
+            label="takes points, and these are single numbers",
+            hints=_called_as([miss.signature]),
+            fix=Fix("put the coordinates in parentheses", tuple(edits)),
+        )
+        return True
+    return False
+
+
+def _pair_for_one(
+    check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
+) -> bool:
+    """`square([40, 20])` and `rectangle([40, 20])`: two sizes in brackets."""
+    pairs = [a for a, g in zip(node.arguments, given, strict=False) if _is_pair(g) and _may_be_size(a)]
+    if len(given) != len(node.arguments) or len(pairs) != 1:
+        return False
+    argument = pairs[0]
+    text = shown(argument.value)
+    start = argument.name.span.start if argument.name is not None else argument.value.span.start
+    span = Span(argument.value.span.source, start, argument.value.span.start)
+    takes_two = any({"width", "height"} <= m.signature.by_fold.keys() for m in misses)
+    takes_one = any("size" in m.signature.by_fold for m in misses)
+    if takes_two and argument.name is None:
+        check.report(
+            "E0345",
+            f"the first argument of `{node.callee.text}` is its centre; sizes are named: `size: {text}`",
+            argument.value,
+            label="read as a point",
+            hints=_called_as([m.signature for m in misses][:1]),
+            fix=Fix("name it `size`", (Edit(span, "size: "),)),
+        )
+    elif takes_one:
+        two_sizes(check, node, argument)
+    return takes_one or (takes_two and argument.name is None)
+
+
+def _is_pair(given: Given) -> bool:
+    return isinstance(given.type, PointType) or (isinstance(given.type, ListType) and given.type.length == 2)
+
+
+def _may_be_size(argument: ast.Argument) -> bool:
+    return argument.name is None or fold(argument.name.text) in ("size", "s", "dimensions", "dims")
+
+
+def _half_or_double(
+    check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
+) -> bool:
+    """A diameter where a radius is taken, or the reverse."""
+    for argument in node.arguments:
+        if argument.name is None or any(_knows(m.signature, argument.name.text) for m in misses):
+            continue
+        word = fold(argument.name.text)
+        for other in ("diameter", "radius"):
+            wanted = "radius" if other == "diameter" else "diameter"
+            if word != other and other not in PARAMETERS.get(word, ()):
+                continue
+            if not any(wanted in m.signature.by_fold for m in misses):
+                continue
+            text = argument.value.span.text
+            text = text if isinstance(argument.value, ast.Number | ast.Name | ast.Member) else f"({text})"
+            value = f"{text} / 2" if wanted == "radius" else f"2 * {text}"
+            span = Span(node.span.source, argument.name.span.start, argument.value.span.end)
+            check.report(
+                "E0324",
+                f"`{node.callee.text}` takes a `{wanted}`, not a {other}",
+                argument.name,
+                fix=Fix(f"write `{wanted}: {value}`", (Edit(span, f"{wanted}: {value}"),)),
+            )
+            return True
+    return False
+
+
+def _not_together(
+    check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
+) -> bool:
+    """Report named arguments that are known to some overloads, but never all to one; whether that is so."""
+    written = [a.name for a in node.arguments if a.name is not None]
+    if len(written) < 2 or any(all(_knows(m.signature, n.text) for n in written) for m in misses):
+        return False
+    name = node.callee.text
+    check.report(
+        "E0311",
+        f"`{name}` does not take {' and '.join(f'`{n.text}`' for n in written)} together",
+        written[-1],
+        label=f"in this call of `{name}`",
+        hints=_called_as([m.signature for m in misses[:5]]),
+    )
+    return True
+
+
+def _unknown_parameter(
+    check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
+) -> bool:
+    """Report argument names that no overload knows; whether there is one."""
+    names = list(dict.fromkeys(name for m in misses for name, _, _ in m.signature.parameters))
+    wrong = [
+        a.name
+        for a in node.arguments
+        if a.name is not None and not any(_knows(m.signature, a.name.text) for m in misses)
+    ]
+    taken = {fold(a.name.text) for a in node.arguments if a.name is not None}
+    for identifier in wrong:
+        like = nearest(identifier.text, [n for n in names if fold(n) not in taken])
+        free = ", ".join(f"`{n}`" for n in names)
+        example = next((e for m in misses if (e := example_of(m.signature)) is not None), None)
+        hints = [f"its parameters are {free}" if names else "it takes no arguments"]
+        hints += [f"for example `{example}`"] if example else []
+        check.report(
+            "E0324",
+            f"`{node.callee.text}` has no parameter `{identifier.text}`"
+            + (f"; did you mean `{like[0]}`?" if like else ""),
+            identifier,
+            hints=() if like else hints,
+            fix=Fix(f"write `{like[0]}`", (Edit(identifier.span, like[0]),)) if like else None,
+        )
+    return bool(wrong)
+
+
+_ANSWERS = (
+    _ambiguous,
+    _loose_coordinates,
+    _pair_for_one,
+    _half_or_double,
+    _unknown_parameter,
+    _not_together,
+)

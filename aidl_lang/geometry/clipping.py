@@ -1,0 +1,27 @@
+"""Open curves cut to the inside of a region."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from aidl_lang.geometry.boolean import section_of
+from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.evaluate import part
+from aidl_lang.geometry.network import Network
+from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.sections import inside_mask
+
+
+def clipped(curves: Sequence[Piece], region: Region) -> list[Piece]:
+    """The parts of curves that lie inside."""
+    pieces = [p for loop in region.loops for p in loop.pieces]
+    network = Network([*pieces, *curves])
+    section = section_of(network, region, 0)
+    found: list[Piece] = []
+    for number in range(len(pieces), len(network.curves)):
+        for edge, forward in network.uses[number]:
+            if inside_mask(section, [network.midpoint(edge)])[0]:
+                e = network.edges[edge]
+                t0, t1, a, b = (e.t0, e.t1, e.start, e.end) if forward else (e.t1, e.t0, e.end, e.start)
+                found.append(part(network.curves[e.curve], t0, t1, network.nodes[a], network.nodes[b]))
+    return found

@@ -1,0 +1,353 @@
+"""Corners rounded (fillet) or cut off (chamfer) after solving.
+
+An arm is a curve seen from a corner where it ends: u = 0 at the corner, 1 at its other end. The arc of a
+fillet is tangent to both arms, inside the angle between them: its centre lies on both arms moved sideways by
+the radius. Lines and arcs meet there in closed form; with other curves the two parameters are found by
+Newton's method, following the radius up from 0.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import derivative, ends, is_closed, part, point, reverse
+from aidl_lang.geometry.intersect import circle_circle, line_circle
+from aidl_lang.geometry.measures import length
+
+SMOOTH = 1e-7
+"""Curves whose directions differ by less, in radians, run on smoothly: there is no corner."""
+_EXACT = 1e-9
+_STEPS = 16
+_HALVINGS = 60
+
+
+@dataclass(frozen=True, slots=True)
+class Arm:
+    """A curve from the corner on; `number` is that of the curve, `first` whether it starts at the corner."""
+
+    curve: Piece
+    number: int
+    first: bool
+
+    @property
+    def way(self) -> Vec:
+        """The direction in which it leaves the corner, of length 1."""
+        return direction(self.curve, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Corner:
+    """Where two curves end."""
+
+    at: Vec
+    arms: tuple[Arm, Arm]
+
+    @property
+    def turn(self) -> float:
+        """The angle from the first arm to the second, in radians, positive counter-clockwise."""
+        a, b = self.arms[0].way, self.arms[1].way
+        return math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
+
+    @property
+    def is_smooth(self) -> bool:
+        return math.pi - abs(self.turn) < SMOOTH
+
+    @property
+    def is_cusp(self) -> bool:
+        return abs(self.turn) < SMOOTH
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """A corner to be finished; `sizes` are the radius, or the distances on the two arms."""
+
+    kind: str
+    corner: Corner
+    sizes: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Finished:
+    """How much each arm loses, and the curve that takes the place of the corner."""
+
+    work: Work
+    cuts: tuple[float, float]
+    piece: Piece
+
+
+@dataclass(frozen=True, slots=True)
+class TooLarge:
+    """A finish that does not fit; `largest` is the largest size that does, with the others as they are.
+
+    `other` is the one it runs into on curve `number`, if there is one, and `together` what fits for both.
+    """
+
+    work: Work
+    largest: float
+    other: Work | None = None
+    number: int = -1
+    together: float = 0.0
+
+
+@dataclass
+class Result:
+    """Curves by their old numbers (None where nothing is left), and those that are new."""
+
+    curves: list[Piece | None]
+    finished: list[Finished] = field(default_factory=list)
+    failures: list[TooLarge] = field(default_factory=list)
+
+
+def direction(curve: Piece, t: float) -> Vec:
+    """The unit tangent; at a stalled end of a Bézier curve that of the curve beside it."""
+    dx, dy = derivative(curve, t)
+    size = math.hypot(dx, dy)
+    if size == 0:
+        dx, dy = derivative(curve, t + 1e-6 if t < 0.5 else t - 1e-6)
+        size = math.hypot(dx, dy) or 1.0
+    return dx / size, dy / size
+
+
+def arms_at(curves: Sequence[Piece], p: Vec, tolerance: float) -> list[Arm]:
+    """The arms of all curves that end at a point, those that arrive there (in their own direction) first."""
+    found = []
+    for number, curve in enumerate(curves):
+        if is_closed(curve):
+            continue
+        start, end = ends(curve)
+        if math.dist(start, p) <= tolerance:
+            found.append(Arm(curve, number, first=True))
+        if math.dist(end, p) <= tolerance:
+            found.append(Arm(reverse(curve), number, first=False))
+    return sorted(found, key=lambda arm: arm.first)
+
+
+def corners_of(curves: Sequence[Piece], tolerance: float) -> list[Corner]:
+    """All points where exactly two curves end, at an angle."""
+    found: list[Corner] = []
+    seen: list[Vec] = []
+    for p in (p for c in curves if not is_closed(c) for p in ends(c)):
+        if any(math.dist(p, q) <= tolerance for q in seen):
+            continue
+        seen.append(p)
+        arms = arms_at(curves, p, tolerance)
+        if len(arms) == 2 and not (corner := Corner(p, (arms[0], arms[1]))).is_smooth:
+            found.append(corner)
+    return found
+
+
+def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
+    """Every corner finished; those that do not fit are left sharp and told."""
+    result = Result(list(curves))
+    done: list[Finished] = []
+    for work in works:
+        made = solve(work)
+        if made is None:
+            result.failures.append(
+                TooLarge(work, _largest(lambda s, w=work: solve(_sized(w, s)) is not None, max(work.sizes)))
+            )
+        else:
+            done.append(made)
+    lost: dict[tuple[int, bool], Finished] = {}
+    for made in done:
+        for arm in made.work.corner.arms:
+            lost[arm.number, arm.first] = made
+    for number in sorted({key[0] for key in lost}):
+        a, b = lost.get((number, True)), lost.get((number, False))
+        if a is not None and b is not None and _cut(a, number, True) + _cut(b, number, False) > 1 + _EXACT:
+            result.failures.append(_collision(a, b, number))
+    if not result.failures:
+        result.finished = done
+        for number in {key[0] for key in lost}:
+            result.curves[number] = _trimmed(
+                curves[number], lost.get((number, True)), lost.get((number, False)), number
+            )
+    return result
+
+
+def _collision(a: Finished, b: Finished, number: int) -> TooLarge:
+    """Two finishes that need more of a curve than there is."""
+
+    def fits(first: Work, second: Work) -> bool:
+        one, other = solve(first), solve(second)
+        if one is None or other is None:
+            return False
+        return _cut(one, number, True) + _cut(other, number, False) <= 1 + _EXACT
+
+    size = max(b.work.sizes)
+    largest = _largest(lambda s: fits(a.work, _sized(b.work, s)), size)
+    both = max(*a.work.sizes, *b.work.sizes)
+    together = _largest(lambda s: fits(_sized(a.work, s), _sized(b.work, s)), both)
+    return TooLarge(b.work, largest, a.work, number, together)
+
+
+def _sized(work: Work, size: float) -> Work:
+    """The same finish with its larger size changed, the other in proportion."""
+    share = size / max(work.sizes)
+    return Work(work.kind, work.corner, (work.sizes[0] * share, work.sizes[1] * share))
+
+
+def _largest(fits: Callable[[float], bool], too_large: float) -> float:
+    low, high = 0.0, too_large
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if fits(middle) else (low, middle)
+    return low
+
+
+def _cut(made: Finished, number: int, first: bool) -> float:
+    arms = made.work.corner.arms
+    return next(
+        cut for arm, cut in zip(arms, made.cuts, strict=True) if (arm.number, arm.first) == (number, first)
+    )
+
+
+def _trimmed(curve: Piece, start: Finished | None, end: Finished | None, number: int) -> Piece | None:
+    t0, p = 0.0, ends(curve)[0]
+    t1, q = 1.0, ends(curve)[1]
+    if start is not None:
+        t0 = _cut(start, number, True)
+        p = _end_at(start, number, True)
+    if end is not None:
+        t1 = 1 - _cut(end, number, False)
+        q = _end_at(end, number, False)
+    return part(curve, t0, t1, p, q) if t1 - t0 > _EXACT else None
+
+
+def _end_at(made: Finished, number: int, first: bool) -> Vec:
+    """Where the new curve touches this arm."""
+    arm = made.work.corner.arms[0]
+    return ends(made.piece)[0 if (arm.number, arm.first) == (number, first) else 1]
+
+
+# --- One corner ----------------------------------------------------------------------------------
+
+
+def solve(work: Work) -> Finished | None:
+    """The finish of a corner by itself; None if an arm is too short for it."""
+    corner = work.corner
+    if work.kind == "chamfer":
+        cuts = [_along(arm.curve, size) for arm, size in zip(corner.arms, work.sizes, strict=True)]
+        if None in cuts:
+            return None
+        u, v = (c for c in cuts if c is not None)
+        p, q = point(corner.arms[0].curve, u), point(corner.arms[1].curve, v)
+        return Finished(work, (u, v), Line(p, q))
+    if corner.is_cusp:
+        return None
+    touch = _round(corner, work.sizes[0])
+    if touch is None:
+        return None
+    u, v, center = touch
+    p, q = point(corner.arms[0].curve, u), point(corner.arms[1].curve, v)
+    return Finished(work, (u, v), _arc(corner, work.sizes[0], center, p, q))
+
+
+def _arc(corner: Corner, radius: float, center: Vec, p: Vec, q: Vec) -> Arc:
+    """From the first arm to the second: with the second one to its left, the arc turns right."""
+    first, last = (math.atan2(e[1] - center[1], e[0] - center[0]) for e in (p, q))
+    sweep = (last - first) % math.tau if corner.turn < 0 else -((first - last) % math.tau)
+    return Arc(center, radius, p, q, sweep)
+
+
+def _along(curve: Piece, distance: float) -> float | None:
+    """The parameter at a distance along a curve from its start; None beyond its end."""
+    whole = length(curve)
+    if distance > whole * (1 + _EXACT):
+        return None
+    if isinstance(curve, Line | Arc):
+        return min(1.0, distance / whole)
+    low, high = 0.0, 1.0
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        p, q = ends(curve)[0], point(curve, middle)
+        low, high = (middle, high) if length(part(curve, 0.0, middle, p, q)) < distance else (low, middle)
+    return high
+
+
+def _round(corner: Corner, radius: float) -> tuple[float, float, Vec] | None:
+    """Where a fillet touches both arms, and its centre."""
+    a, b = corner.arms[0].curve, corner.arms[1].curve
+    side = math.copysign(1.0, corner.turn)
+    if not (isinstance(a, Line | Arc) and isinstance(b, Line | Arc)):
+        return _round_by_newton(a, b, side, radius)
+    carriers = _moved(a, side * radius), _moved(b, -side * radius)
+    if carriers[0] is None or carriers[1] is None:
+        return None
+    best: tuple[float, float, Vec] | None = None
+    for center in _meet(carriers[0], carriers[1]):
+        u, v = _foot(a, center), _foot(b, center)
+        if u is None or v is None or max(u, v) > 1 + _EXACT:
+            continue
+        u, v = min(u, 1.0), min(v, 1.0)
+        if best is None or u * length(a) + v * length(b) < best[0] * length(a) + best[1] * length(b):
+            best = u, v, center
+    return best
+
+
+def _moved(curve: Line | Arc, left: float) -> Line | Circle | None:
+    """The carrier (the endless line or whole circle) of all points at a distance to the left of a curve."""
+    if isinstance(curve, Line):
+        dx, dy = direction(curve, 0.0)
+        (x0, y0), (x1, y1) = curve.start, curve.end
+        return Line((x0 - left * dy, y0 + left * dx), (x1 - left * dy, y1 + left * dx))
+    radius = curve.radius - math.copysign(left, left * curve.sweep)
+    return Circle(curve.center, radius) if radius > 0 else None
+
+
+def _meet(a: Line | Circle, b: Line | Circle) -> list[Vec]:
+    if isinstance(a, Circle):
+        slack = _EXACT * a.radius
+        return line_circle(b, a, slack) if isinstance(b, Line) else circle_circle(a, b, slack)
+    if isinstance(b, Circle):
+        return line_circle(a, b, _EXACT * b.radius)
+    (ax, ay), (bx, by) = direction(a, 0.0), direction(b, 0.0)
+    x, y = b.start[0] - a.start[0], b.start[1] - a.start[1]
+    t = (x * by - y * bx) / (ax * by - ay * bx)
+    return [(a.start[0] + t * ax, a.start[1] + t * ay)]
+
+
+def _foot(curve: Line | Arc, p: Vec) -> float | None:
+    """The parameter of the point of an arm nearest to p; None before its start."""
+    if isinstance(curve, Line):
+        dx, dy = derivative(curve, 0.0)
+        t = ((p[0] - curve.start[0]) * dx + (p[1] - curve.start[1]) * dy) / (dx * dx + dy * dy)
+        return t if t >= 0 else None
+    turn = math.atan2(p[1] - curve.center[1], p[0] - curve.center[0]) - curve.start_angle
+    t: float = (turn % math.copysign(math.tau, curve.sweep)) / curve.sweep
+    return t
+
+
+def _round_by_newton(a: Piece, b: Piece, side: float, radius: float) -> tuple[float, float, Vec] | None:
+    """Follow the touching points from the corner as the radius grows; None once one leaves its arm."""
+
+    def gap(u: float, v: float, r: float) -> Vec:
+        p, q = _beside(a, u, side * r), _beside(b, v, -side * r)
+        return p[0] - q[0], p[1] - q[1]
+
+    u = v = 0.0
+    for step in range(1, _STEPS + 1):
+        r = radius * step / _STEPS
+        for _ in range(30):
+            x, y = gap(u, v, r)
+            h = 1e-6
+            ux, uy = ((p - q) / (2 * h) for p, q in zip(gap(u + h, v, r), gap(u - h, v, r), strict=True))
+            vx, vy = ((p - q) / (2 * h) for p, q in zip(gap(u, v + h, r), gap(u, v - h, r), strict=True))
+            across = ux * vy - uy * vx
+            if across == 0:
+                return None
+            du, dv = (x * vy - y * vx) / across, (ux * y - uy * x) / across
+            u, v = u - du, v - dv
+            if abs(du) + abs(dv) < 1e-14:
+                break
+        if not (math.hypot(*gap(u, v, r)) < _EXACT * max(1.0, radius) and min(u, v) >= 0 and max(u, v) <= 1):
+            return None
+    return u, v, _beside(a, u, side * radius)
+
+
+def _beside(curve: Piece, t: float, left: float) -> Vec:
+    (x, y), (dx, dy) = point(curve, t), direction(curve, t)
+    return x - left * dy, y + left * dx

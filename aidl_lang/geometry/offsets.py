@@ -1,0 +1,107 @@
+"""Regions grown, shrunk and drawn with a thick pen: exact sums of curves and discs.
+
+Every offset is the region with its strips and wedges (see `strips`) united or cut off by the booleans that all
+drawings use. So whatever crosses itself, splits or vanishes comes out as it must.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from aidl_lang.geometry.boolean import section_of
+from aidl_lang.geometry.curves import Piece, Vec
+from aidl_lang.geometry.evaluate import bounds, ends, is_closed
+from aidl_lang.geometry.finishing import direction
+from aidl_lang.geometry.network import CHORD, FINE_CHORD, Network, union_bounds
+from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.sections import difference, fill, union
+from aidl_lang.geometry.strips import Strip, beside, cap, disc, wedge
+from aidl_lang.geometry.trace import trace
+
+NEAR = 1e-6
+"""Ends that are closer, relative to the size of what they belong to, are one point."""
+
+
+def offset(region: Region, distance: float, sharp: bool = True) -> Region:
+    """All that is within a distance of the region; for a negative one, what is left without its border.
+
+    With `sharp`, edges are lengthened at corners until they meet.
+    """
+    if distance == 0 or not region:
+        return region
+    strips: list[Strip] = []
+    for loop in region.loops:
+        left = distance if loop.reversed else -distance  # material lies to the left
+        strips += _along(loop.pieces, left, sharp)
+    return _combined(region, strips, cut=distance < 0)
+
+
+def _along(pieces: Sequence[Piece], left: float, sharp: bool) -> Iterator[Strip]:
+    """Strips and wedges on one side of a closed outline."""
+    for piece, after in zip(pieces, (*pieces[1:], pieces[0]), strict=True):
+        yield from beside(piece, left)
+        if not is_closed(piece):
+            found = wedge(ends(piece)[1], direction(piece, 1.0), direction(after, 0.0), left, sharp)
+            if found is not None:
+                yield found
+
+
+def thick(curves: Sequence[Piece], width: float, caps: str = "round", sharp: bool = False) -> Region:
+    """What a pen of a width draws along curves; where more than two meet, the joint is round."""
+    half = width / 2
+    left, bottom, right, top = union_bounds([bounds(c) for c in curves])
+    near = NEAR * (max(right - left, top - bottom) or 1.0)
+    strips: list[Strip] = [s for c in curves for side in (half, -half) for s in beside(c, side)]
+    for at, leaving in _joints(curves, near):
+        if len(leaving) > 2:
+            strips.append(disc(at, half))
+        elif len(leaving) == 2:
+            a, b = leaving
+            found = [wedge(at, (-a[0], -a[1]), b, side, sharp) for side in (half, -half)]
+            strips += [s for s in found if s is not None]
+        else:
+            (a,) = leaving
+            end = cap(at, (-a[0], -a[1]), half, caps)
+            strips += [end] if end is not None else []
+    return _combined(Region(), strips, cut=False)
+
+
+def _joints(curves: Sequence[Piece], near: float) -> list[tuple[Vec, list[Vec]]]:
+    """The points where open curves end, with the directions in which they leave them."""
+    found: list[tuple[Vec, list[Vec]]] = []
+    for curve in curves:
+        if is_closed(curve):
+            continue
+        (start, end), (dx, dy) = ends(curve), direction(curve, 1.0)
+        for p, way in ((start, direction(curve, 0.0)), (end, (-dx, -dy))):
+            ways = next((w for q, w in found if math.dist(p, q) <= near), None)
+            if ways is None:
+                found.append((p, [way]))
+            else:
+                ways.append(way)
+    return found
+
+
+def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
+    """A region with strips added to it or taken off."""
+    pieces = [p for loop in region.loops for p in loop.pieces]
+    number = len(pieces)
+    pieces += [p for strip in strips for outline in strip for p in outline]
+    for chord in (CHORD, FINE_CHORD):
+        network = Network(pieces, chord)
+        place = number
+        sections = []
+        for strip in strips:
+            polygons = []
+            for outline in strip:
+                uses = [u for k in range(len(outline)) for u in network.uses[place + k]]
+                place += len(outline)
+                if uses:
+                    polygons.append(network.polyline(uses))
+            sections.append(fill(polygons, "EvenOdd"))
+        base, added = section_of(network, region, 0), union(sections)
+        result = trace(network, difference(base, added) if cut else union([base, added])).region
+        if not network.blurred:
+            break
+    return result

@@ -1,0 +1,178 @@
+"""What is wrong with derived outlines and finished corners, as diagnostics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from aidl_lang.diagnostics import Diagnostic, Label
+from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.finishing import Corner, TooLarge, Work, arms_at, corners_of
+from aidl_lang.geometry.notes import at, listed, local, short
+from aidl_lang.solved import Finish, Recipe, SolvedGeometry, SolvedStructure
+
+Leaves = Sequence[tuple[SolvedGeometry, Piece]]
+
+_OPERATION = {"difference": "cut"}
+
+
+def floor(value: float) -> str:
+    """A size for a sentence, rounded down to four digits so that it fits when it is written."""
+    if value <= 0:
+        return "0"
+    step = 10.0 ** (math.floor(math.log10(value)) - 3)
+    return short(math.floor(value / step * (1 + 1e-9)) * step)
+
+
+def _sources(recipe: Recipe) -> list[str]:
+    names = ((g.name, g.type) for group in recipe.operands for g in group)
+    return [kind if name.startswith("source[") else name for name, kind in names]
+
+
+# --- Outlines ------------------------------------------------------------------------------------
+
+
+def nothing_left(g: SolvedGeometry, recipe: Recipe, depth: float | None = None) -> Diagnostic:
+    """An outline of which nothing remains."""
+    sources, hint = _sources(recipe), ""
+    match recipe.kind:
+        case "offset":
+            amount = short(abs(recipe.numbers["distance"]))
+            message = f"nothing is left of `{sources[0]}` when it is moved inwards by {amount}"
+            hint = f"it is gone from {short(depth or 0)} on: choose a smaller distance, or make the outline larger"
+        case "hull":
+            lie = "lie" if len(set(sources)) > 1 else "lies"
+            message = f"`{g.path}` has no area: {listed(sources)} {lie} on one line"
+            hint = "a hull goes around circles, outlines, or three points and more"
+        case "thick":
+            message = f"`{g.path}` has no width: it is {short(recipe.numbers['width'])}"
+            hint = "hold it open with a constraint, or write a width above 0"
+        case "difference":
+            message = f"nothing is left of `{sources[0]}` in `{g.path}`: it is cut away whole"
+            hint = "look at the order: `cut(a, b)` is a without b"
+        case _:
+            message = f"{listed(sources)} have nothing in common, so `{g.path}` is empty"
+            hint = "place them so that they overlap, as they shall in the drawing"
+    return Diagnostic("E0339", message, g.span, "no outline comes of this", hints=(hint,))
+
+
+def not_closed(g: SolvedGeometry, recipe: Recipe, operand: Iterable[SolvedGeometry]) -> Diagnostic:
+    names = [one.name for one in operand]
+    word = _OPERATION.get(recipe.kind, recipe.kind)
+    plural = len(names) > 1
+    return Diagnostic(
+        "E0338",
+        f"{listed(names)} {'enclose' if plural else 'encloses'} nothing, and `{word}` needs an outline",
+        g.span,
+        "the curves are not closed",
+        hints=(
+            "close the outline, sharing the end points",
+            f"for a stroke along open curves: `thick({names[0]}, 4)`",
+        ),
+    )
+
+
+def splits(g: SolvedGeometry, recipe: Recipe, count: int) -> Diagnostic:
+    amount = short(abs(recipe.numbers["distance"]))
+    return Diagnostic(
+        "W0710",
+        f"`{g.path}` falls into {count} pieces: `{_sources(recipe)[0]}` is narrower than twice {amount} in places",
+        g.span,
+        "the offset closes the narrow parts",
+        hints=("choose a smaller distance, or widen the narrow parts, if it should be one piece",),
+    )
+
+
+def all_wall(g: SolvedGeometry, recipe: Recipe, depth: float) -> Diagnostic:
+    return Diagnostic(
+        "W0711",
+        f"the wall of `{g.path}` fills all of `{_sources(recipe)[0]}`: it is {short(recipe.numbers['thickness'])}"
+        " thick",
+        g.span,
+        "no room is left inside",
+        hints=(f"a wall below {short(depth)} leaves room",),
+    )
+
+
+# --- Corners -------------------------------------------------------------------------------------
+
+
+def no_corner(f: Finish, leaves: Leaves, near: float) -> Diagnostic:
+    """For a place where no two curves end, or where they run on smoothly."""
+    if f.at is None:
+        return Diagnostic(
+            "E0335",
+            f"`{f.text}` has no corners",
+            f.span,
+            "nothing to finish",
+            hints=(
+                "a corner is where two of its curves meet at an angle; the end of an edge is named by a point",
+            ),
+        )
+    curves = [c for _, c in leaves]
+    arms = arms_at(curves, f.at, near)
+    corners = sorted(corners_of(curves, near), key=lambda c: math.dist(c.at, f.at or c.at))
+    if len(arms) == 2:
+        message, label = (
+            f"`{f.text}` at {at(f.at)} is no corner: the curves run on smoothly",
+            "nothing to finish",
+        )
+    elif len(arms) > 2:
+        message, label = f"more than two curves end in `{f.text}` at {at(f.at)}", "which two is not clear"
+    else:
+        message, label = f"no two curves end in `{f.text}` at {at(f.at)}", "not a corner"
+    hints = []
+    if corners:
+        hints.append(f"the nearest corners are at {', '.join(at(c.at) for c in corners[:3])}")
+    hints.append("a corner is a point that is the end of two curves: `plate.top_left`, `profile.corner[2]`")
+    return Diagnostic("E0335", message, f.span, label, hints=tuple(hints))
+
+
+def twice(f: Finish, earlier: Finish, corner: Corner, told: SolvedStructure) -> Diagnostic:
+    return Diagnostic(
+        "E0336",
+        f"the corner at {at(corner.at)} of `{told.path}` is finished twice",
+        f.span,
+        f"a second {f.kind}",
+        (Label(earlier.span, f"finished here already, by `{earlier.text}`"),),
+        ("keep one of them; to treat corners differently, name them one by one",),
+    )
+
+
+def too_large(
+    failure: TooLarge, works: Sequence[Work], reasons: Sequence[Finish], leaves: Leaves, told: SolvedStructure
+) -> Diagnostic:
+    """For a size that does not fit its corner, or not beside another one."""
+    f = reasons[next(k for k, w in enumerate(works) if w is failure.work)]
+    what = "radius" if f.kind == "fillet" else "size"
+    corner = (
+        f"`{f.text}`" if f.at is not None else f"the corner at {at(failure.work.corner.at)} of `{f.text}`"
+    )
+    size = short(max(failure.work.sizes))
+    if failure.other is None:
+        edges = listed([local(told, leaves[arm.number][0]) for arm in failure.work.corner.arms])
+        if failure.work.corner.is_cusp:
+            message, hint = (
+                f"{corner} has no {f.kind}: {edges} meet there without an angle",
+                "let them meet at an angle",
+            )
+        else:
+            message = f"the {f.kind} of {corner} does not fit: {what} {size}, and {edges} have room for {floor(failure.largest)}"
+            hint = f"the largest {what} that fits is {floor(failure.largest)}"
+        return Diagnostic("E0518", message, f.span, "too large", hints=(hint,))
+    other = reasons[next(k for k, w in enumerate(works) if w is failure.other)]
+    edge = local(told, leaves[failure.number][0])
+    a, b = at(failure.other.corner.at), at(failure.work.corner.at)
+    together = floor(failure.together)
+    hint = f"with the same {what} at both ends at most {together} fits"
+    if max(failure.other.sizes) != max(failure.work.sizes):
+        hint = f"the largest {what} at {b} that fits beside the other is {floor(failure.largest)}"
+    labels = (Label(other.span, "the other one"),) if other.span != f.span else ()
+    return Diagnostic(
+        "E0518",
+        f"the {f.kind} at {b} runs into the {other.kind} at {a} on `{edge}`: {what} {size} is too large",
+        f.span,
+        "too large",
+        labels,
+        (hint,),
+    )

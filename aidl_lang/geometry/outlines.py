@@ -1,0 +1,375 @@
+"""Outlines made of others, and finished corners: what was recorded while building, worked out in numbers.
+
+The model that comes out has the curves of every derived outline as its parts, and beside its geometry, whose
+corners stay sharp, the geometry as it is drawn. What an outline is made of is taken as it is drawn.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.geometry import outline_notes as notes
+from aidl_lang.geometry.boolean import common, united, without
+from aidl_lang.geometry.clipping import clipped
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import bounds
+from aidl_lang.geometry.faces import Shape, own_faces, union_of
+from aidl_lang.geometry.finishing import Corner, Result, Work, arms_at, corners_of, finish
+from aidl_lang.geometry.hulls import hull
+from aidl_lang.geometry.measures import area
+from aidl_lang.geometry.network import CHORD, FINE_CHORD, Network, union_bounds
+from aidl_lang.geometry.offsets import NEAR, offset, thick
+from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.trace import trace
+from aidl_lang.solved import Box, Finish, Recipe, Scalar, SolvedGeometry, SolvedModel, SolvedStructure
+
+_SAME_AREA = 1e-6
+"""Relative difference of areas up to which a shape of the library is what exact geometry gives."""
+_HALVINGS = 24
+
+
+def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
+    """The model with its derived outlines and finished corners, and what is wrong with them."""
+    structures = list(model.root.walk())
+    has_recipes = any(g.recipe for s in structures for top in s.geometry for g in _within(top))
+    if not has_recipes and not any(s.finishes for s in structures):
+        return model, []
+    outliner = _Outliner(tuple(f for s in structures for f in s.finishes))
+    root = outliner.structure(model.root)
+    return replace(model, root=root), list(dict.fromkeys(outliner.notes))
+
+
+def _within(g: SolvedGeometry) -> Iterator[SolvedGeometry]:
+    yield g
+    for part in g.parts:
+        yield from _within(part)
+
+
+def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:
+    """The primitives of a geometry that is drawn, with their curves."""
+    if g.construction:
+        return
+    if g.curve is not None:
+        yield g, g.curve
+    for part in g.parts:
+        yield from _leaves(part)
+
+
+def _shown(g: SolvedGeometry) -> SolvedGeometry:
+    return replace(g, construction=False)
+
+
+@dataclass
+class _Outliner:
+    """`made` keeps by path what was worked out already: outlines as they are drawn, before finishing."""
+
+    finishes: tuple[Finish, ...]
+    notes: list[Diagnostic] = field(default_factory=list)
+    made: dict[str, SolvedGeometry] = field(default_factory=dict)
+    carried_out: dict[Finish, list[Vec]] = field(default_factory=dict)
+
+    def structure(self, s: SolvedStructure) -> SolvedStructure:
+        geometry = tuple(map(self._completed, s.geometry))
+        children = tuple(map(self.structure, s.structures))
+        self.carried_out = {}
+        finished = self._finished(tuple(map(self._drawn, geometry)), s.finishes, s)
+        for g in geometry:
+            if g.construction:
+                self._finished([_shown(self._drawn(g))], s.finishes, s)
+        return replace(
+            s,
+            geometry=geometry,
+            structures=children,
+            box=_box(s, geometry, children),
+            finishes=tuple(replace(f, corners=tuple(self.carried_out.get(f, ()))) for f in s.finishes),
+            finished=tuple(finished),
+        )
+
+    # --- Outlines made of others -------------------------------------------------------------------
+
+    def _completed(self, g: SolvedGeometry) -> SolvedGeometry:
+        """With the curves of derived outlines as parts, its own or those of its parts."""
+        if g.recipe is None or g.curve is not None or any(True for _ in _leaves(_shown(g))):
+            return replace(g, parts=tuple(map(self._completed, g.parts)))
+        exact = self._exact(g, g.recipe)
+        return replace(exact, parts=(*map(self._completed, g.parts), *exact.parts))
+
+    def _drawn(self, g: SolvedGeometry) -> SolvedGeometry:
+        """As it is drawn: of a shape that the library made by an operation, what exact geometry gives, where
+        that differs (the source has fillets, or less is left than the formula says).
+        """
+        if g.recipe is None or not any(True for _ in _leaves(_shown(g))):
+            return replace(g, parts=tuple(map(self._drawn, g.parts)))
+        exact = self._exact(g, g.recipe)
+        regions = [_region([_shown(one)]) for one in (g, exact)]
+        areas = [area(r) for r in regions]
+        return g if abs(areas[0] - areas[1]) <= _SAME_AREA * abs(areas[1]) else exact
+
+    def _exact(self, g: SolvedGeometry, recipe: Recipe) -> SolvedGeometry:
+        if g.path not in self.made:
+            curves = self._curves(g, recipe)
+            parts = tuple(_named(f"edges[{k}]", g, c) for k, c in enumerate(curves))
+            self.made[g.path] = replace(g, parts=parts, curve=None)
+        return replace(self.made[g.path], construction=g.construction)
+
+    def _curves(self, g: SolvedGeometry, recipe: Recipe) -> list[Piece]:
+        groups = [self._operand(group) for group in recipe.operands]
+        curves = [[c for one in group for _, c in _leaves(one)] for group in groups]
+        match recipe.kind:
+            case "hull":
+                points = [
+                    p for group in groups for one in group if isinstance(p := one.values.get("at"), tuple)
+                ]
+                region = hull([*curves[0], *(Line(p, p) for p in points)])  # type: ignore[arg-type]
+            case "thick":
+                width, words = recipe.numbers["width"], recipe.words
+                region = (
+                    Region()
+                    if not width > 0
+                    else (thick(curves[0], width, words["caps"], words["joins"] == "sharp"))
+                )
+            case _:
+                return self._from_regions(g, recipe, groups, curves)
+        if not region:
+            self.notes.append(notes.nothing_left(g, recipe))
+        return _pieces(region)
+
+    def _operand(self, group: Iterable[SolvedGeometry]) -> list[SolvedGeometry]:
+        """What an outline is made of, as it is drawn."""
+        shown = [_shown(self._drawn(self._completed(g))) for g in group]
+        return self._finished(shown, self.finishes)
+
+    def _from_regions(
+        self,
+        g: SolvedGeometry,
+        recipe: Recipe,
+        groups: Sequence[Sequence[SolvedGeometry]],
+        curves: Sequence[Sequence[Piece]],
+    ) -> list[Piece]:
+        regions = [_region(group) for group in groups]
+        if recipe.kind == "clip" and not regions[0] and regions[1]:
+            lines = clipped(curves[0], regions[1])
+            if not lines:
+                self.notes.append(notes.nothing_left(g, recipe))
+            return lines
+        if empty := [r for r, region in zip(recipe.operands, regions, strict=True) if not region]:
+            self.notes.append(notes.not_closed(g, recipe, empty[0]))
+            return []
+        return self._combined(g, recipe, regions)
+
+    def _combined(self, g: SolvedGeometry, recipe: Recipe, regions: Sequence[Region]) -> list[Piece]:
+        sharp = recipe.words.get("corners") != "round"
+        region = regions[0]
+        match recipe.kind:
+            case "offset":
+                result = offset(region, recipe.numbers["distance"], sharp)
+                if len(result.faces) > len(region.faces):
+                    self.notes.append(notes.splits(g, recipe, len(result.faces)))
+            case "shell":
+                wall = max(recipe.numbers["thickness"], 0.0)
+                inner = offset(region, -wall, sharp)
+                result = without(region, inner) if inner else region
+                if not inner:
+                    self.notes.append(notes.all_wall(g, recipe, _deepest(region, wall)))
+            case "union":
+                result = region
+                for other in regions[1:]:
+                    result = united(result, other)
+            case "difference":
+                result = region
+                for other in regions[1:]:
+                    result = without(result, other)
+            case _:
+                result = region
+                for other in regions[1:]:
+                    result = common(result, other)
+        if not result:
+            depth = _deepest(region, -recipe.numbers["distance"]) if recipe.kind == "offset" else None
+            self.notes.append(notes.nothing_left(g, recipe, depth))
+        return _pieces(result)
+
+    # --- Finished corners --------------------------------------------------------------------------
+
+    def _finished(
+        self,
+        geometry: Sequence[SolvedGeometry],
+        finishes: Sequence[Finish],
+        told: SolvedStructure | None = None,
+    ) -> list[SolvedGeometry]:
+        """The geometry with all finishes that are about its corners. `told`: the structure whose program hears
+        of those that do not fit; elsewhere they are passed over.
+        """
+        leaves = [leaf for g in geometry for leaf in _leaves(g)]
+        mine = [f for f in finishes if not f.of or any(_is_of(g.path, f.of) for g, _ in leaves)]
+        if not mine:
+            return list(geometry)
+        near = NEAR * _extent([c for _, c in leaves])
+        works: list[Work] = []
+        reasons: list[Finish] = []
+        for f in mine:
+            corners = _corners(f, leaves, near)
+            if not corners and told is not None:
+                self.notes.append(notes.no_corner(f, leaves, near))
+            for corner in corners:
+                earlier = next(
+                    (k for k, w in enumerate(works) if math.dist(w.corner.at, corner.at) <= near), None
+                )
+                if earlier is not None:
+                    self.notes += [notes.twice(f, reasons[earlier], corner, told)] if told else []
+                elif max(f.sizes) > 0:
+                    works.append(Work(f.kind, corner, (f.sizes[0], f.sizes[-1])))
+                    reasons.append(f)
+        result = finish([c for _, c in leaves], works)
+        if told is not None:
+            for failure in result.failures:
+                self.notes.append(notes.too_large(failure, works, reasons, leaves, told))
+            for made in result.finished:
+                reason = reasons[works.index(made.work)]
+                self.carried_out.setdefault(reason, []).append(made.work.corner.at)
+        return _rebuilt(geometry, leaves, result) if result.finished else list(geometry)
+
+
+def _is_of(path: str, of: Iterable[str]) -> bool:
+    """Whether a path is one of some, or leads on from it."""
+    return any(path == p or path.startswith((f"{p}.", f"{p}[")) for p in of)
+
+
+def _corners(f: Finish, leaves: Sequence[tuple[SolvedGeometry, Piece]], near: float) -> list[Corner]:
+    """The corners that a finish is about, among these curves."""
+    own = [number for number, (g, _) in enumerate(leaves) if _is_of(g.path, f.of)]
+    if f.at is None:
+        found = corners_of([leaves[n][1] for n in own], near)
+        return [_renumbered(c, own) for c in found]
+    for numbers in (own, list(range(len(leaves)))):
+        arms = arms_at([leaves[n][1] for n in numbers], f.at, near)
+        if len(arms) == 2:
+            corner = _renumbered(Corner(f.at, (arms[0], arms[1])), numbers)
+            return [] if corner.is_smooth else [corner]
+    return []
+
+
+def _renumbered(corner: Corner, numbers: Sequence[int]) -> Corner:
+    a, b = (replace(arm, number=numbers[arm.number]) for arm in corner.arms)
+    return Corner(corner.at, (a, b))
+
+
+def _rebuilt(
+    geometry: Sequence[SolvedGeometry], leaves: Sequence[tuple[SolvedGeometry, Piece]], result: Result
+) -> list[SolvedGeometry]:
+    """The geometry with its new curves; a new one belongs to what both its neighbours belong to."""
+    changed = {g.path: c for (g, old), c in zip(leaves, result.curves, strict=True) if c is not old}
+    added: dict[str, list[SolvedGeometry]] = {}
+    free: list[SolvedGeometry] = []
+    tops = [next(t for t in geometry if _is_of(g.path, [t.path])) for g, _ in leaves]
+    for made in result.finished:
+        a, b = (tops[arm.number] for arm in made.work.corner.arms)
+        if a is b:
+            own = added.setdefault(a.path, [])
+            own.append(_named(f"{made.work.kind}[{len(own)}]", a, made.piece))
+        else:
+            free.append(_named(f"{made.work.kind}[{len(free)}]", a, made.piece, a.path.rpartition(".")[0]))
+
+    def renewed(g: SolvedGeometry) -> SolvedGeometry:
+        curve = changed[g.path] if g.path in changed else g.curve
+        return replace(g, curve=curve, parts=(*map(renewed, g.parts), *added.get(g.path, ())))
+
+    return [*map(renewed, geometry), *free]
+
+
+# --- Small things ----------------------------------------------------------------------------------
+
+
+def _region(geometry: Sequence[SolvedGeometry]) -> Region:
+    """What some geometry encloses together."""
+    curves: list[Piece] = []
+    shapes = []
+    for g in geometry:
+        leaves = []
+        for leaf, curve in _leaves(g):
+            leaves.append((leaf, len(curves)))
+            curves.append(curve)
+        if leaves:
+            shapes.append(Shape(g, tuple(leaves)))
+    result = Region()
+    for chord in (CHORD, FINE_CHORD) if curves else ():
+        network = Network(curves, chord)
+        result = trace(network, union_of(own_faces(network, shapes).faces)).region
+        if not network.blurred:
+            break
+    return result
+
+
+def _pieces(region: Region) -> list[Piece]:
+    return [p for loop in region.loops for p in loop.pieces]
+
+
+def _extent(curves: Sequence[Piece]) -> float:
+    left, bottom, right, top = union_bounds([bounds(c) for c in curves])
+    return max(right - left, top - bottom) or 1.0
+
+
+def _deepest(region: Region, too_deep: float) -> float:
+    """How far an outline can be moved inwards before nothing is left, to about seven digits."""
+    low, high = 0.0, too_deep
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if offset(region, -middle) else (low, middle)
+    return low
+
+
+def _box(
+    s: SolvedStructure, geometry: Iterable[SolvedGeometry], children: Iterable[SolvedStructure]
+) -> Box | None:
+    """The box with what was derived since it was read out."""
+    boxes = [s.box] if s.box is not None else []
+    boxes += [Box(*bounds(c)) for g in geometry for c in g.curves()]
+    boxes += [c.box for c in children if c.box is not None and c.kind != "hole"]
+    if not boxes:
+        return None
+    return Box(
+        min(b.left for b in boxes),
+        min(b.bottom for b in boxes),
+        max(b.right for b in boxes),
+        max(b.top for b in boxes),
+    )
+
+
+def _named(name: str, of: SolvedGeometry, curve: Piece, around: str = "") -> SolvedGeometry:
+    """A curve as a geometry: a part of another, or beside it in a structure."""
+    kind, values = _described(curve)
+    path = f"{around or of.path}.{name}"
+    return SolvedGeometry(name, path, kind, values, curve, (), False, of.span)
+
+
+def _described(curve: Piece) -> tuple[str, dict[str, Scalar | Vec | tuple[Vec, ...]]]:
+    """The type and the fields of a curve."""
+    match curve:
+        case Line(start, end):
+            return "line", {"start": start, "end": end}
+        case Circle(center, radius):
+            return "circle", {"center": center, "radius": radius}
+        case Arc(center, radius, start, end, sweep):
+            return "arc", {
+                "center": center,
+                "radius": radius,
+                "start": start,
+                "end": end,
+                "clockwise": sweep < 0,
+            }
+        case Bezier(p0, p1, p2, p3):
+            return "bezier", {"points": (p0, p1, p2, p3)}
+        case Ellipse(center, rx, ry, angle):
+            return "ellipse", {"center": center, "rx": rx, "ry": ry, "angle": math.degrees(angle)}
+        case EllipseArc(center, rx, ry, angle, start, end, _, sweep):
+            return "ellipse_arc", {
+                "center": center,
+                "rx": rx,
+                "ry": ry,
+                "angle": math.degrees(angle),
+                "start": start,
+                "end": end,
+                "clockwise": sweep < 0,
+            }

@@ -1,0 +1,174 @@
+"""The pieces that offsets are put together from: strips along curves, wedges at corners, caps at ends.
+
+What lies within a distance of a curve is swept by its normals. A point is nearest to the inside of a curve,
+where the normal leads to it, or to a corner; so strips along all curves and wedges at all corners cover exactly
+the points within the distance (but for caps). A strip need not reach beyond the centre of curvature, where
+other points of the curve are nearer. Each strip is bounded by exact curves, except beside Bézier curves and
+ellipses: their parallel curves are fitted by cubics to `FIT` of the distance.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import derivative, ends, part, point, reverse, second_derivative
+from aidl_lang.geometry.finishing import direction
+
+Outline = tuple[Piece, ...]
+Strip = tuple[Outline, ...]
+"""One closed outline, or an outer and an inner one."""
+
+FIT = 1e-5
+"""Largest error of a fitted parallel curve, relative to its distance plus the extent of the curve."""
+_DEEPEST = 6
+_SHARPEST = math.radians(168.5)
+"""Corners that turn further are rounded: their point would stand out more than ten times the distance."""
+
+
+def beside(curve: Piece, left: float) -> Iterator[Strip]:
+    """What lies within a distance to the left of a curve (to its right for a negative one)."""
+    if isinstance(curve, Line):
+        yield (_between(curve, _shifted(curve, left)),)
+    elif isinstance(curve, Circle):
+        other = curve.radius - left
+        yield ((curve,), (Circle(curve.center, other),)) if other > 0 else ((curve,),)
+    elif isinstance(curve, Arc):
+        yield (_beside_arc(curve, left),)
+    else:
+        yield from _beside_free(curve, left)
+
+
+def _between(curve: Piece, other: Piece) -> Outline:
+    """From a curve to one beside it and back."""
+    (a, b), (c, d) = ends(curve), ends(other)
+    return tuple(
+        p
+        for p in (curve, Line(b, d), reverse(other), Line(c, a))
+        if not isinstance(p, Line) or p.start != p.end
+    )
+
+
+def _shifted(line: Line, left: float) -> Line:
+    dx, dy = direction(line, 0.0)
+    (x0, y0), (x1, y1) = line.start, line.end
+    return Line((x0 - left * dy, y0 + left * dx), (x1 - left * dy, y1 + left * dx))
+
+
+def _beside_arc(arc: Arc, left: float) -> Outline:
+    radius = arc.radius - math.copysign(left, left * arc.sweep)
+    if radius <= 0:
+        return (arc, Line(arc.end, arc.center), Line(arc.center, arc.start))
+    start, end = (_scaled(arc, p, radius) for p in (arc.start, arc.end))
+    return _between(arc, Arc(arc.center, radius, start, end, arc.sweep))
+
+
+def _scaled(arc: Arc, p: Vec, radius: float) -> Vec:
+    share = radius / arc.radius
+    return arc.center[0] + share * (p[0] - arc.center[0]), arc.center[1] + share * (p[1] - arc.center[1])
+
+
+# --- Curves whose parallels are no curves of their kind ------------------------------------------------
+
+
+def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
+    """In parts short enough to fit; where the curve bends closer than the distance, discs instead."""
+    scale = (
+        abs(left)
+        + math.dist(ends(curve)[0], point(curve, 0.5))
+        + math.dist(point(curve, 0.5), ends(curve)[1])
+    )
+    stack = [(k / 8, (k + 1) / 8, 0) for k in reversed(range(8))]
+    while stack:
+        t0, t1, depth = stack.pop()
+        fitted = _fitted(curve, t0, t1, left)
+        if fitted is not None and _error(curve, t0, t1, left, fitted) <= FIT * scale:
+            yield (_between(part(curve, t0, t1, point(curve, t0), point(curve, t1)), fitted),)
+        elif depth < _DEEPEST and (fitted is not None or _bends_both_ways(curve, t0, t1, left)):
+            middle = (t0 + t1) / 2
+            stack += [(middle, t1, depth + 1), (t0, middle, depth + 1)]
+        else:
+            yield from _discs(curve, t0, t1, left)
+
+
+def _stretch(curve: Piece, t: float, left: float) -> float:
+    """How much longer a step on the parallel curve is than on the curve itself: 1 - left · curvature."""
+    (dx, dy), (ax, ay) = derivative(curve, t), second_derivative(curve, t)
+    speed = math.hypot(dx, dy)
+    return 1 - left * (dx * ay - dy * ax) / speed**3 if speed else 1.0
+
+
+def _bends_both_ways(curve: Piece, t0: float, t1: float, left: float) -> bool:
+    """Whether only some of a part bends closer than the distance."""
+    return any(_stretch(curve, t0 + (t1 - t0) * k / 8, left) > 0 for k in range(9))
+
+
+def _fitted(curve: Piece, t0: float, t1: float, left: float) -> Bezier | None:
+    """The cubic with the ends and derivatives of the parallel curve; None if that turns back on the part."""
+    if any(_stretch(curve, t0 + (t1 - t0) * k / 8, left) <= 0 for k in range(9)):
+        return None
+    p, q = _parallel(curve, t0, left), _parallel(curve, t1, left)
+    (ax, ay), (bx, by) = derivative(curve, t0), derivative(curve, t1)
+    u, v = (_stretch(curve, t, left) * (t1 - t0) / 3 for t in (t0, t1))
+    return Bezier(p, (p[0] + u * ax, p[1] + u * ay), (q[0] - v * bx, q[1] - v * by), q)
+
+
+def _parallel(curve: Piece, t: float, left: float) -> Vec:
+    (x, y), (dx, dy) = point(curve, t), direction(curve, t)
+    return x - left * dy, y + left * dx
+
+
+def _error(curve: Piece, t0: float, t1: float, left: float, fitted: Bezier) -> float:
+    """How far the fitted curve strays, measured along the normals of the parallel one."""
+    worst = 0.0
+    for s in (0.2, 0.35, 0.5, 0.65, 0.8):
+        t = t0 + s * (t1 - t0)
+        (px, py), (qx, qy), (dx, dy) = _parallel(curve, t, left), point(fitted, s), direction(curve, t)
+        worst = max(worst, abs((qx - px) * dy - (qy - py) * dx))
+    return worst
+
+
+def _discs(curve: Piece, t0: float, t1: float, left: float) -> Iterator[Strip]:
+    for k in range(5):
+        yield ((Circle(point(curve, t0 + (t1 - t0) * k / 4), abs(left)),),)
+
+
+# --- Corners and ends ----------------------------------------------------------------------------
+
+
+def wedge(at: Vec, arriving: Vec, leaving: Vec, left: float, sharp: bool) -> Strip | None:
+    """What a corner adds to the strips on its outer side: nothing if that is not the side asked for.
+
+    `arriving` and `leaving` are unit directions.
+    """
+    across = arriving[0] * leaving[1] - arriving[1] * leaving[0]
+    along = arriving[0] * leaving[0] + arriving[1] * leaving[1]
+    turn = math.atan2(across, along)
+    if abs(turn) < 1e-9 or (turn * left >= 0 and abs(turn) < math.pi - 1e-9):
+        return None
+    p = at[0] - left * arriving[1], at[1] + left * arriving[0]
+    q = at[0] - left * leaving[1], at[1] + left * leaving[0]
+    if sharp and abs(turn) < _SHARPEST:
+        reach = math.tan(turn / 2) * -left
+        tip = p[0] + reach * arriving[0], p[1] + reach * arriving[1]
+        return ((Line(at, p), Line(p, tip), Line(tip, q), Line(q, at)),)
+    sweep = -math.copysign(abs(turn), left)
+    return ((Line(at, p), Arc(at, abs(left), p, q, sweep), Line(q, at)),)
+
+
+def cap(at: Vec, outward: Vec, half: float, form: str) -> Strip | None:
+    """What an end adds to the strips on both sides of its curve: `round`, `square`, or nothing for `butt`."""
+    p = at[0] + half * outward[1], at[1] - half * outward[0]
+    q = at[0] - half * outward[1], at[1] + half * outward[0]
+    if form == "butt":
+        return None
+    if form == "round":
+        return ((Arc(at, half, p, q, math.pi), Line(q, p)),)
+    x, y = half * outward[0], half * outward[1]
+    a, b = (p[0] + x, p[1] + y), (q[0] + x, q[1] + y)
+    return ((Line(p, a), Line(a, b), Line(b, q), Line(q, p)),)
+
+
+def disc(at: Vec, radius: float) -> Strip:
+    return ((Circle(at, radius),),)

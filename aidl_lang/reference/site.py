@@ -1,0 +1,41 @@
+"""What is generated in a checkout: the pages below `docs/reference`, the pictures, the guide, `llms.txt`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from aidl_lang.reference.collect import reference
+from aidl_lang.reference.guide import guide
+from aidl_lang.reference.llms import llms
+from aidl_lang.reference.pages import pages, pictures
+
+_FOLDER = "docs/reference"
+
+
+def texts(root: Path) -> dict[str, str]:
+    """Every generated text by its path below the root of a checkout."""
+    found = {f"{_FOLDER}/{path}": text for path, text in pages(reference()).items()}
+    return {**found, "docs/guide.md": guide(), "llms.txt": llms(root)}
+
+
+def drawn() -> dict[str, bytes]:
+    """Every generated picture by its path below the root."""
+    return {f"{_FOLDER}/{path}": data for path, data in pictures(reference()).items()}
+
+
+def strays(root: Path, known: set[str]) -> list[str]:
+    """Files among the generated ones that nothing generates any more."""
+    files = (path for path in (root / _FOLDER).rglob("*") if path.is_file())
+    return sorted(str(p) for path in files if (p := path.relative_to(root)).as_posix() not in known)
+
+
+def write(root: Path) -> None:
+    """Bring the generated files up to date. A file that is right already is not touched."""
+    current = {path: text.encode() for path, text in texts(root).items()} | drawn()
+    for path, data in current.items():
+        file = root / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        if not file.exists() or file.read_bytes() != data:
+            file.write_bytes(data)
+    for stray in strays(root, set(current)):
+        (root / stray).unlink()

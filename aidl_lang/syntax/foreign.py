@@ -1,0 +1,456 @@
+"""Whole constructs of other languages: their loops, blocks, functions, points and imports."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.source import SourceFile, Span
+from aidl_lang.syntax.tokens import END, UNKNOWN, Token, tokenize
+from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
+
+# --- Loops and blocks -----------------------------------------------------------------------------
+
+_LOOP = re.compile(
+    r"for\s*(?P<open>\()?\s*(?:(?:let|var|const|int|auto)\s+)?(?P<i>[^\W\d]\w*)\s*"
+    r"(?:=\s*(?P<a>[^;:,\n{}\[\]]+?)\s*;\s*(?P=i)\s*(?P<op><=?|!=)\s*(?P<b>[^;\n{}]+?)\s*;\s*"
+    r"(?:(?P=i)\s*\+\+|\+\+\s*(?P=i)|(?P=i)\s*\+=\s*(?P<s>[^;\n{})]+?)|(?P=i)\s*=\s*(?P=i)\s*\+\s*(?P<s2>[^;\n{})]+?))"
+    r"|=\s*\[\s*(?P<a3>[^;:,\n{}\[\]]+?)\s*:\s*(?:(?P<s3>[^;:,\n{}\[\]]+?)\s*:\s*)?(?P<b3>[^;:,\n{}\[\]]+?)\s*\]"
+    r"|(?:=|from)\s*(?P<a4>[^;:,\n{}\[\]]+?)\s+to\s+(?P<b4>[^;:,\n{}\[\]]+?)"
+    r"|(?P<word>of|in|=)\s*(?P<list>[^;:\n{}]+?))"
+    r"\s*(?P<close>\))?\s*(?=[{:\n]|$)"
+)
+
+
+def foreign_loop(t: Trouble) -> Problem | None:
+    """`for (i = 0; i < 4; i++)`, `for i = [0:3]`, `for (i in list)`, `for i of list`, `for i = 0 to 3`"""
+    if t.first.kind != "for" or t.between:
+        return None
+    found = _LOOP.match(t.source.text, t.first.start)
+    if found is None or found.end() < t.token.start or bool(found["open"]) != bool(found["close"]):
+        return None
+    if found["word"] == "in" and not found["open"]:
+        return None  # as it should be: the trouble lies elsewhere
+    start, end = found.start(), found.end("close") if found["close"] else _last(found)
+    if found["list"]:
+        inner, text = _slice(t, *found.span("list")), found["list"]
+    else:
+        low, high = ("a", "b") if found["a"] else ("a3", "b3") if found["a3"] else ("a4", "b4")
+        sign = "..<" if found["op"] in ("<", "!=") else ".."
+        dots = Token(sign, sign, *found.span(high))
+        inner = [*_slice(t, *found.span(low)), dots, *_slice(t, *found.span(high))]
+        text = f"{found[low]}{sign}{found[high]}"
+        by = next((name for name in ("s", "s2", "s3") if found[name]), None)
+        if by:
+            inner += [Token("step", "step", *found.span(by)), *_slice(t, *found.span(by))]
+            text += f" step {found[by]}"
+    right = f"for {found['i']} in {text}"
+    head = [Token("for", "for", start, start + 3), Token("NAME", found["i"], *found.span("i"))]
+    head.append(Token("in", "in", *found.span("i")))
+    stop = next(n for n, token in enumerate(t.tokens) if token.start >= end)
+    span = Span(t.source, start, end)
+    return Problem(
+        Diagnostic(
+            "E0113",
+            f"a loop is written `{right} {{ … }}`",
+            span,
+            fix=replaced(f"write `{right}`", span, right),
+        ),
+        Repair(t.begin, stop, (*head, *inner)),
+    )
+
+
+def _last(found: re.Match[str]) -> int:
+    return (
+        max(found.end(name) for name in ("list", "b4"))
+        if found["list"] or found["b4"]
+        else found.end("b3") + 1
+    )
+
+
+def _slice(t: Trouble, start: int, end: int) -> list[Token]:
+    return [token for token in t.tokens if token.start >= start and token.end <= end]
+
+
+def indented_block(t: Trouble) -> Problem | None:
+    """`for i in 0..3:` and an indented block, as in Python"""
+    if (
+        t.between
+        or t.open
+        or t.token.kind != ":"
+        or not t.accepts("{", "}")
+        or t.following.kind in ("{", END)
+    ):
+        return None
+    text, indentation = t.source.text, t.indentation(t.first.start)
+    line_end = _line_end(text, t.token.start)
+    one_line = t.following.start < line_end
+    last = t.position
+    while (token := t.tokens[last + 1]).kind != END:
+        if (token.start > line_end) if one_line else (t.indentation(token.start) <= indentation):
+            break
+        last += 1
+    if last == t.position:
+        return None
+    end = t.tokens[last].end
+    close = Edit(Span(t.source, end, end), " }")
+    if not one_line:
+        end = _line_end(text, end)
+        close = Edit(Span(t.source, end, end), "\n" + " " * indentation + "}")
+    braces = (
+        Token("{", "{", t.token.start, t.token.end),
+        Token("}", "}", t.tokens[last].end, t.tokens[last].end),
+    )
+    opening = Edit(Span(t.source, t.gap().start, t.token.end), " {")
+    return Problem(
+        Diagnostic(
+            "E0121",
+            f"the block of `{t.first.text}` stands in braces, not behind a colon",
+            t.span(),
+            "`{` belongs here, and `}` at the end of the block",
+            fix=Fix("put the block in braces", (opening, close)),
+        ),
+        Repair(t.position, last + 1, (braces[0], *t.tokens[t.position + 1 : last + 1], braces[1])),
+    )
+
+
+def _line_end(text: str, offset: int) -> int:
+    end = text.find("\n", offset)
+    return len(text) if end < 0 else end
+
+
+# --- Functions ------------------------------------------------------------------------------------
+
+
+def understood(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
+    """Rewrite what is plain from its tokens alone, and would be read as something else: functions with a
+    body, `new`, and texts marked as in Python.
+    """
+    found: list[Diagnostic] = []
+    for at in range(len(tokens) - 2, -1, -1):  # from the end, so that what is before keeps its number
+        one, two = tokens[at], tokens[at + 1]
+        problem = None
+        if one.text in _FUNCTION_WORDS and two.kind == "CALL":
+            problem = _function_with_body(source, tokens, at)
+        elif one.text == "new" and one.kind == "NAME" and two.kind == "CALL":
+            problem = _left_out(source, one, two, "things are made without `new`")
+        elif (
+            one.text in ("f", "r", "u", "b")
+            and one.kind == "NAME"
+            and two.kind == "STRING"
+            and one.end == two.start
+        ):
+            hint = 'texts join with `+`: `"M" + str(size)`' if one.text == "f" else ""
+            problem = _left_out(source, one, two, f"a text has no `{one.text}` before it", hint)
+        if problem is not None and problem.repair is not None:
+            tokens[at : at + problem.repair.stop] = problem.repair.tokens
+            found.append(problem.diagnostic)
+    return found[::-1]
+
+
+def _left_out(source: SourceFile, word: Token, after: Token, message: str, hint: str = "") -> Problem:
+    span = Span(source, word.start, word.end)
+    fix = replaced(f"leave out `{word.text}`", Span(source, word.start, after.start), "")
+    return Problem(Diagnostic("E0113", message, span, hints=(hint,) if hint else (), fix=fix), Repair(0, 1))
+
+
+_FUNCTION_WORDS = ("def", "function", "func", "fun", "fn")
+
+
+def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int) -> Problem | None:
+    """`def f(x): return 2 * x`, `function f(x) { return 2 * x }`, `fn f(x) { 2 * x }`"""
+    close = _closing(tokens, begin + 1)
+    at = close + 1
+    if close < 0 or tokens[at].kind not in (":", "{"):
+        return None
+    in_braces = tokens[at].kind == "{"
+    first = at + 2 if tokens[at + 1].text == "return" else at + 1
+    if tokens[min(first, len(tokens) - 1)].kind == END:
+        return None
+    stop, line_end = first, _line_end(source.text, tokens[first].start)
+    while tokens[stop].kind not in (END, "}", ";", "=") and tokens[stop].start < line_end:
+        stop += 1
+    after = stop + (tokens[stop].kind == ";")
+    if stop == first or tokens[stop].kind == "=" or (in_braces and tokens[after].kind != "}"):
+        return None
+    value = tokens[first:stop]
+    head = Span(source, tokens[begin + 1].start, tokens[close].end).text
+    right = f"fn {head} = {Span(source, value[0].start, value[-1].end).text}"
+    span = Span(source, tokens[begin].start, tokens[after].end if in_braces else value[-1].end)
+    written = (
+        Token("fn", "fn", tokens[begin].start, tokens[begin].end),
+        *tokens[begin + 1 : close + 1],
+        Token("=", "=", tokens[at].start, tokens[at].end),
+        *value,
+    )
+    return Problem(
+        Diagnostic(
+            "E0113", f"a function is written `{right}`", span, fix=replaced("write it so", span, right)
+        ),
+        Repair(0, (after + 1 if in_braces else stop) - begin, written),
+    )
+
+
+def arrow_function(t: Trouble) -> Problem | None:
+    """`let f = (x) => 2 * x`"""
+    at = t.position if t.token.kind == "=" else t.position - 1
+    if t.tokens[at].kind != "=" or t.tokens[at + 1].kind != ">" or t.tokens[at].end != t.tokens[at + 1].start:
+        return None
+    statement = t.tokens[t.begin : at]
+    names = [token.text for token in statement if token.kind == "NAME"]
+    shape = [token.kind for token in statement if token.kind not in ("let", ",")]
+    if shape[:2] != ["NAME", "="] or any(k not in ("NAME", "(", ")") for k in shape[2:]):
+        return None
+    stop = at + 2
+    line_end = _line_end(t.source.text, t.tokens[at].start)
+    while t.tokens[stop].kind not in (END, ";", "}") and t.tokens[stop].start < line_end:
+        stop += 1
+    if stop == at + 2:
+        return None
+    value = t.tokens[at + 2 : stop]
+    right = f"fn {names[0]}({', '.join(names[1:])}) = {Span(t.source, value[0].start, value[-1].end).text}"
+    span = Span(t.source, t.first.start, value[-1].end)
+    return Problem(
+        Diagnostic(
+            "E0113", f"a function is written `{right}`", span, fix=replaced("write it so", span, right)
+        ),
+        Repair(t.begin, stop, tuple(_function(names, statement, value, span))),
+    )
+
+
+def _function(names: Sequence[str], head: Sequence[Token], value: Sequence[Token], span: Span) -> list[Token]:
+    place = span.start, span.start
+    called, *parameters = (token for token in head if token.kind == "NAME")
+    tokens = [Token("fn", "fn", *place), Token("CALL", names[0] + "(", called.start, called.end)]
+    for i, parameter in enumerate(parameters):
+        tokens += [Token(",", ",", *place), parameter] if i else [parameter]
+    return [*tokens, Token(")", ")", *place), Token("=", "=", *place), *value]
+
+
+def _closing(tokens: Sequence[Token], opening: int) -> int:
+    """The number of the bracket that closes one; -1 if none does."""
+    depth = 0
+    for n in range(opening, len(tokens)):
+        depth += (tokens[n].kind in ("CALL", "(", "[", "{")) - (tokens[n].kind in (")", "]", "}"))
+        if depth == 0:
+            return n
+    return -1
+
+
+# --- Values ---------------------------------------------------------------------------------------
+
+
+def object_literal(t: Trouble) -> Problem | None:
+    """`{x: 1, y: 2}`"""
+    if t.token.kind != "{" or t.between or not t.accepts("NUMBER"):
+        return None
+    close = _closing(t.tokens, t.position)
+    if (
+        close < 0
+        or t.following.kind not in ("NAME", "STRING")
+        or t.tokens[t.position + 2].kind not in (":", "=")
+    ):
+        return None
+    inner = t.tokens[t.position + 1 : close]
+    keys: list[int] = []
+    depth = 0
+    for n, token in enumerate(inner):
+        if depth == 0 and (n == 0 or inner[n - 1].kind == ",") and n + 1 < len(inner):
+            keys.append(n)
+        depth += (token.kind in ("CALL", "(", "[", "{")) - (token.kind in (")", "]", "}"))
+    names = [inner[n].text.strip("\"'") for n in keys]
+    values = [inner[n + 2 : after] for n, after in zip(keys, [*keys[1:], len(inner) + 1], strict=True)]
+    values = [v[:-1] if v and v[-1].kind == "," else v for v in values]
+    if not all(values) or not all(name.isidentifier() for name in names):
+        return None
+    texts = [Span(t.source, v[0].start, v[-1].end).text for v in values]
+    place = t.token.start, t.token.end
+    if [name.lower() for name in names] == ["x", "y"]:
+        right, what = f"({texts[0]}, {texts[1]})", "a point"
+        tokens = [
+            Token("(", "(", *place),
+            *values[0],
+            Token(",", ",", *place),
+            *values[1],
+            Token(")", ")", *place),
+        ]
+    else:
+        right = f"record({', '.join(f'{n}: {v}' for n, v in zip(names, texts, strict=True))})"
+        what = "a record"
+        tokens = [Token("CALL", "record(", *place)]
+        for n, (key, value) in enumerate(zip(keys, values, strict=True)):
+            name = Token("NAME", names[n], inner[key].start, inner[key].end)
+            tokens += [name, Token(":", ":", *place), *value, Token(",", ",", *place)]
+        tokens.append(Token(")", ")", *place))
+    span = t.span(t.token, t.tokens[close])
+    return Problem(
+        Diagnostic(
+            "E0109", f"{what} is written `{right}`", span, fix=replaced(f"write `{right}`", span, right)
+        ),
+        Repair(t.position, close + 1, tuple(tokens)),
+    )
+
+
+def inches(t: Trouble) -> Problem | None:
+    """`5"` and `5 in`"""
+    token, before = t.token, t.before
+    if before is None:
+        return None
+    if token.kind in (UNKNOWN, "STRING") and token.text[0] == '"' and before.kind == "NUMBER" and t.touches:
+        rest = tokenize(t.source, token.start + 1, token.end).tokens[:-1]
+        span = Span(t.source, before.start, token.start + 1)
+        inch = Token("NUMBER", before.text + "in", before.start, token.start + 1)
+        fix = replaced(f"write `{inch.text}`", span, inch.text)
+        problem = Diagnostic("E0105", f"inches are written `{inch.text}`", span, fix=fix)
+        return Problem(problem, Repair(t.position - 1, t.position + 1, (inch, *rest)))
+    number = t.tokens[t.position - 2]
+    if t.position < 2 or before.kind != "in" or number.kind != "NUMBER" or token.kind not in _ENDS:
+        return None
+    gap = Span(t.source, number.end, before.start)
+    return Problem(
+        Diagnostic(
+            "E0106",
+            f"a unit touches its number: `{number.text}in`",
+            t.span(number, before),
+            "the space ends the number",
+            fix=replaced("remove the space", gap, ""),
+        ),
+        Repair(t.position - 2, t.position, (Token("NUMBER", number.text + "in", number.start, before.end),)),
+    )
+
+
+_ENDS = frozenset([")", "]", "}", ",", ";", "+", "-", "*", "/", "==", "<=", ">=", END])
+
+
+def loose_point(t: Trouble) -> Problem | None:
+    """`5.`"""
+    before = t.before
+    if t.token.kind != "." or before is None or before.kind != "NUMBER" or not t.touches:
+        if (
+            before is None
+            or before.kind != "."
+            or t.position < 2
+            or t.tokens[t.position - 2].kind != "NUMBER"
+        ):
+            return None
+        point, number, at = before, t.tokens[t.position - 2], t.position - 1
+    else:
+        point, number, at = t.token, before, t.position
+    span = t.span(number, point)
+    fix = replaced(f"write `{number.text}`", span, number.text)
+    return Problem(
+        Diagnostic("E0105", f"`{number.text}.` is written `{number.text}`", span, fix=fix), Repair(at, at + 1)
+    )
+
+
+def word_for_sign(t: Trouble) -> Problem | None:
+    """`if a is b`, `5 mod 3`"""
+    sign = {"is": "==", "mod": "%", "equals": "=="}.get(t.token.text)
+    if sign is None or t.between or t.token.kind != "NAME" or not t.accepts(sign):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0109",
+            f"`{t.token.text}` is written `{sign}`",
+            t.span(),
+            fix=replaced(f"write `{sign}`", t.span(), sign),
+        ),
+        Repair(t.position, t.position + 1, (t.token._replace(kind=sign, text=sign),)),
+    )
+
+
+# --- Statements -----------------------------------------------------------------------------------
+
+_MODULES = frozenset(
+    [
+        "math",
+        "numpy",
+        "np",
+        "cadquery",
+        "build123d",
+        "aidl",
+        "typing",
+        "random",
+        "sys",
+        "os",
+        "ezdxf",
+        "maker",
+        "jscad",
+    ]
+)
+
+
+def import_of_module(t: Trouble) -> Problem | None:
+    """`import math`, `from build123d import *`"""
+    words = [token.text for token in t.tokens[t.begin : t.begin + 2]]
+    if len(words) < 2 or words[0] not in ("import", "from") or words[1] not in _MODULES:
+        return None
+    line_end = _line_end(t.source.text, t.first.start)
+    stop = t.begin
+    while t.tokens[stop].kind not in (END, ";", "}") and t.tokens[stop].start < line_end:
+        stop += 1
+    span = t.span(t.first, t.tokens[stop - 1])
+    return Problem(
+        Diagnostic(
+            "E0113",
+            f"nothing is imported from `{words[1]}`: functions and shapes are known without it",
+            span,
+            fix=replaced("remove the line", span, ""),
+        ),
+        Repair(t.begin, stop),
+    )
+
+
+def several_names(t: Trouble) -> Problem | None:
+    """`x, y = 3, 4` and `let (x, y) = …`"""
+    has_let = t.first.kind in ("let", "var", "param") and t.token.kind in ("(", "[") and len(t.statement) == 1
+    bare = (
+        t.token.kind == ","
+        and len(t.statement) == 1
+        and t.first.kind == "NAME"
+        and t.following.kind == "NAME"
+    )
+    if not has_let and not (bare and t.tokens[t.position + 2].kind == "=" and not t.in_constraints):
+        return None
+    return Problem(
+        Diagnostic(
+            "E0103",
+            "each name gets its value by itself: `let x = 3; let y = 4`",
+            t.span(t.first),
+            "one name at a time",
+        )
+    )
+
+
+def documentation_text(t: Trouble) -> Problem | None:
+    """A text as a statement: `\"\"\"A bracket.\"\"\"` or `"A bracket."`"""
+    if (
+        t.token.kind not in ("STRING", UNKNOWN)
+        or t.token.text[0] not in "\"'"
+        or not (t.between or t.complete)
+    ):
+        return None
+    if not t.on_new_line and not t.between:
+        return None
+    quotes = t.source.text[t.token.start : t.token.start + 3]
+    stop, end, inner = t.position + 1, t.token.end, t.token.text.strip("\"'")
+    if quotes in ('"""', "'''"):
+        close = t.source.text.find(quotes, t.token.start + 3)
+        if close < 0:
+            return None
+        end, inner = close + 3, t.source.text[t.token.start + 3 : close]
+        while t.tokens[stop].start < end and t.tokens[stop].kind != END:
+            stop += 1
+    span = Span(t.source, t.token.start, end)
+    lines = [line.strip() for line in inner.strip().splitlines()]
+    comment = "\n".join(f"// {line}".rstrip() for line in lines)
+    return Problem(
+        Diagnostic(
+            "E0117",
+            "a text alone says nothing; a remark begins with `//`",
+            span,
+            fix=replaced("make it a comment", span, comment),
+        ),
+        Repair(t.position, stop),
+    )

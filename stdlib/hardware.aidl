@@ -1,0 +1,201 @@
+// Metric screws, nuts and washers, and the holes that are made for them. All sizes in mm; they are exact, since no
+// constraint changes what a standard says.
+
+// The columns of the table of screws.
+//   tap          drill of the thread's hole: diameter less pitch, as ISO 2306 rounds it
+//   close, clearance, loose   through holes: the fine, medium and coarse series of ISO 273
+//   head         of a socket head cap screw, ISO 4762, and counterbore, the bore it sinks into, DIN 974-1
+//   countersink  sharp diameter of a countersunk head: ISO 10642, below M3 ISO 7046
+//   nut          across flats, and nut_height, ISO 4032
+//   washer       outside diameter, and washer_thickness, ISO 7089; its hole is the close one
+fn screw_sizes(
+    diameter: length,
+    pitch: length,
+    tap: length,
+    close: length,
+    clearance: length,
+    loose: length,
+    head: length,
+    counterbore: length,
+    countersink: length,
+    nut: length,
+    nut_height: length,
+    washer: length,
+    washer_thickness: length
+) = record(
+    diameter: fixed(diameter),
+    pitch: fixed(pitch),
+    tap: fixed(tap),
+    close: fixed(close),
+    clearance: fixed(clearance),
+    loose: fixed(loose),
+    head: fixed(head),
+    counterbore: fixed(counterbore),
+    countersink: fixed(countersink),
+    nut: fixed(nut),
+    nut_height: fixed(nut_height),
+    washer: fixed(washer),
+    washer_thickness: fixed(washer_thickness)
+)
+
+let screws = record(
+    //          d, pitch,  tap, close, clear, loose, head, bore, sunk, nut, height, washer, thickness
+    m2: screw_sizes(2, 0.4, 1.6, 2.2, 2.4, 2.6, 3.8, 4.3, 4.4, 4, 1.6, 5, 0.3),
+    m2_5: screw_sizes(2.5, 0.45, 2.05, 2.7, 2.9, 3.1, 4.5, 5, 5.5, 5, 2, 6, 0.5),
+    m3: screw_sizes(3, 0.5, 2.5, 3.2, 3.4, 3.6, 5.5, 6.5, 6.72, 5.5, 2.4, 7, 0.5),
+    m4: screw_sizes(4, 0.7, 3.3, 4.3, 4.5, 4.8, 7, 8, 8.96, 7, 3.2, 9, 0.8),
+    m5: screw_sizes(5, 0.8, 4.2, 5.3, 5.5, 5.8, 8.5, 10, 11.2, 8, 4.7, 10, 1),
+    m6: screw_sizes(6, 1, 5, 6.4, 6.6, 7, 10, 11, 13.44, 10, 5.2, 12, 1.6),
+    m8: screw_sizes(8, 1.25, 6.8, 8.4, 9, 10, 13, 15, 17.92, 13, 6.8, 16, 1.6),
+    m10: screw_sizes(10, 1.5, 8.5, 10.5, 11, 12, 16, 18, 22.4, 16, 8.4, 20, 2),
+    m12: screw_sizes(12, 1.75, 10.2, 13, 13.5, 14.5, 18, 20, 26.88, 18, 10.8, 24, 2.5)
+)
+
+// A screw may be named bare: `clearance_hole(m3)`.
+let m2 = screws.m2
+let m2_5 = screws.m2_5
+let m3 = screws.m3
+let m4 = screws.m4
+let m5 = screws.m5
+let m6 = screws.m6
+let m8 = screws.m8
+let m10 = screws.m10
+let m12 = screws.m12
+
+/// The sizes of a metric screw from M2 to M12, its nut, its washer and its holes.
+///
+/// They are `diameter`, `pitch`, `tap` (drill), `clearance` (and `close`, `loose`), `head`, `counterbore`, `countersink`, `nut`
+/// (across flats), `nut_height`, `washer`, `washer_thickness`, all in mm. `screws.m3` is the same as `screw("m3")`.
+///
+/// ```aidl
+/// solid washer {
+///     param size = "m8" in ["m5", "m6", "m8", "m10"]
+///     body = circle(center: origin, diameter: screw(size).washer)
+///     hole bore { rim = circle(center: origin, diameter: screw(size).close) }
+/// }
+/// ```
+fn screw(size: text) = screws[screw_key(
+    choice(size, ["m2", "m2.5", "m3", "m4", "m5", "m6", "m8", "m10", "m12"])
+)]
+fn screw(size: record) = size
+
+fn screw_key(size: text) = if size == "m2.5" then "m2_5" else size
+
+/// The diameter of the through hole of a screw: `close`, `medium` or `loose` (ISO 273).
+///
+/// ```aidl
+/// solid strap {
+///     body = slot(start: (0, 0), end: (40, 0), width: clearance_diameter("m5") + 10)
+///     hole eye { rim = slot(start: (0, 0), end: (40, 0), width: clearance_diameter("m5")) }
+/// }
+/// ```
+fn clearance_diameter(size, fit: text = "medium") = clearance_of(
+    screw(size),
+    choice(fit, ["close", "fine", "medium", "normal", "loose", "coarse", "free"])
+)
+fn clearance_of(screw: record, fit: text) = if fit == "close" or fit == "fine" then screw.close else if fit == "medium" or fit == "normal" then screw.clearance else screw.loose
+
+/// The through hole of a screw, as a circle: `fit` is close, medium or loose.
+///
+/// ```aidl
+/// solid plate {
+///     body = rounded_rectangle(width: 40, height: 20, radius: 3)
+///     for s in [-1, 1] {
+///         hole bolt[s] { rim = clearance_hole("m4", center: (14 * s, 0)) }
+///     }
+/// }
+/// ```
+fn clearance_hole(size, center: point = (0, 0), fit: text = "medium") = circle(
+    center: center,
+    diameter: clearance_diameter(size, fit)
+)
+
+/// The hole to be drilled for the thread of a screw, as a circle.
+///
+/// ```aidl
+/// solid block {
+///     body = rectangle(width: 30, height: 12)
+///     hole thread { rim = tap_hole("m6", center: (5, 0)) }
+/// }
+/// ```
+fn tap_hole(size, center: point = (0, 0)) = circle(center: center, diameter: screw(size).tap)
+
+/// The bore that takes in the head of a socket head cap screw, as a circle (DIN 974-1).
+///
+/// ```aidl
+/// assembly clamp {
+///     solid lower {
+///         body = square(size: 20)
+///         hole bolt { rim = clearance_hole("m5") }
+///     }
+///     @detached solid upper at (30, 0) {
+///         body = square(size: 20)
+///         hole pocket { rim = counterbore("m5") }
+///     }
+/// }
+/// ```
+fn counterbore(size, center: point = (0, 0)) = circle(
+    center: center,
+    diameter: screw(size).counterbore
+)
+
+/// The rim of a countersink in which a flat head lies flush, as a circle.
+///
+/// ```aidl
+/// solid hinge_leaf {
+///     body = rectangle(width: 30, height: 16)
+///     hole bolt { rim = clearance_hole("m3") }
+///     drawing sunk { rim = countersink("m3") }
+///     constrain sunk.rim.center == bolt.rim.center
+/// }
+/// ```
+fn countersink(size, center: point = (0, 0)) = circle(
+    center: center,
+    diameter: screw(size).countersink
+)
+
+/// A pocket that holds a hexagon nut, `play` wider than the nut across its flats.
+///
+/// ```aidl
+/// solid knob {
+///     body = circle(center: origin, radius: 14)
+///     hole trap { nut = hex_pocket("m6", center: origin, play: 0.1) }
+/// }
+/// ```
+shape hex_pocket(
+    size,
+    center: point = (0, 0),
+    angle: turn = 0deg,
+    play: length = 0.2,
+    rotatable: bool = false
+) {
+    let across = screw(size).nut + play
+    outline = regular_polygon(
+        center: center,
+        radius: across / 2 / cos(30deg),
+        sides: 6,
+        angle: angle,
+        rotatable: rotatable
+    )
+    let corner = outline.corner
+    let edges = outline.edges
+}
+
+/// A hole for a screw to go through, to be placed with `at`.
+///
+/// ```aidl
+/// solid rail {
+///     body = rectangle(center: origin, width: 60, height: 12)
+///     left = screw_hole("m4") at (-22, 0)
+///     right = screw_hole("m4", fit: "loose") at (22, 0)
+/// }
+/// ```
+hole screw_hole(size = "m3", fit: text = "medium") {
+    rim = clearance_hole(size, center: fixed((0, 0)), fit: fit)
+}
+
+alias through_hole = clearance_hole
+alias bolt_hole = screw_hole
+alias tapped_hole = tap_hole
+alias nut_trap = hex_pocket
+alias nut_pocket = hex_pocket

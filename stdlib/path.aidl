@@ -1,0 +1,422 @@
+// Outlines written as a pen draws them, one step after the other. A step is a record: what `kind` it is and where it
+// goes; the path turns steps into segments that share their ends.
+
+/// An outline drawn step by step: `segment[i]` runs from `corner[i]` to `corner[i + 1]`.
+///
+/// Steps are `line_to`, `line_by`, `up`, `down`, `left`, `right`, `forward`, `horizontal_to`, `vertical_to`, `arc_to`,
+/// `arc_by`, `tangent_arc_to`, `bezier_to`, `quadratic_to`, `polyline_to` and `close`; a plain point is a `line_to`.
+/// `smooth: true` on a step makes its segment go on in the direction of the one before. A path that ends where it
+/// starts is closed; `close()` closes one that does not with a line. `heading` is the direction before the first step.
+///
+/// ```aidl
+/// solid tag {
+///     edge = path(
+///         from: (0, 0),
+///         line_to((40, 0)),
+///         arc_to((40, 20), radius: 10),
+///         line_to((0, 20)),
+///         close()
+///     )
+/// }
+/// ```
+shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false) {
+    let drawn = [as_step(s) for s in steps if as_step(s).kind != "close"]
+    let closes = closed or len(drawn) < len(steps)
+    assert len(drawn) >= 1, "a path has pen least one step that draws"
+    if len(drawn) < len(steps) {
+        assert len(drawn) == len(steps) - 1 and as_step(steps[-1]).kind == "close", "`close()` is the last step"
+    }
+    corner[0] = from
+    for i in 0..<len(drawn) {
+        let move = drawn[i]
+        let pen = corner[i]
+        let way = if i == 0 then polar(1mm, heading) else leaving(segment[i - 1])
+        let reached = step_end(move, pen, way, from)
+        let is_home = i == len(drawn) - 1 and meets(reached, from)
+        // What ends at a point of its own ends at the start itself; what ends after a way is made to meet it.
+        let is_there = is_home and move.kind in placed_kinds
+        let to = if is_there then from else reached
+        if is_home and not is_there { constrain reached == from }
+
+        let is_half = move.kind == "arc_radius" and abs(written(norm(to - pen) - 2 * move.radius)) < 0.000001
+        if move.kind == "slanted" {
+            assert false, "the edges of a rectilinear polygon are level or upright, in turns"
+        } else if move.kind == "bezier_to" {
+            segment[i] = bezier(pen, move.first, move.second, to)
+        } else if move.kind == "quadratic_to" {
+            segment[i] = bezier(pen, lerp(pen, move.by, 2 / 3), lerp(to, move.by, 2 / 3), to)
+        } else if is_half {
+            segment[i] = arc(center: (pen + to) / 2, start: pen, end: to, clockwise: move.clockwise)
+            constrain segment[i].radius == move.radius
+        } else if move.kind == "arc_radius" {
+            segment[i] = arc(
+                start: pen,
+                end: to,
+                radius: move.radius,
+                large: move.large,
+                clockwise: move.clockwise
+            )
+        } else if move.kind in ["arc_center", "arc_through", "arc_by", "arc_tangent"] {
+            let hub = arc_hub(move, pen, way, to)
+            let clockwise = is_clockwise(move, pen, way, to)
+            segment[i] = arc(center: hub, start: pen, end: to, clockwise: clockwise)
+        } else {
+            segment[i] = line(pen, to)
+        }
+        if not is_home { corner[i + 1] = to }
+        if move.smooth and i > 0 { constrain smoothly(segment[i - 1], segment[i]) }
+    }
+    let end = segment[len(drawn) - 1].end
+    if closes and not meets(end, from) {
+        segment[len(drawn)] = line(corner[len(drawn)], from)
+        if len(drawn) < len(steps) and as_step(steps[-1]).smooth {
+            constrain smoothly(segment[len(drawn) - 1], segment[len(drawn)])
+        }
+    }
+    if drawn[0].smooth {
+        assert closes or meets(end, from), "the first step of an open path has nothing to go on from smoothly"
+        constrain smoothly(segment[-1], segment[0])
+    }
+    let start = from
+    let points = corner
+    let edges = segment
+}
+
+/// By `start:`, or with the start as the first argument.
+fn path(steps: list, start: point, heading: angle = 0deg, closed: bool = false) = path(
+    steps,
+    from: start,
+    heading: heading,
+    closed: closed
+)
+fn path(steps: list, heading: angle = 0deg, closed: bool = false) = path(
+    [steps[i] for i in 1..<len(steps)],
+    from: steps[0],
+    heading: heading,
+    closed: closed
+)
+
+let placed_kinds = [
+    "line_to",
+    "bezier_to",
+    "quadratic_to",
+    "arc_radius",
+    "arc_center",
+    "arc_through",
+    "arc_tangent"
+]
+
+fn as_step(move: record) = move
+fn as_step(p: point) = line_to(p)
+
+// Whether two points are one as they were written.
+fn meets(a: point, b: point) = norm(written(a - b)) < 0.000001
+
+// Where a step that begins at `pen` in the direction `way` ends.
+fn step_end(move: record, pen: point, way: point, start: point) = (
+    if move.kind == "line_by" then pen + (move.dx, move.dy)
+    else if move.kind == "line_along" then pen + polar(move.length, move.angle)
+    else if move.kind == "forward" then pen + turned(unit(way), move.turn) * (move.distance / 1mm)
+    else if move.kind == "level_to" then (move.to.x, pen.y)
+    else if move.kind == "upright_to" then (pen.x, move.to.y)
+    else if move.kind == "level_home" then (start.x, pen.y)
+    else if move.kind == "upright_home" then (pen.x, start.y)
+    else if move.kind == "arc_by" then turned_about(arc_hub(move, pen, way, pen), pen, move.turn)
+    else move.to
+)
+fn turned_about(hub: point, p: point, angle: angle) = hub + turned(p - hub, angle)
+
+// The centre of an arc that begins at `pen` in the direction `way`.
+fn arc_hub(move: record, pen: point, way: point, to: point) = (
+    if move.kind == "arc_center" then move.center
+    else if move.kind == "arc_through" then circumcenter(pen, move.through, to)
+    else if move.kind == "arc_by" then pen + to_left(way) * (
+        move.radius * (if written(move.turn) >= 0deg then 1 else -1) / 1mm
+    )
+    else pen + to_left(way) * (dot(to - pen, to - pen) / (2 * dot(to_left(way), to - pen)))
+)
+fn to_left(way: point) = turned(unit(way), 90deg)
+fn is_clockwise(move: record, pen: point, way: point, to: point) = (
+    if move.kind == "arc_center" then move.clockwise
+    else if move.kind == "arc_through" then cross(written(move.through - pen), written(to - pen)) < 0
+    else if move.kind == "arc_by" then written(move.turn) < 0deg
+    else cross(written(way), written(to - pen)) < 0
+)
+
+// The directions in which a segment begins and ends.
+fn entering(l: line) = l.end - l.start
+fn entering(a: arc) = turned(a.start - a.center, quarter_of(a))
+fn entering(b: bezier) = b.p1 - b.p0
+fn leaving(l: line) = l.end - l.start
+fn leaving(a: arc) = turned(a.end - a.center, quarter_of(a))
+fn leaving(b: bezier) = b.p3 - b.p2
+fn quarter_of(a: arc) = if cross(written(a.midpoint - a.start), written(a.end - a.start)) >= 0 then 90deg else -90deg
+
+constraint smoothly(a, b) { cross(leaving(a), entering(b)) / norm(leaving(a)) == 0 }
+
+// --- Steps ---------------------------------------------------------------------------------------
+
+/// A step of a path: straight to a point.
+///
+/// ```aidl
+/// solid kite { edge = path(from: (0, 0), line_to((20, 10)), line_to((50, 0)), line_to((20, -10)), close()) }
+/// ```
+fn line_to(to: point, smooth: bool = false) = record(kind: "line_to", to: to, smooth: smooth)
+fn line_to(x: length, y: length, smooth: bool = false) = line_to((x, y), smooth: smooth)
+
+/// A step of a path: straight by a way, or by a length and a direction.
+///
+/// ```aidl
+/// solid ramp { edge = path(from: (0, 0), line_by((40, 0)), line_by(length: 20, angle: 120deg), close()) }
+/// ```
+fn line_by(way: point, smooth: bool = false) = line_by(dx: way.x, dy: way.y, smooth: smooth)
+fn line_by(dx: length, dy: length, smooth: bool = false) = record(
+    kind: "line_by",
+    dx: dx,
+    dy: dy,
+    smooth: smooth
+)
+fn line_by(length: length, angle: angle, smooth: bool = false) = record(
+    kind: "line_along",
+    length: length,
+    angle: angle,
+    smooth: smooth
+)
+
+/// A step of a path: to the right, exactly level.
+///
+/// ```aidl
+/// solid stair { edge = path(from: (0, 0), right(30), up(10), left(15), up(10), left(15), close()) }
+/// ```
+fn right(distance: length, smooth: bool = false) = line_by(dx: distance, dy: fixed(0), smooth: smooth)
+
+/// A step of a path: to the left, exactly level.
+///
+/// ```aidl
+/// solid flag { edge = path(from: (0, 0), line_to((30, 5)), up(20), left(30), close()) }
+/// ```
+fn left(distance: length, smooth: bool = false) = right(-distance, smooth: smooth)
+
+/// A step of a path: upwards, exactly upright.
+///
+/// ```aidl
+/// solid wedge { edge = path(from: (0, 0), right(30), up(15), close()) }
+/// ```
+fn up(distance: length, smooth: bool = false) = line_by(dx: fixed(0), dy: distance, smooth: smooth)
+
+/// A step of a path: downwards, exactly upright.
+///
+/// ```aidl
+/// solid notch { edge = path(from: (0, 0), right(30), down(15), left(10), up(5), left(20), close()) }
+/// ```
+fn down(distance: length, smooth: bool = false) = up(-distance, smooth: smooth)
+
+/// A step of a path: straight on, after turning to the left by `turn`.
+///
+/// ```aidl
+/// solid hexagon {
+///     edge = path(from: (0, 0), forward(20), [forward(20, turn: 60deg) for i in 1..4], close())
+/// }
+/// ```
+fn forward(distance: length, turn: angle = 0deg, smooth: bool = false) = record(
+    kind: "forward",
+    distance: distance,
+    turn: turn,
+    smooth: smooth
+)
+
+/// A step of a path: level, as far as an x.
+///
+/// ```aidl
+/// solid stairs {
+///     edge = path(
+///         from: (0, 0),
+///         horizontal_to(30), vertical_to(10), horizontal_to(10), vertical_to(20), horizontal_to(0), close()
+///     )
+/// }
+/// ```
+fn horizontal_to(x: length, smooth: bool = false) = record(
+    kind: "level_to",
+    to: (x, fixed(0)),
+    smooth: smooth
+)
+
+/// A step of a path: upright, as far as a y.
+///
+/// ```aidl
+/// solid gable { edge = path(from: (0, 0), right(40), vertical_to(20), line_to((20, 35)), line_to((0, 20)), close()) }
+/// ```
+fn vertical_to(y: length, smooth: bool = false) = record(
+    kind: "upright_to",
+    to: (fixed(0), y),
+    smooth: smooth
+)
+
+/// A step of a path: straight through several points.
+///
+/// ```aidl
+/// solid zigzag { edge = path(from: (0, 0), right(40), polyline_to([(30, 10), (20, 5), (10, 10)]), close()) }
+/// ```
+fn polyline_to(points: list) = [line_to(p) for p in points]
+
+/// A step of a path: an arc to a point by its `radius`, its `center`, or a point that it goes `through`.
+///
+/// It runs counter-clockwise unless it is `clockwise: true`; by a radius it is the shorter one unless `large: true`.
+///
+/// ```aidl
+/// solid plate {
+///     edge = path(
+///         from: (0, 0),
+///         arc_to((40, 0), radius: 30),
+///         arc_to((40, 20), center: (40, 10)),
+///         arc_to((0, 20), through: (20, 14)),
+///         close()
+///     )
+/// }
+/// ```
+fn arc_to(to: point, radius: length, large: bool = false, clockwise: bool = false, smooth: bool = false) = record(
+    kind: "arc_radius",
+    to: to,
+    radius: radius,
+    large: large,
+    clockwise: clockwise,
+    smooth: smooth
+)
+fn arc_to(to: point, center: point, clockwise: bool = false, smooth: bool = false) = record(
+    kind: "arc_center",
+    to: to,
+    center: center,
+    clockwise: clockwise,
+    smooth: smooth
+)
+fn arc_to(to: point, through: point, smooth: bool = false) = record(
+    kind: "arc_through",
+    to: to,
+    through: through,
+    smooth: smooth
+)
+
+/// A step of a path: an arc that goes on without a corner and turns by an angle, clockwise if it is negative.
+///
+/// ```aidl
+/// solid hook {
+///     edge = path(from: (0, 0), right(40), arc_by(180deg, radius: 15), forward(20), close())
+/// }
+/// ```
+fn arc_by(turn: angle, radius: length) = record(kind: "arc_by", turn: turn, radius: radius, smooth: false)
+
+/// A step of a path: the arc to a point that goes on without a corner.
+///
+/// ```aidl
+/// solid paddle { edge = path(from: (0, 0), line_to((40, 5)), tangent_arc_to((40, -5)), close()) }
+/// ```
+fn tangent_arc_to(to: point) = record(kind: "arc_tangent", to: to, smooth: false)
+
+/// A step of a path: a cubic Bézier by its two control points and its end.
+///
+/// ```aidl
+/// solid wave {
+///     edge = path(from: (0, 0), bezier_to((15, 20), (30, -10), (45, 10)), vertical_to(-15), left(45), close())
+/// }
+/// ```
+fn bezier_to(first: point, second: point, to: point, smooth: bool = false) = record(
+    kind: "bezier_to",
+    first: first,
+    second: second,
+    to: to,
+    smooth: smooth
+)
+
+/// A step of a path: a quadratic Bézier by its control point and its end.
+///
+/// ```aidl
+/// solid arch { edge = path(from: (0, 0), quadratic_to((20, 40), (40, 0)), close()) }
+/// ```
+fn quadratic_to(by: point, to: point, smooth: bool = false) = record(
+    kind: "quadratic_to",
+    by: by,
+    to: to,
+    smooth: smooth
+)
+
+/// The last step of a path: straight back to where it starts, unless it is there.
+///
+/// ```aidl
+/// solid sail { edge = path(from: (0, 0), right(25), line_to((0, 60)), close()) }
+/// ```
+fn close(smooth: bool = false) = record(kind: "close", smooth: smooth)
+
+// Where a pen is put down: the start, as the first argument of a path.
+fn move_to(to: point) = to
+fn move_to(x: length, y: length) = (x, y)
+
+// --- Outlines from points ------------------------------------------------------------------------
+
+/// A closed outline of level and upright edges through its corners; it stays so whatever is asked of it.
+///
+/// The edges are level and upright in turns, so that the number of corners is even.
+///
+/// ```aidl
+/// solid angle_iron { body = rectilinear_polygon((0, 0), (40, 0), (40, 5), (5, 5), (5, 30), (0, 30)) }
+/// ```
+fn rectilinear_polygon(points: list) = path(
+    [axis_step(points, i) for i in 0..<len(points) - 1] + [close()],
+    from: points[0]
+)
+
+// The step from a corner to the next one. The last before the end goes as far as the start, so that the edge that
+// closes the outline is level or upright, too.
+fn axis_step(points: list, i: integer) = axis_move(
+    points[i + 1] - points[i],
+    written(points[i + 1] - points[i]),
+    is_level: (abs(written(points[1].y - points[0].y)) < 0.000001) == (i % 2 == 0),
+    is_last: i == len(points) - 2 and len(points) % 2 == 0
+)
+fn axis_move(way: point, seen: point, is_level: bool, is_last: bool) = (
+    if abs(if is_level then seen.y else seen.x) > 0.000001 then record(kind: "slanted", smooth: false)
+    else if is_last then record(kind: if is_level then "level_home" else "upright_home", smooth: false)
+    else if is_level then right(way.x)
+    else up(way.y)
+)
+
+/// A smooth curve through points, its knots: `segment[i]` runs from `knot[i]` to `knot[i + 1]`.
+///
+/// Through points of one circle it follows that circle closely. `closed: true` makes it an outline.
+///
+/// ```aidl
+/// solid pebble { edge = spline((0, 0), (30, -5), (45, 15), (20, 30), (-5, 20), closed: true) }
+/// ```
+shape spline(points: list, closed: bool = false) {
+    let n = len(points)
+    assert n >= (if closed then 3 else 2), "a spline has at least two points, a closed one three"
+    let last = if closed then n else n - 1
+    let chord = [points[(i + 1) % n] - points[i] for i in 0..<last]
+    let way = [spline_way(chord, i, closed) for i in 0..<n]
+    for i in 0..<n { knot[i] = points[i] }
+    for i in 0..<last {
+        let next = (i + 1) % n
+        segment[i] = bezier(
+            points[i],
+            points[i] + spline_handle(way[i], chord[i]),
+            points[next] - spline_handle(way[next], chord[i]),
+            points[next]
+        )
+    }
+    let start = points[0]
+    let end = if closed then points[0] else points[-1]
+}
+
+// The direction in a knot is that of the circle through it and its neighbours; at an open end it mirrors that of the
+// next knot about the chord between. A handle is as long as that of a Bézier along a circle.
+fn spline_way(chord: list, i: integer, closed: bool) = (
+    if closed then circle_way(chord[(i + len(chord) - 1) % len(chord)], chord[i % len(chord)])
+    else if len(chord) == 1 then chord[0]
+    else if i == 0 then mirrored_way(circle_way(chord[0], chord[1]), chord[0])
+    else if i == len(chord) then mirrored_way(circle_way(chord[i - 2], chord[i - 1]), chord[i - 1])
+    else circle_way(chord[i - 1], chord[i])
+)
+fn circle_way(before: point, after: point) = unit(unit(before) * norm(after) + unit(after) * norm(before))
+fn mirrored_way(way: point, chord: point) = unit(chord) * (2 * dot(way, unit(chord)) / 1mm / 1mm) - way
+fn spline_handle(way: point, chord: point) = unit(way) * (
+    norm(chord) * 2 / 3 / (1mm + dot(unit(way), unit(chord)) / 1mm)
+)

@@ -1,0 +1,229 @@
+// Places for things that exist, and points and axes to place them by.
+
+/// The centres of things lie on a circle: about `center` with a `radius` or `diameter`, or a circle that is there.
+///
+/// They stand at equal steps in their written order, the first at `start` if that is said; `evenly: false`
+/// leaves them where they are along the circle.
+///
+/// ```aidl
+/// solid flange {
+///     rim = circle(center: origin, radius: 40)
+///     for i in 0..5 {
+///         hole bolt[i] { bore = circle(center: polar(30, 60deg * i), radius: 3) }
+///     }
+///     constrain on_circle(bolt, center: rim.center, diameter: 60, start: 30deg)
+/// }
+/// ```
+constraint on_circle(things: list, center: point, radius: length, evenly: bool = true) {
+    for i in 0..<len(things) { norm(box(things[i]).center - center) == radius }
+    if evenly { steps_around(things, center) }
+}
+constraint on_circle(things: list, center: point, diameter: length, evenly: bool = true) {
+    on_circle(things, center: center, radius: diameter / 2, evenly: evenly)
+}
+constraint on_circle(things: list, center: point, radius: length, start: angle) {
+    let turn = turn_around(things, center)
+    for i in 0..<len(things) { box(things[i]).center == center + polar(radius, start + turn * i) }
+}
+constraint on_circle(things: list, center: point, diameter: length, start: angle) {
+    on_circle(things, center: center, radius: diameter / 2, start: start)
+}
+constraint on_circle(things: list, around: circle, evenly: bool = true) {
+    on_circle(things, center: around.center, radius: around.radius, evenly: evenly)
+}
+constraint on_circle(things: list, around: circle, start: angle) {
+    on_circle(things, center: around.center, radius: around.radius, start: start)
+}
+
+// Each is the one before, turned by one step; all of one radius, so the directions are enough.
+constraint steps_around(things: list, center: point) {
+    let turn = turn_around(things, center)
+    for i in 1..<len(things) {
+        let last = turned(box(things[i - 1]).center - center, turn)
+        cross(last, box(things[i]).center - center) / norm(last) == 0
+    }
+}
+
+// The angle from one thing to the next: the sense in which most of the first guesses run.
+fn turn_around(things: list, center: point) = if len(things) < 2 then 0deg else (
+    if sum([written(cross(box(things[i - 1]).center - center, box(things[i]).center - center)) / 1mm / 1mm for i in 1..<len(things)]) < 0 then -360deg else 360deg
+) / len(things)
+
+/// Four things stand at the corners of a box, their centres `inset` from both sides, or `(dx, dy)`.
+///
+/// Each goes to the corner in whose quarter it was written; where that gives no four corners, they go
+/// counter-clockwise from the bottom left.
+///
+/// ```aidl
+/// solid plate {
+///     body = rectangle(center: origin, width: 80, height: 50)
+///     for i in 0..3 { hole screw[i] { bore = circle(center: polar(20, 90deg * i + 225deg), radius: 3) } }
+///     constrain at_corners(screw, body, inset: 8)
+/// }
+/// ```
+constraint at_corners(things: list, of: box, inset: length = 0) { at_corners(things, of, inset: (inset, inset)) }
+constraint at_corners(things: list, of: box, inset: point) {
+    if len(things) == 4 {
+        let spots = [
+            of.bottom_left + inset,
+            of.bottom_right + (-inset.x, inset.y),
+            of.top_right - inset,
+            of.top_left + (inset.x, -inset.y)
+        ]
+        let quarters = [quarter(box(t), of) for t in things]
+        let distinct = sum([1 for i in 0..3 if i in quarters] + [0]) == 4
+        for i in 0..3 { box(things[i]).center == spots[quarters[i] if distinct else i] }
+    } else {
+        refuse("a box has four corners, so four things can stand there")
+    }
+}
+
+// The corner of a box in whose quarter a thing was written, counter-clockwise from 0 at the bottom left.
+fn quarter(a: box, of: box) = (
+    (0 if written(a.center_x - of.center_x) < 0 else 1)
+    if written(a.center_y - of.center_y) < 0
+    else (3 if written(a.center_x - of.center_x) < 0 else 2)
+)
+
+/// Things are spread through a box in their written order, from border to border with equal gaps.
+///
+/// `margin` keeps the first and the last off the border; `axis` is where the first guesses spread most, unless
+/// it is said.
+///
+/// ```aidl
+/// solid panel {
+///     body = rectangle(center: origin, width: 120, height: 40)
+///     for i in 0..4 { hole slit[i] { cut = slot(start: (9 * i, -8), end: (9 * i, 8), width: 6) } }
+///     constrain {
+///         spread(slit, inside: body, margin: 10)
+///         align_center_y(slit, body)
+///     }
+/// }
+/// ```
+constraint spread(things: list, inside: box, margin: length = 0) {
+    spread(things, inside: inside, axis: longer_way(things), margin: margin)
+}
+constraint spread(things: list, inside: box, axis: text, margin: length = 0) {
+    let way = choice(axis, ["x", "y"])
+    if len(things) > 0 {
+        let up = way_along(things, way) >= 0
+        let first = box(things[0] if up else things[-1])
+        let last = box(things[-1] if up else things[0])
+        if way == "x" {
+            first.left == inside.left + margin
+            if len(things) > 1 { last.right == inside.right - margin }
+        } else {
+            first.bottom == inside.bottom + margin
+            if len(things) > 1 { last.top == inside.top - margin }
+        }
+        evenly_spaced(things, axis: way)
+    }
+}
+
+/// The point between two things, points or centres: half the way from a to b, or a share of it.
+///
+/// ```aidl
+/// drawing d {
+///     a = circle(center: fixed((0, 0)), radius: 5)
+///     b = circle(center: fixed((60, 20)), radius: 5)
+///     lamp = circle(center: between(a, b), radius: 3)
+///     nail = circle(center: between(a, b, 0.25), radius: 1)
+/// }
+/// ```
+fn between(a, b) = (center_of(a) + center_of(b)) / 2
+fn between(a, b, share: number) = center_of(a) + (center_of(b) - center_of(a)) * share
+
+/// A point of a box by its name: `"top_left"`, `"left"` (the middle of that side), …; the centre if none is said.
+///
+/// ```aidl
+/// drawing d {
+///     card = rectangle(center: fixed((0, 0)), width: 60, height: 40)
+///     pin  = circle(center: (20, 30), radius: 2)
+///     constrain coincident(pin.center, anchor(card, "top_left") + (5, -5))
+/// }
+/// ```
+fn anchor(of: box, place: text = "center") = (
+    share_of(of.left, of.right, side_of(place, "left", "right")),
+    share_of(of.bottom, of.top, side_of(place, "bottom", "top"))
+)
+fn share_of(low: length, high: length, share: number) = low + (high - low) * share
+fn side_of(place: text, low: text, high: text) = 0 if anchor_word(place) in words_of(low) else (
+    1 if anchor_word(place) in words_of(high) else 0.5
+)
+fn anchor_word(place: text) = choice(
+    place,
+    [
+        "center",
+        "left",
+        "right",
+        "top",
+        "bottom",
+        "top_left",
+        "top_right",
+        "bottom_left",
+        "bottom_right",
+        "top_center",
+        "bottom_center",
+        "left_center",
+        "right_center"
+    ]
+)
+fn words_of(side: text) = [
+    side,
+    side + "_center",
+    side + "_left",
+    side + "_right",
+    "top_" + side,
+    "bottom_" + side
+]
+
+/// The endless upright line through a point, to be symmetric about or to lie on.
+///
+/// ```aidl
+/// drawing d {
+///     post = rectangle(center: fixed((10, 0)), width: 6, height: 50)
+///     a = circle(center: (-12, 5), radius: guess(3))
+///     b = circle(center: (30, 9), radius: 6)
+///     constrain symmetric(a, b, about: vertical_through(post.center))
+/// }
+/// ```
+fn vertical_through(p) = upright_through(center_of(p))
+
+/// The endless level line through a point, to be symmetric about or to lie on.
+///
+/// ```aidl
+/// drawing d {
+///     bar = rectangle(center: fixed((0, 10)), width: 50, height: 6)
+///     a = circle(center: (5, -12), radius: guess(3))
+///     b = circle(center: (9, 30), radius: 6)
+///     constrain symmetric(a, b, about: horizontal_through(bar.center))
+/// }
+/// ```
+fn horizontal_through(p) = level_through(center_of(p))
+
+/// The endless line through a point in a direction, to be symmetric about or to lie on.
+///
+/// ```aidl
+/// drawing d {
+///     hub = circle(center: fixed((0, 0)), radius: 6)
+///     pin = circle(center: (20, 12), radius: 3)
+///     constrain coincident(pin.center, line_through(hub.center, 45deg))
+/// }
+/// ```
+fn line_through(p, angle: angle) = line(
+    fixed(center_of(p)),
+    fixed(center_of(p) + (cos(angle) * 1mm, sin(angle) * 1mm))
+)
+
+alias vertical_axis = vertical_through
+alias horizontal_axis = horizontal_through
+alias on_bolt_circle = on_circle
+alias bolt_circle_of = on_circle
+alias around_circle = on_circle
+alias in_corners = at_corners
+alias to_corners = at_corners
+alias distribute_in = spread
+alias spread_out = spread
+alias spread_inside = spread
+alias point_between = between
+alias anchor_point = anchor

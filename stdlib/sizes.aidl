@@ -1,0 +1,104 @@
+// Relations between the widths and heights of boxes.
+
+/// All are as wide as the last.
+///
+/// ```aidl
+/// drawing d {
+///     a = rectangle(center: (0, 0), width: guess(20), height: 10)
+///     b = rectangle(center: (0, 20), width: 50, height: 10)
+///     constrain same_width(a, b)
+/// }
+/// ```
+constraint same_width(things: list) {
+    for i in 0..<len(things) - 1 { box(things[i]).width == box(things[-1]).width }
+}
+
+/// All are as tall as the last.
+///
+/// ```aidl
+/// drawing d {
+///     a = rectangle(center: (0, 0), width: 10, height: guess(20))
+///     b = rectangle(center: (20, 0), width: 10, height: 50)
+///     constrain same_height(a, b)
+/// }
+/// ```
+constraint same_height(things: list) {
+    for i in 0..<len(things) - 1 { box(things[i]).height == box(things[-1]).height }
+}
+
+/// All are as wide and as tall as the last.
+///
+/// ```aidl
+/// drawing d {
+///     a = rectangle(center: (0, 0), width: guess(20), height: guess(20))
+///     b = ellipse(center: (60, 0), rx: 25, ry: 15)
+///     constrain same_size(a, b)
+/// }
+/// ```
+constraint same_size(things: list) {
+    same_width(things)
+    same_height(things)
+}
+
+/// a is at least as wide as b; with `by`, wider by exactly so much.
+///
+/// ```aidl
+/// drawing d {
+///     base = rectangle(center: fixed((0, 0)), width: 40, height: 10)
+///     roof = rectangle(center: (0, 30), width: guess(20), height: 6)
+///     constrain wider(roof, base, by: 12)
+/// }
+/// ```
+constraint wider(a: box, b: box) { a.width >= b.width }
+constraint wider(a: box, b: box, by: length) { a.width == b.width + by }
+constraint wider(a: box, b: box, at_least: length) { a.width >= b.width + at_least }
+
+/// a is at most as wide as b; with `by`, narrower by exactly so much.
+///
+/// ```aidl
+/// drawing d {
+///     base = rectangle(center: fixed((0, 0)), width: 40, height: 10)
+///     post = rectangle(center: (0, 30), width: guess(60), height: 30)
+///     constrain narrower(post, base, by: 30)
+/// }
+/// ```
+constraint narrower(a: box, b: box) { a.width <= b.width }
+constraint narrower(a: box, b: box, by: length) { a.width == b.width - by }
+constraint narrower(a: box, b: box, at_least: length) { a.width <= b.width - at_least }
+
+/// a is at least as tall as b; with `by`, taller by exactly so much.
+///
+/// ```aidl
+/// drawing d {
+///     house = rectangle(center: fixed((0, 0)), width: 40, height: 30)
+///     tower = rectangle(center: (30, 0), width: 12, height: guess(20))
+///     constrain taller(tower, house, by: 20)
+/// }
+/// ```
+constraint taller(a: box, b: box) { a.height >= b.height }
+constraint taller(a: box, b: box, by: length) { a.height == b.height + by }
+constraint taller(a: box, b: box, at_least: length) { a.height >= b.height + at_least }
+
+/// a is at most as tall as b; with `by`, shorter by exactly so much.
+///
+/// ```aidl
+/// drawing d {
+///     house = rectangle(center: fixed((0, 0)), width: 40, height: 30)
+///     shed  = rectangle(center: (40, 0), width: 20, height: guess(40))
+///     constrain shorter(shed, house, by: 12)
+/// }
+/// ```
+constraint shorter(a: box, b: box) { a.height <= b.height }
+constraint shorter(a: box, b: box, by: length) { a.height == b.height - by }
+constraint shorter(a: box, b: box, at_least: length) { a.height <= b.height - at_least }
+
+alias equal_width = same_width
+alias equal_widths = same_width
+alias equal_height = same_height
+alias equal_heights = same_height
+alias equal_size = same_size
+alias equal_sizes = same_size
+alias wider_than = wider
+alias narrower_than = narrower
+alias taller_than = taller
+alias shorter_than = shorter

@@ -1,0 +1,83 @@
+// Lettering, for engraving and for cutting.
+
+/// Lettering as outlines, to be engraved or cut; `height` is that of a capital letter, `center` the middle of the ink.
+///
+/// In a `drawing` a text is engraved, in a `hole` it is cut out. Instead of its center `start` may be said: the point of
+/// the baseline where the text begins (or has its middle or its end, as `align` says); instead of a height a `width`.
+/// `\n` begins a new line. `align` tells how lines stand to each other, `line_spacing` how far apart their baselines
+/// are, in heights. `glyph[i]` are the characters, spaces aside; `baseline` is the line under the first line. The letters
+/// are those of one font, DejaVu Sans, one behind the other without kerning.
+///
+/// ```aidl
+/// solid sign {
+///     plate = rounded_rectangle(width: 70, height: 30, radius: 4)
+///     drawing label {
+///         name = text("Hello\nAIDL 42", height: 7)
+///     }
+/// }
+/// ```
+shape text(
+    text: text,
+    center: point = (0, 0),
+    height: length,
+    angle: turn = 0deg,
+    align: text = "center",
+    line_spacing = 1.6,
+    rotatable: bool = false
+) {
+    let side = choice(align, ["left", "center", "right"])
+    let ink = ink(text, side, line_spacing)
+    let start = center - turned(middle_of(ink, height), angle)
+    letters = glyphs(text, start, height, angle, side, line_spacing)
+    let glyph = letters.glyph
+    let width = (ink.right - ink.left) * height
+    let baseline = baseline_of(ink, start, height, angle)
+}
+/// By the baseline of its first line.
+shape text(
+    text: text,
+    start: point,
+    height: length,
+    angle: turn = 0deg,
+    align: text = "left",
+    line_spacing = 1.6,
+    rotatable: bool = false
+) {
+    let side = choice(align, ["left", "center", "right"])
+    letters = glyphs(text, start, height, angle, side, line_spacing)
+    let glyph = letters.glyph
+    let ink = ink(text, side, line_spacing)
+    let center = start + turned(middle_of(ink, height), angle)
+    let width = (ink.right - ink.left) * height
+    let baseline = baseline_of(ink, start, height, angle)
+}
+/// As wide as said.
+shape text(
+    text: text,
+    center: point = (0, 0),
+    width: length,
+    angle: turn = 0deg,
+    align: text = "center",
+    line_spacing = 1.6,
+    rotatable: bool = false
+) {
+    let side = choice(align, ["left", "center", "right"])
+    let ink = ink(text, side, line_spacing)
+    let height = width / (ink.right - ink.left)
+    let start = center - turned(middle_of(ink, height), angle)
+    letters = glyphs(text, start, height, angle, side, line_spacing)
+    let glyph = letters.glyph
+    let baseline = baseline_of(ink, start, height, angle)
+}
+
+// The middle of the ink of a text from its start, and the line under its first line.
+fn middle_of(ink: record, height: length) = (
+    (ink.left + ink.right) / 2 * height,
+    (ink.bottom + ink.top) / 2 * height
+)
+fn baseline_of(ink: record, start: point, height: length, angle: angle) = line(
+    start + turned((ink.left * height, 0), angle),
+    start + turned((ink.right * height, 0), angle)
+)
+
+alias lettering = text

@@ -1,0 +1,296 @@
+"""The reference: every public name is documented, its example runs, and what is generated is up to date."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from aidl_lang import ast, builtins, library, pipeline
+from aidl_lang.diagnostics import Severity
+from aidl_lang.kinds import KINDS
+from aidl_lang.parser import parse
+from aidl_lang.reference.collect import Entry, doc, reference
+from aidl_lang.reference.guide import full_guide, guide, template
+from aidl_lang.reference.pages import image
+from aidl_lang.reference.signatures import exactness, held, parts, short, short_forms, split_items
+from aidl_lang.reference.site import strays, texts
+from aidl_lang.render import render
+from aidl_lang.source import SourceFile
+from aidl_lang.syntax.tables import load_tables
+from tests.documents import ROOT
+
+ENTRIES = list(reference().entries.values())
+
+FOR_THE_LIBRARY = {
+    "glyphs",
+    "ink",
+    "where",
+    "shown",
+    "sizes",
+    "convex_corners",
+    "refuse",
+    "outline_clearance",
+}
+"""Builtins that only the library's own definitions use: they have no section in `stdlib/docs`."""
+
+NOT_WORDS = frozenset({"comprehension"})
+"""Sections on the language that are not headed by a word of it, a kind or an attribute."""
+
+TOKENS = 6000
+"""What the guide may take of a model's attention."""
+
+
+# --- Every public name is documented --------------------------------------------------------------
+
+
+@pytest.mark.parametrize("entry", [pytest.param(e, id=e.name) for e in ENTRIES])
+def test_entry_has_a_line_and_one_example(entry: Entry) -> None:
+    assert re.search(r"[.:)]$", entry.doc.line), f"{entry.where}: a sentence, not {entry.doc.line!r}"
+    assert len(entry.doc.line) <= 160, f"{entry.where}: the first sentence is a line in lists"
+    assert entry.doc.example, f"{entry.where}: `{entry.name}` has no example"
+    assert "```" not in entry.doc.text, f"{entry.where}: one example, after the text"
+
+
+@pytest.mark.parametrize("entry", [pytest.param(e, id=e.name) for e in ENTRIES if e.doc.example])
+def test_example_runs_and_is_drawn_as_committed(entry: Entry) -> None:
+    compiled = pipeline.compile(SourceFile(f"{entry.name}.aidl", entry.doc.example))
+    found = [d for d in compiled.diagnostics if d.severity is not Severity.NOTE]
+    assert compiled.ok, f"{entry.where}: {compiled.status}\n" + "\n".join(map(render, found))
+    assert not found, f"{entry.where}\n" + "\n".join(map(render, found))
+    committed = ROOT / "docs" / "reference" / image(entry)
+    assert committed.is_file(), "run `make reference`"
+    assert compiled.export(".svg") == committed.read_bytes(), "run `make reference`"
+
+
+@pytest.mark.parametrize("entry", [pytest.param(e, id=e.name) for e in ENTRIES if e.sort != "word"])
+def test_example_uses_what_it_is_about(entry: Entry) -> None:
+    """By its name or a synonym; the example of a relation may stand in another's shoes no further."""
+    names = "|".join(map(re.escape, (entry.name, *entry.synonyms)))
+    assert re.search(rf"\b({names})\b", entry.doc.example), f"{entry.where}: the example shows something else"
+
+
+def test_builtins_have_sections() -> None:
+    missing = [name for name in builtins.SIGNATURES if name not in reference().entries]
+    assert set(missing) == FOR_THE_LIBRARY, "write a section in stdlib/docs, or list it above"
+
+
+@pytest.mark.parametrize("entry", [pytest.param(e, id=e.name) for e in ENTRIES if e.sort == "builtin"])
+def test_headings_of_builtins_are_their_signatures(entry: Entry) -> None:
+    """The same parameters, and the same ones may be left out; defaults are told by the headings alone."""
+    declared = {_declared(s) for s in builtins.SIGNATURES[entry.name] if s.parameters}
+    headed = {_headed(o.form) for o in entry.overloads if o.node is None}
+    if declared:
+        assert headed == declared
+
+
+def _declared(signature: builtins.Signature) -> tuple[tuple[str, bool], ...]:
+    return tuple((name, optional) for name, _, optional in signature.parameters)
+
+
+def _headed(form: str) -> tuple[tuple[str, bool], ...]:
+    items = split_items(form.partition("(")[2].removesuffix(")"))
+    return tuple((re.split(r"\W", item)[0], "=" in item) for item in items)
+
+
+def test_sections_on_the_language_are_of_words_that_exist() -> None:
+    tables = load_tables()
+    words = {*tables.reserved, *tables.soft_words, *KINDS, *builtins.EVERYWHERE, *NOT_WORDS}
+    words |= {f"@{name}" for name in builtins.ATTRIBUTES}
+    assert [e.name for e in ENTRIES if e.sort == "word" and e.name not in words] == []
+
+
+def test_words_of_the_language_have_sections() -> None:
+    told = {e.name for e in ENTRIES if e.sort == "word"}
+    attributes = {f"@{name}" for name in builtins.ATTRIBUTES if name != "colour"}
+    assert {*load_tables().reserved, *KINDS, *builtins.EVERYWHERE, *attributes} - told == set()
+
+
+def test_synonyms_are_of_public_names() -> None:
+    aliases = library.load().aliases
+    assert sorted(a for a in aliases if a not in reference().aliases) == []
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.aidl")), ids=lambda p: p.name)
+def test_examples_use_public_names_only(path: Path) -> None:
+    assert _private_names(path.read_text("utf-8")) == set()
+
+
+def _private_names(text: str) -> set[str]:
+    """Names of the library that a program calls without their being public."""
+    module = parse(SourceFile("program", text)).module
+    called = {n.callee.text for n in ast.walk(module) if isinstance(n, ast.Call)}
+    known = library.load()
+    return {name for name in called & known.callables.keys() if name not in reference().entries}
+
+
+# --- What is read off definitions -----------------------------------------------------------------
+
+
+@cache
+def _definitions() -> library.Library:
+    text = """
+    /// Two bars.
+    /// Second sentence.
+    shape bars(center: point = (0, 0), width: length, n: integer) {
+        let half = width / 2
+        middle = line(center - (half, 0), center + (half, 0))
+        for i in 0..<n { bar[i] = rectangle(center: center, width: width, height: 2) }
+        construction guide = line(center, center + (1, 1))
+        let bars = bar
+        let size = width
+    }
+    constraint near(a: box, b: box) { a.bottom >= b.top }
+    constraint near(a: box, b: box, gap: length) { a.bottom == b.top + gap }
+    constraint close(b: box, a: box, gap: length) { near(a, b, gap: gap) }
+    constraint lined(things: list, inset: length = 0) {
+        for i in 0..<len(things) - 1 { box(things[i]).left == box(things[-1]).left + inset }
+    }
+    constraint within_reach(a: point, b: point, margin: length) {
+        let room = margin * 2
+        norm(b - a) <= room
+    }
+    fn plate(left: length, width: length) = left + width
+    fn plate(right: length, width: length) = right - width
+    fn plate(left: length, right: length) = right - left
+    fn plate(left: point, width: length) = width
+    constraint far(a, b, value: length) { distance(a, b) == value }
+    """
+    return library.from_modules([parse(SourceFile("definitions", text)).module])
+
+
+def _node(name: str, overload: int = 0) -> ast.Callable:
+    node = _definitions().callables[name][overload].node
+    assert node is not None
+    return node
+
+
+def test_parts_are_what_the_body_declares_for_its_users() -> None:
+    assert [str(p) for p in parts(_node("bars"))] == ["middle: line", "bar[i]: rectangle", "bars", "size"]
+
+
+@pytest.mark.parametrize(
+    ("name", "overload", "expected"),
+    [
+        ("near", 0, "`b`"),
+        ("close", 0, "`b`"),
+        ("lined", 0, "the last of `things`"),
+        ("far", 0, "the value"),
+        ("bars", 0, ""),
+    ],
+)
+def test_what_is_held(name: str, overload: int, expected: str) -> None:
+    assert held(_node(name, overload), _definitions().callables) == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "overload", "expected"),
+    [
+        ("near", 0, {}),
+        ("near", 1, {"gap": "exactly"}),
+        ("close", 0, {"gap": "exactly"}),
+        ("lined", 0, {"inset": "exactly"}),
+        ("within_reach", 0, {"margin": "at least"}),
+    ],
+)
+def test_whether_a_measure_is_exact(name: str, overload: int, expected: dict[str, str]) -> None:
+    assert exactness(_node(name, overload), _definitions().callables) == expected
+
+
+def test_short_forms() -> None:
+    assert short("ring(center: point = (0, 0), radius: length)") == "ring(center?, radius)"
+    assert short("for NAME in LIST { … }") == "for NAME in LIST { … }"
+    nodes = [_node("near"), _node("near", 1)]
+    assert short_forms([], nodes) == ["near(a, b, gap?)"]
+    assert short_forms([], [_node("lined")]) == ["lined(a, b, …, inset?)"]
+    plates = [_node("plate", i) for i in range(4)]
+    assert short_forms([], plates) == ["plate(left/right, width)", "plate(left, right)"]
+
+
+def test_comments_are_taken_apart() -> None:
+    found = doc("A ring, 1.5 mm\nwide. `r` is its radius.\n\nAnd more.\n\n```aidl\nsolid s { }\n```\n")
+    assert (found.line, found.text) == ("A ring, 1.5 mm wide.", "`r` is its radius.\n\nAnd more.")
+    assert found.example == "solid s { }\n"
+    assert doc("").line == ""
+
+
+def test_other_spellings_and_synonyms_are_found() -> None:
+    known = reference()
+    for name in ("rounded_rectangle", "RoundedRectangle", "rounded_rect", "`rounded_rectangle`"):
+        assert known.find(name) is known.entries["rounded_rectangle"]
+    assert known.find("color") is known.entries["@color"]
+    assert known.find("no such thing") is None
+    assert known.misspelt("perpendiculr") is known.entries["perpendicular"]
+
+
+# --- What is generated ----------------------------------------------------------------------------
+
+
+def test_generated_texts_are_up_to_date() -> None:
+    stale = [
+        path
+        for path, text in texts(ROOT).items()
+        if not (ROOT / path).is_file() or (ROOT / path).read_text("utf-8") != text
+    ]
+    assert stale == [], "run `make reference`"
+
+
+def test_nothing_is_left_of_names_that_are_gone() -> None:
+    pictures = {f"docs/reference/{image(entry)}" for entry in ENTRIES if entry.doc.example}
+    assert strays(ROOT, pictures | texts(ROOT).keys()) == [], "run `make reference`"
+
+
+def test_links_in_generated_texts_lead_somewhere() -> None:
+    for path, text in texts(ROOT).items():
+        for target in re.findall(r"\]\(([^)#]+)[^)]*\)", text):
+            assert (ROOT / path).parent.joinpath(target).is_file(), f"{path}: {target}"
+
+
+# --- The guide ------------------------------------------------------------------------------------
+
+
+def test_guide_is_short_enough() -> None:
+    import mistral_common
+    from mistral_common.tokens.tokenizers.tekken import Tekkenizer
+
+    vocabulary = Path(mistral_common.__file__).parent / "data" / "tekken_240911.json"
+    tokens = Tekkenizer.from_file(str(vocabulary)).encode(guide(), bos=False, eos=False)
+    assert len(tokens) <= TOKENS
+
+
+def test_guide_names_everything_that_can_be_called() -> None:
+    words = set(re.findall(r"@?\w+", guide()))
+    assert sorted(e.name for e in ENTRIES if e.sort != "word" and e.name not in words) == []
+
+
+def test_guide_names_nothing_that_does_not_exist() -> None:
+    """Every call in its prose, its templates' own placeholders and the programs' own definitions aside."""
+    known = {*reference().entries, *reference().aliases}
+    prose = re.sub(r"```aidl.*?```", "", template(), flags=re.DOTALL)
+    called = set(re.findall(r"\b([a-z_]\w*)\(", prose))
+    assert called - known - {"f"} == set()
+
+
+def test_programs_of_the_guide_use_public_names_only() -> None:
+    for program in re.findall(r"```aidl\n(.*?)```", guide(), flags=re.DOTALL):
+        assert _private_names(program) == set()
+
+
+def test_placeholders_are_known() -> None:
+    assert "{{" not in guide()
+
+
+def test_full_guide_holds_every_entry() -> None:
+    headings = set(re.findall(r"^### (.+)$", full_guide(), flags=re.MULTILINE))
+    assert headings >= {e.name for e in ENTRIES}
+    assert full_guide().startswith(guide().strip())
+
+
+def test_codes_in_the_guide_exist() -> None:
+    from aidl_lang import explain
+
+    codes = set(re.findall(r"\b[EWN]\d{4}\b", guide()))
+    assert codes
+    assert codes <= set(explain.codes())
