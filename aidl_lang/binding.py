@@ -31,12 +31,20 @@ from aidl_lang.units import LENGTH
 
 
 def outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> list[Binding | Mismatch]:
-    """What comes of each candidate; arguments are read in other words only if none takes them as written."""
-    plain = [bind(candidate, given) for candidate in candidates]
-    if any(isinstance(outcome, Binding) for outcome in plain):
-        return plain
-    loose = [_loosely(candidate, given) for candidate in candidates]
-    return _unambiguous([b for b in loose if isinstance(b, Binding)], given) or loose
+    """What comes of each candidate; arguments are read in other words only if none takes them as written.
+    What the author defines comes before the definitions of that name that every program has.
+    """
+    own = [candidate for candidate in candidates if not candidate.standard]
+    choices = [own, candidates] if 0 < len(own) < len(candidates) else [candidates]
+    for among in choices:
+        plain = [bind(candidate, given) for candidate in among]
+        if any(isinstance(outcome, Binding) for outcome in plain):
+            return plain
+    for among in choices:
+        loose = [_loosely(candidate, given) for candidate in among]
+        if fits := _unambiguous([b for b in loose if isinstance(b, Binding)], given):
+            return fits
+    return loose
 
 
 def select(candidates: Sequence[Signature], given: Sequence[Given]) -> Binding | list[Mismatch]:

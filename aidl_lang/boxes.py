@@ -191,7 +191,7 @@ def _structure(
 
 def _curve(primitive: Geometry, here: Structure, side: str) -> Iterator[Expression]:
     """Candidates for the extreme of one curve towards a side."""
-    if primitive.recipe is not None:
+    if primitive.recipe is not None and primitive.is_drawn_later:
         yield from _made(primitive, primitive.recipe, here, side)
         return
     core = view(primitive, here)
@@ -235,12 +235,14 @@ def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iter
             grown = ex.ZERO
         case "thick" if recipe.words["caps"] == recipe.words["joins"] == "round":
             grown = ex.half(recipe.numbers["width"].expression)
-        case "offset" if recipe.words["corners"] == "round" and (out := recipe.numbers["distance"]).value >= 0:
+        case "offset" if (
+            recipe.words["corners"] == "round" and (out := recipe.numbers["distance"]).value >= 0
+        ):
             grown = out.expression
     if grown is None:
         yield Expression("measure", (), math.nan, Measurement(side, (outline,), here))
         return
-    for source in (s for group in recipe.operands for s in group):
+    for source in recipe.sources:
         for extreme in _extremes(source, here, side, frozenset()):
             yield ex.apply("add" if side in ("right", "top") else "sub", extreme, grown)
 

@@ -76,10 +76,9 @@ clip(of, by)
 fillet(of, radius: length)
 chamfer(of, size: length, second: length?)
 chamfer(of, distance: length, second: length?)
-mirror(x, about: geometry)
-mirror(x, about: text)
+mirror(x, about)
 copy(x, by: point?, angle: angle?, about: point?, scale: number?)
-copy(x, angle: angle?, scale: number?, at: point)
+copy(x, angle: angle?, scale: number?, center: point)
 move(x, by: point)
 move(x, dx: length, dy: length?)
 move(x, dx: length?, dy: length)
@@ -104,12 +103,12 @@ def _signature(declaration: str) -> Signature:
     """`name(parameter: type, optional: type?)`; `name(**)` takes arguments of any name."""
     name, _, inside = declaration.rstrip(")").partition("(")
     if inside == "**":
-        return Signature(name, (), takes_any=True)
+        return Signature(name, (), takes_any=True, standard=True)
     parameters = []
     for item in inside.split(", "):
         word, _, kind = item.partition(": ")
         parameters.append((word, PARAMETER_TYPES[kind.rstrip("?") or "any"], kind.endswith("?")))
-    return Signature(name, tuple(parameters))
+    return Signature(name, tuple(parameters), standard=True)
 
 
 def _table() -> dict[str, tuple[Signature, ...]]:
@@ -123,9 +122,7 @@ def _table() -> dict[str, tuple[Signature, ...]]:
 
 SIGNATURES: Mapping[str, tuple[Signature, ...]] = _table()
 
-OUTLINES = frozenset(
-    ("offset", "shell", "thick", "hull", "union", "intersect", "difference", "cut", "clip")
-)
+OUTLINES = frozenset(("offset", "shell", "thick", "hull", "union", "intersect", "difference", "cut", "clip"))
 """Operations that make an outline of others by exact geometry, after solving."""
 
 EDITS = frozenset({"move", "translate", "rotate", "scale"})
@@ -144,8 +141,10 @@ FINISHES = frozenset({"fillet", "chamfer"})
 """Statements that change the corners of outlines after solving."""
 
 WORDS = frozenset(
-    ("x", "y", "left", "right", "center", "top", "bottom", "middle", "horizontal", "vertical", "both")
-    + ("sharp", "round", "butt", "square")
+    (
+        *("x", "y", "left", "right", "center", "top", "bottom", "middle", "horizontal", "vertical", "both"),
+        *("sharp", "miter", "round", "butt", "square"),
+    )
 )
 """Words that may stand bare as an argument, as in `axis: x` and `align: left`."""
 

@@ -48,6 +48,8 @@ def interpret(
     it.watched = frozenset(node for violation in program.violations for node in violation.nodes)
     try:
         root = run_module(it, _library_scope(program))
+        for copier in it.copiers:
+            copier.finish()
     except Stop:
         root = it.root or Structure("assembly", "model", None, None)
     model = Model(root, it.constraints, it.assertions, it.unknowns, it.knobs, it.readings)

@@ -160,7 +160,7 @@ def _ink(curves: Sequence[Curve]) -> Box:
     whole = boxes[0]
     for box in boxes[1:]:
         whole = unionRect(whole, box)
-    return whole
+    return whole[0], whole[1], whole[2], whole[3]
 
 
 # --- What to say of characters that are missing ------------------------------------------------------

@@ -79,7 +79,8 @@ def from_modules(modules: Sequence[ast.Module], diagnostics: Sequence[Diagnostic
     return Library(
         sources=tuple(module.source for module in modules),
         callables={
-            name: tuple(signature(node, shapes) for node in nodes) for name, nodes in definitions.items()
+            name: tuple(signature(node, shapes, standard=True) for node in nodes)
+            for name, nodes in definitions.items()
         },
         aliases=aliases,
         constants=constants,
@@ -88,7 +89,7 @@ def from_modules(modules: Sequence[ast.Module], diagnostics: Sequence[Diagnostic
     )
 
 
-def signature(node: ast.Callable, shapes: Sequence[str] = ()) -> Signature:
+def signature(node: ast.Callable, shapes: Sequence[str] = (), *, standard: bool = False) -> Signature:
     """What a definition asks of its callers; `shapes` are the names that may stand as types beside the
     built-in ones. A word that names no type accepts anything here: the checker reports it where it is
     written.
@@ -96,7 +97,7 @@ def signature(node: ast.Callable, shapes: Sequence[str] = ()) -> Signature:
     parameters = tuple(
         (p.name.text, parameter_type(p, shapes) or ANY, p.default is not None) for p in node.parameters or ()
     )
-    return Signature(node.name.text, parameters, node)
+    return Signature(node.name.text, parameters, node, standard=standard)
 
 
 def _collect(
@@ -242,7 +243,7 @@ def _from_cache(blob: bytes, sources: tuple[SourceFile, ...]) -> Library | None:
         nodes = trees(index["definitions"][name])
         if nodes is None:
             return parsed().callables[name]
-        return tuple(signature(node, index["shapes"]) for node in nodes)
+        return tuple(signature(node, index["shapes"], standard=True) for node in nodes)
 
     def constant(name: str) -> ast.Let:
         nodes = trees([index["constants"][name]])

@@ -117,6 +117,11 @@ class Geometry:
     def is_compound(self) -> bool:
         return self.scope is not None
 
+    @property
+    def is_drawn_later(self) -> bool:
+        """Whether its curves are worked out after solving; what the library makes has its own."""
+        return self.recipe is not None and self.recipe.kind == self.type
+
     def primitives(self, *, even_construction: bool = False) -> Iterator[Geometry]:
         """The primitives that are drawn, in order of writing; of construction geometry only if asked for."""
         if self.construction and not even_construction:
@@ -141,6 +146,11 @@ class Recipe:
     operands: tuple[tuple[Geometry, ...], ...]
     numbers: Mapping[str, Num] = field(default_factory=dict)
     words: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def sources(self) -> tuple[Geometry, ...]:
+        """What it is made of, each once."""
+        return tuple(dict.fromkeys(g for group in self.operands for g in group))
 
     def made_of(self, copy: Callable[[Geometry], Geometry], measure: Callable[[Num], Num]) -> Recipe:
         """The same of copies."""
@@ -168,8 +178,8 @@ class Finish:
 
 @dataclass(frozen=True)
 class Measurement:
-    """A number that only the finished drawing has: area, perimeter, clearance, overlaps (1 or 0), or a side of
-    the box of an outline made of others, in the frame of `here`.
+    """A number that only the finished drawing has: area, perimeter, clearance, overlaps (1 or 0), or a side
+    of the box of an outline made of others, in the frame of `here`.
     """
 
     kind: str
@@ -377,6 +387,8 @@ class Assertion:
     text: str
     span: Span
     label: str = ""
+    shape: str = ""
+    """the shape that asks this of its arguments"""
 
 
 @dataclass(frozen=True)

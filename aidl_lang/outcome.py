@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+from aidl_lang.boxes import SIDES
 from aidl_lang.building.conditions import holds
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.expression import Evaluator
 from aidl_lang.failures import failure_notes
-from aidl_lang.boxes import SIDES
 from aidl_lang.geometry.boolean import clearance, overlap_area
 from aidl_lang.geometry.drawing import Drawing, draw
 from aidl_lang.geometry.evaluate import bounds, inward
@@ -74,7 +74,11 @@ def _failed(assertion: Assertion, evaluate: Evaluator) -> Diagnostic:
         f"assertion failed: {message}{where}",
         assertion.span,
         f"here {shown}" if shown else "false as written",
-        hints=("an `assert` steers nothing: to make it hold, state it with `constrain` as well",),
+        hints=(
+            f"`{assertion.shape}` asks this of its arguments: `aidl doc {assertion.shape}` tells what they are"
+            if assertion.shape
+            else "an `assert` steers nothing: to make it hold, state it with `constrain` as well",
+        ),
     )
 
 

@@ -16,7 +16,7 @@ from aidl_lang.diagnostics import Diagnostic, ordered
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.automaton import Automaton, Checkpoint
 from aidl_lang.syntax.errors import explain, spaced_call
-from aidl_lang.syntax.foreign import understood
+from aidl_lang.syntax.functions import understood
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import END, Token, Tokens, tokenize
 from aidl_lang.syntax.tree import Builder

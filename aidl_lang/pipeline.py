@@ -168,6 +168,12 @@ def _new(found: Sequence[Diagnostic], known: Sequence[Diagnostic]) -> Iterator[D
             yield d
 
 
+def _beside(notes: Sequence[Diagnostic], errors: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
+    """Remarks on places of which nothing worse is said."""
+    places = [d.span for d in errors if d.is_error and d.span is not None]
+    return (n for n in notes if n.span is None or not any(n.span.overlaps(p) for p in places))
+
+
 def check(
     source: SourceFile, world: World | None = None, settings: Settings = Settings()
 ) -> list[Diagnostic]:
@@ -254,6 +260,7 @@ def _finish(
         )
     if solution.status is not Status.SOLVED:
         notes = []  # the parts are not where they belong
+    notes = list(_beside(notes, found))
     everything = ordered([*diagnostics, *found, *notes])
     stages = tuple((lowered.groups[stage.group], stage) for stage in solution.stages)
     return Compiled(model.status, everything, watch.seconds, known, model, drawing, show, stages)

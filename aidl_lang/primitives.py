@@ -13,7 +13,15 @@ from typing import TYPE_CHECKING
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression
 from aidl_lang.lettering import Vec
-from aidl_lang.model import Geometry, Structure, chain, common_ancestor, convert_angle, convert_point
+from aidl_lang.model import (
+    Geometry,
+    Structure,
+    chain,
+    common_ancestor,
+    convert_angle,
+    convert_point,
+    own_geometry,
+)
 from aidl_lang.units import ANGLE, LENGTH
 from aidl_lang.values import ListVal, Num, PointVal, Status, length, point
 
@@ -229,9 +237,8 @@ def defining(geometry: Geometry, here: Structure) -> list[Expression]:
             found.append(value.expression)
         elif isinstance(value, PointVal):
             found += [value.x.expression, value.y.expression]
-    for part in geometry.parts.values():
-        if isinstance(part, Geometry):
-            found += defining(part, here)
+    for part in own_geometry(geometry.parts, geometry):
+        found += defining(part, here)
     return found
 
 

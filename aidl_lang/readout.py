@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
+from typing import TypeAlias
 
 from aidl_lang import expression as ex
 from aidl_lang.building.scopes import ParamBinding, PassedBinding, Scope, VarBinding
@@ -45,6 +46,7 @@ from aidl_lang.solver.solution import Solution
 from aidl_lang.values import Num, PointVal, Text, Value
 
 _FULL_TURN = 2 * math.pi
+Values: TypeAlias = dict[str, Scalar | Vec | tuple[Vec, ...]]
 
 
 def read_out(
@@ -138,7 +140,7 @@ class _Reader:
                     case VarBinding(value=known) if scope is s.scope:
                         value = known
                     case PassedBinding(tied=tied):
-                        value = tied.get(s, binding.value)
+                        value = tied.get(s) or tied.get(binding.instance, binding.value)  # a copy shares its source's
                     case Text() | bool() if scope is s.scope:
                         value = binding
                 if isinstance(value, Num | Text | bool):
@@ -188,18 +190,19 @@ class _Reader:
         if g.type == "glyphs":
             return self._text(g, core)
         recipe = self._recipe(g.recipe) if g.recipe is not None else None
-        is_plain = not g.is_compound and recipe is None and g.type != "point"
+        is_plain = not g.is_compound and not g.is_drawn_later and g.type != "point"
         curve = self._curve(g, core) if is_plain else None
         return SolvedGeometry(
             name=g.name or g.type,
             path=g.path,
             type=g.type,
-            values=self._own_values(g, core, curve, recipe),
+            values=self._own_values(g, core, curve),
             curve=curve,
             parts=tuple(self.geometry(part) for part in own_geometry(g.parts, g)),
             construction=g.construction,
             span=g.span,
             recipe=recipe,
+            source=g.source.path if g.source is not None else None,
         )
 
     def _recipe(self, recipe: Recipe) -> SolvedRecipe:
@@ -228,19 +231,10 @@ class _Reader:
             u, v = height * p[0], up * height * p[1]
             return x + u * c - v * s, y + u * s + v * c
 
-        glyphs = tuple(
-            _part(
-                g,
-                f"glyph[{i}]",
-                "glyph",
-                parts=tuple(_edge(g, f"glyph[{i}].edge[{k}]", [at(p) for p in c]) for k, c in enumerate(glyph.curves)),
-            )
-            for i, glyph in enumerate(g.glyphs)
-        )
-        values = {"start": (x, y), "height": height, "angle": math.degrees(math.atan2(s, c))}
-        return SolvedGeometry(
-            g.name or g.type, g.path, g.type, values, None, glyphs, g.construction, g.span
-        )
+        glyphs = tuple(_glyph(g, f"glyph[{i}]", glyph.curves, at) for i, glyph in enumerate(g.glyphs))
+        values: Values = {"start": (x, y), "height": height, "angle": math.degrees(math.atan2(s, c))}
+        whole = SolvedGeometry(g.name or g.type, g.path, g.type, values, None, glyphs, g.construction, g.span)
+        return replace(whole, source=g.source.path if g.source is not None else None)
 
     def _at(self, value: Value) -> Vec:
         x, y = xy(value)
@@ -249,19 +243,19 @@ class _Reader:
     def _number(self, value: Value) -> float:
         return self.evaluate(number(value))
 
-    def _own_values(
-        self, g: Geometry, core: Mapping[str, Value], curve: Curve | None, recipe: SolvedRecipe | None
-    ) -> dict[str, Scalar | Vec | tuple[Vec, ...]]:
+    def _own_values(self, g: Geometry, core: Mapping[str, Value], curve: Curve | None) -> Values:
         if g.is_compound:
             return self._shape_values(g)
-        return dict(recipe.numbers) if recipe else self._values(g, core, curve)
+        if g.recipe is not None and g.is_drawn_later:
+            return {name: self._number(value) for name, value in g.recipe.numbers.items()}
+        return self._values(g, core, curve)
 
-    def _shape_values(self, g: Geometry) -> dict[str, Scalar | Vec | tuple[Vec, ...]]:
+    def _shape_values(self, g: Geometry) -> Values:
         """The number and point arguments of a compound shape."""
         from aidl_lang.building.scopes import Scope
 
         assert isinstance(g.scope, Scope)
-        found: dict[str, Scalar | Vec | tuple[Vec, ...]] = {}
+        found: Values = {}
         for name in g.arguments:
             value = translate(name, g.scope.values[name], g.owner, self.model.root)  # type: ignore[arg-type]
             if isinstance(value, PointVal):
@@ -270,16 +264,14 @@ class _Reader:
                 found[name] = self._number(value)
         return found
 
-    def _values(
-        self, g: Geometry, core: Mapping[str, Value], curve: Curve | None
-    ) -> dict[str, Scalar | Vec | tuple[Vec, ...]]:
+    def _values(self, g: Geometry, core: Mapping[str, Value], curve: Curve | None) -> Values:
         match curve:
             case curves.Line(start, end):
                 return {"start": start, "end": end}
             case curves.Circle(center, radius):
                 return {"center": center, "radius": radius}
             case curves.Arc(center, radius, start, end, sweep):
-                ends: dict[str, Scalar | Vec | tuple[Vec, ...]] = {"start": start, "end": end}
+                ends: Values = {"start": start, "end": end}
                 return {"center": center, "radius": radius, **ends, "clockwise": sweep < 0}
             case curves.Bezier(p0, p1, p2, p3):
                 return {"points": (p0, p1, p2, p3)}
@@ -314,24 +306,22 @@ class _Reader:
         return curves.Arc(center, self._number(core["radius"]), start, end, -sweep if is_clockwise else sweep)
 
 
-
-def _part(
-    text: Geometry,
-    name: str,
-    kind: str,
-    values: dict[str, Scalar | Vec | tuple[Vec, ...]] | None = None,
-    curve: Curve | None = None,
-    parts: tuple[SolvedGeometry, ...] = (),
+def _glyph(
+    text: Geometry, name: str, outline: Sequence[Sequence[Vec]], at: Callable[[Vec], Vec]
 ) -> SolvedGeometry:
-    """A part of a text, by its path in it."""
-    path = f"{text.path}.{name}"
-    own = name.rpartition(".")[2]
-    return SolvedGeometry(own, path, kind, values or {}, curve, parts, text.construction, text.span)
+    """One character of a text, with its curves as parts."""
+    edges = tuple(_edge(text, f"{name}.edge[{i}]", [at(p) for p in c]) for i, c in enumerate(outline))
+    return SolvedGeometry(name, f"{text.path}.{name}", "glyph", {}, None, edges, text.construction, text.span)
 
 
-def _edge(text: Geometry, name: str, points: Sequence[Vec]) -> SolvedGeometry:
-    """One curve of a character."""
+def _edge(text: Geometry, path: str, points: Sequence[Vec]) -> SolvedGeometry:
+    """One curve of a character, by its path in the text."""
+    curve: Curve
     if len(points) == 2:
-        start, end = points
-        return _part(text, name, "line", {"start": start, "end": end}, curves.Line(start, end))
-    return _part(text, name, "bezier", {"points": tuple(points)}, curves.Bezier(*points))
+        curve, kind = curves.Line(*points), "line"
+        values: Values = {"start": curve.start, "end": curve.end}
+    else:
+        curve, kind = curves.Bezier(*points), "bezier"
+        values = {"points": tuple(points)}
+    name, whole = path.rpartition(".")[2], f"{text.path}.{path}"
+    return SolvedGeometry(name, whole, kind, values, curve, (), text.construction, text.span)

@@ -44,7 +44,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Recipe:
-    """How the curves of an outline come from others (see `model.Recipe`); they are worked out by `outlines`."""
+    """How the curves of an outline come from others (see `model.Recipe`); `outlines` works them out."""
 
     kind: str
     operands: tuple[tuple[SolvedGeometry, ...], ...]
@@ -76,6 +76,8 @@ class SolvedGeometry:
             the number and point parameters for a compound shape
     curve   the curve of a primitive; None for points and compound shapes
     parts   the named parts of a compound shape
+    recipe  how the curves of an outline come from others
+    source  the path of what it is a copy of
     """
 
     name: str
@@ -87,6 +89,7 @@ class SolvedGeometry:
     construction: bool
     span: Span | None
     recipe: Recipe | None = None
+    source: str | None = None
 
     def curves(self) -> Iterator[Piece]:
         """The drawn curves in order of writing; none of construction geometry."""

@@ -31,6 +31,19 @@ size: side side_length edge edge_length a s
 bottom_width: bottom base base_width width_bottom bottom_length
 top_width: top width_top top_length
 base: b width base_width
+thickness: t thick wall wall_thickness border
+radius: circumradius
+inradius: apothem inner_radius
+side: s edge edge_length side_length
+across_flats: flat_to_flat flats af
+bottom_left: lower_left left_bottom bl min corner
+bottom_right: lower_right right_bottom br
+top_left: upper_left left_top tl
+top_right: upper_right right_top tr max
+left: min_x x_min xmin minx
+right: max_x x_max xmax maxx
+bottom: min_y y_min ymin miny
+top: max_y y_max ymax maxy
 rx: x_radius radius_x r_x semi_major a
 ry: y_radius radius_y r_y semi_minor b
 center: centre ctr c middle pos position at loc location

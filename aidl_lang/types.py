@@ -132,6 +132,7 @@ PARAMETER_TYPES: Mapping[str, Type] = {
     "boolean": TruthType(),
     "point": PointType(),
     "list": ListType(ANY),
+    "points": ListType(PointType()),
     "record": RecordType(),
     "geometry": GeometryType(""),
     "structure": StructureType(),
@@ -218,8 +219,8 @@ class Given:
 
 @dataclass(frozen=True)
 class Signature:
-    """A callable: `node` is its definition, None for one that is built in. One that `takes_any` takes every
-    named argument.
+    """A callable: `node` is its definition, None for one that is built in; `standard` is what every program
+    has. One that `takes_any` takes every named argument.
     """
 
     name: str
@@ -227,6 +228,7 @@ class Signature:
     """name, type, and whether it has a default"""
     node: ast.Callable | None = None
     takes_any: bool = False
+    standard: bool = False
 
     @cached_property
     def by_fold(self) -> Mapping[str, str]:

@@ -10,6 +10,7 @@ moment of the machine meets all of them.
 from __future__ import annotations
 
 import argparse
+import gc
 import os
 import platform
 import subprocess
@@ -20,6 +21,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from statistics import median, quantiles
+from unittest import mock
 
 from aidl_lang import library, pipeline
 from aidl_lang.source import SourceFile
@@ -88,45 +90,38 @@ def print_warm(program: Path, runs: int) -> None:
 
 def print_library(runs: int) -> None:
     """Opening the standard library without and with its cache, and its size."""
-    sources = library.load().sources
-    with tempfile.TemporaryDirectory() as folder:
-        kept = os.environ.get("XDG_CACHE_HOME")
-        os.environ["XDG_CACHE_HOME"] = folder
-        try:
-            calls = {
-                "cold cache: parsed and kept": partial(_open_library, Path(folder), forget=True),
-                "warm cache": partial(_open_library, Path(folder), forget=False),
-                "warm cache, every definition read": partial(_read_library, Path(folder)),
-            }
-            times = sample(calls, runs)
-            (cache,) = Path(folder).glob("aidl/library-*.pickle")
-            size = cache.stat().st_size
-        finally:
-            if kept is None:
-                del os.environ["XDG_CACHE_HOME"]
-            else:
-                os.environ["XDG_CACHE_HOME"] = kept
-    _print_table("library", times)
-    text = sum(len(source.text.encode()) for source in sources)
     names = library.load().callables
     count = sum(len(overloads) for overloads in names.values())
+    text = sum(len(source.text.encode()) for source in library.load().sources)
+    with tempfile.TemporaryDirectory() as folder, mock.patch.dict(os.environ, XDG_CACHE_HOME=folder):
+        cache = Path(folder) / "aidl"
+        times: dict[str, list[float]] = {}
+        for _ in range(runs + 1):
+            for kept in cache.glob("library-*"):
+                kept.unlink()
+            times.setdefault("cold cache: parsed and kept", []).append(_seconds_to_open())
+            times.setdefault("warm cache", []).append(_seconds_to_open())
+            times.setdefault("warm cache, all definitions read", []).append(_seconds_to_open(read=True))
+        size = sum(kept.stat().st_size for kept in cache.glob("library-*"))
+    _print_table("library", {name: taken[1:] for name, taken in times.items()})
     print(
-        f"The library: {count} definitions of {len(names)} names in {len(sources)} files; "
-        f"{text} bytes of text, {size} bytes of cache."
+        f"The library has {count} definitions of {len(names)} names in {text} bytes of text; "
+        f"its cache has {size} bytes."
     )
 
 
-def _open_library(folder: Path, *, forget: bool) -> library.Library:
-    if forget:
-        for cache in folder.glob("aidl/library-*.pickle"):
-            cache.unlink()
+def _seconds_to_open(*, read: bool = False) -> float:
+    """As in a new process: the last library is let go before, and no garbage is looked for meanwhile."""
     library.load.cache_clear()
-    return library.load()
-
-
-def _read_library(folder: Path) -> None:
-    for overloads in _open_library(folder, forget=False).callables.values():
-        assert overloads
+    gc.collect()
+    gc.disable()
+    start = time.perf_counter()
+    opened = library.load()
+    if read:
+        list(opened.callables.values())
+    taken = time.perf_counter() - start
+    gc.enable()
+    return taken
 
 
 def sample(calls: Mapping[str, Callable[[], object]], runs: int) -> dict[str, list[float]]:

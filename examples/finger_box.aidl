@@ -9,7 +9,7 @@ assembly finger_box {
     let apart = 5mm
 
     // Where three sheets meet, the corner belongs to the wall: all its edges begin with a tab.
-    template solid wall() {
+    solid wall() {
         sheet = finger_panel(
             center: origin,
             width: length,
@@ -19,7 +19,7 @@ assembly finger_box {
             kerf: kerf
         )
     }
-    template solid end() {
+    solid end() {
         sheet = finger_panel(
             center: origin,
             width: depth,
@@ -70,7 +70,8 @@ assembly finger_box {
 
     assert label.height <= 0.5 * front.height, "the name is too large"
     assert left.handle.top <= left.top - 6mm, "the handle is too close to the rim"
-    assert left.handle.bottom >= left.bottom + thickness + 6mm, "the handle is too close to the bottom"
+    assert left.handle.bottom >= left.bottom + thickness + 6mm,
+        "the handle is too close to the bottom"
     if kerf == 0mm {
         // The sheets fill the box's walls once: no corner is missing, none is there twice.
         let hollow = (length - 2 * thickness) * (depth - 2 * thickness) * (height - thickness)

@@ -50,8 +50,12 @@ assembly gear_pair {
         bar.pivot[0].rim.center.x == pinion.body.center.x
     }
 
-    assert distance(bar.pivot[0].rim, bar.pivot[1].rim) == module * (pinion_teeth + wheel_teeth) / 2 + backlash,
+    assert distance(
+        bar.pivot[0].rim,
+        bar.pivot[1].rim
+    ) == module * (pinion_teeth + wheel_teeth) / 2 + backlash,
         "the bar does not keep the gears apart"
     assert clearance(pinion, wheel) > 0, "the teeth jam"
-    assert pinion.body.root_radius - screw(axle).close / 2 >= 2mm, "the pinion is too weak around its axle"
+    assert pinion.body.root_radius - screw(axle).close / 2 >= 2mm,
+        "the pinion is too weak around its axle"
 }

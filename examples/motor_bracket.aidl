@@ -37,7 +37,8 @@ solid motor_bracket {
     }
 
     let motor_bottom = mount.center_y - flange.body / 2
-    assert adjust[1].top + (sizes.washer - sizes.clearance) / 2 <= motor_bottom, "a washer sits under the motor"
+    assert adjust[1].top + (sizes.washer - sizes.clearance) / 2 <= motor_bottom,
+        "a washer sits under the motor"
     assert adjust[1].left - adjust[-1].right >= wall, "the slots are too close to each other"
     assert clearance(mount, adjust[1]) >= wall, "the plate is weak between motor and slot"
 }

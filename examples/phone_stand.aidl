@@ -15,7 +15,7 @@ assembly phone_stand {
     fn forth(d: length) = polar(d, 90deg - lean)
     let heel = (0mm, 2 * wall + thickness + 2mm)
 
-    template solid side() {
+    solid side() {
         let toe = heel + forth(phone)
         let lip = toe + climb(10mm)
         let tip = heel + climb(high)
@@ -49,7 +49,7 @@ assembly phone_stand {
         }
     }
 
-    template solid bar() {
+    solid bar() {
         body = rectangle(center: origin, width: span, height: tab + 12)
         tabs = rectangle(center: origin, width: span + 2 * thickness, height: tab)
     }

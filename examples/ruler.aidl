@@ -37,5 +37,6 @@ assembly ruler {
 
     assert scale.right <= blade.eye.left - 2mm, "the scale runs into the hole"
     assert scale.bottom >= blade.bottom + 1mm, "the blade is too narrow for the numbers"
-    assert scale.number[50].center.x - scale.number[0].center.x == 50mm, "a number is not at its tick"
+    assert scale.number[50].center.x - scale.number[0].center.x == 50mm,
+        "a number is not at its tick"
 }

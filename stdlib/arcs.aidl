@@ -92,6 +92,8 @@ shape keyhole(
     left = line(head.end, foot.start)
     right = line(foot.end, head.start)
 }
+fn keyhole(center: point = (0, 0), diameter: length, width: length, length: length, angle = 0deg) =
+    keyhole(center, diameter / 2, width, length, angle)
 
 /// A lens: two equal arcs, `upper` and `lower`, that meet in tips on the left and on the right.
 ///
@@ -121,25 +123,25 @@ shape lens(
 /// A crescent: a disc from which another is taken whose centre is `offset` to the right.
 ///
 /// ```aidl
-/// solid moon { body = crescent(radius: 25, inner_radius: 21, offset: 10) }
+/// solid moon { body = crescent(outer_radius: 25, inner_radius: 21, offset: 10) }
 /// ```
 shape crescent(
     center: point = (0, 0),
-    radius: length,
+    outer_radius: length,
     inner_radius: length,
     offset: length,
     angle: turn = 0deg,
     rotatable: bool = false
 ) {
-    assert abs(radius - inner_radius) < offset < radius + inner_radius,
+    assert abs(outer_radius - inner_radius) < offset < outer_radius + inner_radius,
         "the two circles of a crescent cross each other"
-    let x = (radius ^ 2 - inner_radius ^ 2 + offset ^ 2) / (2 * offset)
-    let y = sqrt(radius ^ 2 - x ^ 2)
+    let x = (outer_radius ^ 2 - inner_radius ^ 2 + offset ^ 2) / (2 * offset)
+    let y = sqrt(outer_radius ^ 2 - x ^ 2)
     let wide = atan2(y, x)
     let narrow = atan2(y, x - offset)
     outer = arc(
         center: center,
-        radius: radius,
+        radius: outer_radius,
         start_angle: angle + wide,
         end_angle: angle + 360deg - wide
     )

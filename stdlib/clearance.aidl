@@ -17,8 +17,9 @@
 ///     assert clearance(hole, pad) == 4
 /// }
 /// ```
-fn clearance(a, b) = if len(core(a)) > 0 and len(core(b)) > 0 then shown(
-    core_distance(core(a), core(b)) - rounding(a) - rounding(b)
+fn clearance(a, b) = core_clearance(a, b, core(a), core(b))
+fn core_clearance(a, b, p: list, q: list) = if len(p) > 0 and len(q) > 0 then shown(
+    core_distance(p, q) - rounding(a) - rounding(b)
 ) else outline_clearance(a, b)
 
 alias outline_distance = clearance
@@ -44,31 +45,39 @@ fn rounding(r: rounded_rectangle) = r.radius
 
 // The distance of two convex cores: that of the nearest corner and edge where a line parts them; else, less
 // than 0, the shortest way to part them.
-fn core_distance(a: list, b: list) = if len(a) == 1 and len(b) == 1 then norm(b[0] - a[0]) else where(
-    parted(a, b),
-    min([to_core(p, b) for p in a] + [to_core(p, a) for p in b]),
-    parted(a, b)
+fn core_distance(a: list, b: list) = if len(a) == 1 and len(b) == 1 then norm(b[0] - a[0]) else edge_distance(
+    a,
+    b,
+    core_edges(a),
+    core_edges(b)
 )
-
-// The distance of a corner from the edges of a core, and from one edge.
-fn to_core(p: point, core: list) = min(
-    [to_segment(p, core[i], core[(i + 1) % len(core)]) for i in 0..<len(core)]
-) if len(core) > 1 else norm(p - core[0])
-fn to_segment(p: point, a: point, b: point) = norm(
-    p - a - (b - a) * max(0, min(1, dot(p - a, b - a) / dot(b - a, b - a)))
+fn edge_distance(a: list, b: list, of_a: list, of_b: list) = parted_or_deep(
+    max([beyond_edge(b, e[0], e[1], e[3]) for e in of_a] + [beyond_edge(a, e[0], e[1], e[3]) for e in of_b]),
+    min([to_core(p, b, of_b) for p in a] + [to_core(p, a, of_a) for p in b])
 )
+fn parted_or_deep(parted, apart) = where(parted, apart, parted)
 
-// By how much the edge that parts two cores best does so: less than 0 when none does.
-fn parted(a: list, b: list) = max(beyond_edges(a, b) + beyond_edges(b, a))
-fn beyond_edges(core: list, points: list) = [
-    min([turn_of(core) * offset_right(p, core[i], core[(i + 1) % len(core)]) for p in points])
-    for i in 0..<len(core) if len(core) > 1
+// The edges of a core: each a corner, the way to the one before, and its length, without and with the sign of
+// the turn. An edge alone has two sides.
+fn core_edges(core: list) = [
+    core_edge(core[i], core[i - 1] - core[i], turn_of(core)) for i in 0..<len(core) if len(core) > 1
 ]
-fn offset_right(p: point, a: point, b: point) = cross(p - a, b - a) / norm(b - a)
+fn core_edge(corner: point, way: point, turn: number) = [corner, way, norm(way), norm(way) * turn]
 
-// 1 for corners that run counter-clockwise, -1 for clockwise; an edge alone has two sides.
+// 1 for corners that run counter-clockwise, -1 for clockwise.
 fn turn_of(core: list) = if len(core) < 3 then 1 else where(
     cross(core[1] - core[0], core[2] - core[1]),
     1,
     -1
+)
+
+// The distance of a corner from the edges of a core, and from one edge.
+fn to_core(p: point, core: list, edges: list) = if len(core) == 1 then norm(p - core[0]) else min(
+    [to_segment(p - e[0], e[1], e[2]) for e in edges]
+)
+fn to_segment(p: point, way: point, long: length) = norm(p - way * max(0, min(1, dot(p, way) / long / long)))
+
+// By how much an edge has all corners of a core beyond it.
+fn beyond_edge(corners: list, from: point, way: point, long: length) = min(
+    [cross(way, p - from) / long for p in corners]
 )

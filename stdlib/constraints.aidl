@@ -7,7 +7,7 @@
 // The point that stands for a thing: itself, its centre, or the centre of its box; of a list, that of its box.
 fn center_of(p: point) = p
 fn center_of(b: bezier) = refuse("a bezier has no centre; name one of its points, as in `b.start`")
-fn center_of(of) = of.bb.center if is_list(of) else of.center
+fn center_of(of) = if is_list(of) then of.bb.center else of.center
 
 // The ends of a curve; none of anything else.
 fn ends_of(of) = []
@@ -175,9 +175,12 @@ constraint vertical(things: list) {
 }
 
 // Whether all are lines; a mix of lines and other things is refused, since a line has no one height.
-fn alike_in_kind(things: list) = if len([t for t in things if is_line(t)]) in [0, len(things)] then len(
-    things
-) > 0 and is_line(things[0]) else refuse("it takes lines, or points and things with centres, not both")
+fn alike_in_kind(things: list) = if len([t for t in things if is_line(t)]) in [
+    0,
+    len(things)
+] then len(things) > 0 and is_line(things[0]) else refuse(
+    "it takes lines, or points and things with centres, not both"
+)
 
 /// The lines run in the same direction, or in opposite ones.
 ///

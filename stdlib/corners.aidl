@@ -45,36 +45,53 @@ shape rounded_rectangle(
     assert 2 * radius <= min(width, height), "the radius of the corners is at most half of the shorter side"
 }
 
-/// With a radius for each corner, counter-clockwise from the bottom left one.
+/// With a radius for each corner, as a list counter-clockwise from the bottom left one, or by name.
+fn rounded_rectangle(
+    center: point = (0, 0), width: length, height: length, radii: list, angle = 0deg, rotatable = false
+) =
+    if len(radii) == 4 then rounded_rectangle(
+        center: center,
+        width: width,
+        height: height,
+        radius_bottom_left: radii[0],
+        radius_bottom_right: radii[1],
+        radius_top_right: radii[2],
+        radius_top_left: radii[3],
+        angle: angle,
+        rotatable: rotatable
+    ) else refuse("a rectangle has four radii, counter-clockwise from the bottom left corner")
 shape rounded_rectangle(
     center: point = (0, 0),
     width: length,
     height: length,
-    radii: list,
+    radius_bottom_left: length,
+    radius_bottom_right: length,
+    radius_top_right: length,
+    radius_top_left: length,
     angle: turn = 0deg,
     rotatable: bool = false
 ) {
-    assert len(radii) == 4, "a rounded rectangle has four radii, counter-clockwise from the bottom left corner"
     fn place(x, y) = center + turned((x, y), angle)
-    fn round_corner(i, x, y) = quarter_arc(
-        place(x * (width / 2 - radii[i]), y * (height / 2 - radii[i])),
-        radii[i],
-        angle + 180deg + 90deg * i
-    )
-    bottom_left = place(-width / 2, -height / 2)
-    bottom_right = place(width / 2, -height / 2)
-    top_right = place(width / 2, height / 2)
-    top_left = place(-width / 2, height / 2)
-    corner_bottom_left = round_corner(0, -1, -1)
-    corner_bottom_right = round_corner(1, 1, -1)
-    corner_top_right = round_corner(2, 1, 1)
-    corner_top_left = round_corner(3, -1, 1)
+    let w = width / 2
+    let h = height / 2
+    let a = radius_bottom_left
+    let b = radius_bottom_right
+    let c = radius_top_right
+    let d = radius_top_left
+    bottom_left = place(-w, -h)
+    bottom_right = place(w, -h)
+    top_right = place(w, h)
+    top_left = place(-w, h)
+    corner_bottom_left = quarter_arc(place(a - w, a - h), a, angle + 180deg)
+    corner_bottom_right = quarter_arc(place(w - b, b - h), b, angle + 270deg)
+    corner_top_right = quarter_arc(place(w - c, h - c), c, angle)
+    corner_top_left = quarter_arc(place(d - w, h - d), d, angle + 90deg)
     bottom = line(corner_bottom_left.end, corner_bottom_right.start)
     right = line(corner_bottom_right.end, corner_top_right.start)
     top = line(corner_top_right.end, corner_top_left.start)
     left = line(corner_top_left.end, corner_bottom_left.start)
-    assert max(radii[0] + radii[1], radii[3] + radii[2]) <= width, "two round corners of a level side overlap"
-    assert max(radii[0] + radii[3], radii[1] + radii[2]) <= height, "two round corners of an upright side overlap"
+    assert max(a + b, d + c) <= width, "two round corners of a level side overlap"
+    assert max(a + d, b + c) <= height, "two round corners of an upright side overlap"
 }
 
 /// By a corner, about which it turns.

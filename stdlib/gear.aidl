@@ -41,6 +41,7 @@ shape gear(
     let outer = pitch + 1mm * written(addendum + profile_shift)
     let inner = pitch + 1mm * written(profile_shift - 1 - clearance)
     assert inner > 0, "the teeth of this gear are deeper than its radius: it needs more of them"
+    assert outer > base, "the teeth of this gear end below its base circle, where no involute is"
     let foot = roll_at(max(inner, base), base)
     let top = roll_at(outer, base)
     let flank = involute(base, foot, top)
@@ -236,16 +237,19 @@ shape rack(
         tooth[i] = polyline([center + placed(p.x, p.y, axis) for p in corners])
     }
     for i in 0..<teeth - 1 { root[i] = line(tooth[i].end, tooth[i + 1].start) }
+    let half = pitch * teeth / 2
     let down = polar(height, angle - 90deg)
-    let first = center + placed(-pitch * teeth / 2, -depth, axis)
-    let last = center + placed(pitch * teeth / 2, -depth, axis)
+    let first = center + placed(-half, -depth, axis)
+    let last = center + placed(half, -depth, axis)
     back = polyline([tooth[-1].end, last, last + down, first + down, first, tooth[0].start])
+    construction pitch_line = line(center + placed(-half, 0, axis), center + placed(half, 0, axis))
 }
 
 /// The gears run together: they stand the sum of their pitch radii apart, and a tooth of one meets a gap of the other.
 ///
-/// `backlash` moves the centres further apart. Gears that mesh have one module and one pressure angle. A rack meshes
-/// with a gear above its teeth; an internal gear with a gear inside of it.
+/// `backlash` moves the centres further apart; gears with a backlash do not touch, which `@detached` allows. Gears that
+/// mesh have one module and one pressure angle; profile shifts that do not cancel move them apart. A gear meshes with a
+/// rack from above, with an internal gear from inside.
 ///
 /// ```aidl
 /// assembly drive {
@@ -255,7 +259,10 @@ shape rack(
 /// }
 /// ```
 constraint meshes(a: gear, b: gear, backlash: length = 0) {
-    distance(a.center, b.center) == a.pitch_radius + b.pitch_radius + backlash
+    let shift = 2 * (a.profile_shift + b.profile_shift) / (a.teeth + b.teeth)
+    distance(a.center, b.center) == spread_by_shift(written(shift), written(b.pressure_angle)) * (
+        a.pitch_radius + b.pitch_radius
+    ) + backlash
     a.module == b.module
     a.pressure_angle == b.pressure_angle
     (heading(b.center - a.center) - a.angle) * a.teeth + (
@@ -272,16 +279,28 @@ constraint meshes(a: gear, b: internal_gear, backlash: length = 0) {
 }
 constraint meshes(a: internal_gear, b: gear, backlash: length = 0) { meshes(b, a, backlash: backlash) }
 constraint meshes(a: gear, b: rack, backlash: length = 0) {
-    dot(a.center - b.center, polar(1, b.angle + 90deg)) / 1mm == a.pitch_radius + backlash
+    offset_from(a.center, b.pitch_line) == a.pitch_radius + backlash
     a.module == b.module
     a.pressure_angle == b.pressure_angle
-    (a.angle - b.angle + 90deg) * a.teeth + 360deg * dot(a.center - b.center, polar(1, b.angle)) / (
-        pi * a.module * 1mm
-    ) == 180deg * b.teeth
+    (a.angle - b.pitch_line.angle + 90deg) * a.teeth + 360deg * dot(
+        a.center - b.center,
+        direction(b.pitch_line)
+    ) / (pi * a.module * 1mm) == 180deg * b.teeth
 }
 constraint meshes(a: rack, b: gear, backlash: length = 0) { meshes(b, a, backlash: backlash) }
 
 fn heading(v: point) = atan2(v.y, v.x)
+
+// By how much profile shifts spread two gears: cosines of the pressure angle and of the working one, whose involute
+// (the tangent without the angle) is larger by shift * tan(pressure angle). Newton's steps find it.
+fn spread_by_shift(shift: number, pressure: angle) = cos(pressure) / cos(
+    working_angle(pressure, tan(pressure) * (1 + shift) - radians(pressure), 8)
+)
+fn working_angle(near: angle, involute: number, steps: integer) = if steps == 0 then near else working_angle(
+    near - from_radians((tan(near) - radians(near) - involute) / square(tan(near))),
+    involute,
+    steps - 1
+)
 
 /// The `angle` at which a gear meshes with another that lies in a direction and has its tooth 0 at `other_angle`.
 ///

@@ -4,8 +4,8 @@
 /// A panel with finger joints: `width` and `height` are those of the whole, tabs included.
 ///
 /// `edges` says of the bottom, right, top and left edge whether it is "tabs" (with a tab at both ends), "notches" (with
-/// a notch at both ends; it fits a "tabs" edge of the same length) or "flat". An edge has an odd number of equal parts
-/// about as wide as `finger`; two to five times the thickness is customary.
+/// a notch at both ends; it fits a "tabs" edge of the same length) or "flat"; opposite edges may share a word. An edge
+/// has an odd number of equal parts about as wide as `finger`; two to five times the thickness is customary.
 ///
 /// ```aidl
 /// @thickness(3mm)
@@ -18,16 +18,21 @@ shape finger_panel(
     height: length,
     thickness: length,
     finger = 3 * written(thickness),
-    edges: list = ["tabs", "tabs", "tabs", "tabs"],
+    edges: list = ["tabs"],
     kerf: length = 0,
     center: point = (0, 0)
 ) {
-    assert len(edges) == 4, "a panel has four edges: bottom, right, top and left"
-    let kinds = [choice(e, ["tabs", "notches", "flat"]) for e in edges]
+    assert len(edges) in [1, 2, 4], "the edges of a panel are named by one, two or four words"
+    if not (finger > 0mm) { assert false, "the fingers of a panel have a width" }
+    let kinds = [choice(edges[i % len(edges)], ["tabs", "notches", "flat"]) for i in 0..3]
     let ways = [(1mm, 0mm), (0mm, 1mm), (-1mm, 0mm), (0mm, -1mm)]
     let sizes = [width, height, width, height]
     let corners = [center + (x * width / 2, y * height / 2) for x, y in [[-1, -1], [1, -1], [1, 1], [-1, 1]]]
     let side = [fingers(corners[i], ways[i], sizes[i], thickness, finger, kerf, kinds[i]) for i in 0..3]
+    for i in 0..3 {
+        let part = sizes[i] / finger_count(sizes[i], finger, kinds[i])
+        assert kinds[i] == "flat" or part > thickness + kerf, "the fingers of a panel are wider than it is thick"
+    }
     // Where the edges on both sides of a corner begin with a notch, the corner belongs to neither.
     let ends = [
         corners[i] + ways[(i + 1) % 4] * (finger_inset(kinds[i], thickness) / 1mm)
@@ -41,13 +46,14 @@ shape finger_panel(
 
 /// One edge with fingers for an outline of your own; the material lies to the left of the way from start to end.
 ///
-/// `edge` is "tabs" or "notches", as in `finger_panel`. The line from start to end is the outer one, over the tabs.
+/// `edge` is "tabs" or "notches", as in `finger_panel`. The line from start to end is the outer one, over the tabs; the
+/// edge itself, `outline`, has a `start` and an `end` of its own, which lie further in if it begins with a notch.
 ///
 /// ```aidl
 /// @thickness(4mm)
 /// solid gable {
 ///     foot = finger_edge(start: (0, 0), end: (80, 0), thickness: 4, kerf: 0.2)
-///     roof = polyline(foot.end, (80, 30), (40, 60), (0, 30), foot.start)
+///     roof = polyline(foot.outline.end, (80, 30), (40, 60), (0, 30), foot.outline.start)
 /// }
 /// ```
 shape finger_edge(
@@ -58,6 +64,7 @@ shape finger_edge(
     kerf: length = 0,
     edge: text = "tabs"
 ) {
+    assert norm(written(end - start)) > 0, "an edge has a length"
     let kind = choice(edge, ["tabs", "notches"])
     let way = unit(end - start)
     let deep = turned(way, 90deg) * (finger_inset(kind, thickness) / 1mm)
@@ -83,6 +90,7 @@ shape finger_slots(
     kerf: length = 0,
     edge: text = "tabs"
 ) {
+    assert norm(written(end - start)) > 0, "an edge has a length"
     let kind = choice(edge, ["tabs", "notches"])
     let way = unit(end - start)
     let count = finger_count(norm(end - start), finger, kind)
@@ -237,8 +245,10 @@ shape living_hinge(
     slit: length = 0.2,
     center: point = (0, 0)
 ) {
+    assert rows >= 1, "a hinge has at least one row of slits"
+    if not (spacing > 0) { assert false, "the columns of a hinge are some way apart" }
     let columns = hinge_columns(written(width), spacing)
-    let row = height / rows
+    let row = height / max(rows, 1)
     for i in 0..columns {
         let middle = center + (width * (i / columns - 0.5), 0mm)
         let offset = if i % 2 == 0 then 0.5 else 0

@@ -50,7 +50,12 @@ constraint mirror_of(a: bezier, b: bezier, about) {
     a.p2 == controls[2]
     a.p3 == controls[3]
 }
-constraint mirror_of(a: box, b: box, about) {
+constraint mirror_of(a: structure, b: structure, about) { mirrored_box(a, b, about: about) }
+constraint mirror_of(a: geometry, b: geometry, about) {
+    both_shapes(a, b)
+    mirrored_box(a, b, about: about)
+}
+constraint mirrored_box(a: box, b: box, about) {
     a.center == mirror(b.center, about: about)
     a.width == b.width
     a.height == b.height

@@ -22,7 +22,7 @@
 shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false) {
     let drawn = [as_step(s) for s in steps if as_step(s).kind != "close"]
     let closes = closed or len(drawn) < len(steps)
-    assert len(drawn) >= 1, "a path has pen least one step that draws"
+    assert len(drawn) >= 1, "a path has at least one step that draws"
     if len(drawn) < len(steps) {
         assert len(drawn) == len(steps) - 1 and as_step(steps[-1]).kind == "close", "`close()` is the last step"
     }
@@ -40,8 +40,18 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
 
         let is_half = move.kind == "arc_radius" and abs(written(norm(to - pen) - 2 * move.radius)) < 0.000001
         if move.kind == "slanted" {
-            assert false, "the edges of a rectilinear polygon are level or upright, in turns"
-        } else if move.kind == "bezier_to" {
+            assert false, "the edges of a rectilinear polygon are level and upright in turns"
+        } else if move.kind == "arc_tangent" {
+            let aside = written(dot(to_left(way), to - pen)) / 1mm
+            assert abs(aside) > 0.000001, "`tangent_arc_to` goes to a point straight ahead, where `line_to` goes"
+        } else if move.kind == "arc_by" {
+            assert 0deg < abs(written(move.turn)) < 360deg, "`arc_by` turns by less than a whole turn, and not by 0"
+        }
+        if move.kind in ["arc_by", "arc_radius"] {
+            assert written(move.radius) > 0, "the radius of an arc is more than 0"
+        }
+
+        if move.kind == "bezier_to" {
             segment[i] = bezier(pen, move.first, move.second, to)
         } else if move.kind == "quadratic_to" {
             segment[i] = bezier(pen, lerp(pen, move.by, 2 / 3), lerp(to, move.by, 2 / 3), to)
@@ -67,13 +77,13 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
         if move.smooth and i > 0 { constrain smoothly(segment[i - 1], segment[i]) }
     }
     let end = segment[len(drawn) - 1].end
-    if closes and not meets(end, from) {
+    if len(drawn) > 0 and closes and not meets(end, from) {
         segment[len(drawn)] = line(corner[len(drawn)], from)
         if len(drawn) < len(steps) and as_step(steps[-1]).smooth {
             constrain smoothly(segment[len(drawn) - 1], segment[len(drawn)])
         }
     }
-    if drawn[0].smooth {
+    if len(drawn) > 0 and drawn[0].smooth {
         assert closes or meets(end, from), "the first step of an open path has nothing to go on from smoothly"
         constrain smoothly(segment[-1], segment[0])
     }
@@ -97,13 +107,7 @@ fn path(steps: list, heading: angle = 0deg, closed: bool = false) = path(
 )
 
 let placed_kinds = [
-    "line_to",
-    "bezier_to",
-    "quadratic_to",
-    "arc_radius",
-    "arc_center",
-    "arc_through",
-    "arc_tangent"
+    "line_to", "bezier_to", "quadratic_to", "arc_radius", "arc_center", "arc_through", "arc_tangent"
 ]
 
 fn as_step(move: record) = move
@@ -284,15 +288,15 @@ fn arc_to(to: point, radius: length, large: bool = false, clockwise: bool = fals
 )
 fn arc_to(to: point, center: point, clockwise: bool = false, smooth: bool = false) = record(
     kind: "arc_center",
-    to: to,
     center: center,
+    to: to,
     clockwise: clockwise,
     smooth: smooth
 )
 fn arc_to(to: point, through: point, smooth: bool = false) = record(
     kind: "arc_through",
-    to: to,
     through: through,
+    to: to,
     smooth: smooth
 )
 
@@ -303,14 +307,19 @@ fn arc_to(to: point, through: point, smooth: bool = false) = record(
 ///     edge = path(from: (0, 0), right(40), arc_by(180deg, radius: 15), forward(20), close())
 /// }
 /// ```
-fn arc_by(turn: angle, radius: length) = record(kind: "arc_by", turn: turn, radius: radius, smooth: false)
+fn arc_by(turn: angle, radius: length, smooth: bool = true) = record(
+    kind: "arc_by",
+    turn: turn,
+    radius: radius,
+    smooth: false
+)
 
 /// A step of a path: the arc to a point that goes on without a corner.
 ///
 /// ```aidl
 /// solid paddle { edge = path(from: (0, 0), line_to((40, 5)), tangent_arc_to((40, -5)), close()) }
 /// ```
-fn tangent_arc_to(to: point) = record(kind: "arc_tangent", to: to, smooth: false)
+fn tangent_arc_to(to: point, smooth: bool = true) = record(kind: "arc_tangent", to: to, smooth: false)
 
 /// A step of a path: a cubic Bézier by its two control points and its end.
 ///
@@ -346,11 +355,15 @@ fn quadratic_to(by: point, to: point, smooth: bool = false) = record(
 /// ```
 fn close(smooth: bool = false) = record(kind: "close", smooth: smooth)
 
-// Where a pen is put down: the start, as the first argument of a path.
+/// The start of a path, as its first argument.
+///
+/// ```aidl
+/// solid shard { edge = path(move_to(5, 0), line_to(30, 10), line_to(0, 25), close()) }
+/// ```
 fn move_to(to: point) = to
 fn move_to(x: length, y: length) = (x, y)
 
-// --- Outlines from points ------------------------------------------------------------------------
+// --- Level and upright outlines ------------------------------------------------------------------
 
 /// A closed outline of level and upright edges through its corners; it stays so whatever is asked of it.
 ///
@@ -370,53 +383,16 @@ fn axis_step(points: list, i: integer) = axis_move(
     points[i + 1] - points[i],
     written(points[i + 1] - points[i]),
     is_level: (abs(written(points[1].y - points[0].y)) < 0.000001) == (i % 2 == 0),
-    is_last: i == len(points) - 2 and len(points) % 2 == 0
+    is_last: i == len(points) - 2,
+    is_even: len(points) % 2 == 0
 )
-fn axis_move(way: point, seen: point, is_level: bool, is_last: bool) = (
-    if abs(if is_level then seen.y else seen.x) > 0.000001 then record(kind: "slanted", smooth: false)
+fn axis_move(way: point, seen: point, is_level: bool, is_last: bool, is_even: bool) = (
+    if not is_even or abs(if is_level then seen.y else seen.x) > 0.000001 then record(
+        kind: "slanted",
+        to: way,
+        smooth: false
+    )
     else if is_last then record(kind: if is_level then "level_home" else "upright_home", smooth: false)
     else if is_level then right(way.x)
     else up(way.y)
-)
-
-/// A smooth curve through points, its knots: `segment[i]` runs from `knot[i]` to `knot[i + 1]`.
-///
-/// Through points of one circle it follows that circle closely. `closed: true` makes it an outline.
-///
-/// ```aidl
-/// solid pebble { edge = spline((0, 0), (30, -5), (45, 15), (20, 30), (-5, 20), closed: true) }
-/// ```
-shape spline(points: list, closed: bool = false) {
-    let n = len(points)
-    assert n >= (if closed then 3 else 2), "a spline has at least two points, a closed one three"
-    let last = if closed then n else n - 1
-    let chord = [points[(i + 1) % n] - points[i] for i in 0..<last]
-    let way = [spline_way(chord, i, closed) for i in 0..<n]
-    for i in 0..<n { knot[i] = points[i] }
-    for i in 0..<last {
-        let next = (i + 1) % n
-        segment[i] = bezier(
-            points[i],
-            points[i] + spline_handle(way[i], chord[i]),
-            points[next] - spline_handle(way[next], chord[i]),
-            points[next]
-        )
-    }
-    let start = points[0]
-    let end = if closed then points[0] else points[-1]
-}
-
-// The direction in a knot is that of the circle through it and its neighbours; at an open end it mirrors that of the
-// next knot about the chord between. A handle is as long as that of a Bézier along a circle.
-fn spline_way(chord: list, i: integer, closed: bool) = (
-    if closed then circle_way(chord[(i + len(chord) - 1) % len(chord)], chord[i % len(chord)])
-    else if len(chord) == 1 then chord[0]
-    else if i == 0 then mirrored_way(circle_way(chord[0], chord[1]), chord[0])
-    else if i == len(chord) then mirrored_way(circle_way(chord[i - 2], chord[i - 1]), chord[i - 1])
-    else circle_way(chord[i - 1], chord[i])
-)
-fn circle_way(before: point, after: point) = unit(unit(before) * norm(after) + unit(after) * norm(before))
-fn mirrored_way(way: point, chord: point) = unit(chord) * (2 * dot(way, unit(chord)) / 1mm / 1mm) - way
-fn spline_handle(way: point, chord: point) = unit(way) * (
-    norm(chord) * 2 / 3 / (1mm + dot(unit(way), unit(chord)) / 1mm)
 )

@@ -15,8 +15,14 @@
 /// }
 /// ```
 constraint on_circle(things: list, center: point, radius: length, evenly: bool = true) {
-    for i in 0..<len(things) { norm(box(things[i]).center - center) == radius }
-    if evenly { steps_around(things, center) }
+    for i in 0..<len(things) {
+        let way = box(things[i]).center - center
+        if evenly and i > 0 {
+            way == turned(box(things[i - 1]).center - center, turn_around(things, center))
+        } else {
+            norm(way) == radius
+        }
+    }
 }
 constraint on_circle(things: list, center: point, diameter: length, evenly: bool = true) {
     on_circle(things, center: center, radius: diameter / 2, evenly: evenly)
@@ -33,15 +39,6 @@ constraint on_circle(things: list, around: circle, evenly: bool = true) {
 }
 constraint on_circle(things: list, around: circle, start: angle) {
     on_circle(things, center: around.center, radius: around.radius, start: start)
-}
-
-// Each is the one before, turned by one step; all of one radius, so the directions are enough.
-constraint steps_around(things: list, center: point) {
-    let turn = turn_around(things, center)
-    for i in 1..<len(things) {
-        let last = turned(box(things[i - 1]).center - center, turn)
-        cross(last, box(things[i]).center - center) / norm(last) == 0
-    }
 }
 
 // The angle from one thing to the next: the sense in which most of the first guesses run.

@@ -7,7 +7,7 @@
 /// ```aidl
 /// solid roof { body = polygon([(0, 0), (60, 0), (60, 10), (30, 30), (0, 10)]) }
 /// ```
-shape polygon(points: list) {
+shape polygon(points: points) {
     assert len(points) >= 3, "a polygon has at least three corners"
     for i in 0..<len(points) {
         corner[i] = points[i]
@@ -17,12 +17,16 @@ shape polygon(points: list) {
     let corners = corner
 }
 
+/// With `sides` and a `radius` it is a `regular_polygon`.
+fn polygon(center: point = (0, 0), radius: length, sides: integer, angle = 0deg, rotatable = false) =
+    regular_polygon(center, radius, sides, angle, rotatable)
+
 /// Straight edges through the points, not closed.
 ///
 /// ```aidl
 /// drawing crack { mark = polyline([(0, 0), (10, 12), (18, 8), (30, 24)]) }
 /// ```
-shape polyline(points: list) {
+shape polyline(points: points) {
     assert len(points) >= 2, "a polyline has at least two points"
     for i in 0..<len(points) - 1 {
         edges[i] = line(points[i], points[i + 1])

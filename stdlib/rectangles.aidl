@@ -40,14 +40,14 @@ shape rectangle(
     let edges = edge
 }
 
-// Of two coordinates, the one that was written smaller (larger).
-fn smaller(a: length, b: length) = if written(a) <= written(b) then a else b
-fn larger(a: length, b: length) = if written(a) <= written(b) then b else a
+// Of two coordinates, the one that was written smaller, or larger.
+fn written_min(a: length, b: length) = if written(a) <= written(b) then a else b
+fn written_max(a: length, b: length) = if written(a) <= written(b) then b else a
 
 /// By two opposite corners, in any order.
-fn rectangle(a: point, b: point) = rectangle(
-    bottom_left: (smaller(a.x, b.x), smaller(a.y, b.y)),
-    top_right: (larger(a.x, b.x), larger(a.y, b.y))
+fn rectangle(start: point, end: point) = rectangle(
+    bottom_left: (written_min(start.x, end.x), written_min(start.y, end.y)),
+    top_right: (written_max(start.x, end.x), written_max(start.y, end.y))
 )
 fn rectangle(bottom_left: point, top_right: point) = rectangle(
     bottom_left: bottom_left,
@@ -94,6 +94,11 @@ fn rectangle(
 fn rectangle(
     left_center: point, width: length, height: length, angle = 0deg, rotatable = false
 ) = rectangle(left_center, -1, 0, width, height, angle, rotatable)
+
+/// With a `radius` it is a `rounded_rectangle`.
+fn rectangle(
+    center: point = (0, 0), width: length, height: length, radius: length, angle = 0deg, rotatable = false
+) = rounded_rectangle(center, width, height, radius, angle, rotatable)
 
 // By a point of its border: `across` and `up` tell which, from -1 (left, bottom) over 0 (middle) to 1.
 shape rectangle(

@@ -1,10 +1,6 @@
 // The relatives of the circle: rings, slices, slots, and what is cut off straight.
 
-/// An ellipse by its `width` and `height`; `rx` and `ry` are half of them, and what numbers without a name mean.
-///
-/// ```aidl
-/// solid dish { body = ellipse(width: 60, height: 36) }
-/// ```
+/// By its width and height. Numbers without a name are `rx` and `ry`.
 fn ellipse(angle: angle = 0deg, center: point = (0, 0), width: length, height: length) =
     ellipse(center: center, rx: width / 2, ry: height / 2, angle: angle)
 

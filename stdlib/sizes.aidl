@@ -1,5 +1,10 @@
 // Relations between the widths and heights of boxes.
 
+// The box of a thing that has a size.
+fn extent_of(of) = box(of)
+fn extent_of(p: point) = has_no_size(p)
+fn has_no_size(p: point) = refuse("a point has neither width nor height")
+
 /// All are as wide as the last.
 ///
 /// ```aidl
@@ -10,7 +15,7 @@
 /// }
 /// ```
 constraint same_width(things: list) {
-    for i in 0..<len(things) - 1 { box(things[i]).width == box(things[-1]).width }
+    for i in 0..<len(things) - 1 { extent_of(things[i]).width == extent_of(things[-1]).width }
 }
 
 /// All are as tall as the last.
@@ -23,7 +28,7 @@ constraint same_width(things: list) {
 /// }
 /// ```
 constraint same_height(things: list) {
-    for i in 0..<len(things) - 1 { box(things[i]).height == box(things[-1]).height }
+    for i in 0..<len(things) - 1 { extent_of(things[i]).height == extent_of(things[-1]).height }
 }
 
 /// All are as wide and as tall as the last.
@@ -52,6 +57,8 @@ constraint same_size(things: list) {
 constraint wider(a: box, b: box) { a.width >= b.width }
 constraint wider(a: box, b: box, by: length) { a.width == b.width + by }
 constraint wider(a: box, b: box, at_least: length) { a.width >= b.width + at_least }
+constraint wider(a: point, b: box) { has_no_size(a) }
+constraint wider(a: box, b: point) { has_no_size(b) }
 
 /// a is at most as wide as b; with `by`, narrower by exactly so much.
 ///
@@ -65,6 +72,8 @@ constraint wider(a: box, b: box, at_least: length) { a.width >= b.width + at_lea
 constraint narrower(a: box, b: box) { a.width <= b.width }
 constraint narrower(a: box, b: box, by: length) { a.width == b.width - by }
 constraint narrower(a: box, b: box, at_least: length) { a.width <= b.width - at_least }
+constraint narrower(a: point, b: box) { has_no_size(a) }
+constraint narrower(a: box, b: point) { has_no_size(b) }
 
 /// a is at least as tall as b; with `by`, taller by exactly so much.
 ///
@@ -78,6 +87,8 @@ constraint narrower(a: box, b: box, at_least: length) { a.width <= b.width - at_
 constraint taller(a: box, b: box) { a.height >= b.height }
 constraint taller(a: box, b: box, by: length) { a.height == b.height + by }
 constraint taller(a: box, b: box, at_least: length) { a.height >= b.height + at_least }
+constraint taller(a: point, b: box) { has_no_size(a) }
+constraint taller(a: box, b: point) { has_no_size(b) }
 
 /// a is at most as tall as b; with `by`, shorter by exactly so much.
 ///
@@ -91,6 +102,8 @@ constraint taller(a: box, b: box, at_least: length) { a.height >= b.height + at_
 constraint shorter(a: box, b: box) { a.height <= b.height }
 constraint shorter(a: box, b: box, by: length) { a.height == b.height - by }
 constraint shorter(a: box, b: box, at_least: length) { a.height <= b.height - at_least }
+constraint shorter(a: point, b: box) { has_no_size(a) }
+constraint shorter(a: box, b: point) { has_no_size(b) }
 
 alias equal_width = same_width
 alias equal_widths = same_width

@@ -48,6 +48,9 @@ fn keeps_sense(a, b, about: line) = mirror_error(a.start, b.start, about) + mirr
     about
 ) <= mirror_error(a.start, b.end, about) + mirror_error(a.end, b.start, about)
 
+// Whether an arc runs clockwise: then it lies to the left of the way from its start to its end.
+fn is_clockwise(a: arc) = written(cross(a.end - a.start, a.midpoint - a.start)) > 0
+
 constraint image(a: point, b: point, about: line) {
     offset_from((a + b) / 2, about) == 0
     dot(b - a, vector(about)) / about.length == 0
@@ -62,7 +65,7 @@ constraint image(a: circle, b: circle, about: line) {
     a.radius == b.radius
 }
 constraint image(a: arc, b: arc, about: line) {
-    let same = keeps_sense(a, b, about)
+    let same = is_clockwise(a) != is_clockwise(b)
     let turn = 2 * about.angle
     image(a.center, b.center, about: about)
     a.radius == b.radius
@@ -127,10 +130,11 @@ constraint turned_image(a: circle, b: circle, about: point) {
     a.radius == b.radius
 }
 constraint turned_image(a: arc, b: arc, about: point) {
+    let same = is_clockwise(a) == is_clockwise(b)
     (a.center + b.center) / 2 == about
     a.radius == b.radius
-    a.start_angle == b.start_angle + 180deg
-    a.end_angle == b.end_angle + 180deg
+    a.start_angle == 180deg + (if same then b.start_angle else b.end_angle)
+    a.end_angle == 180deg + (if same then b.end_angle else b.start_angle)
 }
 constraint turned_image(a: ellipse, b: ellipse, about: point) {
     (a.center + b.center) / 2 == about

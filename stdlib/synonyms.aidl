@@ -21,6 +21,9 @@ alias add_constr = add_constraint
 alias add = add_constraint
 alias constrain_to = add_constraint
 
+alias centered_inside = centered_in
+alias centred_inside = centered_in
+
 alias fix = fixed
 alias lock = fixed
 alias ground = fixed

@@ -63,8 +63,12 @@ constraint touches(a: circle, b: circle) { circles_touch(a, b) }
 constraint touches(a: circle, b: arc) { circles_touch(a, b) }
 constraint touches(a: arc, b: circle) { circles_touch(a, b) }
 constraint touches(a: arc, b: arc) { circles_touch(a, b) }
-constraint touches(p: point, other) { refuse("a point has no direction; `coincident` puts it on a curve") }
-constraint touches(other, p: point) { refuse("a point has no direction; `coincident` puts it on a curve") }
+constraint touches(p: point, other) {
+    refuse("a point has no direction; `coincident` puts it on a curve")
+}
+constraint touches(other, p: point) {
+    refuse("a point has no direction; `coincident` puts it on a curve")
+}
 constraint touches(a: line, b: line) {
     refuse("two lines touch where they share an end only; `parallel` and `collinear` say the rest")
 }

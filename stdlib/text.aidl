@@ -2,7 +2,7 @@
 
 /// Lettering as outlines, to be engraved or cut; `height` is that of a capital letter, `center` the middle of the ink.
 ///
-/// In a `drawing` a text is engraved, in a `hole` it is cut out. Instead of its center `start` may be said: the point of
+/// In a `drawing` a text is engraved, in a `hole` it is cut out; a number is written as text. Instead of its center `start` may be said: the point of
 /// the baseline where the text begins (or has its middle or its end, as `align` says); instead of a height a `width`.
 /// `\n` begins a new line. `align` tells how lines stand to each other, `line_spacing` how far apart their baselines
 /// are, in heights. `glyph[i]` are the characters, spaces aside; `baseline` is the line under the first line. The letters
@@ -17,7 +17,7 @@
 /// }
 /// ```
 shape text(
-    text: text,
+    text,
     center: point = (0, 0),
     height: length,
     angle: turn = 0deg,
@@ -26,16 +26,16 @@ shape text(
     rotatable: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
-    let ink = ink(text, side, line_spacing)
+    let ink = ink(str(text), side, line_spacing)
     let start = center - turned(middle_of(ink, height), angle)
-    letters = glyphs(text, start, height, angle, side, line_spacing)
+    letters = glyphs(str(text), start, height, angle, side, line_spacing)
     let glyph = letters.glyph
     let width = (ink.right - ink.left) * height
     let baseline = baseline_of(ink, start, height, angle)
 }
 /// By the baseline of its first line.
 shape text(
-    text: text,
+    text,
     start: point,
     height: length,
     angle: turn = 0deg,
@@ -44,16 +44,16 @@ shape text(
     rotatable: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
-    letters = glyphs(text, start, height, angle, side, line_spacing)
+    letters = glyphs(str(text), start, height, angle, side, line_spacing)
     let glyph = letters.glyph
-    let ink = ink(text, side, line_spacing)
+    let ink = ink(str(text), side, line_spacing)
     let center = start + turned(middle_of(ink, height), angle)
     let width = (ink.right - ink.left) * height
     let baseline = baseline_of(ink, start, height, angle)
 }
 /// As wide as said.
 shape text(
-    text: text,
+    text,
     center: point = (0, 0),
     width: length,
     angle: turn = 0deg,
@@ -62,10 +62,10 @@ shape text(
     rotatable: bool = false
 ) {
     let side = choice(align, ["left", "center", "right"])
-    let ink = ink(text, side, line_spacing)
+    let ink = ink(str(text), side, line_spacing)
     let height = width / (ink.right - ink.left)
     let start = center - turned(middle_of(ink, height), angle)
-    letters = glyphs(text, start, height, angle, side, line_spacing)
+    letters = glyphs(str(text), start, height, angle, side, line_spacing)
     let glyph = letters.glyph
     let baseline = baseline_of(ink, start, height, angle)
 }

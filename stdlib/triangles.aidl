@@ -149,6 +149,8 @@ shape right_triangle(
     let centroid = (a + b + c) / 3
     let incenter = incenter_of(a, b, c)
 }
+fn right_triangle(base: length, height: length, corner: point = (0, 0), angle = 0deg) =
+    right_triangle(corner: corner, width: base, height: height, angle: angle)
 
 /// A triangle of three equal sides about its centre; with `angle` 0 it lies on a level side.
 ///

@@ -73,15 +73,16 @@ def test_example_uses_what_it_is_about(entry: Entry) -> None:
 
 
 def test_builtins_have_sections() -> None:
-    missing = [name for name in builtins.SIGNATURES if name not in reference().entries]
+    missing = [name for name in builtins.SIGNATURES if reference().find(name) is None]
     assert set(missing) == FOR_THE_LIBRARY, "write a section in stdlib/docs, or list it above"
 
 
 @pytest.mark.parametrize("entry", [pytest.param(e, id=e.name) for e in ENTRIES if e.sort == "builtin"])
 def test_headings_of_builtins_are_their_signatures(entry: Entry) -> None:
     """The same parameters, and the same ones may be left out; defaults are told by the headings alone."""
-    declared = {_declared(s) for s in builtins.SIGNATURES[entry.name] if s.parameters}
-    headed = {_headed(o.form) for o in entry.overloads if o.node is None}
+    names = (entry.name, *(name for name in entry.synonyms if name in builtins.SIGNATURES))
+    declared = {(name, _declared(s)) for name in names for s in builtins.SIGNATURES[name] if s.parameters}
+    headed = {(o.form.partition("(")[0], _headed(o.form)) for o in entry.overloads if o.node is None}
     if declared:
         assert headed == declared
 
@@ -92,7 +93,7 @@ def _declared(signature: builtins.Signature) -> tuple[tuple[str, bool], ...]:
 
 def _headed(form: str) -> tuple[tuple[str, bool], ...]:
     items = split_items(form.partition("(")[2].removesuffix(")"))
-    return tuple((re.split(r"\W", item)[0], "=" in item) for item in items)
+    return tuple((re.split(r"\W", item)[0], "=" in item or "?" in item) for item in items)
 
 
 def test_sections_on_the_language_are_of_words_that_exist() -> None:
@@ -108,9 +109,10 @@ def test_words_of_the_language_have_sections() -> None:
     assert {*load_tables().reserved, *KINDS, *builtins.EVERYWHERE, *attributes} - told == set()
 
 
-def test_synonyms_are_of_public_names() -> None:
-    aliases = library.load().aliases
-    assert sorted(a for a in aliases if a not in reference().aliases) == []
+def test_synonyms_lead_to_something() -> None:
+    known = library.load()
+    callable_ = known.callables.keys() | builtins.SIGNATURES.keys() | known.aliases.keys()
+    assert sorted(alias for alias, target in known.aliases.items() if target not in callable_) == []
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.aidl")), ids=lambda p: p.name)
@@ -267,7 +269,7 @@ def test_guide_names_everything_that_can_be_called() -> None:
 
 def test_guide_names_nothing_that_does_not_exist() -> None:
     """Every call in its prose, its templates' own placeholders and the programs' own definitions aside."""
-    known = {*reference().entries, *reference().aliases}
+    known = {*reference().entries, *reference().aliases, *builtins.ATTRIBUTES}
     prose = re.sub(r"```aidl.*?```", "", template(), flags=re.DOTALL)
     called = set(re.findall(r"\b([a-z_]\w*)\(", prose))
     assert called - known - {"f"} == set()

@@ -14,8 +14,8 @@ from aidl_lang.building.conditions import all_of, replace_placed, value_unknowns
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, size, turn
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
-from aidl_lang.building.outlines import remember, usable
 from aidl_lang.building.lists import run
+from aidl_lang.building.outlines import remember, usable
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.builtins import SIGNATURES, is_word
@@ -141,7 +141,9 @@ def _no_overload(
         # What the library asks of a pair of things is told of the author's call, in the author's words.
         things = [v for v in values if not isinstance(v, Text | bool)]
         pairs = [[kind for _, kind, _ in m.signature.parameters] for m in misses]
-        known = dict.fromkeys(" and ".join(map(with_article, kinds[:2])) for kinds in pairs if ANY not in kinds)
+        known = dict.fromkeys(
+            " and ".join(map(with_article, kinds[:2])) for kinds in pairs if ANY not in kinds
+        )
         hints = [f"it takes {', '.join(list(known)[:8])}"] if known else []
         it.refuse(node, f"it does not go with {' and '.join(map(kind_of, things))}", hints)
         return
@@ -192,6 +194,9 @@ def _as_kind(it: Interpreter, value: Value, kind: object, node: ast.Node, env: E
                 return Num(value.expression, dimension, value.status)
         case BoxType():
             return box_of(value, env.here)
+        case ListType(PointType()) if (items := members(value)) is not None:
+            points = [as_point(it, item, node, env) if isinstance(item, ListVal) else item for item in items]
+            return ListVal(tuple(p for p in points if p is not None))
         case ListType() if isinstance(value, Array):
             return ListVal(tuple(value.items()))
         case ListType() if isinstance(value, RangeVal):
@@ -292,8 +297,9 @@ def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
 def _says_nothing(it: Interpreter, node: ast.Call, only: Value) -> None:
     """A relation of several things that gets one; a list of one is no mistake, since its length may vary."""
     if members(only) is None:
+        message = f"`{node.span.one_line}` says nothing: it relates two things or more"
         hint = f"name what it is related to, as in `{node.callee.text}(a, b)`"
-        it.report("E0343", f"`{node.span.one_line}` says nothing: it relates two things or more", node, hints=[hint])
+        it.report("E0343", message, node, hints=[hint])
 
 
 def hoist_lets(scope: Scope, block: ast.Block) -> None:

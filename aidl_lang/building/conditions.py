@@ -13,7 +13,7 @@ from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.expression import Expression, Unknown
 from aidl_lang.model import Comparison, Condition, Structure
-from aidl_lang.units import ANGLE
+from aidl_lang.units import ANGLE, LENGTH
 from aidl_lang.values import (
     NOTHING,
     Array,
@@ -99,13 +99,20 @@ def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.No
             "E0308",
             f"`{node.span.text}` compares {str(reason).replace(' and ', ' with ')}",
             node,
-            hints=["both sides need the same dimension; units are written as in `30deg`, `4mm`"],
+            hints=[_dimension_hint(a, b)],
         )
         return NOTHING
     left, right = spelled_out(a.expression, b.expression)
     if left.is_constant and right.is_constant:
         return _relates(relation, left.value, right.value, dimension == ANGLE, _EXACT, strict=True)
     return Condition("and", (Comparison(relation, left, right, dimension),))
+
+
+def _dimension_hint(a: Num, b: Num) -> str:
+    """An arc's length is often written as an angle times a radius."""
+    if {a.dimension, b.dimension} == {LENGTH, units.multiply(LENGTH, ANGLE)}:
+        return "an angle times a radius is no length: an arc is `radians(angle) * radius` long"
+    return "both sides need the same dimension; units are written as in `30deg`, `4mm`"
 
 
 def _relates(
@@ -183,16 +190,20 @@ def holds(
     condition: Condition | Comparison | bool,
     evaluate: Callable[[Expression], float],
     tolerance: float,
+    *,
+    strict: bool = False,
 ) -> bool:
-    """Whether a condition is true at given values, within a tolerance relative to what is compared."""
+    """Whether a condition is true at given values, within a tolerance relative to what is compared; `strict`
+    keeps `<` and `>` from holding for equals.
+    """
     if isinstance(condition, bool):
         return condition
     if isinstance(condition, Comparison):
         a, b = evaluate(condition.left), evaluate(condition.right)
         if not (math.isfinite(a) and math.isfinite(b)):
             return False
-        return _relates(condition.relation, a, b, condition.dimension == ANGLE, tolerance)
-    parts = (holds(part, evaluate, tolerance) for part in condition.parts)
+        return _relates(condition.relation, a, b, condition.dimension == ANGLE, tolerance, strict=strict)
+    parts = (holds(part, evaluate, tolerance, strict=strict) for part in condition.parts)
     match condition.operator:
         case "and":
             return all(parts)

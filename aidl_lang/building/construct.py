@@ -296,8 +296,7 @@ def _ellipse(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 
 def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
-    assert g.span is not None
-    g.glyphs = typeset(it, a, g.span)
+    g.glyphs = typeset(it, a)
     it.count_entity(None, len(g.glyphs))
     g.fields = _points(it, g, a, ("start",))
     g.fields |= {"height": _size(it, g, a, "height"), "angle": _size(it, g, a, "angle", ANGLE)}

@@ -12,6 +12,7 @@ from dataclasses import replace
 from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.boxes import box_of, spelled_out
+from aidl_lang.building.coerce import as_written
 from aidl_lang.building.derive import Copier, outermost
 from aidl_lang.building.members import read
 from aidl_lang.building.motion import (
@@ -158,9 +159,7 @@ def _own_centre(it: Interpreter, g: Geometry, node: ast.Call, here: Structure) -
     found: Value | None
     if isinstance(g.scope, Scope):
         binding = g.scope.values.get("center")
-        found = (
-            read(it, binding, node, Env(g.scope, g.owner, Reach.OWN)) if binding is not None else None
-        )
+        found = read(it, binding, node, Env(g.scope, g.owner, Reach.OWN)) if binding is not None else None
         if isinstance(found, Geometry):
             return _own_centre(it, found, node, here)
         found = translate("center", found, g.owner, here) if isinstance(found, PointVal) else None
@@ -196,7 +195,9 @@ def _reflection(it: Interpreter, about: Value, node: ast.Call, env: Env) -> Moti
         case Geometry(type="point"):
             return mirrored_at_point(xy(view(about, env.here)["at"]))
         case Geometry(type="line"):
-            start, end = view(about, env.here)["start"], view(about, env.here)["end"]
+            start, end = (view(about, env.here)[name] for name in ("start", "end"))
+            if about.name is None and about.span is not None and about.span.overlaps(node.span):
+                start, end = as_written(start), as_written(end)  # written in the call, it is nothing to move
             assert isinstance(start, PointVal)
             assert isinstance(end, PointVal)
             if any(p.value != q.value for p, q in zip(xy(start), xy(end), strict=True)):
@@ -216,7 +217,7 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         about = xy(a["about"])
     else:
         about = NOWHERE if a.keys() <= {"x", "by"} else centre_of(it, a["x"], node, env)
-    to = xy(a["at"]) if "at" in a else about
+    to = xy(a["center"]) if "center" in a else about
     if "by" in a:
         to = ex.add(to[0], xy(a["by"])[0]), ex.add(to[1], xy(a["by"])[1])
     motion = _motion(it, a.get("angle"), a.get("scale"), about, to, node)
@@ -228,7 +229,7 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
             "W0510",
             "this copy lies exactly on what it is a copy of",
             node,
-            hints=["say where it goes: `by: (10, 0)`, `at: p` or `angle: 90deg`"],
+            hints=["say where it goes: `by: (10, 0)`, `center: p` or `angle: 90deg`"],
         )
     return copied(it, a["x"], motion, node, env)
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from aidl_lang import expression as ex
-from aidl_lang.building.motion import STILL, Motion
+from aidl_lang.building.motion import STILL, Motion, opposite
+from aidl_lang.building.outlines import keep_unnamed
 from aidl_lang.building.scopes import Binding, CopiedBinding, LetBinding, Scope
 from aidl_lang.building.state import Interpreter
 from aidl_lang.builtins import EVERYWHERE
@@ -41,12 +42,15 @@ class Copier:
     made: dict[Geometry, Geometry] = field(default_factory=dict)
     structures: dict[Structure, Structure] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        self.it.copiers.append(self)
+
     # --- Geometry ------------------------------------------------------------------------------
 
     def geometry(self, source: Geometry) -> Geometry:
         if (known := self.made.get(source)) is not None:
             return known
-        self.it.count_entity(None)
+        self.it.count_entity(self.span)
         is_turned_over = self.motion.mirrored
         if self.owner is not None:
             is_turned_over = clockwise(source, self.owner) != is_turned_over
@@ -65,24 +69,33 @@ class Copier:
             source=source,
             known_as=None,
             reach=self.reach or source.reach,
+            finishes={},
             views={},
         )
         self.made[source] = copy
         if source.name is None and source.known_as is None:
             source.known_as = copy
         self._place(source, copy)
+        if source.recipe is not None:
+            copy.recipe = source.recipe.made_of(self.geometry, lambda n: self._number("", n, source.owner))
         copy.fields = {name: self.value(name, v, source.owner) for name, v in source.fields.items()}
         if isinstance(source.scope, Scope):
             self._contents(source, source.scope, copy)
+        if source.recipe is not None:
+            copy.recipe = source.recipe.made_of(self._operand, lambda n: self._number("", n, source.owner))
+            keep_unnamed(copy)
         return copy
+
+    def _operand(self, source: Geometry) -> Geometry:
+        """What a copied outline is made of; a copied structure does not move what lies outside of it."""
+        return self.geometry(source) if self.owner or source.owner in self.structures else source
 
     def _place(self, source: Geometry, copy: Geometry) -> None:
         """A part belongs to the copy of what the source is a part of; what stands alone waits for a name."""
         if isinstance(source.container, Geometry) and source.container in self.made:
             names = source.container.scope
-            assert isinstance(names, Scope)
             copy.container = self.made[source.container]
-            copy.name = self._renamed(source.name or "", names)
+            copy.name = self._renamed(source.name or "", names) if isinstance(names, Scope) else source.name
         elif isinstance(source.container, Structure) and source.container in self.structures:
             copy.container, copy.name = self.structures[source.container], source.name
 
@@ -93,8 +106,7 @@ class Copier:
             if name == "angle" and self._swaps_sides and self._is_boxed(names) and isinstance(binding, Num):
                 # With left and right exchanged, the direction from left to right is what it was.
                 turned = self._number(name, binding, source.owner)
-                half_turn = ex.constant(180.0)
-                scope.values[new] = replace(turned, expression=ex.sub(turned.expression, half_turn))
+                scope.values[new] = replace(turned, expression=opposite(turned.expression))
             elif isinstance(binding, Geometry | Array | ListVal | RecordVal | PointVal | Num):
                 scope.values[new] = self.value(name, binding, source.owner)
             else:
@@ -172,13 +184,29 @@ class Copier:
             return replace(value, expression=self.motion.direction(value.expression))
         return replace(value, expression=self.motion.measure(value.expression, value.dimension))
 
+    # --- Finishes ------------------------------------------------------------------------------
+
+    def finish(self) -> None:
+        """Give the copies the fillets and chamfers of what they copy, when all of these are known."""
+        for source in dict.fromkeys([*self.structures, *(g.owner for g in self.made)]):
+            for finish in tuple(source.finishes):
+                of = tuple(self.made[g] for g in finish.of if g in self.made)
+                owner = of[0].owner if of else self.structures.get(source)
+                if owner is None or len(of) < len(finish.of):
+                    continue
+                at = self._point(finish.at, source) if finish.at is not None else None
+                sizes = tuple(self._number("", size, source) for size in finish.sizes)
+                owner.finishes.append(replace(finish, of=of, at=at, sizes=sizes))
+        for g, copy in self.made.items():
+            copy.finishes |= {name: self._number("", n, g.owner) for name, n in g.finishes.items()}
+
     # --- Structures ----------------------------------------------------------------------------
 
     def structure(self, source: Structure, parent: Structure, name: str, frame: Frame) -> Structure:
         """The copy of a structure with all it holds, its constraints aside: they are about the unknowns,
         which are the source's.
         """
-        self.it.count_entity(None)
+        self.it.count_entity(self.span)
         copy = Structure(source.kind, name, parent, self.span or source.span, frame)
         copy.source, copy.doc, copy.is_complete = source, source.doc, source.is_complete
         copy.attributes = dict(source.attributes)

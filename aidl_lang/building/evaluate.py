@@ -126,7 +126,7 @@ def truth(it: Interpreter, value: Value, node: ast.Node) -> bool:
         if all(u.cell or u.exact for u in found):
             for u in found:
                 u.exact = True
-            return holds(value, lambda e: e.value, 1e-9)
+            return holds(value, lambda e: e.value, 1e-9, strict=True)
         it.report(
             "E0502",
             f"`{node.span.text}` is decided by the solver, so it cannot choose what is built",

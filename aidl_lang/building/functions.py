@@ -167,6 +167,8 @@ def _rounded(function: Callable[[float], float]) -> Function:
         known = constant(it, value, node, f"what `{node.callee.text}` rounds") if value else None
         if value is None or known is None:
             return NOTHING
+        if not math.isfinite(known):
+            return _checked(it, number(known), node)
         # 2.9999999999999996 is 3 that went through arithmetic.
         near = round(known)
         result = near if abs(known - near) < 1e-9 * max(1.0, abs(known)) else function(known)

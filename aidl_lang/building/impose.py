@@ -67,13 +67,20 @@ def _turn(env: Env) -> str:
 
 
 def _never(it: Interpreter, node: ast.Expression, env: Env) -> None:
+    shape = _library_shape(it, node, env)
     it.report(
         "E0513",
         f"`{node.span.one_line}` can never hold: both sides are constants{_turn(env)}",
-        node,
+        shape.span if shape is not None else node,
         label="false as written",
         hints=["a number or `param` does not move; make one side a `var`, a `guess(…)` or a reference"],
     )
+
+
+def _library_shape(it: Interpreter, node: ast.Expression, env: Env) -> Geometry | None:
+    """The shape of the library that holds a condition for itself."""
+    shape = env.scope.declaring().container
+    return shape if isinstance(shape, Geometry) and node.span.source in it.library_sources else None
 
 
 def _impose_condition(
@@ -111,8 +118,8 @@ def _impose_condition(
             ],
         )
         return
-    shape = env.scope.declaring().container
-    if comparisons and isinstance(shape, Geometry) and node.span.source in it.library_sources:
+    shape = _library_shape(it, node, env)
+    if comparisons and shape is not None:
         _impose_within(it, shape, tuple(comparisons), node, env)
     elif comparisons:
         comparisons = _placed_in_call(it, node, comparisons, env)
@@ -134,8 +141,8 @@ def _box_unknown(it: Interpreter, box: Measurement, node: ast.Expression) -> Non
     (outline,) = box.of
     assert isinstance(outline, Geometry)
     assert outline.recipe is not None
-    sources = [s.name or s.type for group in outline.recipe.operands for s in group]
-    hint = f"constrain what it is made of: `{sources[0]}`"
+    source = outline.recipe.sources[0]
+    hint = f"constrain what it is made of: `{source.name or source.type}`"
     if outline.recipe.kind == "difference":
         hint += ", or cut with a `hole`, which leaves the box as it is"
     it.report(
@@ -153,7 +160,8 @@ def _impose_within(
     """What a shape of the library holds for itself is a constraint named after it, at its author's line."""
     if shape.name is not None and shape.span is not None:
         text = f"{shape.path.removeprefix(env.here.path + '.')}: {node.span.one_line}"
-        it.add_constraint(Constraint(env.here, comparisons, text, shape.span, None, ", ".join(env.scope.labels)))
+        turn = ", ".join(env.scope.labels)
+        it.add_constraint(Constraint(env.here, comparisons, text, shape.span, None, turn))
 
 
 def _read(it: Interpreter, node: ast.Expression, env: Env) -> Value:
@@ -175,8 +183,10 @@ def _placed_in_call(
     return [placed_by(c, c.placed & placed or c.placed) for c in comparisons]
 
 
-def record_assertion(it: Interpreter, node: ast.Assert, env: Env, *, at_once: bool = False) -> None:
-    """`assert`: kept to be checked on the solved model; with `at_once`, a false one is told now."""
+def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "") -> None:
+    """`assert`: kept to be checked on the solved model. What a shape asks of arguments that are constants is
+    checked now.
+    """
     value = evaluate(it, node.test, env)
     if isinstance(value, Nothing):
         return
@@ -184,7 +194,7 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, *, at_once: bo
         it.report("E0321", f"`assert` wants a condition, and this is {kind_of(value)}", node.test)
         return
     message = evaluate(it, node.message, env) if node.message is not None else None
-    if value is False and at_once:
+    if value is False and shape:
         why = message.value if isinstance(message, Text) else f"`{node.test.span.one_line}` is false"
         it.report("E0604", f"assertion failed: {why}{_turn(env)}", node.test, label="false as written")
         return
@@ -196,6 +206,7 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, *, at_once: bo
             node.test.span.one_line,
             it.place(node.test) or node.span,
             ", ".join(env.scope.labels),
+            shape,
         )
     )
 

@@ -1,7 +1,7 @@
 """Lettering in a program: `glyphs(…)` makes one geometry of a whole text, `ink(…)` tells how large it is.
 
-A text is a single primitive: its place, height and angle are solved for, its curves follow when the solution is
-read out. Dozens of letters then cost the solver no more than one circle.
+A text is a single primitive: its place, height and angle are solved for, its curves follow when the solution
+is read out. Dozens of letters then cost the solver no more than one circle.
 """
 
 from __future__ import annotations
@@ -12,21 +12,33 @@ from aidl_lang import ast, lettering
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.lettering import Glyph
-from aidl_lang.source import Span
 from aidl_lang.values import NOTHING, Num, RecordVal, Text, Value, number
 
 Arguments = Mapping[str, Value]
 
 
-def typeset(it: Interpreter, a: Arguments, node: ast.Node | Span) -> tuple[Glyph, ...]:
+def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
     """The characters of a text in units of its height; none after an error, reported here."""
+    node = it.call_sites[-1]
     text, align, spacing = a["text"], a["align"], a["line_spacing"]
     assert isinstance(text, Text)
     assert isinstance(align, Text)
     assert isinstance(spacing, Num)
     apart = constant(it, spacing, node, "the spacing of lines")
+    if align.value not in lettering.ALIGNMENTS:
+        allowed = ", ".join(f'`"{word}"`' for word in lettering.ALIGNMENTS)
+        _report(
+            it,
+            "E0516",
+            f'"{align.value}" is not one of the words that are meant here',
+            node,
+            [f"it is one of {allowed}"],
+        )
+        return ()
     if apart is None:
         return ()
+    if len(text.value) > it.limits.entities:
+        it.count_entity(node, len(text.value))  # stops here, before the letters are set
     if unknown := lettering.unknown_characters(text.value):
         _report_unknown(it, unknown, node)
         return ()
@@ -37,26 +49,26 @@ def typeset(it: Interpreter, a: Arguments, node: ast.Node | Span) -> tuple[Glyph
     return glyphs
 
 
-def _report(it: Interpreter, code: str, message: str, node: ast.Node | Span, hints: list[str]) -> None:
+def _report(it: Interpreter, code: str, message: str, node: ast.Node, hints: list[str]) -> None:
     """Once for a text, in the words of its author and not of the library."""
     span = it.place(node)
     if not any(d.code == code and d.span == span for d in it.diagnostics):
         it.report(code, message, span, hints=hints)
 
 
-def _report_unknown(it: Interpreter, unknown: list[str], node: ast.Node | Span) -> None:
+def _report_unknown(it: Interpreter, unknown: list[str], node: ast.Node) -> None:
     names = ", ".join(lettering.described(c) for c in unknown[:5])
     rest = f" and {len(unknown) - 5} more" if len(unknown) > 5 else ""
     instead = [
         f"write `{other}` for `{c}`" for c in unknown[:5] if (other := lettering.replacement(c)) is not None
     ]
-    has = "the font has Latin, Greek and Cyrillic letters, digits, punctuation, and signs such as `±` `°` `Ø` `→`"
+    has = "it has Latin, Greek and Cyrillic letters, digits, punctuation, and signs such as `±` `°` `Ø` `→`"
     _report(it, "E0350", f"the font has no {names}{rest}", node, [*instead, has])
 
 
 def ink(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """The box of the letters around the start of the first line, in heights of a capital."""
-    glyphs = typeset(it, a, node)
+    glyphs = typeset(it, a)
     if not glyphs:
         return NOTHING
     sides = zip(("left", "bottom", "right", "top"), lettering.box_around(glyphs), strict=True)

@@ -20,9 +20,9 @@ from aidl_lang.building.scopes import (
 )
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.templates import read_passed
+from aidl_lang.builtins import FINISHES
 from aidl_lang.diagnostics import Label
 from aidl_lang.model import Condition, Geometry, Structure
-from aidl_lang.builtins import FINISHES
 from aidl_lang.names import find, fold, nearest
 from aidl_lang.synonyms import MEMBERS
 from aidl_lang.units import ANGLE
@@ -153,7 +153,8 @@ def _member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env
 
 def _no_member(it: Interpreter, value: Value, name: str, node: ast.Member) -> None:
     if it.place(node) is not node.span:
-        it.refuse(node, f"{kind_of(value)} has no `{name}`")  # the library's expression tells an author nothing
+        # The library's expression would tell an author nothing.
+        it.refuse(node, f"{kind_of(value)} has no `{name}`")
         return
     known = member_names(value)
     like = nearest(name, known)

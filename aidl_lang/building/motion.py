@@ -54,8 +54,8 @@ class Motion:
     def direction(self, angle: Expression) -> Expression:
         """A direction in degrees, seen after the motion."""
         if self.mirrored:
-            return ex.sub(_in_turn(ex.add(self.turn, _HALF_TURN)), angle)
-        return ex.add(angle, self.turn)
+            return _in_turn(ex.sub(ex.add(self.turn, _HALF_TURN), angle))
+        return _in_turn(ex.add(angle, self.turn))
 
     def measure(self, value: Expression, dimension: MaybeDimension) -> Expression:
         """A length, an area, …: it grows with the scale, and nothing else changes it."""
@@ -87,10 +87,14 @@ STILL = Motion()
 
 
 def _in_turn(angle: Expression) -> Expression:
-    """A constant angle between -180 (left out) and 180."""
-    if not angle.is_constant:
-        return angle
-    return ex.constant(180.0 - (180.0 - angle.value) % 360.0)
+    """The angle that is between -180 (left out) and 180 as written."""
+    turns = ex.constant(360.0 * ((180.0 - angle.value) // 360.0))
+    return ex.add(angle, turns)
+
+
+def opposite(angle: Expression) -> Expression:
+    """The opposite direction."""
+    return _in_turn(ex.add(angle, _HALF_TURN))
 
 
 def translation(by: Place) -> Motion:
@@ -112,9 +116,8 @@ def mirrored_at_line(start: PointVal, end: PointVal) -> Motion:
     """
     at = xy(start)
     (ax, ay), (bx, by) = at, xy(end)
-    turn = ex.add(ex.mul(ex.constant(2.0), direction(start, end)), _HALF_TURN)
+    turn = _in_turn(ex.add(ex.mul(ex.constant(2.0), direction(start, end)), _HALF_TURN))
     if turn.is_constant:
-        turn = _in_turn(turn)
         return Motion(at, at, turn, ex.cos(turn), ex.sin(turn), mirrored=True)
     dx, dy = ex.sub(bx, ax), ex.sub(by, ay)
     xx, yy, xy_ = ex.apply("square", dx), ex.apply("square", dy), ex.mul(dx, dy)

@@ -11,7 +11,7 @@ from aidl_lang.building.construct import size
 from aidl_lang.building.scopes import Candidate
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.builtins import FINISHES, OUTLINES
-from aidl_lang.model import Finish, Geometry, Recipe, Structure, convert_point
+from aidl_lang.model import SIZES, Finish, Geometry, Recipe, Structure, convert_point
 from aidl_lang.names import find, fold
 from aidl_lang.units import LENGTH
 from aidl_lang.values import NOTHING, ListVal, Num, PointVal, Status, Text, Value, kind_of, length, members
@@ -57,14 +57,11 @@ def _outline(kind: str, *words: str) -> Function:
 
 def _negative(it: Interpreter, a: Arguments, node: ast.Call) -> bool:
     """Report a size that is less than nothing; only an offset has a direction."""
-    for name, value in a.items():
-        if isinstance(value, Num) and value.expression.is_constant and value.value < 0 and node.callee.text != "offset":
-            it.report(
-                "E0515",
-                f"the {name} of this `{node.callee.text}` is {value.value:g}, and sizes are never negative",
-                node,
-                hints=[f"write {-value.value:g}"],
-            )
+    for name, v in a.items():
+        is_size = name in SIZES or fold(node.callee.text) == "chamfer"
+        if is_size and isinstance(v, Num) and v.expression.is_constant and v.value < 0:
+            message = f"the {name} of this `{node.callee.text}` is {v.value:g}, and sizes are never negative"
+            it.report("E0515", message, node, hints=[f"write {-v.value:g}"])
             return True
     return False
 
@@ -103,9 +100,7 @@ def _sources(it: Interpreter, kind: str, value: Value, node: ast.Call, env: Env)
             hint = (
                 "name the outline in it, as in `plate.outline`"
                 if isinstance(item, Structure)
-                else (
-                    "give it a circle, a shape such as `rectangle(…)`, or a list of curves that are one outline"
-                )
+                else ("give it a circle, a shape such as `rectangle(…)`, or a list of curves that close")
             )
             message = f"`{node.callee.text}` takes outlines, and this is {kind_of(item)}"
             it.report("E0337", message, node, hints=[hint])
@@ -127,21 +122,23 @@ def _flat(value: Value) -> Iterator[Value]:
 
 
 def _take_over(geometry: Geometry, env: Env) -> None:
-    """The sources guide what is made of them and are not drawn themselves; that of an offset is.
-
-    Sources without a name become parts of the result.
-    """
+    """The sources guide what is made of them and are not drawn themselves; that of an offset is."""
     assert geometry.recipe is not None
+    keep_unnamed(geometry)
     here = env.scope.declaring().container or env.here
-    unnamed: list[Value] = []
-    for source in dict.fromkeys(s for group in geometry.recipe.operands for s in group):
-        if source.name is None:
-            source.name, source.container, source.construction = f"source[{len(unnamed)}]", geometry, True
-            unnamed.append(source)
-        elif source.container is here and geometry.recipe.kind != "offset":
+    for source in geometry.recipe.sources:
+        if source.container is here and geometry.recipe.kind != "offset":
             source.construction = True
+
+
+def keep_unnamed(geometry: Geometry) -> None:
+    """Sources without a name become parts of the outline."""
+    assert geometry.recipe is not None
+    unnamed = [s for s in geometry.recipe.sources if s.name is None]
+    for number, source in enumerate(unnamed):
+        source.name, source.container, source.construction = f"source[{number}]", geometry, True
     if unnamed:
-        geometry.parts = {"source": ListVal(tuple(unnamed))}
+        geometry.parts["source"] = ListVal(tuple(unnamed))
 
 
 def usable(candidates: list[Candidate], values: Sequence[Value], env: Env) -> list[Candidate]:

@@ -31,7 +31,6 @@ from aidl_lang.values import (
     StructureCopy,
     Value,
     kind_of,
-    length,
     number,
     point,
 )
@@ -211,7 +210,9 @@ def _polar_array(call: _Call) -> Value:
     if n is None:
         return NOTHING
     if "radius" not in call.a and not call.has_place:
-        return call.wrong("a template is laid out on a circle, whose `radius` is not said", "as in `radius: 20`")
+        return call.wrong(
+            "a template is laid out on a circle, whose `radius` is not said", "as in `radius: 20`"
+        )
     center = call.position("center")
     start = call.size("start") if "start" in call.a else ex.ZERO
     step = _step(call, n)

@@ -24,7 +24,6 @@ from aidl_lang.values import (
     Value,
 )
 
-
 _WAITING = Instantiation | StructureCopy | Pattern | ListVal
 
 
@@ -42,31 +41,33 @@ class Settling:
     here: Structure
     first: dict[Instantiation, tuple[Structure, Frame]] = field(default_factory=dict)
 
+    def whole(self, value: Value, indices: tuple[int, ...]) -> Value:
+        """What is assigned, with every structure in it made, and every geometry of a pattern named."""
+        if self.node.placement is not None and isinstance(value, StructureCopy | Pattern):
+            self._stands(value)
+        return self.value(value, indices)
+
     def value(self, value: Value, indices: tuple[int, ...]) -> Value:
-        """The value with every structure in it made, and every geometry of a pattern named."""
         match value:
             case Instantiation():
                 return instantiate(self.it, self.node, value, self.scope, self.here, indices)
             case StructureCopy():
-                self._stands(value)
                 return self._copy(value, indices)
             case ListVal(items) if any(isinstance(i, _WAITING) for i in items):
                 return ListVal(tuple(self.value(item, (*indices, i)) for i, item in enumerate(items)))
             case Pattern(settings=settings) if settings.name is None:
-                self._stands(value)
                 return self._pattern(value, indices)
             case _:
                 return value
 
     def _stands(self, value: StructureCopy | Pattern) -> None:
         """Report an `at` of what has its place from elsewhere."""
-        if self.node.placement is None:
-            return
         name = self.node.name.text
         if isinstance(value, Pattern):
             message, hint = f"the place of `{name}` is that of its members", "give it a `center` or a `start`"
         else:
-            source = value.source.name if isinstance(value.source, Structure) else "what it mirrors"
+            made = value.source
+            source = made.name if isinstance(made, Structure) else made.signature.name
             message = f"`{name}` is a copy, and its place follows from `{source}`"
             hint = "say where it goes in the copy: `copy(x, by: (10, 0))`, `mirror(x, about: y_axis)`"
         self.it.report("E0330", message, self.node.placement, hints=[hint])

@@ -41,7 +41,9 @@ def _convex_corners(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> 
         return _NONE
     starts, ends = ([look(it, edge, node, env)[name] for edge in edges] for name in ("start", "end"))
     at = [_at(p) for p in starts]
-    closed = all(math.dist(_at(p), q) < 1e-9 * math.dist(at[0], q) + 1e-9 for p, q in zip(ends, _next(at), strict=True))
+    closed = all(
+        math.dist(_at(p), q) < 1e-9 * math.dist(at[0], q) + 1e-9 for p, q in zip(ends, _next(at), strict=True)
+    )
     return ListVal(tuple(starts)) if closed and _is_convex(at) else _NONE
 
 

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from aidl_lang import ast
 from aidl_lang import expression as ex
@@ -19,6 +20,9 @@ from aidl_lang.typecheck import Program
 from aidl_lang.types import Binding
 from aidl_lang.units import ANGLE, MaybeDimension
 from aidl_lang.values import Num, PointVal, Value
+
+if TYPE_CHECKING:
+    from aidl_lang.building.derive import Copier
 
 
 class Reach(Enum):
@@ -93,8 +97,12 @@ class Interpreter:
     call_sites: list[ast.Node] = field(default_factory=list)
     hidden: list[tuple[Geometry, tuple[Comparison, ...]]] = field(default_factory=list)
     runaway: set[ast.Node] = field(default_factory=set)
+    copiers: list[Copier] = field(default_factory=list)
+    """what made the copies, in order"""
     ahead: list[Ahead] = field(default_factory=list)
-    edits: dict[ast.Call, Callable[[Binding, dict[str, Value]], dict[str, Value]]] = field(default_factory=dict)
+    edits: dict[ast.Call, Callable[[Binding, dict[str, Value]], dict[str, Value]]] = field(
+        default_factory=dict
+    )
     """calls that are run with their arguments changed"""
     edited: set[tuple[ast.Call, tuple[str, ...]]] = field(default_factory=set)
     """edits that were applied, and in which turns of the loops around"""
@@ -137,7 +145,9 @@ class Interpreter:
         span = self.place(node)
         text = f"`{span.one_line}`" if span is not None else "this"
         if not any(d.code == "E0342" and d.span == span for d in self.diagnostics):
-            self.diagnostics.append(Diagnostic("E0342", f"{text} says nothing: {why}", span, hints=tuple(hints)))
+            self.diagnostics.append(
+                Diagnostic("E0342", f"{text} says nothing: {why}", span, hints=tuple(hints))
+            )
 
     @property
     def library_sources(self) -> tuple[object, ...]:
@@ -149,7 +159,7 @@ class Interpreter:
 
     # --- Limits --------------------------------------------------------------------------------
 
-    def count_entity(self, node: ast.Node | None, count: int = 1) -> None:
+    def count_entity(self, node: ast.Node | Span | None, count: int = 1) -> None:
         self.entities += count
         if self.entities > self.limits.entities:
             self._stop(
@@ -189,7 +199,7 @@ class Interpreter:
     def leave(self) -> None:
         self.call_sites.pop()
 
-    def _stop(self, node: ast.Node | None, message: str) -> None:
+    def _stop(self, node: ast.Node | Span | None, message: str) -> None:
         hint = "check the ends of ranges and the end of recursion; the limit is a setting of the API"
         self.report("E0805", message, node, hints=[hint])
         raise Stop

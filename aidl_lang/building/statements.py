@@ -10,13 +10,14 @@ from aidl_lang.building.blocks import declared_names, run_block
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.construct import loose_point
 from aidl_lang.building.declare import adopt, declare, give_name, index_values
-from aidl_lang.building.edits import check_edit, edited, edits_on, is_edit
+from aidl_lang.building.editing import edited
+from aidl_lang.building.edits import check_edit, edits_on, is_edit
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.impose import record_assertion
 from aidl_lang.building.params import read_param
 from aidl_lang.building.scopes import LetBinding, ParamBinding, Scope, VarBinding
-from aidl_lang.building.state import Env, Executor, Interpreter, Reach
 from aidl_lang.building.settle import Settling
+from aidl_lang.building.state import Env, Executor, Interpreter, Reach
 from aidl_lang.building.structures import build_structure
 from aidl_lang.model import Geometry, Structure
 from aidl_lang.values import (
@@ -40,13 +41,13 @@ def _assign(it: Interpreter, node: ast.Assign, scope: Scope, here: Structure) ->
         return
     env = Env(scope, here, Reach.OWN)
     value = evaluate(it, node.value, env)
-    if not isinstance(value, Nothing | Instantiation) and (edits := edits_on(it, node.name.text, indices, scope)):
-        value = edited(it, node, value, edits, env)
+    if not isinstance(value, Nothing | Instantiation):
+        value = edited(it, node, value, edits_on(it, node.name.text, indices, scope), env)
     if isinstance(value, Nothing):
         declare(it, scope, node.name, indices, NOTHING, node)
         return
     is_new = isinstance(value, Instantiation | StructureCopy | Pattern)
-    value = Settling(it, node, scope, here).value(value, indices)
+    value = Settling(it, node, scope, here).whole(value, indices)
     if is_new:
         declare(it, scope, node.name, indices, value, node)
         return
@@ -156,8 +157,8 @@ def _defer(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) 
 
 def _assert(it: Interpreter, node: ast.Assert, scope: Scope, here: Structure) -> None:
     """In a shape an assertion is about its arguments, hence it is checked where the shape is made."""
-    if isinstance(scope.declaring().container, Geometry):
-        record_assertion(it, node, Env(scope, here, Reach.READ), at_once=True)
+    if isinstance(container := scope.declaring().container, Geometry):
+        record_assertion(it, node, Env(scope, here, Reach.READ), container.type)
     else:
         _defer(it, node, scope, here)
 

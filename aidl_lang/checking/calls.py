@@ -57,6 +57,8 @@ def call(check: Inference, node: ast.Call) -> Fact:
     check_habits(check, node, nodes, fits[0])
     _serve(check, fits, nodes, facts)
     _spell(check, node, nodes, fits)
+    if (subject := next((i for i in range(len(facts)) if fits[0].parameter_of(i) == "x"), 0)) > 0:
+        facts = [facts[subject], *facts]  # `mirror(about: axis, x: a)` gives what `a` is
     if len(fits) > 1 and any(isinstance(f.type, AnyType) for f in facts):
         results = [_result(check, fit.signature, nodes, facts, reads) for fit in fits]
         result = results[0]

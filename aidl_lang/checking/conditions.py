@@ -80,6 +80,7 @@ def _check_logic(infer: Inference, node: ast.Expression) -> None:
                 "or",
                 f"constrain the one you mean, as in `constrain {shown(left)}`, or let an `if` over "
                 "constants choose; `assert` takes `or`",
+                Fix("constrain the first of them", (Edit(node.span, left.span.text),)),
             )
         case ast.Unary(operator="not", operand=operand) if infer.fact(node).reads:
             _cannot(
@@ -94,7 +95,6 @@ def _check_logic(infer: Inference, node: ast.Expression) -> None:
             pass
 
 
-def _cannot(infer: Inference, node: ast.Expression, word: str, hint: str) -> None:
-    infer.report(
-        "E0322", f"`{word}` does not constrain: there are many ways to satisfy it", node, hints=[hint]
-    )
+def _cannot(infer: Inference, node: ast.Expression, word: str, hint: str, fix: Fix | None = None) -> None:
+    message = f"`{word}` does not constrain: there are many ways to satisfy it"
+    infer.report("E0322", message, node, hints=[hint], fix=fix)

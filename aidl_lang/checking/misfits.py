@@ -52,7 +52,7 @@ def no_overload(
         f"`{name}` {closest.reason}",
         at,
         label=f"in this call of `{name}`",
-        hints=_called_as([closest.signature, *others[:4]]),
+        hints=_called_as([closest.signature, *others[:2]]),
     )
 
 
@@ -242,6 +242,8 @@ def _unknown_parameter(
 ) -> bool:
     """Report argument names that no overload knows; whether there is one."""
     names = list(dict.fromkeys(name for m in misses for name, _, _ in m.signature.parameters))
+    synonyms = {w: m for w, meanings in PARAMETERS.items() for m in meanings if m in names}
+    closest = max(misses, key=lambda m: _closeness(m, given)).signature
     wrong = [
         a.name
         for a in node.arguments
@@ -250,10 +252,11 @@ def _unknown_parameter(
     taken = {fold(a.name.text) for a in node.arguments if a.name is not None}
     for identifier in wrong:
         like = nearest(identifier.text, [n for n in names if fold(n) not in taken])
-        free = ", ".join(f"`{n}`" for n in names)
-        example = next((e for m in misses if (e := example_of(m.signature)) is not None), None)
-        hints = [f"its parameters are {free}" if names else "it takes no arguments"]
-        hints += [f"for example `{example}`"] if example else []
+        if not like and len(identifier.text) > 4 and (near := nearest(identifier.text, synonyms)):
+            like = [synonyms[near[0]]]
+        hints = _called_as([closest]) if closest.parameters else ["it takes no arguments"]
+        if fold(identifier.text) == "length" and {"width", "height"} <= set(names):
+            hints = ["its sizes are `width`, from left to right, and `height`, from bottom to top"]
         check.report(
             "E0324",
             f"`{node.callee.text}` has no parameter `{identifier.text}`"

@@ -47,8 +47,10 @@ def _found(known: Reference, name: str) -> Entry:
     """The entry of a name, or of the one that it seems to be a misspelling of, which is said."""
     if (entry := known.find(name)) is not None:
         return entry
+    from aidl_lang.render import escape
+
     if (entry := known.misspelt(name)) is not None:
-        say(f"there is no `{name}`; this is `{entry.name}`")
+        say(f"there is no `{escape(name)}`; this is `{entry.name}`")
         return entry
     near = [f"`{n}`" for n in known.near(name)]
     hints = [f"did you mean {' or '.join(near)}?"] if near else []

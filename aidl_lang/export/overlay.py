@@ -13,7 +13,7 @@ from typing import TypeGuard
 
 from aidl_lang.export import palette
 from aidl_lang.export.marks import Dot, Frame, Mark, Text
-from aidl_lang.geometry.curves import Curve, Vec
+from aidl_lang.geometry.curves import Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import Bounds, bounds
 from aidl_lang.geometry.network import union_bounds
@@ -273,7 +273,7 @@ def _geometry_box(geometry: SolvedGeometry, path: str) -> Bounds | None:
     return union_bounds(boxes) if boxes else None
 
 
-def _all_curves(geometry: SolvedGeometry) -> Iterator[Curve]:
+def _all_curves(geometry: SolvedGeometry) -> Iterator[Piece]:
     if geometry.curve is not None:
         yield geometry.curve
     for part in geometry.parts:

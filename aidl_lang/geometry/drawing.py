@@ -13,8 +13,8 @@ from aidl_lang.diagnostics import Diagnostic, ordered
 from aidl_lang.geometry.bodies import Bodies, IdleHole, LooseCurves, Mass
 from aidl_lang.geometry.colors import css_color
 from aidl_lang.geometry.contacts import Contact, Solid, contacts
-from aidl_lang.geometry.curves import Arc, Circle, Curve, Ellipse, Line, Piece
-from aidl_lang.geometry.evaluate import LARGEST, Bounds, bounds
+from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece
+from aidl_lang.geometry.evaluate import LARGEST, Bounds, bounds, is_finite
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import CHORD, FINE_CHORD, Network, union_bounds
@@ -140,7 +140,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
 
 
 def _arranged(
-    root: SolvedStructure, curves: list[Curve], shapes: dict[str, list[Shape]], chord: float
+    root: SolvedStructure, curves: list[Piece], shapes: dict[str, list[Shape]], chord: float
 ) -> tuple[Network, Bodies, list[Mass], dict[str, Traced]]:
     """The bodies, and the outlines of everything that has material or cuts, in order of writing."""
     network = Network(curves, chord)
@@ -153,9 +153,9 @@ def _arranged(
     return network, walk, [m for m in masses if traced[m.structure.path].region], traced
 
 
-def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[list[Curve], dict[str, list[Shape]]]:
+def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[list[Piece], dict[str, list[Shape]]]:
     """All curves that can be drawn, numbered, and by structure the shapes they belong to."""
-    curves: list[Curve] = []
+    curves: list[Piece] = []
     shapes: dict[str, list[Shape]] = {}
     for structure in root.walk():
         own = shapes.setdefault(structure.path, [])
@@ -172,8 +172,8 @@ def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[list[Curve
             if leaves:
                 # A shape may have edges of no length (a rounded rectangle with half-round ends).
                 own.append(Shape(geometry, tuple(leaves)))
-            else:
-                notes += [unusable_note(structure, leaf) for leaf in vanished[:1]]
+                vanished = [leaf for leaf in vanished if leaf.curve and not is_finite(leaf.curve)]
+            notes += [unusable_note(structure, leaf) for leaf in vanished[:1]]
     return curves, shapes
 
 
@@ -187,8 +187,10 @@ def _leaves(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
         yield from _leaves(part)
 
 
-def _usable(curve: Curve) -> Curve | None:
+def _usable(curve: Piece) -> Piece | None:
     """The curve with positive radii; None if it has no extent or no finite coordinates."""
+    if not is_finite(curve):
+        return None
     if isinstance(curve, Circle):
         curve = Circle(curve.center, abs(curve.radius))
     elif isinstance(curve, Ellipse):
@@ -197,7 +199,7 @@ def _usable(curve: Curve) -> Curve | None:
         curve = Arc(curve.center, abs(curve.radius), curve.start, curve.end, curve.sweep)
     if isinstance(curve, Ellipse) and not curve.rx * curve.ry > 0:
         return None
-    if isinstance(curve, Circle | Arc) and not (curve.radius > 0 and math.isfinite(curve.radius)):
+    if isinstance(curve, Circle | Arc) and not curve.radius > 0:
         return None
     box = bounds(curve)
     if not all(map(math.isfinite, box)) or max(map(abs, box)) > LARGEST:

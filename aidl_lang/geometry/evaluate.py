@@ -7,7 +7,7 @@ its rightmost point), through the eccentric anomaly of an ellipse, and the usual
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,12 @@ Bounds = tuple[float, float, float, float]
 
 LARGEST = 1e12
 """Coordinates beyond this, in mm, are a mistake and are not drawn."""
+
+
+def is_finite(curve: Piece) -> bool:
+    """Whether every number of the curve is one that can be drawn."""
+    values = [getattr(curve, f.name) for f in fields(curve)]
+    return all(math.isfinite(n) for v in values for n in (v if isinstance(v, tuple) else (v,)))
 
 
 def is_closed(curve: Piece) -> bool:
@@ -143,7 +149,7 @@ def reverse(curve: Piece) -> Piece:
 
 
 def inward(curve: Piece, origin: Vec, rotation: float, mirrored: bool) -> Piece:
-    """A curve in the frame at an origin, turned by degrees and then mirrored: the inverse of that placement."""
+    """A curve as seen in a frame: at an origin, reflected in x if it is mirrored, then turned by degrees."""
     angle = math.radians(rotation)
     c, s = math.cos(angle), math.sin(angle)
     flip = -1.0 if mirrored else 1.0

@@ -146,9 +146,7 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
     for work in works:
         made = solve(work)
         if made is None:
-            result.failures.append(
-                TooLarge(work, _largest(lambda s, w=work: solve(_sized(w, s)) is not None, max(work.sizes)))
-            )
+            result.failures.append(_misfit(work))
         else:
             done.append(made)
     lost: dict[tuple[int, bool], Finished] = {}
@@ -166,6 +164,11 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
                 curves[number], lost.get((number, True)), lost.get((number, False)), number
             )
     return result
+
+
+def _misfit(work: Work) -> TooLarge:
+    """A finish that an arm is too short for."""
+    return TooLarge(work, _largest(lambda size: solve(_sized(work, size)) is not None, max(work.sizes)))
 
 
 def _collision(a: Finished, b: Finished, number: int) -> TooLarge:
@@ -317,8 +320,7 @@ def _foot(curve: Line | Arc, p: Vec) -> float | None:
         t = ((p[0] - curve.start[0]) * dx + (p[1] - curve.start[1]) * dy) / (dx * dx + dy * dy)
         return t if t >= 0 else None
     turn = math.atan2(p[1] - curve.center[1], p[0] - curve.center[0]) - curve.start_angle
-    t: float = (turn % math.copysign(math.tau, curve.sweep)) / curve.sweep
-    return t
+    return float((turn % math.copysign(math.tau, curve.sweep)) / curve.sweep)
 
 
 def _round_by_newton(a: Piece, b: Piece, side: float, radius: float) -> tuple[float, float, Vec] | None:

@@ -11,7 +11,7 @@ from aidl_lang.geometry.bodies import FilledHole, Finding, IdleHole, InnerLoop, 
 from aidl_lang.geometry.colors import similar_colors
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.curves import Bezier, Vec
-from aidl_lang.geometry.evaluate import LARGEST, bounds, ends
+from aidl_lang.geometry.evaluate import LARGEST, bounds, ends, is_finite
 from aidl_lang.geometry.network import Network
 from aidl_lang.solved import Scalar, SolvedGeometry, SolvedStructure
 from aidl_lang.source import Span
@@ -279,6 +279,14 @@ def _detached(structure: SolvedStructure, nearest: tuple[float, str] | None) -> 
 def unusable_note(structure: SolvedStructure, geometry: SolvedGeometry) -> Diagnostic:
     """For a curve without extent or without finite coordinates."""
     name = local(structure, geometry)
+    if geometry.curve is not None and not is_finite(geometry.curve):
+        return Diagnostic(
+            "W0706",
+            f"`{name}` in `{structure.path}` has no place and is not drawn",
+            geometry.span or structure.span,
+            "its coordinates divide by zero or leave the range of numbers",
+            hints=("look for a division by an unknown that starts at 0, and give it another first guess",),
+        )
     if geometry.curve is not None and not max(map(abs, bounds(geometry.curve))) <= LARGEST:
         return Diagnostic(
             "W0706",

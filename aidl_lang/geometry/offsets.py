@@ -1,7 +1,7 @@
 """Regions grown, shrunk and drawn with a thick pen: exact sums of curves and discs.
 
-Every offset is the region with its strips and wedges (see `strips`) united or cut off by the booleans that all
-drawings use. So whatever crosses itself, splits or vanishes comes out as it must.
+Every offset is the region with its strips and wedges (see `strips`) united or cut off by the booleans that
+all drawings use. So whatever crosses itself, splits or vanishes comes out as it must.
 """
 
 from __future__ import annotations

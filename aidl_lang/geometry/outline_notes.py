@@ -39,7 +39,8 @@ def nothing_left(g: SolvedGeometry, recipe: Recipe, depth: float | None = None) 
         case "offset":
             amount = short(abs(recipe.numbers["distance"]))
             message = f"nothing is left of `{sources[0]}` when it is moved inwards by {amount}"
-            hint = f"it is gone from {short(depth or 0)} on: choose a smaller distance, or make the outline larger"
+            gone = short(depth or 0)
+            hint = f"it is gone from {gone} on: choose a smaller distance, or make the outline larger"
         case "hull":
             lie = "lie" if len(set(sources)) > 1 else "lies"
             message = f"`{g.path}` has no area: {listed(sources)} {lie} on one line"
@@ -73,10 +74,10 @@ def not_closed(g: SolvedGeometry, recipe: Recipe, operand: Iterable[SolvedGeomet
 
 
 def splits(g: SolvedGeometry, recipe: Recipe, count: int) -> Diagnostic:
-    amount = short(abs(recipe.numbers["distance"]))
+    amount, source = short(abs(recipe.numbers["distance"])), _sources(recipe)[0]
     return Diagnostic(
         "W0710",
-        f"`{g.path}` falls into {count} pieces: `{_sources(recipe)[0]}` is narrower than twice {amount} in places",
+        f"`{g.path}` falls into {count} pieces: `{source}` is narrower than twice {amount} in places",
         g.span,
         "the offset closes the narrow parts",
         hints=("choose a smaller distance, or widen the narrow parts, if it should be one piece",),
@@ -84,10 +85,10 @@ def splits(g: SolvedGeometry, recipe: Recipe, count: int) -> Diagnostic:
 
 
 def all_wall(g: SolvedGeometry, recipe: Recipe, depth: float) -> Diagnostic:
+    source, wall = _sources(recipe)[0], short(recipe.numbers["thickness"])
     return Diagnostic(
         "W0711",
-        f"the wall of `{g.path}` fills all of `{_sources(recipe)[0]}`: it is {short(recipe.numbers['thickness'])}"
-        " thick",
+        f"the wall of `{g.path}` fills all of `{source}`: it is {wall} thick",
         g.span,
         "no room is left inside",
         hints=(f"a wall below {short(depth)} leaves room",),
@@ -106,12 +107,13 @@ def no_corner(f: Finish, leaves: Leaves, near: float) -> Diagnostic:
             f.span,
             "nothing to finish",
             hints=(
-                "a corner is where two of its curves meet at an angle; the end of an edge is named by a point",
+                "a corner is where two of its curves meet at an angle; name an end of an edge as a point",
             ),
         )
     curves = [c for _, c in leaves]
     arms = arms_at(curves, f.at, near)
-    corners = sorted(corners_of(curves, near), key=lambda c: math.dist(c.at, f.at or c.at))
+    place = f.at
+    corners = sorted(corners_of(curves, near), key=lambda c: math.dist(c.at, place))
     if len(arms) == 2:
         message, label = (
             f"`{f.text}` at {at(f.at)} is no corner: the curves run on smoothly",
@@ -157,8 +159,11 @@ def too_large(
                 "let them meet at an angle",
             )
         else:
-            message = f"the {f.kind} of {corner} does not fit: {what} {size}, and {edges} have room for {floor(failure.largest)}"
-            hint = f"the largest {what} that fits is {floor(failure.largest)}"
+            most = floor(failure.largest)
+            message = (
+                f"the {f.kind} of {corner} does not fit: {what} {size}, and {edges} have room for {most}"
+            )
+            hint = f"the largest {what} that fits is {most}"
         return Diagnostic("E0518", message, f.span, "too large", hints=(hint,))
     other = reasons[next(k for k, w in enumerate(works) if w is failure.other)]
     edge = local(told, leaves[failure.number][0])

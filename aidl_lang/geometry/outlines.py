@@ -7,24 +7,28 @@ corners stay sharp, the geometry as it is drawn. What an outline is made of is t
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.geometry import outline_notes as notes
 from aidl_lang.geometry.boolean import common, united, without
 from aidl_lang.geometry.clipping import clipped
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import bounds
+from aidl_lang.geometry.curves import Line, Piece, Vec
+from aidl_lang.geometry.described import as_geometry
+from aidl_lang.geometry.evaluate import bounds, ends, reverse
 from aidl_lang.geometry.faces import Shape, own_faces, union_of
-from aidl_lang.geometry.finishing import Corner, Result, Work, arms_at, corners_of, finish
+from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish
 from aidl_lang.geometry.hulls import hull
-from aidl_lang.geometry.measures import area
+from aidl_lang.geometry.measures import area, length
 from aidl_lang.geometry.network import CHORD, FINE_CHORD, Network, union_bounds
 from aidl_lang.geometry.offsets import NEAR, offset, thick
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.trace import trace
-from aidl_lang.solved import Box, Finish, Recipe, Scalar, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.solved import Box, Finish, Recipe, SolvedGeometry, SolvedModel, SolvedStructure
+
+Leaves = Sequence[tuple[SolvedGeometry, Piece]]
+"""Primitives that are drawn, with their curves."""
 
 _SAME_AREA = 1e-6
 """Relative difference of areas up to which a shape of the library is what exact geometry gives."""
@@ -37,7 +41,8 @@ def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
     has_recipes = any(g.recipe for s in structures for top in s.geometry for g in _within(top))
     if not has_recipes and not any(s.finishes for s in structures):
         return model, []
-    outliner = _Outliner(tuple(f for s in structures for f in s.finishes))
+    index = {g.path: g for s in structures for top in s.geometry for g in _within(top)}
+    outliner = _Outliner(tuple(f for s in structures for f in s.finishes), index)
     root = outliner.structure(model.root)
     return replace(model, root=root), list(dict.fromkeys(outliner.notes))
 
@@ -64,9 +69,14 @@ def _shown(g: SolvedGeometry) -> SolvedGeometry:
 
 @dataclass
 class _Outliner:
-    """`made` keeps by path what was worked out already: outlines as they are drawn, before finishing."""
+    """
+    finishes     of all structures; index: all geometry by path, as it was read out
+    made         by path, what was worked out already: outlines as they are drawn, before finishing
+    carried_out  the finishes of the structure at hand, with their corners
+    """
 
     finishes: tuple[Finish, ...]
+    index: Mapping[str, SolvedGeometry]
     notes: list[Diagnostic] = field(default_factory=list)
     made: dict[str, SolvedGeometry] = field(default_factory=dict)
     carried_out: dict[Finish, list[Vec]] = field(default_factory=dict)
@@ -84,7 +94,7 @@ class _Outliner:
             geometry=geometry,
             structures=children,
             box=_box(s, geometry, children),
-            finishes=tuple(replace(f, corners=tuple(self.carried_out.get(f, ()))) for f in s.finishes),
+            finishes=tuple(replace(f, corners=tuple(at)) for f, at in self.carried_out.items()),
             finished=tuple(finished),
         )
 
@@ -111,7 +121,7 @@ class _Outliner:
     def _exact(self, g: SolvedGeometry, recipe: Recipe) -> SolvedGeometry:
         if g.path not in self.made:
             curves = self._curves(g, recipe)
-            parts = tuple(_named(f"edges[{k}]", g, c) for k, c in enumerate(curves))
+            parts = tuple(as_geometry(f"edges[{k}]", g, c) for k, c in enumerate(curves))
             self.made[g.path] = replace(g, parts=parts, curve=None)
         return replace(self.made[g.path], construction=g.construction)
 
@@ -199,29 +209,22 @@ class _Outliner:
         finishes: Sequence[Finish],
         told: SolvedStructure | None = None,
     ) -> list[SolvedGeometry]:
-        """The geometry with all finishes that are about its corners. `told`: the structure whose program hears
-        of those that do not fit; elsewhere they are passed over.
+        """The geometry with all finishes that are about its corners. `told`: the structure whose program
+        hears of those that do not fit; elsewhere they are passed over.
         """
         leaves = [leaf for g in geometry for leaf in _leaves(g)]
-        mine = [f for f in finishes if not f.of or any(_is_of(g.path, f.of) for g, _ in leaves)]
-        if not mine:
-            return list(geometry)
         near = NEAR * _extent([c for _, c in leaves])
         works: list[Work] = []
         reasons: list[Finish] = []
-        for f in mine:
-            corners = _corners(f, leaves, near)
-            if not corners and told is not None:
-                self.notes.append(notes.no_corner(f, leaves, near))
-            for corner in corners:
-                earlier = next(
-                    (k for k, w in enumerate(works) if math.dist(w.corner.at, corner.at) <= near), None
-                )
-                if earlier is not None:
-                    self.notes += [notes.twice(f, reasons[earlier], corner, told)] if told else []
-                elif max(f.sizes) > 0:
-                    works.append(Work(f.kind, corner, (f.sizes[0], f.sizes[-1])))
-                    reasons.append(f)
+        for f, corner in (*self._own(leaves, finishes, near, told), *self._inherited(leaves, near)):
+            earlier = next(
+                (k for k, w in enumerate(works) if math.dist(w.corner.at, corner.at) <= near), None
+            )
+            if earlier is None:
+                works.append(Work(f.kind, corner, (f.sizes[0], f.sizes[-1])))
+                reasons.append(f)
+            elif told is not None and f in finishes:
+                self.notes.append(notes.twice(f, reasons[earlier], corner, told))
         result = finish([c for _, c in leaves], works)
         if told is not None:
             for failure in result.failures:
@@ -231,13 +234,57 @@ class _Outliner:
                 self.carried_out.setdefault(reason, []).append(made.work.corner.at)
         return _rebuilt(geometry, leaves, result) if result.finished else list(geometry)
 
+    def _own(
+        self, leaves: Leaves, finishes: Sequence[Finish], near: float, told: SolvedStructure | None
+    ) -> Iterator[tuple[Finish, Corner]]:
+        """The finishes of these curves with their corners."""
+        for f in finishes:
+            if f.of and not any(_is_of(g.path, f.of) for g, _ in leaves):
+                continue
+            corners = _corners(f, leaves, near)
+            if not corners and told is not None:
+                self.notes.append(notes.no_corner(f, leaves, near))
+            if max(f.sizes) > 0:
+                yield from ((f, corner) for corner in corners)
+
+    def _inherited(self, leaves: Leaves, near: float) -> Iterator[tuple[Finish, Corner]]:
+        """A copy has the finishes of its source: corners between the same curves, and sizes in proportion."""
+        sources = [(self._source(g), c) for g, c in leaves]
+        for _ in self.index:  # copies of copies: no chain is longer than that
+            if not any(g is not None for g, _ in sources):
+                break
+            numbers = [k for k, (g, _) in enumerate(sources) if g is not None and g.curve is not None]
+            theirs = [(g, g.curve) for g, _ in sources if g is not None and g.curve is not None]
+            share = length(leaves[numbers[0]][1]) / length(theirs[0][1]) if theirs else 1.0
+            for f in self.finishes:
+                if not f.of or any(_is_of(g.path, f.of) for g, _ in theirs):
+                    for corner in _corners(f, theirs, near / share):
+                        arms = [
+                            _arm(leaves[numbers[a.number]][1], numbers[a.number], a.first)
+                            for a in corner.arms
+                        ]
+                        at = ends(arms[0].curve)[0]
+                        yield (
+                            replace(f, sizes=tuple(share * s for s in f.sizes)),
+                            Corner(at, (arms[0], arms[1])),
+                        )
+            sources = [(self._source(g) if g else None, c) for g, c in sources]
+
+    def _source(self, g: SolvedGeometry) -> SolvedGeometry | None:
+        """What a geometry is a copy of; what has no name of its own goes by that of its copy."""
+        return self.index.get(g.source) if g.source is not None and g.source != g.path else None
+
+
+def _arm(curve: Piece, number: int, first: bool) -> Arm:
+    return Arm(curve if first else reverse(curve), number, first)
+
 
 def _is_of(path: str, of: Iterable[str]) -> bool:
     """Whether a path is one of some, or leads on from it."""
     return any(path == p or path.startswith((f"{p}.", f"{p}[")) for p in of)
 
 
-def _corners(f: Finish, leaves: Sequence[tuple[SolvedGeometry, Piece]], near: float) -> list[Corner]:
+def _corners(f: Finish, leaves: Leaves, near: float) -> list[Corner]:
     """The corners that a finish is about, among these curves."""
     own = [number for number, (g, _) in enumerate(leaves) if _is_of(g.path, f.of)]
     if f.at is None:
@@ -256,9 +303,7 @@ def _renumbered(corner: Corner, numbers: Sequence[int]) -> Corner:
     return Corner(corner.at, (a, b))
 
 
-def _rebuilt(
-    geometry: Sequence[SolvedGeometry], leaves: Sequence[tuple[SolvedGeometry, Piece]], result: Result
-) -> list[SolvedGeometry]:
+def _rebuilt(geometry: Sequence[SolvedGeometry], leaves: Leaves, result: Result) -> list[SolvedGeometry]:
     """The geometry with its new curves; a new one belongs to what both its neighbours belong to."""
     changed = {g.path: c for (g, old), c in zip(leaves, result.curves, strict=True) if c is not old}
     added: dict[str, list[SolvedGeometry]] = {}
@@ -268,12 +313,14 @@ def _rebuilt(
         a, b = (tops[arm.number] for arm in made.work.corner.arms)
         if a is b:
             own = added.setdefault(a.path, [])
-            own.append(_named(f"{made.work.kind}[{len(own)}]", a, made.piece))
+            own.append(as_geometry(f"{made.work.kind}[{len(own)}]", a, made.piece))
         else:
-            free.append(_named(f"{made.work.kind}[{len(free)}]", a, made.piece, a.path.rpartition(".")[0]))
+            free.append(
+                as_geometry(f"{made.work.kind}[{len(free)}]", a, made.piece, a.path.rpartition(".")[0])
+            )
 
     def renewed(g: SolvedGeometry) -> SolvedGeometry:
-        curve = changed[g.path] if g.path in changed else g.curve
+        curve = changed.get(g.path, g.curve)
         return replace(g, curve=curve, parts=(*map(renewed, g.parts), *added.get(g.path, ())))
 
     return [*map(renewed, geometry), *free]
@@ -335,41 +382,3 @@ def _box(
         max(b.right for b in boxes),
         max(b.top for b in boxes),
     )
-
-
-def _named(name: str, of: SolvedGeometry, curve: Piece, around: str = "") -> SolvedGeometry:
-    """A curve as a geometry: a part of another, or beside it in a structure."""
-    kind, values = _described(curve)
-    path = f"{around or of.path}.{name}"
-    return SolvedGeometry(name, path, kind, values, curve, (), False, of.span)
-
-
-def _described(curve: Piece) -> tuple[str, dict[str, Scalar | Vec | tuple[Vec, ...]]]:
-    """The type and the fields of a curve."""
-    match curve:
-        case Line(start, end):
-            return "line", {"start": start, "end": end}
-        case Circle(center, radius):
-            return "circle", {"center": center, "radius": radius}
-        case Arc(center, radius, start, end, sweep):
-            return "arc", {
-                "center": center,
-                "radius": radius,
-                "start": start,
-                "end": end,
-                "clockwise": sweep < 0,
-            }
-        case Bezier(p0, p1, p2, p3):
-            return "bezier", {"points": (p0, p1, p2, p3)}
-        case Ellipse(center, rx, ry, angle):
-            return "ellipse", {"center": center, "rx": rx, "ry": ry, "angle": math.degrees(angle)}
-        case EllipseArc(center, rx, ry, angle, start, end, _, sweep):
-            return "ellipse_arc", {
-                "center": center,
-                "rx": rx,
-                "ry": ry,
-                "angle": math.degrees(angle),
-                "start": start,
-                "end": end,
-                "clockwise": sweep < 0,
-            }

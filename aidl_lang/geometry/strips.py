@@ -1,10 +1,10 @@
 """The pieces that offsets are put together from: strips along curves, wedges at corners, caps at ends.
 
 What lies within a distance of a curve is swept by its normals. A point is nearest to the inside of a curve,
-where the normal leads to it, or to a corner; so strips along all curves and wedges at all corners cover exactly
-the points within the distance (but for caps). A strip need not reach beyond the centre of curvature, where
-other points of the curve are nearer. Each strip is bounded by exact curves, except beside Bézier curves and
-ellipses: their parallel curves are fitted by cubics to `FIT` of the distance.
+where the normal leads to it, or to a corner; so strips along all curves and wedges at all corners cover
+exactly the points within the distance (but for caps). A strip need not reach beyond the centre of curvature,
+where other points of the curve are nearer. Each strip is bounded by exact curves, except beside Bézier curves
+and ellipses: their parallel curves are fitted by cubics.
 """
 
 from __future__ import annotations

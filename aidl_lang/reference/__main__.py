@@ -8,4 +8,7 @@ from pathlib import Path
 from aidl_lang.reference.site import write
 
 if __name__ == "__main__":
-    write(Path(sys.argv[1]))
+    try:
+        write(Path(sys.argv[1]))
+    except ValueError as reason:
+        sys.exit(str(reason))

@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
 from aidl_lang import ast, builtins, library, names
-from aidl_lang.reference.signatures import written
+from aidl_lang.reference.signatures import is_refusal, made_shape, relates_boxes, written
 from aidl_lang.resources import resource
+from aidl_lang.source import SourceFile
 
 _EXAMPLE = re.compile(r"^```aidl\n(.*?)^```$\n?", re.MULTILINE | re.DOTALL)
 _SENTENCE = re.compile(r"(.+?[.!?])(?=\s+[A-Z`(]|\s*$)", re.DOTALL)
@@ -115,7 +116,7 @@ class Reference:
 
 TOPICS = (
     *("language", "geometry", "rectangles", "corners", "quadrilaterals", "triangles", "polygons", "rounds"),
-    *("arcs", "figures", "profiles", "path", "text", "outlines", "operations"),
+    *("arcs", "figures", "profiles", "path", "spline", "text", "outlines", "operations"),
     *("constraints", "tangency", "symmetry", "measures", "relations", "placement", "arrangements", "sizes"),
     *("clearance", "joints", "hardware", "mounts", "gear", "numbers", "exactness"),
 )
@@ -126,31 +127,38 @@ TOPICS = (
 def reference() -> Reference:
     """All that is public in this installation."""
     loaded = library.load()
-    sections = {section.topic.name: section for section in _sections()}
-    aliases = {name: _target(name, loaded.aliases) for name in loaded.aliases}
-    found = {entry.name: entry for section in sections.values() for entry in section.entries}
+    sections = list(_sections())
+    found = {entry.name: entry for section in sections for entry in section.entries}
     for entry in _library_entries(loaded):
         found[entry.name] = _joined(found[entry.name], entry) if entry.name in found else entry
+    aliases = {alias: _target(alias, loaded.aliases) for alias in loaded.aliases}
+    aliases |= {synonym: entry.name for entry in found.values() for synonym in entry.synonyms}
     synonyms: dict[str, list[str]] = {}
     for alias, target in aliases.items():
         synonyms.setdefault(target, []).append(alias)
-    topics = {name: section.topic for name, section in sections.items()}
-    for source in loaded.sources:
-        name = source.name.removeprefix("stdlib/").removesuffix(".aidl")
-        topics.setdefault(name, _topic(name, source.text))
-    order = sorted(topics, key=lambda t: (TOPICS.index(t) if t in TOPICS else len(TOPICS), t))
-    ranked = sorted(found.values(), key=lambda entry: order.index(entry.topic))
+    topics = _topics(sections, loaded.sources)
+    ranked = sorted(found.values(), key=lambda entry: list(topics).index(entry.topic))
     used = {entry.topic for entry in ranked}
     return Reference(
-        tuple(topics[name] for name in order if name in used),
+        tuple(topic for name, topic in topics.items() if name in used),
         {e.name: replace(e, synonyms=tuple(synonyms.get(e.name, ()))) for e in ranked},
         {alias: target for alias, target in aliases.items() if target in found},
     )
 
 
+def _topics(sections: Iterable[_Section], sources: Iterable[SourceFile]) -> dict[str, Topic]:
+    """By their names, in the order in which they are read."""
+    topics = {section.topic.name: section.topic for section in sections}
+    for source in sources:
+        name = source.name.removeprefix("stdlib/").removesuffix(".aidl")
+        topics.setdefault(name, _topic(name, source.text))
+    order = sorted(topics, key=lambda t: (TOPICS.index(t) if t in TOPICS else len(TOPICS), t))
+    return {name: topics[name] for name in order}
+
+
 def _joined(described: Entry, defined: Entry) -> Entry:
     """What is built in and what the library adds under the same name; a shape of its own leads."""
-    if defined.sort != "shape":
+    if not isinstance(defined.overloads[0].node, ast.ShapeDefinition):
         return replace(described, overloads=(*described.overloads, *defined.overloads))
     own = (replace(overload, doc=described.doc) for overload in described.overloads)
     return replace(defined, overloads=(*defined.overloads, *own))
@@ -196,8 +204,10 @@ def _entry(name: str, nodes: Sequence[ast.Callable | ast.Let]) -> Entry | None:
     return Entry(name, _sort(node), topic, lead.doc, tuple(first))
 
 
-def _is_helper(node: ast.Node) -> bool:
-    """Whether a definition stands in a paragraph headed by a plain comment: then it is there for others."""
+def _is_helper(node: ast.Callable | ast.Let) -> bool:
+    """Whether a definition is there for others: it refuses, or its paragraph has a plain comment as head."""
+    if not isinstance(node, ast.Let) and is_refusal(node):
+        return True
     paragraph = node.span.source.text[: node.span.start].rpartition("\n\n")[2]
     return paragraph.startswith("//") and not paragraph.startswith("///")
 
@@ -207,20 +217,13 @@ def _sort(node: ast.Callable | ast.Let) -> str:
         case ast.ShapeDefinition():
             return "shape"
         case ast.ConstraintDefinition():
-            return "relation" if relates_boxes(node) else "constraint"
+            return "relation" if relates_boxes(node, library.load().callables) else "constraint"
         case ast.FunctionDefinition():
-            return "function"
+            return "shape" if made_shape(node) else "function"
         case ast.Structure():
             return "template"
         case _:
             return "constant"
-
-
-def relates_boxes(node: ast.ConstraintDefinition) -> bool:
-    """Whether a constraint reads the boxes of its arguments rather than their curves."""
-    return any(p.type is not None and p.type.text == "box" for p in node.parameters) or any(
-        isinstance(n, ast.Call) and n.callee.text == "box" for n in ast.walk(node.body)
-    )
 
 
 def _where(node: ast.Node) -> str:
@@ -244,9 +247,9 @@ def _topic(name: str, source: str) -> Topic:
         if not line.startswith("//") or line.startswith("///"):
             break
         head.append(line.removeprefix("//").strip())
-    title, _, text = re.sub(r"[:.]\s+", "\0", " ".join(head), count=1).partition("\0")
-    text = text.strip()
-    return Topic(name, title.rstrip(".") or name.capitalize(), text[:1].upper() + text[1:])
+    paragraphs = [" ".join(p.split()) for p in "\n".join(head).split("\n\n")]
+    title, _, text = re.sub(r"[:.](\s+|$)", "\0", "\n\n".join(paragraphs), count=1).partition("\0")
+    return Topic(name, title or name.capitalize(), text[:1].upper() + text[1:])
 
 
 # --- What is built in, and the words of the language ---------------------------------------------
@@ -260,7 +263,8 @@ class _Section:
 
 def _sections() -> Iterator[_Section]:
     """The pages of `stdlib/docs`: `# title`, a paragraph, and for each name one or more headings
-    `## name(parameters)`, its forms, with a comment as in the library below the last of them.
+    `## name(parameters)`, its forms, with a comment as in the library below the last of them. Another name
+    among them is a synonym.
     """
     for path in sorted(resource("stdlib").glob("docs/*.md")):
         head, *parts = re.split(r"^(?=## )", path.read_text("utf-8"), flags=re.MULTILINE)
@@ -280,7 +284,9 @@ def _sections() -> Iterator[_Section]:
 
 
 def _described(topic: str, forms: Sequence[tuple[str, str]], about: Doc) -> Entry:
-    found = _NAME.match(forms[0][0])
-    name = found[0] if found else forms[0][0]
-    overloads = tuple(Overload(form, Doc("", "", ""), where) for form, where in forms)
-    return Entry(name, "builtin" if name in builtins.SIGNATURES else "word", topic, about, overloads)
+    named = [(found[0] if (found := _NAME.match(form)) else form, form, where) for form, where in forms]
+    name = named[0][0]
+    overloads = tuple(Overload(form, Doc("", "", ""), where) for _, form, where in named)
+    others = tuple(dict.fromkeys(other for other, _, _ in named if other != name))
+    sort = "builtin" if name in builtins.SIGNATURES else "word"
+    return Entry(name, sort, topic, about, overloads, others)

@@ -1,4 +1,4 @@
-"""What each constraint does with each pair of things: a table made by compiling a small program for every cell.
+"""What each constraint does with each pair of things: a table made by compiling a program for every cell.
 
     python -m aidl_lang.reference.coverage
 
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -28,7 +28,7 @@ KINDS: Mapping[str, str] = {
     "bezier": "{n} = bezier(({x}, {y}), ({x} + 4, {y} + 6), ({x} + 8, {y} - 2), ({x} + 12, {y} + 3))",
     "rectangle": "{n} = rectangle(center: ({x}, {y}), width: 14, height: 8)",
     "shape": "{n} = star(center: ({x}, {y}), outer_radius: 8, inner_radius: 4)",
-    "structure": "drawing {n} {{ body = trapezoid(center: ({x}, {y}), bottom_width: 14, top_width: 8, height: 9) }}",
+    "structure": "drawing {n} {{ body = ellipse(center: ({x}, {y}), rx: 7, ry: 5) }}",
     "list": "for i in 0..1 {{ {n}[i] = circle(center: ({x} + 14 * i, {y} + i), radius: 4 + i) }}",
     "number": "var {n} = {x} + 5",
 }
@@ -37,11 +37,12 @@ KINDS: Mapping[str, str] = {
 _PAIR = "{name}(a, b)"
 _ONE = "{name}(a)"
 
-FORMS: Mapping[str, tuple[str, ...]] = {
+FORMS: dict[str, tuple[str, ...]] = {
     "horizontal": (_ONE, _PAIR),
     "vertical": (_ONE, _PAIR),
     "midpoint": (_PAIR, "{name}(a, b, origin)"),
     "symmetric": ("{name}(a, about: y_axis)", "{name}(a, b, about: y_axis)", "{name}(a, b, about: origin)"),
+    "mirror_of": ("{name}(a, b, about: y_axis)",),
     "distance": ("{name}(a, b) == 40",),
     "horizontal_distance": ("{name}(a, b) == 40",),
     "vertical_distance": ("{name}(a, b) == 40",),
@@ -170,12 +171,12 @@ def _judged(report: ConstraintReport | None, number: int, first: str, second: st
 # --- Writing -------------------------------------------------------------------------------------
 
 
-def table(name: str) -> str:
+def table(name: str, of: Iterable[Cell]) -> str:
     """The cells of a constraint as Markdown: rows are the first thing, columns the second."""
     found: dict[str, list[Cell]] = {}
-    for cell in cells(name):
+    for cell in of:
         found.setdefault(cell.form, []).append(cell)
-    return "\n\n".join([f"## {name}", *(_matrix(name, form, of) for form, of in found.items())])
+    return "\n\n".join([f"## {name}", *(_matrix(name, form, group) for form, group in found.items())])
 
 
 def _matrix(name: str, form: str, found: Sequence[Cell]) -> str:
@@ -183,30 +184,25 @@ def _matrix(name: str, form: str, found: Sequence[Cell]) -> str:
     works = {(c.first, c.second) for c in found if c.outcome == "works"}
     if all(not c.second for c in found):
         return f"{stated}: {', '.join(k for k in KINDS if (k, '') in works) or 'nothing'}"
-    if len(works) == len(KINDS) ** 2:
-        return f"{stated}: any two"
-    boxed = [k for k in KINDS if k != "number"]
-    if works == set(product(boxed, boxed)):
-        return f"{stated}: any two but numbers"
+    firsts = [k for k in KINDS if any((k, b) in works for b in KINDS)]
+    others = [k for k in KINDS if k not in firsts]
+    if firsts and len(others) < 4 and works == set(product(firsts, firsts)):
+        return f"{stated}: any two" + (f", but no {' and no '.join(others)}" if others else "")
     rows = [f"| a ╲ b | {' | '.join(KINDS)} |", "|---" * (len(KINDS) + 1) + "|"]
-    rows += [
-        f"| **{a}** | {' | '.join('●' if (a, b) in works else '·' for b in KINDS)} |"
-        for a in KINDS
-        if any((a, b) in works for b in KINDS)
-    ]
+    rows += [f"| **{a}** | {' | '.join('●' if (a, b) in works else '·' for b in KINDS)} |" for a in firsts]
     return stated + "\n\n" + "\n".join(rows)
 
 
 HEAD = """# What goes with what
 
-Made by compiling a program for each constraint and each pair of things. ● works: it is accepted, solves, and moves or
-checks both things. What is not marked is refused with a message that says why. *shape* is a star and stands for all
-compound shapes, *structure* a drawing with a shape in it, *list* two circles.
+Made by compiling a program for each constraint and each pair of things. ● works: it is accepted, solves, and
+relates both things. What is not marked is refused with a message that says why. *shape* is a star and stands
+for all compound shapes, *structure* is a drawing with a curve in it, *list* two circles.
 """
 
 
 def page() -> str:
-    return "\n".join([HEAD, *(table(name) + "\n" for name in constraints())])
+    return "\n".join([HEAD, *(table(name, cells(name)) + "\n" for name in constraints())])
 
 
 if __name__ == "__main__":

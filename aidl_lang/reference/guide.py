@@ -82,7 +82,8 @@ def _arguments(entry: Entry) -> str:
     """The forms of a name without the name, as short as can be: `…` for the three arguments that most shapes
     have, `a/…` for one of several names, and a measure to compare goes without saying where it can be set.
     """
-    forms = [form.removeprefix(entry.name) for form in short_calls(entry)]
+    calls = [call for call in short_calls(entry) if call.startswith(f"{entry.name}(")]
+    forms = [call.removeprefix(entry.name) for call in calls]
     forms = [f for f in forms if not any(other.startswith(f[:-1] + ", value") for other in forms)]
     forms = [_PLACED.sub(r"(…, \1)", _ALTERNATIVES.sub(r"\1/…", form)) for form in forms]
     return " | ".join(forms) if entry.sort != "constant" else ""

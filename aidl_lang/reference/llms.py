@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import takewhile
 from pathlib import Path
 
 from aidl_lang.reference.collect import doc, reference
@@ -15,14 +16,19 @@ _HEAD = """\
 `aidl guide` prints the guide, `aidl doc NAME` tells about one name, `aidl explain CODE` about a diagnostic,
 and `aidl check --fix` mends what can be mended.
 """
-_FIRST = ("guide", "language", "cli", "json")
-"""Pages that a reader who writes programs wants, in this order; the others are optional."""
+_FIRST = {
+    "guide": "[Guide](docs/guide.md): the whole language on a few pages; start here",
+    "language": "[Language](docs/language.md): the language in full, topic by topic, with programs",
+    "cli": "[Command line](docs/cli.md): every verb, its options and exit codes",
+    "json": "[JSON](docs/json.md): the solved model as data",
+}
+"""What a reader who writes programs wants, in this order; other pages are optional."""
 
 
 def llms(root: Path) -> str:
     """The file for the checkout at `root`."""
-    pages = {path.stem: path for path in sorted((root / "docs").glob("*.md")) if path.stem != "guide"}
-    first = [_GUIDE, *(_page(pages.pop(name)) for name in _FIRST if name in pages)]
+    pages = {path.stem: path for path in sorted((root / "docs").glob("*.md"))}
+    first = [f"- {link}" for link in _FIRST.values()]
     topics = [
         f"- [{topic.title}](docs/reference/{topic.name}.md): "
         + ", ".join(entry.name for entry in reference().of_topic(topic.name))
@@ -33,12 +39,11 @@ def llms(root: Path) -> str:
         "Docs": first,
         "Reference": [_INDEX, _SIGNATURES, *topics],
         "Examples": examples,
-        "Optional": [_page(path) for path in pages.values()],
+        "Optional": [_page(path) for name, path in pages.items() if name not in _FIRST],
     }
     return _HEAD + "".join(f"\n## {title}\n\n" + "\n".join(lines) + "\n" for title, lines in sections.items())
 
 
-_GUIDE = "- [The guide](docs/guide.md): the whole language on a few pages; start here"
 _INDEX = "- [All names](docs/reference/README.md): every public name in a line"
 _SIGNATURES = "- [Signatures](docs/reference/signatures.md): every call with its arguments and parts"
 
@@ -52,6 +57,7 @@ def _page(path: Path) -> str:
 
 
 def _example(path: Path) -> str:
-    """An example by its name and the comment it begins with."""
-    head = path.read_text("utf-8").partition("\n")[0].lstrip("/ ").rstrip(".")
-    return f"- [{path.stem}](examples/{path.name}): {head}"
+    """An example by its name and the first sentence of the comment it begins with."""
+    comment = takewhile(lambda line: line.startswith("//"), path.read_text("utf-8").splitlines())
+    about = doc("\n".join(line.lstrip("/ ") for line in comment)).line.rstrip(".")
+    return f"- [{path.stem}](examples/{path.name}): {about}"

@@ -8,14 +8,17 @@ from aidl_lang import library
 from aidl_lang.reference.collect import Entry, Reference, Topic
 from aidl_lang.reference.signatures import exactness, held, parts, short_forms
 
+MARK = "<!-- Made from the library by `make reference`. -->"
+"""The last line of a generated page."""
+
 _INDEX, _SIGNATURES, _IMAGES = "README.md", "signatures.md", "images"
 _WIDTH = 200
 """Of a picture on a page, in pixels; it is never higher than that."""
 
 _INTRODUCTION = f"""\
 Every public name with its signature, an example and the picture that the example draws. `aidl doc NAME` shows
-the same in a terminal; [signatures.md]({_SIGNATURES}) has all signatures in tables. These pages are made from
-the library by `make reference`.
+the same in a terminal; [signatures.md]({_SIGNATURES}) has all signatures in tables, [coverage.md](coverage.md)
+tells which constraint takes what. These pages are made from the library by `make reference`.
 """
 _TYPES = """\
 A `length` is in millimetres and an `angle` or `turn` in degrees, unless a unit says otherwise. What has a
@@ -32,7 +35,7 @@ _GROUPS: Mapping[str, tuple[str, str]] = {
     "shape": ("Shapes", ""),
     "template": ("Parts", ""),
     "relation": ("Relations of boxes", _PLACING),
-    "constraint": ("Constraints on geometry", _PLACING),
+    "constraint": ("Constraints on geometry", ""),
     "function": ("Functions", ""),
     "builtin": ("Built in", ""),
     "constant": ("Constants", ""),
@@ -93,7 +96,7 @@ def entry_blocks(entry: Entry, level: str = "##") -> Iterator[str]:
 
 def forms(entry: Entry) -> list[str]:
     """Every form of a name, with what is said of it alone as a comment behind it."""
-    lines = {}
+    lines: dict[str, str] = {}
     for overload in entry.overloads:
         own = overload.doc.line if overload.doc is not entry.doc else ""
         lines.setdefault(overload.form, f"{overload.form}    // {own}" if own else overload.form)
@@ -137,7 +140,7 @@ def _exactness_of(entry: Entry) -> dict[str, str]:
 
 def signature_page(reference: Reference) -> str:
     """One table of everything that can be called."""
-    blocks = ["# Signatures", "Everything that can be called, by what it is. " + _TYPES]
+    blocks = ["# Signatures", "Everything that can be called, by what it is.", _TYPES]
     for sort, (title, text) in _GROUPS.items():
         entries = [e for e in reference.entries.values() if e.sort == sort]
         if entries:
@@ -186,7 +189,7 @@ def anchor(entry: Entry) -> str:
 
 
 def _page(blocks: list[str]) -> str:
-    return "\n\n".join(block.strip("\n") for block in blocks) + "\n"
+    return "\n\n".join(block.strip("\n") for block in [*blocks, MARK]) + "\n"
 
 
 def short_calls(entry: Entry) -> list[str]:

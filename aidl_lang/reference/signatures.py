@@ -8,12 +8,23 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from aidl_lang import ast
+from aidl_lang import ast, library
 from aidl_lang.names import fold
-from aidl_lang.types import PARAMETER_TYPES, NumberType, Signature, TextType, TruthType, parameter_type
+from aidl_lang.types import (
+    PARAMETER_TYPES,
+    PRIMITIVES,
+    NumberType,
+    Signature,
+    TextType,
+    TruthType,
+    parameter_type,
+)
 
 VALUE = "value"
 """The parameter that a measuring constraint sets: `distance(a, b, value)`."""
+
+_OPTIONS = (VALUE, "about", "axis", "margin", "inset", "by")
+"""Parameters that relate nothing even where they take a point or anything."""
 
 
 def written(node: ast.Callable | ast.Let) -> str:
@@ -42,8 +53,12 @@ class Part:
 
 def parts(node: ast.Callable) -> list[Part]:
     """What the body declares for its users: geometry and structures, and those `let`s that nothing in the
-    body uses, as they can be there for users only.
+    body uses, as they can be there for users only. What a function makes has the parts of that shape.
     """
+    if isinstance(node, ast.FunctionDefinition):
+        made = made_shape(node)
+        shape = library.load().callables[made][0].node if made and made not in PRIMITIVES else None
+        return parts(shape) if isinstance(shape, ast.ShapeDefinition) else []
     if not isinstance(node, ast.ShapeDefinition | ast.Structure):
         return []
     found: dict[str, Part] = {}
@@ -81,10 +96,24 @@ def _type(statement: ast.Assign | ast.Structure) -> str:
     match statement.value:
         case ast.Point():
             return "point"
-        case ast.Call(callee, None):
+        case ast.Call(callee, None) if _is_shape(callee.text):
             return callee.text
         case _:
             return ""
+
+
+def _is_shape(name: str) -> bool:
+    known = library.load().callables.get(name)
+    return name in PRIMITIVES or (known is not None and isinstance(known[0].node, ast.ShapeDefinition))
+
+
+def made_shape(node: ast.FunctionDefinition) -> str | None:
+    """The shape or primitive that a function is another way to make; None for one that computes."""
+    match node.value:
+        case ast.Call(callee, None) if _is_shape(callee.text):
+            return callee.text
+        case _:
+            return None
 
 
 # --- Constraints ---------------------------------------------------------------------------------
@@ -100,7 +129,7 @@ def _is_option(parameter: ast.Parameter) -> bool:
     return (
         parameter.default is not None
         or isinstance(kind, NumberType | TextType | TruthType)
-        or parameter.name.text in ("about", "axis", VALUE)
+        or parameter.name.text in _OPTIONS
     )
 
 
@@ -116,13 +145,26 @@ def held(node: ast.Callable, callables: Mapping[str, Sequence[Signature]]) -> st
         return ""
     if any(p.name.text == VALUE for p in node.parameters):
         return "the value"
-    call = _delegated(node)
-    if call is not None and (inner := _called(call, callables)) is not None:
-        return _held_of_call(call, inner, callables)
-    names = [p.name.text for p in things(node)]
-    if gathers(node):
-        return f"the last of `{names[0]}`"
-    return f"`{names[-1]}`" if len(names) > 1 else ""
+    name = _held_parameter(node, callables, ())
+    return "" if name is None else f"the last of `{name}`" if gathers(node) else f"`{name}`"
+
+
+def _held_parameter(
+    node: ast.ConstraintDefinition,
+    callables: Mapping[str, Sequence[Signature]],
+    around: tuple[ast.ConstraintDefinition, ...],
+) -> str | None:
+    """The last thing it takes; what only calls another constraint holds what that one does."""
+    call, related = _delegated(node), [p.name.text for p in things(node)]
+    inner = _called(call, node, callables) if call is not None else None
+    if call is not None and inner is not None and inner not in around:
+        kept = _held_parameter(inner, callables, (*around, node))
+        given = [call.receiver] if call.receiver is not None else []
+        given += [a.value for a in call.arguments if a.name is None]
+        by_name = dict(zip((p.name.text for p in inner.parameters), given, strict=False))
+        passed = by_name.get(kept) if kept is not None else None
+        return passed.text if isinstance(passed, ast.Name) else None
+    return related[-1] if len(related) > 1 or gathers(node) else None
 
 
 def _delegated(node: ast.ConstraintDefinition) -> ast.Call | None:
@@ -134,26 +176,24 @@ def _delegated(node: ast.ConstraintDefinition) -> ast.Call | None:
             return None
 
 
-def _called(call: ast.Call, callables: Mapping[str, Sequence[Signature]]) -> ast.ConstraintDefinition | None:
-    """The constraint that a call means: the first that has all parameters named in it."""
+def _called(
+    call: ast.Call, caller: ast.ConstraintDefinition, callables: Mapping[str, Sequence[Signature]]
+) -> ast.ConstraintDefinition | None:
+    """The constraint that a call means: the first but the caller that has all parameters named in it."""
     named = {fold(a.name.text) for a in call.arguments if a.name is not None}
     for signature in callables.get(call.callee.text, ()):
-        fits = named <= signature.by_fold.keys()
-        if fits and isinstance(signature.node, ast.ConstraintDefinition):
-            return signature.node
+        node = signature.node
+        meant = node is not caller and named <= signature.by_fold.keys()
+        if meant and isinstance(node, ast.ConstraintDefinition) and not is_refusal(node):
+            return node
     return None
 
 
-def _held_of_call(
-    call: ast.Call, inner: ast.ConstraintDefinition, callables: Mapping[str, Sequence[Signature]]
-) -> str:
-    given = ([call.receiver] if call.receiver else []) + [a.value for a in call.arguments if a.name is None]
-    if gathers(inner):
-        return f"the last of `{given[0].span.text}`"
-    if _delegated(inner) is not None:
-        return ""
-    count = len(things(inner))
-    return f"`{given[count - 1].span.text}`" if 1 < count <= len(given) else ""
+def is_refusal(node: ast.Callable) -> bool:
+    """Whether a definition is there only to say why there is nothing to say."""
+    call = _delegated(node) if isinstance(node, ast.ConstraintDefinition) else None
+    value = call if call is not None else node.value if isinstance(node, ast.FunctionDefinition) else None
+    return isinstance(value, ast.Call) and value.callee.text == "refuse"
 
 
 def exactness(node: ast.Callable, callables: Mapping[str, Sequence[Signature]]) -> dict[str, str]:
@@ -182,7 +222,7 @@ def _exactness_of(
                 aliases.add(called.text)
             case ast.Comparison() if _mentions(item, aliases):
                 return "exactly" if "==" in item.operators else "at most" if "most" in name else "at least"
-            case ast.Call(arguments=arguments) if (inner := _called(item, callables)) is not None:
+            case ast.Call(arguments=arguments) if (inner := _called(item, node, callables)) is not None:
                 for argument in arguments:
                     if argument.name is not None and _mentions(argument.value, aliases):
                         return _exactness_of(argument.name.text, inner, callables, (*around, node))
@@ -195,10 +235,35 @@ def _mentions(node: ast.Node, wanted: Iterable[str]) -> bool:
     return any(isinstance(n, ast.Name) and n.text in wanted for n in ast.walk(node))
 
 
+def relates_boxes(
+    node: ast.ConstraintDefinition,
+    callables: Mapping[str, Sequence[Signature]],
+    around: tuple[ast.ConstraintDefinition, ...] = (),
+) -> bool:
+    """Whether a constraint reads the boxes of its arguments rather than their curves, by itself or by the one
+    that it calls.
+    """
+    calls = [n for n in ast.walk(node.body) if isinstance(n, ast.Call)]
+    if _takes_box(node) or any(_reads_boxes(callables.get(call.callee.text, ())) for call in calls):
+        return True
+    inner = [n for call in calls if (n := _called(call, node, callables)) is not None and n not in around]
+    return any(relates_boxes(n, callables, (*around, node)) for n in inner)
+
+
+def _reads_boxes(overloads: Sequence[Signature]) -> bool:
+    """Whether a name is that of functions of boxes."""
+    nodes = [signature.node for signature in overloads]
+    return bool(nodes) and all(isinstance(n, ast.FunctionDefinition) and _takes_box(n) for n in nodes)
+
+
+def _takes_box(node: ast.Callable) -> bool:
+    return any(p.type is not None and p.type.text == "box" for p in node.parameters or ())
+
+
 # --- Short forms ---------------------------------------------------------------------------------
 
 
-_PARAMETER = re.compile(r"(\w+)(?:\s*:\s*\w+)?(\s*=.*)?$")
+_PARAMETER = re.compile(r"(\w+)(?:\s*:\s*\w+)?(\?|\s*=.*)?$")
 
 
 def short(form: str) -> str:
@@ -232,7 +297,7 @@ def short_forms(forms: Sequence[str], nodes: Sequence[ast.Callable]) -> list[str
     """
     constraints = [n for n in nodes if isinstance(n, ast.ConstraintDefinition)]
     functions = [n for n in nodes if isinstance(n, ast.FunctionDefinition)]
-    merged = {written(n) for n in (*constraints, *functions)}
+    merged = {*map(written, constraints), *map(written, functions)}
     others = [short(form) for form in forms if form not in merged]
     return list(dict.fromkeys([*others, *_merged_forms(constraints), *_merged_calls(functions)]))
 
@@ -280,7 +345,7 @@ def _merged_forms(constraints: Sequence[ast.ConstraintDefinition]) -> list[str]:
 
 def _merged(group: Sequence[ast.ConstraintDefinition]) -> str:
     related = [p.name.text for p in things(group[0])]
-    if gathers(group[0]):
+    if gathers(group[0]) and "b" not in related:
         related[0] = "a, b, …"
     options: dict[str, int] = {}
     for node in group:

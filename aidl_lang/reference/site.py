@@ -7,7 +7,7 @@ from pathlib import Path
 from aidl_lang.reference.collect import reference
 from aidl_lang.reference.guide import guide
 from aidl_lang.reference.llms import llms
-from aidl_lang.reference.pages import pages, pictures
+from aidl_lang.reference.pages import MARK, pages, pictures
 
 _FOLDER = "docs/reference"
 
@@ -24,9 +24,11 @@ def drawn() -> dict[str, bytes]:
 
 
 def strays(root: Path, known: set[str]) -> list[str]:
-    """Files among the generated ones that nothing generates any more."""
-    files = (path for path in (root / _FOLDER).rglob("*") if path.is_file())
-    return sorted(str(p) for path in files if (p := path.relative_to(root)).as_posix() not in known)
+    """Pages and pictures that were generated once and are not any more."""
+    folder = root / _FOLDER
+    files = [path for path in folder.glob("*.md") if path.read_text("utf-8").rstrip().endswith(MARK)]
+    found = (path.relative_to(root).as_posix() for path in (*files, *folder.glob("images/*")))
+    return sorted(path for path in found if path not in known)
 
 
 def write(root: Path) -> None:

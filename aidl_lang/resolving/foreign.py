@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from aidl_lang import ast
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix
@@ -106,7 +106,7 @@ def without_idle(module: ast.Module, modules: Sequence[ast.Module]) -> tuple[ast
         return word in IDLE and isinstance(call.receiver, ast.Name | None) and word not in defined()
 
     def kept(node: _Node) -> _Node:
-        changes: dict[str, object] = {}
+        changes: dict[str, Any] = {}
         for field in _BODIES:
             inner = getattr(node, field, None)
             if isinstance(inner, ast.Block):
@@ -115,7 +115,7 @@ def without_idle(module: ast.Module, modules: Sequence[ast.Module]) -> tuple[ast
                 notes.extend(_idle(s) for s in inner if is_idle(s))
                 changes[field] = tuple(kept(s) for s in inner if not is_idle(s))
         same = all(getattr(node, field) == value for field, value in changes.items())
-        return node if same else replace(node, **changes)  # type: ignore[type-var]
+        return node if same else replace(node, **changes)
 
     return kept(module), notes
 

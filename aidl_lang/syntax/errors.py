@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from aidl_lang.diagnostics import Diagnostic, Label
 from aidl_lang.source import SourceFile, Span
-from aidl_lang.syntax import brackets, foreign, missing, spelling
+from aidl_lang.syntax import brackets, foreign, functions, missing, spelling
 from aidl_lang.syntax.tokens import END, Token
 from aidl_lang.syntax.trouble import Problem, Trouble, replaced
 from aidl_lang.syntax.words import describe
@@ -15,12 +15,13 @@ _QUESTIONS: tuple[Callable[[Trouble], Problem | None], ...] = (
     foreign.import_of_module,
     foreign.documentation_text,
     foreign.inches,
+    foreign.question_mark,
     spelling.unclosed_comment,
     spelling.unclosed_string,
     spelling.unknown_unit,
     spelling.foreign_character,
     foreign.foreign_loop,
-    foreign.arrow_function,
+    functions.arrow_function,
     foreign.object_literal,
     foreign.loose_point,
     foreign.word_for_sign,

@@ -6,9 +6,18 @@ import re
 from collections.abc import Sequence
 
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.source import Span
 from aidl_lang.syntax.tokens import END, UNKNOWN, Token, tokenize
-from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
+from aidl_lang.syntax.trouble import (
+    LONGEST,
+    Problem,
+    Repair,
+    Trouble,
+    closing,
+    line_end,
+    replaced,
+    statement_end,
+)
 
 # --- Loops and blocks -----------------------------------------------------------------------------
 
@@ -27,7 +36,8 @@ def foreign_loop(t: Trouble) -> Problem | None:
     """`for (i = 0; i < 4; i++)`, `for i = [0:3]`, `for (i in list)`, `for i of list`, `for i = 0 to 3`"""
     if t.first.kind != "for" or t.between:
         return None
-    found = _LOOP.match(t.source.text, t.first.start)
+    end = min(line_end(t.source.text, t.first.start), t.first.start + LONGEST)
+    found = _LOOP.match(t.source.text, t.first.start, end)
     if found is None or found.end() < t.token.start or bool(found["open"]) != bool(found["close"]):
         return None
     if found["word"] == "in" and not found["open"]:
@@ -84,11 +94,11 @@ def indented_block(t: Trouble) -> Problem | None:
     ):
         return None
     text, indentation = t.source.text, t.indentation(t.first.start)
-    line_end = _line_end(text, t.token.start)
-    one_line = t.following.start < line_end
+    end_of_head = line_end(text, t.token.start)
+    one_line = t.following.start < end_of_head
     last = t.position
     while (token := t.tokens[last + 1]).kind != END:
-        if (token.start > line_end) if one_line else (t.indentation(token.start) <= indentation):
+        if (token.start > end_of_head) if one_line else (t.indentation(token.start) <= indentation):
             break
         last += 1
     if last == t.position:
@@ -96,7 +106,7 @@ def indented_block(t: Trouble) -> Problem | None:
     end = t.tokens[last].end
     close = Edit(Span(t.source, end, end), " }")
     if not one_line:
-        end = _line_end(text, end)
+        end = line_end(text, end)
         close = Edit(Span(t.source, end, end), "\n" + " " * indentation + "}")
     braces = (
         Token("{", "{", t.token.start, t.token.end),
@@ -115,129 +125,6 @@ def indented_block(t: Trouble) -> Problem | None:
     )
 
 
-def _line_end(text: str, offset: int) -> int:
-    end = text.find("\n", offset)
-    return len(text) if end < 0 else end
-
-
-# --- Functions ------------------------------------------------------------------------------------
-
-
-def understood(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
-    """Rewrite what is plain from its tokens alone, and would be read as something else: functions with a
-    body, `new`, and texts marked as in Python.
-    """
-    found: list[Diagnostic] = []
-    for at in range(len(tokens) - 2, -1, -1):  # from the end, so that what is before keeps its number
-        one, two = tokens[at], tokens[at + 1]
-        problem = None
-        if one.text in _FUNCTION_WORDS and two.kind == "CALL":
-            problem = _function_with_body(source, tokens, at)
-        elif one.text == "new" and one.kind == "NAME" and two.kind == "CALL":
-            problem = _left_out(source, one, two, "things are made without `new`")
-        elif (
-            one.text in ("f", "r", "u", "b")
-            and one.kind == "NAME"
-            and two.kind == "STRING"
-            and one.end == two.start
-        ):
-            hint = 'texts join with `+`: `"M" + str(size)`' if one.text == "f" else ""
-            problem = _left_out(source, one, two, f"a text has no `{one.text}` before it", hint)
-        if problem is not None and problem.repair is not None:
-            tokens[at : at + problem.repair.stop] = problem.repair.tokens
-            found.append(problem.diagnostic)
-    return found[::-1]
-
-
-def _left_out(source: SourceFile, word: Token, after: Token, message: str, hint: str = "") -> Problem:
-    span = Span(source, word.start, word.end)
-    fix = replaced(f"leave out `{word.text}`", Span(source, word.start, after.start), "")
-    return Problem(Diagnostic("E0113", message, span, hints=(hint,) if hint else (), fix=fix), Repair(0, 1))
-
-
-_FUNCTION_WORDS = ("def", "function", "func", "fun", "fn")
-
-
-def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int) -> Problem | None:
-    """`def f(x): return 2 * x`, `function f(x) { return 2 * x }`, `fn f(x) { 2 * x }`"""
-    close = _closing(tokens, begin + 1)
-    at = close + 1
-    if close < 0 or tokens[at].kind not in (":", "{"):
-        return None
-    in_braces = tokens[at].kind == "{"
-    first = at + 2 if tokens[at + 1].text == "return" else at + 1
-    if tokens[min(first, len(tokens) - 1)].kind == END:
-        return None
-    stop, line_end = first, _line_end(source.text, tokens[first].start)
-    while tokens[stop].kind not in (END, "}", ";", "=") and tokens[stop].start < line_end:
-        stop += 1
-    after = stop + (tokens[stop].kind == ";")
-    if stop == first or tokens[stop].kind == "=" or (in_braces and tokens[after].kind != "}"):
-        return None
-    value = tokens[first:stop]
-    head = Span(source, tokens[begin + 1].start, tokens[close].end).text
-    right = f"fn {head} = {Span(source, value[0].start, value[-1].end).text}"
-    span = Span(source, tokens[begin].start, tokens[after].end if in_braces else value[-1].end)
-    written = (
-        Token("fn", "fn", tokens[begin].start, tokens[begin].end),
-        *tokens[begin + 1 : close + 1],
-        Token("=", "=", tokens[at].start, tokens[at].end),
-        *value,
-    )
-    return Problem(
-        Diagnostic(
-            "E0113", f"a function is written `{right}`", span, fix=replaced("write it so", span, right)
-        ),
-        Repair(0, (after + 1 if in_braces else stop) - begin, written),
-    )
-
-
-def arrow_function(t: Trouble) -> Problem | None:
-    """`let f = (x) => 2 * x`"""
-    at = t.position if t.token.kind == "=" else t.position - 1
-    if t.tokens[at].kind != "=" or t.tokens[at + 1].kind != ">" or t.tokens[at].end != t.tokens[at + 1].start:
-        return None
-    statement = t.tokens[t.begin : at]
-    names = [token.text for token in statement if token.kind == "NAME"]
-    shape = [token.kind for token in statement if token.kind not in ("let", ",")]
-    if shape[:2] != ["NAME", "="] or any(k not in ("NAME", "(", ")") for k in shape[2:]):
-        return None
-    stop = at + 2
-    line_end = _line_end(t.source.text, t.tokens[at].start)
-    while t.tokens[stop].kind not in (END, ";", "}") and t.tokens[stop].start < line_end:
-        stop += 1
-    if stop == at + 2:
-        return None
-    value = t.tokens[at + 2 : stop]
-    right = f"fn {names[0]}({', '.join(names[1:])}) = {Span(t.source, value[0].start, value[-1].end).text}"
-    span = Span(t.source, t.first.start, value[-1].end)
-    return Problem(
-        Diagnostic(
-            "E0113", f"a function is written `{right}`", span, fix=replaced("write it so", span, right)
-        ),
-        Repair(t.begin, stop, tuple(_function(names, statement, value, span))),
-    )
-
-
-def _function(names: Sequence[str], head: Sequence[Token], value: Sequence[Token], span: Span) -> list[Token]:
-    place = span.start, span.start
-    called, *parameters = (token for token in head if token.kind == "NAME")
-    tokens = [Token("fn", "fn", *place), Token("CALL", names[0] + "(", called.start, called.end)]
-    for i, parameter in enumerate(parameters):
-        tokens += [Token(",", ",", *place), parameter] if i else [parameter]
-    return [*tokens, Token(")", ")", *place), Token("=", "=", *place), *value]
-
-
-def _closing(tokens: Sequence[Token], opening: int) -> int:
-    """The number of the bracket that closes one; -1 if none does."""
-    depth = 0
-    for n in range(opening, len(tokens)):
-        depth += (tokens[n].kind in ("CALL", "(", "[", "{")) - (tokens[n].kind in (")", "]", "}"))
-        if depth == 0:
-            return n
-    return -1
-
-
 # --- Values ---------------------------------------------------------------------------------------
 
 
@@ -245,7 +132,7 @@ def object_literal(t: Trouble) -> Problem | None:
     """`{x: 1, y: 2}`"""
     if t.token.kind != "{" or t.between or not t.accepts("NUMBER"):
         return None
-    close = _closing(t.tokens, t.position)
+    close = closing(t.tokens, t.position)
     if (
         close < 0
         or t.following.kind not in ("NAME", "STRING")
@@ -290,6 +177,43 @@ def object_literal(t: Trouble) -> Problem | None:
         ),
         Repair(t.position, close + 1, tuple(tokens)),
     )
+
+
+def question_mark(t: Trouble) -> Problem | None:
+    """`c ? a : b`"""
+    if t.token.text != "?" or t.between:
+        return None
+    begin = _operand(t.tokens, t.position, -1, max(t.begin, t.position - LONGEST) - 1) + 1
+    last = min(t.position + LONGEST, len(t.tokens) - 1)
+    colon = _operand(t.tokens, t.position, 1, last)
+    stop = _operand(t.tokens, colon, 1, last) if colon < last else last
+    if t.tokens[colon].kind != ":" or begin == t.position or stop <= colon + 1:
+        return None
+    parts = t.tokens[begin : t.position], t.tokens[t.position + 1 : colon], t.tokens[colon + 1 : stop]
+    texts = [Span(t.source, part[0].start, part[-1].end).text for part in parts]
+    right = f"if {texts[0]} then {texts[1]} else {texts[2]}"
+    places = zip(("if", "then", "else"), (parts[0][0], t.token, t.tokens[colon]), strict=True)
+    words = [Token(word, word, place.start, place.end) for word, place in places]
+    tokens = [token for word, part in zip(words, parts, strict=True) for token in (word, *part)]
+    span = t.span(parts[0][0], parts[2][-1])
+    fix = replaced(f"write `{right}`", span, right)
+    return Problem(
+        Diagnostic("E0109", f"a choice is written `{right}`", span, fix=fix),
+        Repair(begin, stop, tuple(tokens)),
+    )
+
+
+def _operand(tokens: Sequence[Token], at: int, step: int, limit: int) -> int:
+    """Where what stands before or behind a token ends: at a separator, or the bracket around it."""
+    depth, n = 0, at + step
+    while n != limit:
+        kind = tokens[n].kind
+        opens, closes = kind in ("CALL", "(", "[", "{"), kind in (")", "]", "}")
+        if depth == 0 and (kind in (",", ";", ":", "=", END) or (closes if step > 0 else opens)):
+            break
+        depth += step * (opens - closes)
+        n += step
+    return n
 
 
 def inches(t: Trouble) -> Problem | None:
@@ -386,10 +310,7 @@ def import_of_module(t: Trouble) -> Problem | None:
     words = [token.text for token in t.tokens[t.begin : t.begin + 2]]
     if len(words) < 2 or words[0] not in ("import", "from") or words[1] not in _MODULES:
         return None
-    line_end = _line_end(t.source.text, t.first.start)
-    stop = t.begin
-    while t.tokens[stop].kind not in (END, ";", "}") and t.tokens[stop].start < line_end:
-        stop += 1
+    stop = statement_end(t.source, t.tokens, t.begin)
     span = t.span(t.first, t.tokens[stop - 1])
     return Problem(
         Diagnostic(

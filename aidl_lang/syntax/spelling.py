@@ -275,6 +275,16 @@ def reserved_word(t: Trouble) -> Problem | None:
     if token.kind not in tables.reserved or (at == t.position and not _used_as_name(t)):
         return None
     word = token.text
+    if word == "at" and t.open and t.following.kind in (":", "="):
+        return Problem(
+            Diagnostic(
+                "E0104",
+                "`at` is a word of the language; where a shape is says its `center`",
+                t.span(token),
+                fix=replaced("write `center`", t.span(token), "center"),
+            ),
+            Repair(at, at + 1, (token._replace(kind="NAME", text="center"),)),
+        )
     called = at + 1 < len(t.tokens) and t.tokens[at + 1].kind == "(" and at == t.position
     as_name = Token("NAME", word, token.start, token.end)
     stop = at + 1

@@ -280,7 +280,7 @@ class Builder(ExpressionBuilder):
         self, start: int, end: int, test: ast.Expression, message: ast.Expression | None = None
     ) -> ast.Assert:
         if message is None and isinstance(test, ast.Point):  # `assert(a.width > 3, "too narrow")`
-            test, message = test.x, test.y
+            return ast.Assert(test.x, test.y, span=self.span(start, end))
         return ast.Assert(test, message, span=self.span(start, end))
 
     def expression_statement(self, start: int, end: int, value: ast.Expression) -> ast.ExpressionStatement:

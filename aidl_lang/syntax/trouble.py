@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -125,3 +126,33 @@ class Trouble:
 def replaced(title: str, span: Span, text: str) -> Fix:
     """The fix that puts a text in the place of another."""
     return Fix(title, (Edit(span, text),))
+
+
+LONGEST = 500
+"""Characters and tokens beyond which nobody wrote a head or a line by hand."""
+
+
+def line_end(text: str, offset: int) -> int:
+    """The offset at which the line of another ends."""
+    end = text.find("\n", offset)
+    return len(text) if end < 0 else end
+
+
+def statement_end(source: SourceFile, tokens: Sequence[Token], begin: int) -> int:
+    """The number of the token behind a statement that goes from one to the end of its line at most."""
+    stop = min(begin, len(tokens) - 1)
+    end = line_end(source.text, tokens[stop].start)
+    last = min(begin + LONGEST, len(tokens) - 1)
+    while stop < last and tokens[stop].kind not in (END, ";", "}") and tokens[stop].start < end:
+        stop += 1
+    return stop
+
+
+def closing(tokens: Sequence[Token], opening: int) -> int:
+    """The number of the bracket that closes one; -1 if none does within a reasonable number of tokens."""
+    depth = 0
+    for n in range(opening, min(len(tokens), opening + LONGEST)):
+        depth += (tokens[n].kind in ("CALL", "(", "[", "{")) - (tokens[n].kind in (")", "]", "}"))
+        if depth == 0:
+            return n
+    return -1

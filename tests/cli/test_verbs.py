@@ -1,8 +1,9 @@
-"""The other verbs: check, fmt, params, explain, new, and the frame around them."""
+"""The other verbs: check, fmt, params, doc, guide, explain, new, and the frame around them."""
 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -99,6 +100,71 @@ def test_params(aidl: Aidl) -> None:
 
 def test_params_of_a_program_without_any(aidl: Aidl) -> None:
     assert aidl("params", "-", stdin="solid a { c = circle(center: origin, radius: 1) }") == Result(0, "", "")
+
+
+def test_doc_shows_a_name(aidl: Aidl) -> None:
+    shown = aidl("doc", "rounded_rectangle")
+    assert (shown.code, shown.err) == (0, "")
+    assert shown.out.startswith("rounded_rectangle(")
+    assert "`top: line`" in shown.out
+    assert "Also: " in shown.out
+    assert "    solid " in shown.out
+    assert "Defined in stdlib/" in shown.out
+
+
+def test_doc_finds_synonyms_and_mends_slips(aidl: Aidl) -> None:
+    by_synonym = aidl("doc", "orthogonal")
+    assert by_synonym.out.startswith("`orthogonal` is another name for perpendicular.\n\nperpendicular(")
+    by_slip = aidl("doc", "perpendiculr")
+    assert by_slip.err == "there is no `perpendiculr`; this is `perpendicular`\n"
+    assert by_slip.out.startswith("perpendicular(")
+    assert aidl("doc", "RoundedRectangle").out == aidl("doc", "rounded_rectangle").out
+    assert aidl("doc", "color").out.startswith('@color("NAME")\n')
+
+
+def test_doc_of_an_unknown_name(aidl: Aidl) -> None:
+    unknown = aidl("doc", "top_left_of_it_all")
+    assert (unknown.code, unknown.out) == (2, "")
+    assert unknown.err.startswith("error[E0912]: there is no `top_left_of_it_all` to tell about\n")
+    part_of_one = aidl("doc", "circ")
+    assert part_of_one.code == 2
+    assert "did you mean " in part_of_one.err
+    assert "`circle`" in part_of_one.err
+
+
+def test_doc_lists_all_names_by_topic(aidl: Aidl) -> None:
+    listed = aidl("doc").out
+    assert listed.startswith("The language\n  solid ")
+    assert re.search(r"^  slot +\S", listed, flags=re.MULTILINE)
+
+
+def test_doc_as_json(aidl: Aidl) -> None:
+    found = json.loads(aidl("doc", "inside", "--json").out)
+    assert (found["name"], found["sort"], found["topic"]) == ("inside", "relation", "relations")
+    form = found["forms"][0]
+    assert [a["name"] for a in form["arguments"]][:2] == ["a", "b"]
+    assert form["held"] == "b"
+    assert form["measures"]["margin"] == "at least"
+    everything = json.loads(aidl("doc", "--json").out)
+    assert found in everything
+    assert len({entry["name"] for entry in everything}) == len(everything)
+
+
+def test_doc_draws_the_example(aidl: Aidl, folder: Path) -> None:
+    result = aidl("doc", "ring", "--picture", "ring.svg")
+    assert (result.code, result.out, result.err) == (0, "", "ring.svg: the example of `ring`\n")
+    assert (folder / "ring.svg").read_text().startswith("<?xml")
+    assert aidl("doc", "ring", "--picture", "-").out == (folder / "ring.svg").read_text()
+    assert "E0912" in aidl("doc", "--picture", "all.svg").err
+    assert "E0904" in aidl("doc", "ring", "--picture", "absent/ring.svg").err
+
+
+def test_guide(aidl: Aidl) -> None:
+    short, full = aidl("guide"), aidl("guide", "--full")
+    assert (short.code, full.code) == (0, 0)
+    assert short.out.startswith("# AIDL in a few pages\n")
+    assert full.out.startswith(short.out.rstrip())
+    assert "### rounded_rectangle" in full.out
 
 
 def test_explain(aidl: Aidl) -> None:

@@ -123,7 +123,7 @@ def between_the_other_corners(n: Draw) -> tuple[str, float, float]:
 def any_two_corners(n: Draw) -> tuple[str, float, float]:
     x0, y0, x1, y1 = n(-9, 9), n(10, 20), n(10, 20), n(-9, 9)
     w, h = x1 - x0, y0 - y1
-    return f"rectangle(a: ({x1}, {y1}), b: ({x0}, {y0}))", w * h, 2 * (w + h)
+    return f"rectangle(start: ({x1}, {y1}), end: ({x0}, {y0}))", w * h, 2 * (w + h)
 
 
 @form
@@ -143,6 +143,22 @@ def by_left_and_bottom(n: Draw) -> tuple[str, float, float]:
 def by_left_and_top(n: Draw) -> tuple[str, float, float]:
     w, h = n(1, 50), n(1, 50)
     return f"rectangle(left: 2, top: 3, width: {w}, height: {h})", w * h, 2 * (w + h)
+
+
+@form
+def four_radii_by_name(n: Draw) -> tuple[str, float, float]:
+    w, h, r, s = n(10, 50), n(10, 50), n(0, 4.5), n(0, 4.5)
+    radii = f"radius_bottom_left: {r}, radius_bottom_right: {s}, radius_top_right: 0, radius_top_left: {r}"
+    cut = 1 - math.pi / 4
+    area = w * h - cut * (2 * r**2 + s**2)
+    return f"rounded_rectangle(width: {w}, height: {h}, {radii})", area, 2 * (w + h) - 2 * cut * (2 * r + s)
+
+
+@form
+def rectangle_with_a_radius(n: Draw) -> tuple[str, float, float]:
+    w, h, r = n(10, 50), n(10, 50), n(0.1, 4.5)
+    call = f"rectangle(width: {w}, height: {h}, radius: {r})"
+    return call, w * h - (4 - math.pi) * r**2, 2 * (w + h) - (8 - tau) * r
 
 
 @form
@@ -224,10 +240,15 @@ def equilateral_triangle(n: Draw) -> tuple[str, float, float]:
     return f"equilateral_triangle(side: {a})", sqrt(3) / 4 * a**2, 3 * a
 
 
-@form
-def right_triangle(n: Draw) -> tuple[str, float, float]:
-    w, h = n(1, 50), n(1, 50)
-    return f"right_triangle(width: {w}, height: {h})", w * h / 2, w + h + hypot(w, h)
+def right_triangle(base: str) -> Form:
+    def make(n: Draw) -> tuple[str, float, float]:
+        w, h = n(1, 50), n(1, 50)
+        return f"right_triangle({base}: {w}, height: {h})", w * h / 2, w + h + hypot(w, h)
+
+    return make
+
+
+FORMS += [right_triangle(base) for base in ("width", "base")]
 
 
 # --- Polygons --------------------------------------------------------------------------------------
@@ -250,6 +271,7 @@ def regular(name: str, sides: int | None, by: str) -> Form:
     return make
 
 
+FORMS.append(regular("polygon", None, "radius"))
 for _name, _sides in (("regular_polygon", None), ("pentagon", 5), ("hexagon", 6), ("octagon", 8)):
     FORMS += [regular(_name, _sides, by) for by in OF_RADIUS if by != "across_flats" or _sides != 5]
 
@@ -579,15 +601,20 @@ def double_d(by: str) -> Form:
 FORMS += [shape(by) for shape in (d_shape, double_d) for by in ("radius", "diameter")]
 
 
-@form
-def keyhole(n: Draw) -> tuple[str, float, float]:
-    r = n(4, 20)
-    w, length = n(1, 1.8 * r), n(r + 1, 60)
-    depth = sqrt(r**2 - w**2 / 4)  # of the corners where the slit begins
-    head = tau - 2 * asin(w / (2 * r))
-    area = r**2 * head / 2 + w * depth / 2 + w * (length - depth) + math.pi * w**2 / 8
-    call = f"keyhole(radius: {r}, width: {w}, length: {length})"
-    return call, area, r * head + 2 * (length - depth) + math.pi * w / 2
+def keyhole(by: str) -> Form:
+    def make(n: Draw) -> tuple[str, float, float]:
+        r = n(4, 20)
+        w, length = n(1, 1.8 * r), n(r + 1, 60)
+        depth = sqrt(r**2 - w**2 / 4)  # of the corners where the slit begins
+        head = tau - 2 * asin(w / (2 * r))
+        area = r**2 * head / 2 + w * depth / 2 + w * (length - depth) + math.pi * w**2 / 8
+        call = f"keyhole({by}: {r if by == 'radius' else 2 * r}, width: {w}, length: {length})"
+        return call, area, r * head + 2 * (length - depth) + math.pi * w / 2
+
+    return make
+
+
+FORMS += [keyhole(by) for by in ("radius", "diameter")]
 
 
 @form
@@ -606,7 +633,7 @@ def crescent(n: Draw) -> tuple[str, float, float]:
     a = 2 * acos((d**2 + r**2 - s**2) / (2 * d * r))
     b = 2 * acos((d**2 + s**2 - r**2) / (2 * d * s))
     shared = segment_measures(r, a)[0] + segment_measures(s, b)[0]
-    call = f"crescent(radius: {r}, inner_radius: {s}, offset: {d})"
+    call = f"crescent(outer_radius: {r}, inner_radius: {s}, offset: {d})"
     return call, math.pi * r**2 - shared, r * (tau - a) + s * b
 
 
@@ -675,15 +702,16 @@ def drop(n: Draw) -> tuple[str, float, float]:
     return f"drop(radius: {r}, height: {h})", r * side + r**2 * sweep / 2, 2 * side + r * sweep
 
 
+SUPERELLIPSE = math.gamma(1 + 1 / 4) ** 2 / math.gamma(1 + 2 / 4)
+"""The share of its box that a superellipse of exponent 4 fills."""
+
 BEZIER_FIGURES: dict[str, tuple[str, Callable[[float, float], float] | None, float]] = {
     "heart": ("width: {w}, height: {h}", None, 0),
     "egg": ("width: {w}, height: {h}", lambda w, h: math.pi * w * h / 4, 5e-4),
-    "squircle": ("width: {w}, height: {h}", lambda w, h: w * h * _SUPERELLIPSE, 7e-3),
-    "squircle of a size": ("size: {w}", lambda w, h: w * w * _SUPERELLIPSE, 7e-3),
+    "squircle": ("width: {w}, height: {h}", lambda w, h: w * h * SUPERELLIPSE, 7e-3),
+    "squircle of a size": ("size: {w}", lambda w, h: w * w * SUPERELLIPSE, 7e-3),
 }
 """Arguments, the area of what the figure stands for, and how near it comes."""
-
-_SUPERELLIPSE = math.gamma(1 + 1 / 4) ** 2 / math.gamma(1 + 2 / 4)
 
 
 # --- The tests -----------------------------------------------------------------------------------------

@@ -1,0 +1,185 @@
+"""The making of geometry that is edited: with other arguments, or else turned as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from aidl_lang import ast
+from aidl_lang import expression as ex
+from aidl_lang.building.copies import centre_of
+from aidl_lang.building.derive import Copier
+from aidl_lang.building.edits import Edit, follows, motion_of, referred, refuse
+from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.motion import Motion
+from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.model import Geometry
+from aidl_lang.primitives import DIRECTIONS
+from aidl_lang.types import Binding, PointType
+from aidl_lang.units import ANGLE, LENGTH, UNITS
+from aidl_lang.values import (
+    ListVal,
+    Num,
+    PointVal,
+    Value,
+    number,
+)
+
+_CLOSE = 1e-9
+"""How far two numbers may differ, relative to the size of the shape, and count as one."""
+
+
+def edited(it: Interpreter, node: ast.Assign, value: Value, edits: Sequence[Edit], env: Env) -> Value:
+    """What an assignment makes, with the edits below it applied."""
+    if not edits:
+        return value
+    match value:
+        case PointVal():
+            return _edited_point(it, node.name.text, value, edits, env)
+        case Geometry(source=None, recipe=None, name=None):
+            return _Editing(it, node, value, edits, env).run()
+        case _:
+            refuse(it, edits[0].call, node.name.text, value)
+            return value
+
+
+def _edited_point(it: Interpreter, name: str, at: PointVal, edits: Sequence[Edit], env: Env) -> Value:
+    if (source := referred(at)) is not None:
+        follows(it, edits[0].call, name, source)
+        return at
+    return motion_of(it, edits, at, (at.x.expression, at.y.expression), env.here).point(at)
+
+
+@dataclass
+class _Editing:
+    """The making of one geometry that is edited. `first` is what the program would make without edits."""
+
+    it: Interpreter
+    node: ast.Assign
+    first: Geometry
+    edits: Sequence[Edit]
+    env: Env
+    refers: str | None = None
+
+    def run(self) -> Value:
+        centre = centre_of(self.it, self.first, self.edits[0].call, self.env)
+        written = ex.constant(centre[0].value), ex.constant(centre[1].value)
+        motion = motion_of(self.it, self.edits, self.first, written, self.env.here)
+        if (made := self._by_arguments(motion)) is not None:
+            return made
+        if self.refers is not None:
+            follows(self.it, self.edits[0].call, self.node.name.text, self.refers)
+            return self.first
+        unturned = Motion(written, motion.place(*written), scale=motion.scale)
+        if (made := self._by_arguments(unturned)) is not None:
+            centre = centre_of(self.it, made, self.edits[0].call, self.env)
+            return self._as_whole(made, replace(motion, about=centre, to=centre, scale=ex.ONE))
+        away = [ex.sub(b, a) for a, b in zip(written, motion.place(*written), strict=True)]
+        to = ex.add(centre[0], away[0]), ex.add(centre[1], away[1])
+        return self._as_whole(self.first, replace(motion, about=centre, to=to))
+
+    def _as_whole(self, made: Geometry, motion: Motion) -> Geometry:
+        """A shape that its arguments cannot turn: everything in it turns."""
+        made.known_as = None
+        turned = Copier(self.it, self.env.here, motion, span=made.span).geometry(made)
+        turned.source = None  # it stands in the place of what was written, and is no copy to the author
+        return turned
+
+    def _by_arguments(self, motion: Motion) -> Geometry | None:
+        """The same call with its arguments moved; None when that does not move the shape."""
+        it = self.it
+        calls = [c for c in (self.node.value, *_branches(self.node.value)) if isinstance(c, ast.Call)]
+        before, hidden, said = dict(it.edits), len(it.hidden), len(it.diagnostics)
+        it.edits |= dict.fromkeys(calls, lambda binding, given: self._moved(binding, given, motion))
+        try:
+            made = evaluate(it, self.node.value, self.env)
+        finally:
+            it.edits = before
+        meant = Copier(it, self.env.here, motion).geometry(self.first)
+        if isinstance(made, Geometry) and self.refers is None and _are_alike(made, meant, self.env):
+            return made
+        del it.diagnostics[said:]
+        del it.hidden[hidden:]
+        return None
+
+    def _moved(self, binding: Binding, given: dict[str, Value], motion: Motion) -> dict[str, Value]:
+        given = dict(given)
+        for name, default in _defaults(binding):
+            given.setdefault(name, default)
+        return {name: self._argument(name, value, motion) for name, value in given.items()}
+
+    def _argument(self, name: str, value: Value, motion: Motion) -> Value:
+        match value:
+            case PointVal():
+                self._refuse(value)
+                return motion.point(value)
+            case ListVal(items):
+                return ListVal(tuple(self._argument(name, item, motion) for item in items))
+            case Num() if name in DIRECTIONS:
+                if motion.turn.value % 360.0 != 0.0:
+                    self._refuse(value)
+                return replace(value, expression=motion.direction(value.expression))
+            case Num():
+                if motion.scale.value != 1.0:
+                    self._refuse(value)
+                return replace(value, expression=motion.measure(value.expression, value.dimension))
+            case _:
+                return value
+
+    def _refuse(self, value: PointVal | Num) -> None:
+        self.refers = self.refers or referred(value)
+
+
+def _branches(node: ast.Expression) -> tuple[ast.Expression, ...]:
+    return (node.then, node.otherwise) if isinstance(node, ast.Conditional) else ()
+
+
+def _defaults(binding: Binding) -> Iterator[tuple[str, Value]]:
+    """Positions and directions that are left out, by what stands for them."""
+    definition = binding.signature.node
+    if definition is None:
+        for name, kind, optional in binding.signature.parameters:
+            if optional and isinstance(kind, PointType):
+                yield name, _at(0.0, 0.0)
+            elif optional and name in DIRECTIONS:
+                yield name, number(0.0, ANGLE)
+        return
+    for parameter in definition.parameters or ():
+        match parameter.default:
+            case ast.Point(ast.Number() as x, ast.Number() as y):
+                yield parameter.name.text, _at(x.value, y.value)
+            case ast.Number(value, unit) if parameter.name.text in DIRECTIONS:
+                yield parameter.name.text, number(value * (UNITS[unit][0] if unit else 1.0), ANGLE)
+
+
+def _at(x: float, y: float) -> PointVal:
+    return PointVal(number(x, LENGTH), number(y, LENGTH))
+
+
+def _are_alike(a: Geometry, b: Geometry, env: Env) -> bool:
+    """Whether two geometries draw the same curves as written."""
+    one, other = list(a.primitives()) or [a], list(b.primitives()) or [b]
+    return len(one) == len(other) and all(map(_is_same, one, other))
+
+
+def _is_same(a: Geometry, b: Geometry) -> bool:
+    if a.type != b.type or a.clockwise != b.clockwise:
+        return False
+    pairs = [(n, v, b.fields[n]) for n, v in a.fields.items() if n in b.fields]
+    size = max([1.0, *(abs(x) for _, v, _ in pairs for x in _values(v))])
+    for name, v, w in pairs:
+        for x, y in zip(_values(v), _values(w), strict=True):
+            away = (x - y + 180.0) % 360.0 - 180.0 if name in DIRECTIONS else x - y
+            if not abs(away) <= _CLOSE * size:
+                return False
+    return True
+
+
+def _values(value: Value) -> tuple[float, ...]:
+    match value:
+        case PointVal(x, y):
+            return x.value, y.value
+        case Num():
+            return (value.value,)
+        case _:
+            return ()

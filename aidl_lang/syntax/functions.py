@@ -1,0 +1,171 @@
+"""What is plain from its tokens alone: functions as other languages write them, and a few words too many."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.source import SourceFile, Span
+from aidl_lang.syntax.tokens import END, Token
+from aidl_lang.syntax.trouble import (
+    LONGEST,
+    Problem,
+    Repair,
+    Trouble,
+    closing,
+    line_end,
+    replaced,
+    statement_end,
+)
+
+
+def understood(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
+    """Rewrite what is plain from its tokens alone, and would be read as something else: functions with a
+    body, `new`, `between`, and texts marked as in Python. Repairs count from the token they begin with.
+    """
+    found: list[Diagnostic] = []
+    places = [n for n, token in enumerate(tokens) if token.text in _WORDS]
+    for at in places[: -_MOST_PLACES - 1 : -1]:  # from the end, so that what is before keeps its number
+        problem = _answer(source, tokens, at)
+        if problem is not None and problem.repair is not None and len(found) < _MOST_REWRITTEN:
+            tokens[at + problem.repair.start : at + problem.repair.stop] = problem.repair.tokens
+            found.append(problem.diagnostic)
+    return found[::-1]
+
+
+_FUNCTION_WORDS = ("def", "function", "func", "fun", "fn")
+_WORDS = frozenset([*_FUNCTION_WORDS, "between", "lambda", "new", "f", "r", "u", "b"])
+_MOST_PLACES, _MOST_REWRITTEN = 5000, 100  # beyond these nobody wrote it by hand
+
+
+def _answer(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | None:
+    one, two = tokens[at], tokens[at + 1]
+    if one.text in _FUNCTION_WORDS:
+        return _function_with_body(source, tokens, at) if two.kind == "CALL" else None
+    if one.kind != "NAME":
+        return None
+    match one.text:
+        case "between" if at:
+            return _between(source, tokens, at)
+        case "lambda" if at > 1 and tokens[at - 1].kind == "=":
+            return _lambda(source, tokens, at)
+        case "new" if two.kind == "CALL":
+            return _left_out(source, one, two, "things are made without `new`")
+        case "f" | "r" | "u" | "b" if two.kind == "STRING" and one.end == two.start:
+            hint = 'texts join with `+`: `"M" + str(size)`' if one.text == "f" else ""
+            return _left_out(source, one, two, f"a text has no `{one.text}` before it", hint)
+        case _:
+            return None
+
+
+def _left_out(source: SourceFile, word: Token, after: Token, message: str, hint: str = "") -> Problem:
+    span = Span(source, word.start, word.end)
+    fix = replaced(f"leave out `{word.text}`", Span(source, word.start, after.start), "")
+    return Problem(Diagnostic("E0113", message, span, hints=(hint,) if hint else (), fix=fix), Repair(0, 1))
+
+
+def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int) -> Problem | None:
+    """`def f(x): return 2 * x`, `function f(x) { return 2 * x }`, `fn f(x) { 2 * x }`"""
+    close = closing(tokens, begin + 1)
+    at = close + 1
+    if close < 0 or tokens[at].kind not in (":", "{"):
+        return None
+    in_braces = tokens[at].kind == "{"
+    first = at + 2 if tokens[at + 1].text == "return" else at + 1
+    if tokens[min(first, len(tokens) - 1)].kind == END:
+        return None
+    stop, end_of_line = first, line_end(source.text, tokens[first].start)
+    while tokens[stop].kind not in (END, "}", ";", "=") and tokens[stop].start < end_of_line:
+        stop += 1
+    after = stop + (tokens[stop].kind == ";")
+    if stop == first or tokens[stop].kind == "=" or (in_braces and tokens[after].kind != "}"):
+        return None
+    value = tokens[first:stop]
+    head = Span(source, tokens[begin + 1].start, tokens[close].end).text
+    right = f"fn {head} = {Span(source, value[0].start, value[-1].end).text}"
+    span = Span(source, tokens[begin].start, tokens[after].end if in_braces else value[-1].end)
+    written = (
+        Token("fn", "fn", tokens[begin].start, tokens[begin].end),
+        *tokens[begin + 1 : close + 1],
+        Token("=", "=", tokens[at].start, tokens[at].end),
+        *value,
+    )
+    return Problem(
+        Diagnostic(
+            "E0113", f"a function is written `{right}`", span, fix=replaced("write it so", span, right)
+        ),
+        Repair(0, (after + 1 if in_braces else stop) - begin, written),
+    )
+
+
+def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | None:
+    """`x between 3 and 5`"""
+    end, last = line_end(source.text, tokens[at].start), min(at + LONGEST, len(tokens) - 1)
+    middle = next((n for n in range(at + 2, last) if tokens[n].kind == "and"), last)
+    if middle == last or tokens[middle + 1].start > end or tokens[at - 1].kind not in _VALUE_ENDS:
+        return None
+    low = tokens[at + 1 : middle]
+    span = Span(source, tokens[at].start, tokens[middle + 1].end)
+    right = f"in {Span(source, low[0].start, low[-1].end).text}..{tokens[middle + 1].text}"
+    word, dots = Token("in", "in", *tokens[at][2:]), Token("..", "..", *tokens[middle][2:])
+    edits = (
+        Edit(Span(source, tokens[at].start, tokens[at].end), "in"),
+        Edit(Span(source, low[-1].end, tokens[middle + 1].start), ".."),
+    )
+    problem = Diagnostic("E0109", f"a range is written `{right}`", span, fix=Fix(f"write `{right}`", edits))
+    return Problem(problem, Repair(0, middle + 1 - at, (word, *low, dots)))
+
+
+_VALUE_ENDS = frozenset(["NAME", "NUMBER", ")", "]"])
+
+
+def _lambda(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | None:
+    """`let f = lambda x: 2 * x`"""
+    last = min(at + LONGEST, len(tokens))
+    colon = next((n for n in range(at, last) if tokens[n].kind not in ("NAME", ",")), at)
+    stop = statement_end(source, tokens, colon + 1)
+    if tokens[colon].kind != ":" or stop == colon + 1:
+        return None
+    begin = at - 3 if at > 2 and tokens[at - 3].kind == "let" else at - 2
+    head, value = [tokens[at - 2], *tokens[at + 1 : colon]], tokens[colon + 1 : stop]
+    span = Span(source, tokens[begin].start, value[-1].end)
+    return _as_function(source, head, value, span, begin - at, stop - at)
+
+
+def arrow_function(t: Trouble) -> Problem | None:
+    """`let f = (x) => 2 * x`"""
+    at = t.position if t.token.kind == "=" else t.position - 1
+    if t.tokens[at].kind != "=" or t.tokens[at + 1].kind != ">" or t.tokens[at].end != t.tokens[at + 1].start:
+        return None
+    statement = t.tokens[t.begin : at]
+    shape = [token.kind for token in statement if token.kind not in ("let", ",")]
+    if shape[:2] != ["NAME", "="] or any(k not in ("NAME", "(", ")") for k in shape[2:]):
+        return None
+    stop = statement_end(t.source, t.tokens, at + 2)
+    if stop == at + 2:
+        return None
+    value = t.tokens[at + 2 : stop]
+    span = Span(t.source, t.first.start, value[-1].end)
+    return _as_function(t.source, statement, value, span, t.begin, stop)
+
+
+def _as_function(
+    source: SourceFile, head: Sequence[Token], value: Sequence[Token], span: Span, start: int, stop: int
+) -> Problem:
+    names = [token.text for token in head if token.kind == "NAME"]
+    right = f"fn {names[0]}({', '.join(names[1:])}) = {Span(source, value[0].start, value[-1].end).text}"
+    return Problem(
+        Diagnostic(
+            "E0113", f"a function is written `{right}`", span, fix=replaced("write it so", span, right)
+        ),
+        Repair(start, stop, tuple(_function(names, head, value, span))),
+    )
+
+
+def _function(names: Sequence[str], head: Sequence[Token], value: Sequence[Token], span: Span) -> list[Token]:
+    place = span.start, span.start
+    called, *parameters = (token for token in head if token.kind == "NAME")
+    tokens = [Token("fn", "fn", *place), Token("CALL", names[0] + "(", called.start, called.end)]
+    for i, parameter in enumerate(parameters):
+        tokens += [Token(",", ",", *place), parameter] if i else [parameter]
+    return [*tokens, Token(")", ")", *place), Token("=", "=", *place), *value]

@@ -1,0 +1,301 @@
+"""Fillets, offsets, strokes and hulls against closed forms and against Shapely on a fine tessellation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+from aidl_lang.geometry.clipping import clipped
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import bounds, ends, inward, point, points
+from aidl_lang.geometry.finishing import Work, corners_of, direction, finish
+from aidl_lang.geometry.hulls import hull
+from aidl_lang.geometry.measures import area, length, perimeter
+from aidl_lang.geometry.offsets import offset, thick
+from aidl_lang.geometry.region import Face, Loop, Region
+from tests.geometry.models import arc
+from tests.geometry.test_regions import assert_closed, pieces
+
+FINE = 256
+"""Segments of a quarter of a circle in Shapely."""
+
+
+def polygon(corners: Sequence[Vec]) -> Region:
+    lines = [Line(p, q) for p, q in zip(corners, [*corners[1:], corners[0]], strict=True)]
+    return Region((Face(Loop(tuple(lines))),))
+
+
+def rounded(curves: Sequence[Piece], kind: str, size: float) -> list[Piece]:
+    """All corners finished; a chain that is closed stays closed."""
+    result = finish(curves, [Work(kind, c, (size, size)) for c in corners_of(curves, 1e-6)])
+    assert not result.failures
+    return [c for c in result.curves if c is not None] + [f.piece for f in result.finished]
+
+
+def enclosed(curves: Sequence[Piece]) -> float:
+    """The area inside curves that make one chain, by a fine tessellation."""
+    lines = [shapely.LineString(np.round(points(c, np.linspace(0, 1, 2001)), 9)) for c in curves]
+    (face,) = shapely.get_parts(shapely.polygonize(lines))
+    return float(face.area)
+
+
+radii = st.floats(0.35, 1.0)
+
+
+@st.composite
+def stars(draw: st.DrawFn) -> list[Vec]:
+    """The corners of a simple polygon about the origin, within 50 mm."""
+    reach = draw(st.lists(radii, min_size=3, max_size=12))
+    turn = 2 * math.pi / len(reach)
+    return [
+        (50 * r * math.cos(turn * k + 0.1), 50 * r * math.sin(turn * k + 0.1)) for k, r in enumerate(reach)
+    ]
+
+
+# --- Fillets and chamfers ----------------------------------------------------------------------------
+
+
+@given(st.floats(1, 100), st.floats(1, 100), st.floats(0.01, 1))
+def test_rounded_rectangle_has_its_closed_form(width: float, height: float, share: float) -> None:
+    r = share * min(width, height) / 2
+    sides = polygon([(0, 0), (width, 0), (width, height), (0, height)]).faces[0].outer.pieces
+    assert sum(length(c) for c in rounded(sides, "fillet", r)) == pytest.approx(
+        2 * (width + height) - (8 - 2 * math.pi) * r
+    )
+
+
+@given(st.floats(15, 165), st.floats(0.1, 3))
+def test_fillet_touches_both_edges(degrees: float, r: float) -> None:
+    """The circle is as far from both edges as its radius, and takes r / tan(α/2) off each."""
+    a = math.radians(degrees)
+    edges = [Line((0, 0), (100, 0)), Line((100 * math.cos(a), 100 * math.sin(a)), (0, 0))]
+    (made,) = finish(edges, [Work("fillet", c, (r, r)) for c in corners_of(edges, 1e-6)]).finished
+    assert isinstance(made.piece, Arc)
+    assert made.piece.center == pytest.approx((r / math.tan(a / 2), r))
+    assert abs(made.piece.sweep) == pytest.approx(math.pi - a)
+    assert max(made.cuts) == pytest.approx(r / math.tan(a / 2) / 100)
+
+
+@pytest.mark.parametrize("first", [(0, 200), (200, 0), (30, -120)])
+@pytest.mark.parametrize("r", [0.3, 2.0])
+def test_fillets_of_arcs_are_tangent(first: tuple[float, float], r: float) -> None:
+    """Between an arc and the chord of its ends, whichever way it runs: directions agree at both touches."""
+    bow = arc((3, 4), 10, *first)
+    chord = Line(bow.end, bow.start)
+    curves: list[Piece] = [bow, chord]
+    made = finish(curves, [Work("fillet", c, (r, r)) for c in corners_of(curves, 1e-6)])
+    assert not made.failures
+    for f in made.finished:
+        for t, arm, cut in zip((0.0, 1.0), f.work.corner.arms, f.cuts, strict=True):
+            (ax, ay), (bx, by) = direction(f.piece, t), direction(arm.curve, cut)
+            assert ax * by - ay * bx == pytest.approx(0, abs=1e-9)
+            assert point(arm.curve, cut) == pytest.approx(ends(f.piece)[int(t)], abs=1e-9)
+
+
+def test_fillets_of_free_curves_are_tangent() -> None:
+    curves: list[Piece] = [
+        Bezier((0, 0), (15, -10), (30, 15), (40, 0)),
+        Line((40, 0), (40, 30)),
+        Bezier((40, 30), (20, 20), (10, 40), (0, 0)),
+    ]
+    made = finish(curves, [Work("fillet", c, (2, 2)) for c in corners_of(curves, 1e-6)])
+    assert len(made.finished) == 3
+    for f in made.finished:
+        assert isinstance(f.piece, Arc)
+        for t, arm, cut in zip((0.0, 1.0), f.work.corner.arms, f.cuts, strict=True):
+            p = point(arm.curve, cut)
+            assert math.dist(p, f.piece.center) == pytest.approx(2, abs=1e-9)
+            (ax, ay), (bx, by) = direction(f.piece, t), direction(arm.curve, cut)
+            assert ax * by - ay * bx == pytest.approx(0, abs=1e-9)
+
+
+@settings(deadline=None, max_examples=40)
+@given(stars(), st.floats(0.2, 0.9))
+def test_polygons_round_off_at_both_kinds_of_corners(corners: list[Vec], share: float) -> None:
+    """Each corner of angle α changes the area by r² (cot(α/2) - (π - α)/2), towards the material or away."""
+    sides = polygon(corners).faces[0].outer.pieces
+    found = corners_of(sides, 1e-6)
+    room = min(length(c) for c in sides) / 2
+    r = share * room * min(math.tan(abs(c.turn) / 2) for c in found)
+    expected = shapely.Polygon(corners).area
+    for c in found:
+        a, sign = abs(c.turn), math.copysign(1, c.turn)
+        # The arm that arrives comes first; the other lies to its right at a convex corner of this sense.
+        expected += sign * r * r * (1 / math.tan(a / 2) - (math.pi - a) / 2)
+    assert enclosed(rounded(sides, "fillet", r)) == pytest.approx(expected, rel=1e-5)
+
+
+def test_largest_radius_is_told() -> None:
+    sides = polygon([(0, 0), (60, 0), (60, 40), (0, 40)]).faces[0].outer.pieces
+    (lower_left, *_) = corners_of(sides, 1e-6)
+    (failure,) = finish(sides, [Work("fillet", lower_left, (50, 50))]).failures
+    assert failure.largest == pytest.approx(40)
+    works = [Work("fillet", c, (25, 25)) for c in corners_of(sides, 1e-6)]
+    for failure in finish(sides, works).failures:
+        assert failure.largest == pytest.approx(15)
+        assert failure.together == pytest.approx(20)
+
+
+# --- Offsets -----------------------------------------------------------------------------------------
+
+
+@settings(deadline=None, max_examples=60)
+@given(stars(), st.floats(0.2, 25), st.booleans())
+def test_offset_of_polygons_against_shapely(corners: list[Vec], distance: float, inwards: bool) -> None:
+    d = -distance if inwards else distance
+    ours, theirs = (
+        offset(polygon(corners), d, sharp=False),
+        shapely.Polygon(corners).buffer(d, quad_segs=FINE),
+    )
+    assert area(ours) == pytest.approx(theirs.area, abs=0.02)
+    assert len(ours.faces) == len(shapely.get_parts(theirs)) or abs(theirs.area - area(ours)) < 1e-3
+    assert_closed(ours)
+    assert all(isinstance(p, Line | Arc | Circle) for loop in ours.loops for p in loop.pieces)
+
+
+@settings(deadline=None)
+@given(st.floats(10, 30), st.floats(10, 30), st.floats(0.1, 20))
+def test_offset_of_a_convex_polygon_has_its_closed_form(a: float, b: float, d: float) -> None:
+    """A + P d + π d² with round corners; of a right triangle with sharp ones it is similar."""
+    triangle = polygon([(0, 0), (a, 0), (0, b)])
+    c = math.hypot(a, b)
+    grown = offset(triangle, d, sharp=False)
+    assert area(grown) == pytest.approx(a * b / 2 + (a + b + c) * d + math.pi * d * d)
+    assert perimeter(grown) == pytest.approx(a + b + c + 2 * math.pi * d)
+    inradius = a * b / (a + b + c)
+    assert area(offset(triangle, d)) == pytest.approx(a * b / 2 * ((inradius + d) / inradius) ** 2)
+
+
+def test_sharp_points_are_rounded_once_they_stand_out_too_far() -> None:
+    needle = polygon([(0, 0), (100, 0), (100, 5)])
+    assert pieces(offset(needle, 1), Arc)
+    assert max(bounds(p)[0] for p in offset(needle, 1).faces[0].outer.pieces) < 102
+
+
+def test_offset_of_a_ring_of_circles_is_exact() -> None:
+    ring = Region((Face(Loop((Circle((0, 0), 10),)), (Loop((Circle((0, 0), 4),), reversed=True),)),))
+    assert area(offset(ring, 1)) == pytest.approx(math.pi * (121 - 9))
+    assert area(offset(ring, -1)) == pytest.approx(math.pi * (81 - 25))
+    assert area(offset(ring, 4.5)) == pytest.approx(math.pi * 14.5**2)
+    assert not offset(ring, -3.01)
+
+
+@pytest.mark.parametrize("d", [6.0, -2.0, -6.0, -14.0, -19.0])
+def test_offset_of_an_ellipse_keeps_its_distance(d: float) -> None:
+    """Also where it bends closer than the distance (the least radius of curvature is 13.3)."""
+    ellipse = Region((Face(Loop((Ellipse((3, 1), 30, 20, 0.4),))),))
+    ours = offset(ellipse, d)
+    outline = shapely.LinearRing(points(Ellipse((3, 1), 30, 20, 0.4), np.linspace(0, 1, 40001)[:-1]))
+    for p in (
+        q for loop in ours.loops for piece in loop.pieces for q in points(piece, np.linspace(0, 1, 41))
+    ):
+        assert outline.distance(shapely.Point(p)) == pytest.approx(abs(d), abs=1e-3)
+    theirs = shapely.Polygon(outline).buffer(d, quad_segs=FINE)
+    assert area(ours) == pytest.approx(theirs.area, rel=2e-5, abs=0.01)
+
+
+# --- Strokes -------------------------------------------------------------------------------------------
+
+
+@settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.filter_too_much])
+@given(
+    st.lists(st.tuples(st.floats(-40, 40), st.floats(-40, 40)), min_size=2, max_size=6, unique=True),
+    st.floats(0.5, 20),
+    st.sampled_from(["round", "butt", "square"]),
+)
+def test_strokes_against_shapely(way: list[Vec], width: float, caps: str) -> None:
+    # Where a leg is shorter than the pen is wide, Shapely lets the joint stand out over a flat end.
+    shortest = 1 if caps == "round" else width
+    assume(all(math.dist(p, q) > shortest for k, p in enumerate(way) for q in way[:k]))
+    lines = [Line(p, q) for p, q in pairwise(way)]
+    theirs = shapely.LineString(way).buffer(
+        width / 2, quad_segs=FINE, cap_style={"butt": "flat"}.get(caps, caps)
+    )
+    ours = thick(lines, width, caps)
+    assert area(ours) == pytest.approx(theirs.area, abs=0.02)
+    assert_closed(ours)
+
+
+def test_stroke_of_an_arc_wider_than_its_radius() -> None:
+    """Without caps it is half a disc of radius 5."""
+    bow = [arc((0, 0), 2, 0, 180)]
+    assert area(thick(bow, 6, "butt")) == pytest.approx(math.pi * 25 / 2)
+    theirs = shapely.LineString(points(bow[0], np.linspace(0, 1, 4001))).buffer(3, quad_segs=FINE)
+    assert area(thick(bow, 6)) == pytest.approx(theirs.area, rel=1e-4)
+
+
+# --- Hulls and clips -----------------------------------------------------------------------------------
+
+places = st.tuples(st.floats(-20, 20), st.floats(-20, 20))
+curves = st.one_of(
+    st.builds(Circle, places, st.floats(0.5, 8)),
+    st.builds(arc, places, st.floats(0.5, 8), st.floats(0, 350), st.floats(0, 350)).filter(
+        lambda a: abs(a.sweep) > 0.05
+    ),
+    st.builds(Line, places, places),
+    st.builds(Bezier, places, places, places, places),
+    st.builds(Ellipse, places, st.floats(0.5, 9), st.floats(0.5, 9), st.floats(0, 3)),
+)
+
+
+@settings(deadline=None, max_examples=150)
+@given(st.lists(curves, min_size=2, max_size=6))
+def test_hulls_against_shapely(drawn: list[Piece]) -> None:
+    spots = np.concatenate([points(c, np.linspace(0, 1, 2001)) for c in drawn])
+    theirs = shapely.convex_hull(shapely.MultiPoint(spots))
+    ours = hull(drawn)
+    assert area(ours) == pytest.approx(theirs.area, rel=1e-4, abs=5e-3)
+    assert_closed(ours)
+
+
+@given(st.floats(1, 10), st.floats(1, 10), st.floats(12, 40))
+def test_hull_of_two_circles_has_its_closed_form(a: float, b: float, d: float) -> None:
+    """Two tangents of length √(d² - (a - b)²), and the arcs on the far sides."""
+    ours = hull([Circle((0, 0), a), Circle((d, 0), b)])
+    tangent, lean = math.sqrt(d * d - (a - b) ** 2), math.asin((a - b) / d)
+    expected = (a + b) * tangent + a * a * (math.pi / 2 + lean) + b * b * (math.pi / 2 - lean)
+    assert area(ours) == pytest.approx(expected, rel=1e-12)
+    assert len(pieces(ours, Arc)) == 2
+
+
+def test_hull_of_a_circle_around_all() -> None:
+    assert hull([Circle((0, 0), 9), Line((0, 0), (3, 3)), Circle((2, 0), 4)]).loops[0].is_whole
+
+
+def test_clipped_lines_end_on_the_border() -> None:
+    disc = Region((Face(Loop((Circle((0, 0), 5),))),))
+    (inner,) = clipped([Line((-9, 3), (9, 3))], disc)
+    assert [abs(p[0]) for p in ends(inner)] == pytest.approx([4, 4])
+    assert clipped([Line((6, -9), (6, 9))], disc) == []
+
+
+# --- Frames --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize(
+    "curve",
+    [
+        Line((1, 2), (5, 3)),
+        arc((1, 2), 3, 20, 250),
+        Circle((1, 2), 3),
+        Ellipse((1, 2), 5, 2, 0.3),
+        Bezier((0, 0), (3, 9), (8, -4), (9, 2)),
+    ],
+)
+def test_curves_in_another_frame(curve: Piece, mirrored: bool) -> None:
+    """The points of the curve in the frame are those of the curve, one by one turned and reflected back."""
+    ts = np.linspace(0, 1, 4001)
+    (x, y), c, s = (points(curve, ts) - (7, -2)).T, math.cos(0.7), math.sin(0.7)
+    expected = shapely.LineString(
+        np.stack(((-1 if mirrored else 1) * (c * x + s * y), c * y - s * x), axis=1)
+    )
+    ours = points(inward(curve, (7, -2), math.degrees(0.7), mirrored), np.linspace(0, 1, 200))
+    assert max(expected.distance(shapely.Point(p)) for p in ours) < 1e-5
