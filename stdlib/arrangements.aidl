@@ -110,7 +110,9 @@ constraint flush(things: list, side: text, by: length = 0) {
 /// }
 /// ```
 constraint row(things: list, gap: length, align: text = "free") {
-    for i in 1..<len(things) { right_of(box(things[i]), box(things[i - 1]), gap: gap, align: align) }
+    for i in 1..<len(things) {
+        right_of(box(things[i]), box(things[i - 1]), gap: gap, align: align)
+    }
 }
 constraint row(things: list, at_least: length = 0, align: text = "free") {
     for i in 1..<len(things) {
@@ -149,7 +151,7 @@ constraint column(things: list, pitch: length, align: text = "free") {
     }
 }
 
-/// Equal gaps in the order written, along the axis in which the first guesses spread most, unless `axis` is said.
+/// Equal gaps in the order written, along `axis`, or else where the first guesses spread most.
 ///
 /// `gap` (or `spacing`) says how wide they are, `pitch` the way from centre to centre.
 ///
@@ -172,7 +174,9 @@ constraint evenly_spaced(things: list, axis: text) {
         room_between(things[i - 1], things[i], way, up) == one
     }
 }
-constraint evenly_spaced(things: list, gap: length) { evenly_spaced(things, gap: gap, axis: longer_way(things)) }
+constraint evenly_spaced(things: list, gap: length) {
+    evenly_spaced(things, gap: gap, axis: longer_way(things))
+}
 constraint evenly_spaced(things: list, gap: length, axis: text) {
     let way = choice(axis, ["x", "y"])
     let up = way_along(things, way) >= 0

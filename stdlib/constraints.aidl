@@ -1,10 +1,10 @@
 // Constraints on geometry. Where two readings are possible, the one nearest to the first guesses is taken.
 //
-// Each public constraint says what may be given to it, the plain definitions below it what it means for a pair.
+// A public constraint says what may be given to it, the plain definitions below it what it means for a pair.
 
 // --- What stands for a thing -----------------------------------------------------------------------
 
-// The point that stands for a thing: itself, its centre, or the centre of its box; of a list, that of its box.
+// The point that stands for a thing: itself, its centre, or the centre of its box or of a list's box.
 fn center_of(p: point) = p
 fn center_of(b: bezier) = refuse("a bezier has no centre; name one of its points, as in `b.start`")
 fn center_of(of) = if is_list(of) then of.bb.center else of.center

@@ -1,6 +1,6 @@
 // Places for things that exist, and points and axes to place them by.
 
-/// The centres of things lie on a circle: about `center` with a `radius` or `diameter`, or a circle that is there.
+/// The centres of things lie on a circle: one that is there, or about `center` with a `radius` or `diameter`.
 ///
 /// They stand at equal steps in their written order, the first at `start` if that is said; `evenly: false`
 /// leaves them where they are along the circle.
@@ -42,9 +42,11 @@ constraint on_circle(things: list, around: circle, start: angle) {
 }
 
 // The angle from one thing to the next: the sense in which most of the first guesses run.
-fn turn_around(things: list, center: point) = if len(things) < 2 then 0deg else (
-    if sum([written(cross(box(things[i - 1]).center - center, box(things[i]).center - center)) / 1mm / 1mm for i in 1..<len(things)]) < 0 then -360deg else 360deg
-) / len(things)
+fn turn_around(things: list, center: point) = if len(things) < 2 then 0deg else (if sum(
+    [written(
+        cross(box(things[i - 1]).center - center, box(things[i]).center - center)
+    ) / 1mm / 1mm for i in 1..<len(things)]
+) < 0 then -360deg else 360deg) / len(things)
 
 /// Four things stand at the corners of a box, their centres `inset` from both sides, or `(dx, dy)`.
 ///
@@ -58,7 +60,9 @@ fn turn_around(things: list, center: point) = if len(things) < 2 then 0deg else 
 ///     constrain at_corners(screw, body, inset: 8)
 /// }
 /// ```
-constraint at_corners(things: list, of: box, inset: length = 0) { at_corners(things, of, inset: (inset, inset)) }
+constraint at_corners(things: list, of: box, inset: length = 0) {
+    at_corners(things, of, inset: (inset, inset))
+}
 constraint at_corners(things: list, of: box, inset: point) {
     if len(things) == 4 {
         let spots = [
@@ -69,18 +73,16 @@ constraint at_corners(things: list, of: box, inset: point) {
         ]
         let quarters = [quarter(box(t), of) for t in things]
         let distinct = sum([1 for i in 0..3 if i in quarters] + [0]) == 4
-        for i in 0..3 { box(things[i]).center == spots[quarters[i] if distinct else i] }
+        for i in 0..3 { box(things[i]).center == spots[if distinct then quarters[i] else i] }
     } else {
         refuse("a box has four corners, so four things can stand there")
     }
 }
 
 // The corner of a box in whose quarter a thing was written, counter-clockwise from 0 at the bottom left.
-fn quarter(a: box, of: box) = (
-    (0 if written(a.center_x - of.center_x) < 0 else 1)
-    if written(a.center_y - of.center_y) < 0
-    else (3 if written(a.center_x - of.center_x) < 0 else 2)
-)
+fn quarter(a: box, of: box) = if written(a.center_y - of.center_y) < 0 then if written(
+    a.center_x - of.center_x
+) < 0 then 0 else 1 else if written(a.center_x - of.center_x) < 0 then 3 else 2
 
 /// Things are spread through a box in their written order, from border to border with equal gaps.
 ///
@@ -104,8 +106,8 @@ constraint spread(things: list, inside: box, axis: text, margin: length = 0) {
     let way = choice(axis, ["x", "y"])
     if len(things) > 0 {
         let up = way_along(things, way) >= 0
-        let first = box(things[0] if up else things[-1])
-        let last = box(things[-1] if up else things[0])
+        let first = box(if up then things[0] else things[-1])
+        let last = box(if up then things[-1] else things[0])
         if way == "x" {
             first.left == inside.left + margin
             if len(things) > 1 { last.right == inside.right - margin }
@@ -130,7 +132,7 @@ constraint spread(things: list, inside: box, axis: text, margin: length = 0) {
 fn between(a, b) = (center_of(a) + center_of(b)) / 2
 fn between(a, b, share: number) = center_of(a) + (center_of(b) - center_of(a)) * share
 
-/// A point of a box by its name: `"top_left"`, `"left"` (the middle of that side), …; the centre if none is said.
+/// A point of a box by its name: `"top_left"`, `"left"` (the middle of that side), …; else its centre.
 ///
 /// ```aidl
 /// drawing d {
@@ -139,14 +141,15 @@ fn between(a, b, share: number) = center_of(a) + (center_of(b) - center_of(a)) *
 ///     constrain coincident(pin.center, anchor(card, "top_left") + (5, -5))
 /// }
 /// ```
-fn anchor(of: box, place: text = "center") = (
-    share_of(of.left, of.right, side_of(place, "left", "right")),
-    share_of(of.bottom, of.top, side_of(place, "bottom", "top"))
-)
+fn anchor(of: box, place: text = "center") = (share_of(
+    of.left,
+    of.right,
+    side_of(place, "left", "right")
+), share_of(of.bottom, of.top, side_of(place, "bottom", "top")))
 fn share_of(low: length, high: length, share: number) = low + (high - low) * share
-fn side_of(place: text, low: text, high: text) = 0 if anchor_word(place) in words_of(low) else (
-    1 if anchor_word(place) in words_of(high) else 0.5
-)
+fn side_of(place: text, low: text, high: text) = if anchor_word(place) in words_of(
+    low
+) then 0 else if anchor_word(place) in words_of(high) then 1 else 0.5
 fn anchor_word(place: text) = choice(
     place,
     [

@@ -172,7 +172,9 @@ constraint level_up(a: box, b: box, align: text) {
 /// }
 /// ```
 constraint inside(a: box, b: box, margin: length = 0) { inside(a, b, margin: (margin, margin)) }
-constraint inside(a: box, p: point) { refuse("nothing lies inside a point; `coincident` and `centered_in` put it there") }
+constraint inside(a: box, p: point) {
+    refuse("nothing lies inside a point; `coincident` and `centered_in` put it there")
+}
 constraint inside(a: box, b: box, margin: point) {
     a.left >= b.left + margin.x
     a.right <= b.right - margin.x
@@ -244,8 +246,12 @@ constraint centered_vertically(a: box, b: box, by: length = 0) { a.center_y == b
 /// }
 /// ```
 constraint centered_between(a: box, b: box, c: box) { amid(a, from: b, to: c) }
-constraint centered_between(a: box, b: box, c: box, axis: text) { amid(a, from: b, to: c, axis: axis) }
-constraint amid(a: box, from: box, to: box) { amid(a, from: from, to: to, axis: longer_way([from, to])) }
+constraint centered_between(a: box, b: box, c: box, axis: text) {
+    amid(a, from: b, to: c, axis: axis)
+}
+constraint amid(a: box, from: box, to: box) {
+    amid(a, from: from, to: to, axis: longer_way([from, to]))
+}
 constraint amid(a: box, from: box, to: box, axis: text) {
     let way = choice(axis, ["x", "y"])
     let up = way_along([from, to], way) >= 0

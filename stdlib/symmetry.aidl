@@ -30,9 +30,9 @@ constraint symmetric(a, axis: text) { symmetric(a, about: axis_of(axis)) }
 constraint symmetric(a, axis: line) { symmetric(a, about: axis) }
 
 // The axis that a word means, and the endless lines through a point.
-fn axis_of(word: text) = if choice(word, ["x", "y"]) == "x" then level_through((0, 0)) else upright_through(
+fn axis_of(word: text) = if choice(word, ["x", "y"]) == "x" then level_through(
     (0, 0)
-)
+) else upright_through((0, 0))
 fn level_through(p: point) = line(fixed(p), fixed(p + (1, 0)))
 fn upright_through(p: point) = line(fixed(p), fixed(p + (0, 1)))
 

@@ -134,6 +134,8 @@ class Network:
         self, i: int, j: int, cuts: list[list[tuple[float, int]]], own_ends: list[tuple[int, int]]
     ) -> None:
         """Place the ends of each of two curves on the other, then cut both where they meet."""
+        if self.curves[i] == self.curves[j]:
+            return  # one curve twice: its edges are shared
         for one, other in ((i, j), (j, i)):
             curve, box = self.curves[other], self.boxes[other]
             for end in dict.fromkeys(own_ends[one]):

@@ -10,11 +10,11 @@ import math
 from collections.abc import Iterator, Sequence
 
 from aidl_lang.geometry.boolean import section_of
-from aidl_lang.geometry.curves import Piece, Vec
-from aidl_lang.geometry.evaluate import bounds, ends, is_closed
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import bounds, ends, is_closed, point
 from aidl_lang.geometry.finishing import direction
 from aidl_lang.geometry.network import CHORD, FINE_CHORD, Network, union_bounds
-from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import difference, fill, union
 from aidl_lang.geometry.strips import Strip, beside, cap, disc, wedge
 from aidl_lang.geometry.trace import trace
@@ -31,10 +31,26 @@ def offset(region: Region, distance: float, sharp: bool = True) -> Region:
     if distance == 0 or not region:
         return region
     strips: list[Strip] = []
+    loops: list[Loop] = []
     for loop in region.loops:
         left = distance if loop.reversed else -distance  # material lies to the left
-        strips += _along(loop.pieces, left, sharp)
-    return _combined(region, strips, cut=distance < 0)
+        found = list(_along(loop.pieces, left, sharp))
+        strips += found
+        loops.append(Loop(tuple(_in_parts(loop.pieces, found)), loop.reversed))
+    # Loops are only filled together here, so that they may all count as outer ones.
+    return _combined(Region(tuple(map(Face, loops))), strips, cut=distance < 0)
+
+
+def _in_parts(pieces: Sequence[Piece], strips: Sequence[Strip]) -> Iterator[Piece]:
+    """The outline cut where its strips are, so that both have the same curves."""
+    firsts = [strip[0][0] for strip in strips]
+    for piece in pieces:
+        if isinstance(piece, Line | Arc | Circle):
+            yield piece
+        else:
+            start = next(k for k, first in enumerate(firsts) if ends(first)[0] == point(piece, 0.0))
+            stop = next(k for k in range(start, len(firsts)) if ends(firsts[k])[1] == point(piece, 1.0))
+            yield from firsts[start : stop + 1]
 
 
 def _along(pieces: Sequence[Piece], left: float, sharp: bool) -> Iterator[Strip]:
@@ -99,7 +115,8 @@ def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
                 place += len(outline)
                 if uses:
                     polygons.append(network.polyline(uses))
-            sections.append(fill(polygons, "EvenOdd"))
+            # Normals of a curve that bends closely cross: all that a single outline goes around counts.
+            sections.append(fill(polygons, "NonZero" if len(strip) == 1 else "EvenOdd"))
         base, added = section_of(network, region, 0), union(sections)
         result = trace(network, difference(base, added) if cut else union([base, added])).region
         if not network.blurred:

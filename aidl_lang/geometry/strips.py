@@ -23,6 +23,8 @@ Strip = tuple[Outline, ...]
 FIT = 1e-5
 """Largest error of a fitted parallel curve, relative to its distance plus the extent of the curve."""
 _DEEPEST = 6
+_BEND = 0.3
+"""Radians that a part may turn under a straight top."""
 _SHARPEST = math.radians(168.5)
 """Corners that turn further are rounded: their point would stand out more than ten times the distance."""
 
@@ -73,23 +75,37 @@ def _scaled(arc: Arc, p: Vec, radius: float) -> Vec:
 
 
 def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
-    """In parts short enough to fit; where the curve bends closer than the distance, discs instead."""
-    scale = (
-        abs(left)
-        + math.dist(ends(curve)[0], point(curve, 0.5))
-        + math.dist(point(curve, 0.5), ends(curve)[1])
-    )
-    stack = [(k / 8, (k + 1) / 8, 0) for k in reversed(range(8))]
+    """In parts short enough to fit; where the curve bends closer than the distance, straight on top."""
+    middle = point(curve, 0.5)
+    scale = abs(left) + sum(math.dist(p, middle) for p in ends(curve))
+    count = 1 if isinstance(curve, Bezier) else 4
+    stack = [(k / count, (k + 1) / count, 0) for k in reversed(range(count))]
     while stack:
         t0, t1, depth = stack.pop()
-        fitted = _fitted(curve, t0, t1, left)
-        if fitted is not None and _error(curve, t0, t1, left, fitted) <= FIT * scale:
-            yield (_between(part(curve, t0, t1, point(curve, t0), point(curve, t1)), fitted),)
-        elif depth < _DEEPEST and (fitted is not None or _bends_both_ways(curve, t0, t1, left)):
-            middle = (t0 + t1) / 2
-            stack += [(middle, t1, depth + 1), (t0, middle, depth + 1)]
+        bent = [_stretch(curve, t0 + (t1 - t0) * k / 8, left) <= 0 for k in range(9)]
+        top: Piece
+        if not any(bent):
+            top = _fitted(curve, t0, t1, left)
+            is_fine = _error(curve, t0, t1, left, top) <= FIT * scale
         else:
-            yield from _discs(curve, t0, t1, left)
+            top = Line(*(_reached(curve, t, left) for t in (t0, t1)))
+            is_fine = all(bent) and _turn(curve, t0, t1) < _BEND
+        if is_fine or depth >= _DEEPEST:
+            yield (_between(part(curve, t0, t1, point(curve, t0), point(curve, t1)), top),)
+        else:
+            half = (t0 + t1) / 2
+            stack += [(half, t1, depth + 1), (t0, half, depth + 1)]
+
+
+def _reached(curve: Piece, t: float, left: float) -> Vec:
+    """The end of a normal that goes a little beyond the centre of curvature, but not beyond the distance."""
+    stretch = _stretch(curve, t, left)
+    return _parallel(curve, t, left * min(1.0, 1.1 / abs(1 - stretch)) if stretch != 1 else left)
+
+
+def _turn(curve: Piece, t0: float, t1: float) -> float:
+    (ax, ay), (bx, by) = direction(curve, t0), direction(curve, t1)
+    return abs(math.atan2(ax * by - ay * bx, ax * bx + ay * by))
 
 
 def _stretch(curve: Piece, t: float, left: float) -> float:
@@ -99,15 +115,8 @@ def _stretch(curve: Piece, t: float, left: float) -> float:
     return 1 - left * (dx * ay - dy * ax) / speed**3 if speed else 1.0
 
 
-def _bends_both_ways(curve: Piece, t0: float, t1: float, left: float) -> bool:
-    """Whether only some of a part bends closer than the distance."""
-    return any(_stretch(curve, t0 + (t1 - t0) * k / 8, left) > 0 for k in range(9))
-
-
-def _fitted(curve: Piece, t0: float, t1: float, left: float) -> Bezier | None:
-    """The cubic with the ends and derivatives of the parallel curve; None if that turns back on the part."""
-    if any(_stretch(curve, t0 + (t1 - t0) * k / 8, left) <= 0 for k in range(9)):
-        return None
+def _fitted(curve: Piece, t0: float, t1: float, left: float) -> Bezier:
+    """The cubic with the ends and the derivatives of the parallel curve."""
     p, q = _parallel(curve, t0, left), _parallel(curve, t1, left)
     (ax, ay), (bx, by) = derivative(curve, t0), derivative(curve, t1)
     u, v = (_stretch(curve, t, left) * (t1 - t0) / 3 for t in (t0, t1))
@@ -127,11 +136,6 @@ def _error(curve: Piece, t0: float, t1: float, left: float, fitted: Bezier) -> f
         (px, py), (qx, qy), (dx, dy) = _parallel(curve, t, left), point(fitted, s), direction(curve, t)
         worst = max(worst, abs((qx - px) * dy - (qy - py) * dx))
     return worst
-
-
-def _discs(curve: Piece, t0: float, t1: float, left: float) -> Iterator[Strip]:
-    for k in range(5):
-        yield ((Circle(point(curve, t0 + (t1 - t0) * k / 4), abs(left)),),)
 
 
 # --- Corners and ends ----------------------------------------------------------------------------

@@ -457,7 +457,7 @@ CONVEX = {
     "circle": "circle(center: ({x}, {y}), radius: {s})",
     "slot": "slot(start: ({x}, {y}), end: ({x} + {s}, {y} - {w}), width: {w})",
     "rectangle": "rectangle(center: ({x}, {y}), width: {s}, height: {w}, angle: {t}deg)",
-    "rounded": "rounded_rectangle(center: ({x}, {y}), width: 2 * {s} + {w}, height: 2 * {s}, radius: {w})",
+    "rounded": "rounded_rectangle(center: ({x}, {y}), width: 3 * {s}, height: 2 * {s}, radius: {w} / 2)",
     "triangle": "triangle(({x}, {y}), ({x} + {s}, {y} + {w}), ({x} - {w}, {y} + {s}))",
     "clockwise": "triangle(({x}, {y}), ({x} - {w}, {y} + {s}), ({x} + {s}, {y} + {w}))",
     "hexagon": "regular_polygon(center: ({x}, {y}), radius: {s}, sides: 6, angle: {t}deg)",

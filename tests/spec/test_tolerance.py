@@ -1,4 +1,4 @@
-"""What is written in other words means the same, and what is wrong gets the message that `tolerance.md` shows.
+"""What is written in other words means the same; what is wrong gets the message that `tolerance.md` shows.
 
 `AIDL_ACCEPT=1` writes down the messages that come, under the programs of `wrong` blocks.
 """
