@@ -36,17 +36,18 @@ def solution_notes(
     if solution.status is not Status.SOLVED:
         return found
     for change in model.changed:
-        if short(change.written) == short(change.solved):
+        written, solved = short(change.written), short(change.solved)
+        if written == solved:
             continue
+        agree = f"write {solved} to agree, or `fixed({written})` to insist"
+        vanished = f"they leave no room for it: `fixed({written})` insists, and tells which of them conflict"
         found.append(
             Diagnostic(
                 "N0601",
-                f"`{change.path}` was written {short(change.written)} and became {short(change.solved)}",
+                f"`{change.path}` was written {written} and became {solved}",
                 change.span,
                 "the constraints could not hold otherwise",
-                hints=(
-                    f"write {short(change.solved)} to agree, or `fixed({short(change.written)})` to insist",
-                ),
+                hints=(vanished if solved == "0" else agree,),
             )
         )
     return found + repetition_notes(lowered, solution, freedom)

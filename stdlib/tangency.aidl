@@ -36,7 +36,7 @@ constraint tangent(things: list, inside: bool) {
 }
 
 // Two directions are the same, or opposite.
-constraint continues(a: point, b: point) { cross(a, b) / norm(b) == 0 }
+constraint continues(a: point, b: point) { cross(a, b) / norm(a) / norm(b) == 0 }
 
 // The direction of a curve at one of its ends.
 fn along(l: line, at_end: point) = vector(l)

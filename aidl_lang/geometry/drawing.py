@@ -25,7 +25,7 @@ from aidl_lang.geometry.trace import Traced, trace_all
 from aidl_lang.solved import Scalar, SolvedGeometry, SolvedModel, SolvedStructure
 
 _NO_LENGTH = 1e-7
-"""Length of a line, in mm, that is none: its ends were made to meet."""
+"""Extent of a curve, in mm, that is none: its ends were made to meet, or its size to vanish."""
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[list[Piece
                 # A shape may have edges of no length (a rounded rectangle with half-round ends).
                 own.append(Shape(geometry, tuple(leaves)))
                 vanished = [leaf for leaf in vanished if leaf.curve and not is_finite(leaf.curve)]
-            notes += [unusable_note(structure, leaf) for leaf in vanished[:1]]
+            notes += [unusable_note(structure, leaf, leaf if leaves else geometry) for leaf in vanished[:1]]
     return curves, shapes
 
 
@@ -204,9 +204,7 @@ def _usable(curve: Piece) -> Piece | None:
     box = bounds(curve)
     if not all(map(math.isfinite, box)) or max(map(abs, box)) > LARGEST:
         return None
-    if isinstance(curve, Line) and math.dist(curve.start, curve.end) < _NO_LENGTH:
-        return None
-    return curve if max(box[2] - box[0], box[3] - box[1]) > 0 else None
+    return curve if math.hypot(box[2] - box[0], box[3] - box[1]) >= _NO_LENGTH else None
 
 
 def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:

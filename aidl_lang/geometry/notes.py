@@ -276,37 +276,28 @@ def _detached(structure: SolvedStructure, nearest: tuple[float, str] | None) -> 
     return Diagnostic("W0705", message, span, "stands by itself", hints=tuple(hints), fix=fix)
 
 
-def unusable_note(structure: SolvedStructure, geometry: SolvedGeometry) -> Diagnostic:
-    """For a curve without extent or without finite coordinates."""
-    name = local(structure, geometry)
-    if geometry.curve is not None and not is_finite(geometry.curve):
-        return Diagnostic(
-            "W0706",
-            f"`{name}` in `{structure.path}` has no place and is not drawn",
-            geometry.span or structure.span,
-            "its coordinates divide by zero or leave the range of numbers",
-            hints=("look for a division by an unknown that starts at 0, and give it another first guess",),
-        )
-    if geometry.curve is not None and not max(map(abs, bounds(geometry.curve))) <= LARGEST:
-        return Diagnostic(
-            "W0706",
-            f"`{name}` in `{structure.path}` is too large and is not drawn",
-            geometry.span or structure.span,
-            f"this {geometry.type} reaches further than {LARGEST:g} mm",
-            hints=(
-                "look for a size or position that was written in another unit, or multiplied once too often",
-            ),
-        )
-    size = next((k for k in ("radius", "rx", "length") if k in geometry.values), None)
+def unusable_note(structure: SolvedStructure, leaf: SolvedGeometry, whole: SolvedGeometry) -> Diagnostic:
+    """For a curve without extent or without finite coordinates; `whole` is what there is nothing to see of."""
+    name, curve = local(structure, whole), leaf.curve
+    if curve is not None and not is_finite(curve):
+        what = "has no place"
+        label = "its coordinates divide by zero or leave the range of numbers"
+        hint = "look for a division by an unknown that starts at 0, and give it another first guess"
+    elif curve is not None and not max(map(abs, bounds(curve))) <= LARGEST:
+        what, label = "is too large", f"this {whole.type} reaches further than {LARGEST:g} mm"
+        hint = "look for a size or position that was written in another unit, or multiplied once too often"
+    else:
+        what, label = "has no extent", f"this {whole.type} is a single point"
+        size = next((k for k in _MEASURES if k in whole.values), "length")
+        hint = f"constraints may have shrunk it: hold it open with `constrain {name}.{size} >= …`"
+    span = whole.span or structure.span
     return Diagnostic(
-        "W0706",
-        f"`{name}` in `{structure.path}` has no extent and is not drawn",
-        geometry.span or structure.span,
-        f"this {geometry.type} is a single point",
-        hints=(
-            f"constraints may have shrunk it: hold it open with `constrain {name}.{size or 'length'} >= …`",
-        ),
+        "W0706", f"`{name}` in `{structure.path}` {what} and is not drawn", span, label, hints=(hint,)
     )
+
+
+_MEASURES = ("radius", "rx", "width", "length", "size", "diameter", "module")
+"""What a geometry may be held open by."""
 
 
 def color_note(structure: SolvedStructure, values: tuple[Scalar, ...]) -> Diagnostic:

@@ -82,6 +82,9 @@ _ALSO = (
 )
 """Measures, which constrain when compared."""
 
+_OF_ONE_SHAPE = ("meshes",)
+"""What relates things of one shape alone (gears) has no table."""
+
 
 @dataclass(frozen=True)
 class Cell:
@@ -104,11 +107,9 @@ class Cell:
 
 def constraints() -> list[str]:
     """All that constrains, in the order of the reference."""
-    return [
-        e.name
-        for e in collect.reference().entries.values()
-        if e.sort in ("constraint", "relation") or e.name in _ALSO
-    ]
+    entries = collect.reference().entries.values()
+    found = [e.name for e in entries if e.sort in ("constraint", "relation") or e.name in _ALSO]
+    return [name for name in found if name not in _OF_ONE_SHAPE]
 
 
 def cells(name: str) -> Iterator[Cell]:
