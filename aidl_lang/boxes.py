@@ -48,8 +48,11 @@ class Box:
     here: Structure
 
     def side(self, name: str) -> Expression:
-        """left, right, top or bottom."""
-        return ex.lazy(_Side(self, name))
+        """left, right, top or bottom; spelled out at once where no structure is in the box."""
+        side = _Side(self, name)
+        if any(isinstance(source, Structure) for source in self.sources):
+            return ex.lazy(side)
+        return extent(side, frozenset())
 
     def field(self, name: str) -> Num | PointVal | None:
         """One of `FIELDS`."""

@@ -213,7 +213,9 @@ constraint perpendicular(a: line, b: line) { cosine(a, b) == 0 }
 constraint perpendicular(a, b) {
     let joint = shared_end(ends_of(a), ends_of(b))
     if len(joint) > 0 {
-        dot(along(a, joint[0]), along(b, joint[0])) / norm(along(b, joint[0])) == 0
+        let v = along(a, joint[0])
+        let w = along(b, joint[0])
+        dot(v, w) / norm(v) / norm(w) == 0
     } else {
         crosses_squarely(a, b)
     }

@@ -156,7 +156,7 @@ fn leaving(a: arc) = turned(a.end - a.center, quarter_of(a))
 fn leaving(b: bezier) = b.p3 - b.p2
 fn quarter_of(a: arc) = if cross(written(a.midpoint - a.start), written(a.end - a.start)) >= 0 then 90deg else -90deg
 
-constraint smoothly(a, b) { cross(leaving(a), entering(b)) / norm(leaving(a)) == 0 }
+constraint smoothly(a, b) { cross(leaving(a), entering(b)) / norm(leaving(a)) / norm(entering(b)) == 0 }
 
 // --- Steps ---------------------------------------------------------------------------------------
 

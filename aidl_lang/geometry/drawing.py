@@ -13,7 +13,7 @@ from aidl_lang.diagnostics import Diagnostic, ordered
 from aidl_lang.geometry.bodies import Bodies, IdleHole, LooseCurves, Mass
 from aidl_lang.geometry.colors import css_color
 from aidl_lang.geometry.contacts import Contact, Solid, contacts
-from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece
+from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, Bounds, bounds, is_finite
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.measures import Measures, measure, region_bounds

@@ -35,7 +35,7 @@ class _Contact:
 
 def hull(curves: Sequence[Piece]) -> Region:
     """The least convex region around the curves; empty for what lies on one line."""
-    contacts = _contacts(curves)
+    contacts = _contacts(_distinct(curves))
     if len(contacts) == 1 and is_closed(contacts[0].curve):
         return Region((Face(Loop((contacts[0].curve,))),))
     spots = [_touch(a, b) for a, b in zip(contacts, contacts[1:] + contacts[:1], strict=True)]
@@ -48,6 +48,24 @@ def hull(curves: Sequence[Piece]) -> Region:
         pieces.append(Line(q, point(contacts[(k + 1) % len(contacts)].curve, spots[k][1])))
     kept = [p for p in pieces if math.dist(*ends(p)) > _NEAR * _size(pieces)]
     return Region((Face(Loop(tuple(_joined(kept)))),)) if len(kept) > 1 else Region()
+
+
+def _distinct(curves: Sequence[Piece]) -> list[Piece]:
+    """Each curve once, and none that lies in the disc of a circle: on circles that all but coincide, no line
+    touches two.
+    """
+    kept: list[Piece] = []
+    for curve in sorted(dict.fromkeys(curves), key=lambda c: -c.radius if isinstance(c, Circle) else 0.0):
+        if not (isinstance(curve, Arc | Circle) and any(_holds(c, curve) for c in kept)):
+            kept.append(curve)
+    return kept
+
+
+def _holds(outer: Piece, inner: Arc | Circle) -> bool:
+    """Whether one curve is a circle in whose disc the other lies."""
+    if not isinstance(outer, Circle):
+        return False
+    return math.dist(outer.center, inner.center) + inner.radius <= outer.radius * (1 + _NEAR)
 
 
 def _size(pieces: Sequence[Piece]) -> float:
@@ -121,7 +139,10 @@ def _touch(a: _Contact, b: _Contact) -> tuple[float, float]:
         if v is None:
             other = point(b.curve, s), 0.0
         if u is not None and v is not None:
-            return u if one[1] else t, v if other[1] else s
+            found = u if one[1] else t, v if other[1] else s
+            if _is_near(a.curve, found[0], t) and _is_near(b.curve, found[1], s):
+                return found
+            break  # discs that all but coincide are touched anywhere
     for _ in range(100):
         before = t, s
         t = _tangent_from(a.curve, point(b.curve, s), t)
@@ -129,6 +150,12 @@ def _touch(a: _Contact, b: _Contact) -> tuple[float, float]:
         if abs(t - before[0]) + abs(s - before[1]) < 1e-14:
             break
     return t, s
+
+
+def _is_near(curve: Piece, t: float, sampled: float) -> bool:
+    """Whether a parameter lies between the samples around the one that the sampling told."""
+    away = abs(t - sampled)
+    return min(away, 1 - away if is_closed(curve) else away) < 2 / _SAMPLES
 
 
 def _disc(curve: Piece, t: float) -> tuple[Vec, float] | None:
@@ -157,9 +184,13 @@ def _parameter(curve: Piece, p: Vec, about: float) -> float | None:
         return about
     t = nearest(curve, p)
     size = curve.radius if isinstance(curve, Arc | Circle) else 1.0
-    if math.dist(point(curve, t), p) > _NEAR * size and about in (0.0, 1.0):
-        return about if math.dist(point(curve, about), p) <= _NEAR * size else None
-    return t
+    if is_closed(curve) or about not in (0.0, 1.0):
+        return t
+    if math.dist(point(curve, about), p) <= _NEAR * size:
+        return about
+    # A point off the arc, or one elsewhere on it, where the same circle is touched from another side.
+    on_arc = math.dist(point(curve, t), p) <= _NEAR * size
+    return t if on_arc and _is_near(curve, t, about) else None
 
 
 def _tangent_from(curve: Piece, p: Vec, t: float) -> float:

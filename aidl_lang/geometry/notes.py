@@ -277,7 +277,7 @@ def _detached(structure: SolvedStructure, nearest: tuple[float, str] | None) -> 
 
 
 def unusable_note(structure: SolvedStructure, leaf: SolvedGeometry, whole: SolvedGeometry) -> Diagnostic:
-    """For a curve without extent or without finite coordinates; `whole` is what there is nothing to see of."""
+    """For a curve without extent or without finite coordinates; `whole` is what cannot be seen."""
     name, curve = local(structure, whole), leaf.curve
     if curve is not None and not is_finite(curve):
         what = "has no place"

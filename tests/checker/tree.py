@@ -58,8 +58,8 @@ class Transform:
 class Geo:
     """A geometry: `data` are its fields in the root frame; `parts` those of a compound shape.
 
-    Set by the walk over the program: `source` are the names inside an instance of a program's own shape, and
-    `written` is the statement that defines it.
+    Set by the walk over the program: `source` are the names inside an instance of a shape, `written` is the
+    statement that defines it, and `is_edited` tells of a statement that moves, turns or scales it.
     """
 
     name: str
@@ -70,9 +70,13 @@ class Geo:
     construction: bool
     source: Any = None
     written: Any = None
+    is_edited: bool = False
+    _members: dict[str, Any] | None = None
 
     def members(self) -> dict[str, Any]:
-        return gathered(self.parts)
+        if self._members is None:
+            self._members = gathered(self.parts)
+        return self._members
 
     def curves(self) -> Iterator[Geo]:
         if self.construction:
@@ -87,7 +91,8 @@ class Geo:
 class Node:
     """A structure. `world` leads from its frame to the root's, `local` to the parent's.
 
-    Set by the walk over the program: `env` are the names its body sees, `placed` is its placement.
+    Set by the walk over the program: `env` are the names its body sees, `placed` is its placement, and
+    `is_edited` tells of a statement that moves, turns or scales it.
     """
 
     name: str
@@ -101,13 +106,17 @@ class Node:
     children: dict[str, Node] = field(default_factory=dict)
     env: Any = None
     placed: Any = None
+    is_edited: bool = False
+    _members: dict[str, Any] | None = None
 
     @property
     def is_empty(self) -> bool:
         return bool(self.entry.get("empty"))
 
     def members(self) -> dict[str, Any]:
-        return gathered({**self.geometry, **self.children})
+        if self._members is None:
+            self._members = gathered({**self.geometry, **self.children})
+        return self._members
 
     def within(self, other: Node) -> bool:
         here: Node | None = self
@@ -121,11 +130,12 @@ class Node:
             yield from child.walk()
 
 
-@dataclass(frozen=True)
+@dataclass
 class Array:
-    """Members by index; a sparse array has gaps."""
+    """Members by index; a sparse array has gaps. `pattern` is set where a pattern made them."""
 
     items: dict[int, Any]
+    pattern: Any = None
 
     def list(self) -> list[Any]:
         return [self.items[i] for i in sorted(self.items)]

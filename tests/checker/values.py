@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from enum import IntEnum
+from functools import cache
 from typing import Any
 
 from tests.checker.tree import Node
@@ -74,7 +75,9 @@ _ARITHMETIC: dict[str, Callable[[float, float], float]] = {
 
 
 def arithmetic(operator: str, a: Any, b: Any) -> Any:
-    """Numbers with numbers, points with points and with numbers."""
+    """Numbers with numbers, points with points and with numbers; `+` joins texts and lists."""
+    if operator == "+" and type(a) is type(b) and isinstance(a, str | list):
+        return a + b
     if isinstance(a, Num) and isinstance(b, Num):
         try:
             value = _ARITHMETIC[operator](a.value, b.value)
@@ -106,6 +109,7 @@ def marked(value: Any, exact: Exact) -> Any:
             return value
 
 
+@cache
 def fold(name: str) -> str:
     """Spellings that mean the same name."""
     return name.replace("_", "").lower()
@@ -120,43 +124,49 @@ class Scope:
     node: Node | None = None
     functions: dict[str, list[tuple[Any, Scope]]] = field(default_factory=dict)
     aliases: dict[str, str] = field(default_factory=dict)
+    is_library: bool = False
 
     def find(self, name: str) -> tuple[Any, Scope] | None:
         """A value and the scope that has it; as written, then without regard to case and underscores."""
-        return self._find(name, str) or self._find(name, fold)
-
-    def _find(self, name: str, key: Callable[[str], str]) -> tuple[Any, Scope] | None:
-        here: Scope | None = self
-        while here is not None:
-            for known, value in here.visible().items():
-                if key(known) == key(name):
-                    return value, here
-            here = here.parent
+        for is_exact in (True, False):
+            for here in self.chain():
+                for names in here._layers():
+                    if name in names:
+                        return names[name], here
+                    if not is_exact:
+                        for known, value in names.items():
+                            if fold(known) == fold(name):
+                                return value, here
         return None
 
-    def visible(self) -> dict[str, Any]:
+    def chain(self) -> Iterator[Scope]:
+        """This scope and those around it, innermost first."""
+        here: Scope | None = self
+        while here is not None:
+            yield here
+            here = here.parent
+
+    def _layers(self) -> tuple[dict[str, Any], ...]:
+        """A structure's members come before other names, its own name and `self` after them."""
         if self.node is None:
-            return self.names
+            return (self.names,)
         own = {self.node.name.partition("[")[0]: self.node, "self": self.node}
-        return {**own, **self.names, **self.node.members()}
+        return self.node.members(), self.names, own
 
     def candidates(self, name: str) -> list[tuple[Any, Scope]]:
-        """User-defined callables of a name, innermost first."""
+        """Callables of a name that a program defines, innermost first, and then those of the library."""
         wanted = fold(self.canonical(name))
-        found: list[tuple[Any, Scope]] = []
-        here: Scope | None = self
-        while here is not None:
-            found += [c for n, cs in here.functions.items() if fold(n) == wanted for c in cs]
-            here = here.parent
-        return found
+        return [c for here in self.chain() for n, cs in here.functions.items() if fold(n) == wanted for c in cs]
+
+    def own(self, name: str) -> list[tuple[Any, Scope]]:
+        """The candidates that a program defines itself."""
+        return [c for c in self.candidates(name) if not c[1].is_library]
 
     def canonical(self, name: str) -> str:
-        here: Scope | None = self
-        while here is not None:
+        for here in self.chain():
             for alias, target in here.aliases.items():
                 if fold(alias) == fold(name):
                     return self.canonical(target) if fold(target) != fold(name) else target
-            here = here.parent
         return name
 
 

@@ -248,7 +248,9 @@ curves = st.one_of(
 @settings(deadline=None, max_examples=150)
 @given(st.lists(curves, min_size=2, max_size=6))
 def test_hulls_against_shapely(drawn: list[Piece]) -> None:
-    spots = np.concatenate([points(c, np.linspace(0, 1, 2001)) for c in drawn])
+    # Of a line its ends: among thousands of points that all but lie on one line, GEOS loses corners.
+    counts = [2 if isinstance(c, Line) else 2001 for c in drawn]
+    spots = np.concatenate([points(c, np.linspace(0, 1, n)) for c, n in zip(drawn, counts, strict=True)])
     theirs = shapely.convex_hull(shapely.MultiPoint(spots))
     ours = hull(drawn)
     assert area(ours) == pytest.approx(theirs.area, rel=1e-4, abs=5e-3)

@@ -1,0 +1,161 @@
+"""The arguments of a call for the parameters of a definition: overloads by type, and other words for names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from aidl_lang import ast
+from aidl_lang.synonyms import COORDINATES, PAIRS, PARAMETERS
+from tests.checker.tree import Array, Geo, Node
+from tests.checker.values import Boxed, MistakeError, Num, Point, Scope, UnavailableError, fold
+
+if TYPE_CHECKING:
+    from tests.checker.evaluate import Evaluator
+
+_PRIMITIVES = ("line", "circle", "arc", "ellipse", "bezier")
+_GATHERED = 10
+
+
+def respelled(known: Sequence[str], named: dict[str, Any], taken: Iterable[str] = ()) -> dict[str, Any]:
+    """Named arguments by the names of the parameters they can only mean; other words stay as they are."""
+    by_fold = {fold(p): p for p in known}
+    found = {by_fold.get(fold(n), n): v for n, v in named.items()}
+    used = {*taken, *found}
+    for pair, (first, second) in PAIRS.items():
+        if pair in found and pair not in by_fold and {first, second} <= set(known):
+            found[first], found[second] = _halves(found.pop(pair))
+    for x, y, meanings in COORDINATES:
+        words = {fold(n): n for n in found if fold(n) not in by_fold}
+        target = next((m for m in meanings if m in by_fold), None)
+        if target is not None and x in words and y in words:
+            found[by_fold[target]] = [found.pop(words[x]), found.pop(words[y])]
+    for word in [n for n in found if fold(n) not in by_fold]:
+        meant = [by_fold[fold(m)] for m in PARAMETERS.get(fold(word), ()) if fold(m) in by_fold]
+        free = [m for m in meant if m not in used]
+        if len(free) == 1:
+            found[free[0]] = found.pop(word)
+            used.add(free[0])
+    return found
+
+
+def _halves(value: Any) -> tuple[Any, Any]:
+    return (value.x, value.y) if isinstance(value, Point) else tuple(value)  # type: ignore[return-value]
+
+
+def bound(
+    definition: Any, positional: Sequence[Any], named: dict[str, Any], value_of: Callable[[Any], Any]
+) -> tuple[dict[str, Any], int] | None:
+    """The arguments by parameter, with how far they are from what is wanted; None when they do not fit.
+
+    `value_of` gives the value of an argument, which may be an expression that waits.
+    """
+    names = [p.name.text for p in definition.parameters]
+    gathers = bool(names) and _kind(definition.parameters[0]) in ("list", "points")
+    for gather in (False, True) if gathers and positional else (False,):
+        if gather:
+            given = {names[0]: list(map(value_of, positional))}
+        elif len(positional) <= len(names):
+            given = dict(zip(names, positional, strict=False))
+        else:
+            continue
+        words = respelled(names, named, given)
+        if not set(words) <= set(names) or set(words) & set(given):
+            continue
+        given |= words
+        steps = [_step(p, given, value_of) for p in definition.parameters]
+        if all(s is not None for s in steps):
+            return given, sum(s for s in steps if s is not None) + gather * _GATHERED
+    return None
+
+
+def _step(parameter: ast.Parameter, given: dict[str, Any], value_of: Callable[[Any], Any]) -> int | None:
+    """How far an argument is from what its parameter wants; a default is as far as nothing."""
+    if parameter.name.text not in given:
+        return None if parameter.default is None else 0
+    kind = _kind(parameter)
+    try:
+        return 4 if kind is None else fits(kind, value_of(given[parameter.name.text]))
+    except UnavailableError:
+        return 4
+
+
+def _kind(parameter: ast.Parameter) -> str | None:
+    return None if parameter.type is None else fold(parameter.type.text)
+
+
+def fits(kind: str, value: Any) -> int | None:
+    """0 for a value of the very type, more for one that is converted, None for one that is not."""
+    match kind:
+        case "angle" | "turn":
+            return (0 if value.is_angle else 1) if isinstance(value, Num) else None
+        case "length" | "number" | "area":
+            return _number(value)
+        case "integer":
+            is_whole = isinstance(value, Num) and value.value == round(value.value)
+            return 0 if is_whole and not value.is_angle else None
+        case "text" | "string":
+            return 0 if isinstance(value, str) else None
+        case "bool" | "boolean":
+            return 0 if isinstance(value, bool) else None
+        case "point":
+            if isinstance(value, list):
+                return 2 if len(value) == 2 and all(isinstance(v, Num) for v in value) else None
+            return 0 if _is_point(value) else None
+        case "list" | "points":
+            return 0 if isinstance(value, list | Array) else None
+        case "record":
+            return 0 if isinstance(value, dict) else None
+        case "structure":
+            return 0 if isinstance(value, Node) else None
+        case "geometry":
+            return 1 if isinstance(value, Geo | Point) else None
+        case "box":
+            return _box(value)
+        case _:
+            return 0 if isinstance(value, Geo) and fold(value.type) == kind else None
+
+
+def _number(value: Any) -> int | None:
+    if isinstance(value, Geo) and value.type == "line":
+        return 2
+    return 0 if isinstance(value, Num) and not value.is_angle else None
+
+
+def _is_point(value: Any) -> bool:
+    return isinstance(value, Point) or (isinstance(value, Geo) and value.type == "point")
+
+
+def _box(value: Any) -> int | None:
+    if isinstance(value, list):
+        return None if any(isinstance(v, Num | str | bool) for v in value) else 2
+    if isinstance(value, Boxed):
+        return 0
+    return 2 if isinstance(value, Array) else 1 if isinstance(value, Node | Geo | Point) else None
+
+
+def chosen(
+    candidates: Sequence[tuple[Any, Scope]],
+    positional: Sequence[Any],
+    named: dict[str, Any],
+    value_of: Callable[[Any], Any],
+) -> tuple[Any, Scope] | None:
+    """The definition that fits best, the first of equals, and the scope of a call of it."""
+    fitting = []
+    for order, (definition, home) in enumerate(candidates):
+        found = bound(definition, positional, named, value_of)
+        if found is not None:
+            given, distance = found
+            defaults = len(definition.parameters) - len(given)
+            fitting.append((home.is_library, distance, defaults, order, definition, Scope(home, given)))
+    return min(fitting, key=lambda f: f[:4])[4:] if fitting else None
+
+
+def with_defaults(ev: Evaluator, definition: Any, inner: Scope) -> Scope:
+    """What was not given, evaluated in the scope of the call."""
+    for parameter in definition.parameters:
+        if parameter.name.text not in inner.names:
+            if parameter.default is None:
+                raise MistakeError(f"{definition.name.text} needs {parameter.name.text}")
+            inner.names[parameter.name.text] = ev.value(parameter.default, inner)
+    return inner

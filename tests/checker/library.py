@@ -1,0 +1,53 @@
+"""What the library calls by name: its tables, functions and templates, read as any program is read.
+
+Relations, measures and geometry have a meaning of their own in this package; what stands here is data (the
+sizes of screws and motors), what names mean the same, and the bodies of templates and shapes.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from aidl_lang import ast
+from aidl_lang.parser import parse
+from aidl_lang.source import SourceFile
+from tests.checker.values import Scope, Thunk
+
+FOLDER = Path(__file__).resolve().parents[2] / "stdlib"
+
+
+@cache
+def modules() -> tuple[ast.Module, ...]:
+    files = sorted(FOLDER.glob("*.aidl"))
+    return tuple(parse(SourceFile(f.name, f.read_text("utf-8"))).module for f in files)
+
+
+@cache
+def scope() -> Scope:
+    """The outermost names. Nothing writes into it, so that all programs may share it."""
+    found = Scope(None, is_library=True)
+    for statement in (s for module in modules() for s in module.statements):
+        match statement:
+            case ast.Let(name, value):
+                found.names[name.text] = Thunk(value, found, "let", name.text)
+            case ast.Alias(name, target):
+                found.aliases[name.text] = target.text
+            case ast.FunctionDefinition() | ast.ShapeDefinition():
+                found.functions.setdefault(statement.name.text, []).append((statement, found))
+            case ast.Structure() if statement.parameters is not None:
+                found.functions.setdefault(statement.name.text, []).append((statement, found))
+    return found
+
+
+def public(kind: type) -> set[str]:
+    """Names whose first definition is documented and whose definitions of this kind are several or one."""
+    first: dict[str, bool] = {}
+    found: set[str] = set()
+    for statement in (s for module in modules() for s in module.statements):
+        if isinstance(statement, ast.FunctionDefinition | ast.ShapeDefinition | ast.ConstraintDefinition):
+            name = statement.name.text
+            first.setdefault(name, statement.doc is not None)
+            if isinstance(statement, kind) and first[name]:
+                found.add(name)
+    return found
