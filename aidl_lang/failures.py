@@ -17,6 +17,8 @@ from aidl_lang.solver.solution import Failure, GroupFailure, Member, Solution
 from aidl_lang.source import Span
 from aidl_lang.units import ANGLE, LENGTH
 
+_PROVEN = (Failure.CONTRADICTORY, Failure.OVERDETERMINED)
+"""Reasons that do not depend on where the search began."""
 _TOLERANCE = 1e-6
 """Below this a constraint is not called off, in its own units."""
 _NAMED = 3
@@ -26,9 +28,19 @@ _QUOTED = 60
 
 
 def failure_notes(lowered: Lowered, solution: Solution) -> list[Diagnostic]:
-    """One error for each group that could not be solved."""
+    """One error for each group that could not be solved for reasons of its own."""
     stated = Counter(constraint.span for constraint in lowered.stated if constraint is not None)
-    return [_Report(lowered, solution, failure, stated).diagnostic() for failure in solution.failures]
+    own = [f for f in solution.failures if not _follows(f, solution.failures, lowered.groups)]
+    return [_Report(lowered, solution, failure, stated).diagnostic() for failure in own]
+
+
+def _follows(failure: GroupFailure, failures: Sequence[GroupFailure], paths: Sequence[str]) -> bool:
+    """Whether a search that found nothing may owe that to a failure in the same group or inside it."""
+    if failure.reason in _PROVEN:
+        return False
+    here = f"{paths[failure.group]}."
+    inside = [f for f in failures if f is not failure and f"{paths[f.group]}.".startswith(here)]
+    return any(f.group != failure.group or f.reason in _PROVEN for f in inside)
 
 
 @dataclass(frozen=True)
@@ -57,7 +69,7 @@ class _Report:
         self, lowered: Lowered, solution: Solution, failure: GroupFailure, stated: Counter[Span]
     ) -> None:
         self.lowered, self.solution, self.failure, self.times = lowered, solution, failure, stated
-        self.is_proven = failure.reason in (Failure.CONTRADICTORY, Failure.OVERDETERMINED)
+        self.is_proven = failure.reason in _PROVEN
         stated_here = [s for i in failure.conflict if (s := lowered.stated[i]) is not None]
         self.places = Counter(constraint.span for constraint in stated_here)
         self.sizes = [self._size(i) for i in failure.conflict if lowered.stated[i] is None]

@@ -14,13 +14,13 @@ import numpy as np
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
 from aidl_lang.model import (
-    SIZES,
     Comparison,
     Constraint,
     Geometry,
     Model,
     Structure,
     convert,
+    is_size,
     own_geometry,
 )
 from aidl_lang.solver import Constraint as SolverConstraint
@@ -212,7 +212,7 @@ class _Lowering:
 
     def _never_vanishing(self) -> Iterator[SolverConstraint]:
         for unknown, number in self.numbers.items():
-            if unknown.field.rpartition(".")[2] in SIZES and unknown.guess >= 0:
+            if is_size(unknown.field.rpartition(".")[2]) and unknown.guess >= 0:
                 least = LEAST_SHARE * unknown.guess if unknown.kept else 0.0
                 expression = self.tape.sub(self.tape.constant(least), self.tape.unknown(number))
                 row = Row(expression, Relation.AT_MOST, self.size)

@@ -26,7 +26,14 @@ SIZES = frozenset(
 )
 """Names of sizes, which are never negative."""
 
+_SIZE_WORDS = SIZES | {"size", "side", "flats"}
+
 KINDS = ("assembly", "solid", "hole", "drawing")
+
+
+def is_size(name: str) -> bool:
+    """Whether a field or an argument is a size by its last word: `radius`, `inner_radius`, `top_width`."""
+    return name.rpartition("_")[2] in _SIZE_WORDS
 
 
 @dataclass(eq=False)

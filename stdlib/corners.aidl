@@ -90,6 +90,7 @@ shape rounded_rectangle(
     right = line(corner_bottom_right.end, corner_top_right.start)
     top = line(corner_top_right.end, corner_top_left.start)
     left = line(corner_top_left.end, corner_bottom_left.start)
+    assert min(a, b, c, d) >= 0, "the radius of a corner is not negative"
     assert max(a + b, d + c) <= width, "two round corners of a level side overlap"
     assert max(a + d, b + c) <= height, "two round corners of an upright side overlap"
 }

@@ -76,7 +76,7 @@ fn gap(a: box, b: box) = hypot(
 /// The angle between two lines, at the middle of three points, or of one line to the x axis.
 ///
 /// As a constraint it takes the reading nearest to the first guesses: either way round, and for lines either
-/// end. `ccw: true` states it counter-clockwise from a to b.
+/// end. `ccw: true` states it counter-clockwise from a to b; `at_most` and `at_least`, or `<=` and `>=`, bound it.
 ///
 /// ```aidl
 /// drawing d {
@@ -99,12 +99,30 @@ constraint angle(a: line, b: line, value: angle) {
 constraint angle(a: line, b: line, value: angle, ccw: bool) {
     angle(a, b) == (if ccw then value else -value)
 }
+constraint angle(a: line, b: line, at_most: angle) {
+    opening(a, b, way_like(at_most, a, b)) <= at_most
+}
+constraint angle(a: line, b: line, at_least: angle) {
+    opening(a, b, way_like(at_least, a, b)) >= at_least
+}
 constraint angle(l: line, value: angle) {
     l.angle == nearest(l.angle, [value, value - 180deg])
 }
 constraint angle(a: point, corner: point, b: point, value: angle) {
     corner_angle(a, corner, b) == nearest(corner_angle(a, corner, b), [value, -value])
 }
+
+// How far two lines open, 0 to 180 degrees: from end to end, or with `way` -1 from the end of one to the start of
+// the other.
+fn opening(a: line, b: line, way: number) = atan2(
+    abs(cross(vector(a), vector(b))),
+    way * dot(vector(a), vector(b))
+)
+
+// The way in which two lines, as written, open as an angle does: sharp or blunt.
+fn way_like(bound: angle, a: line, b: line) = if written(
+    (90deg - bound) * dot(vector(a), vector(b))
+) >= 0 then 1 else -1
 
 // The angle from one arm of a corner to the other, counter-clockwise, at most half a turn either way.
 fn corner_angle(a: point, corner: point, b: point) = atan2(

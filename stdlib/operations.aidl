@@ -2,8 +2,8 @@
 
 /// One thing is the mirror image of another: points, lines, arcs, circles, curves, boxes, or lists of them.
 ///
-/// `about` is a line, an axis or a point. The first thing is placed and the second one held; ends of curves are
-/// matched as they lie nearest. Of compound shapes and structures the boxes mirror each other.
+/// `about` is a line, an axis or a point. The first thing is placed and the second one held; ends of lines and
+/// Béziers are matched as they lie nearest. Of compound shapes and structures the boxes mirror each other.
 ///
 /// ```aidl
 /// drawing ears {
@@ -26,10 +26,7 @@ constraint mirror_of(a: circle, b: circle, about) {
 }
 constraint mirror_of(a: arc, b: arc, about) {
     let image = mirror(b, about: about)
-    let is_reversed = distances([a.start, a.end], [image.end, image.start]) < distances(
-        [a.start, a.end],
-        [image.start, image.end]
-    )
+    let is_reversed = is_clockwise(a) != is_clockwise(image)
     a.center == image.center
     a.radius == b.radius
     a.start_angle == (if is_reversed then image.end_angle else image.start_angle)

@@ -148,6 +148,7 @@ shape i_shape(
     rotatable: bool = false
 ) {
     fn place(x, y) = center + turned((x - width / 2, y - height / 2), angle)
+    assert min(flange, web) >= 0, "the flanges and the web of an I are not thinner than nothing"
     assert 2 * flange < height, "the flanges of an I are thinner than half of its height"
     assert web < width, "the web of an I is thinner than it is wide"
     outline = polygon(

@@ -220,6 +220,7 @@ shape slot(
     angle: turn = 0deg,
     rotatable: bool = false
 ) {
+    assert center_distance >= 0, "the distance between the centres of a slot is not negative"
     start = center - polar(center_distance / 2, angle)
     end = center + polar(center_distance / 2, angle)
     end_cap = half_turn(end, width / 2, angle - 90deg)

@@ -91,6 +91,7 @@ shape triangle(
     angle: turn = 0deg,
     rotatable: bool = false
 ) {
+    assert min(length_ab, length_ca) >= 0, "the sides of a triangle are not negative"
     assert 0deg < angle_a < 180deg, "the angles of a triangle are between 0 and 180 degrees"
     b = a + polar(length_ab, angle)
     c = a + polar(length_ca, angle + angle_a)

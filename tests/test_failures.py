@@ -10,7 +10,9 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.failures import _follows
 from aidl_lang.render import render, to_dict
+from aidl_lang.solver.solution import Failure, GroupFailure
 from aidl_lang.source import SourceFile, Span
 from tests.documents import ROOT, Block, programs
 
@@ -124,3 +126,18 @@ def test_extreme_numbers_do_not_break_the_message(value: str) -> None:
     for d in found:
         assert render(d)
         assert d.fix is not None
+
+
+def test_a_search_that_may_have_failed_for_a_failure_inside_it_is_not_told() -> None:
+    """Only what is wrong for reasons of its own: the conflict, not the structures around it."""
+    paths = ["box", "box.lid", "box.lid.knob", "boxes"]
+    conflict = GroupFailure(1, Failure.CONTRADICTORY, ())
+    found = [
+        GroupFailure(2, Failure.TIMED_OUT, ()),
+        conflict,
+        GroupFailure(1, Failure.NOT_CONVERGED, ()),
+        GroupFailure(0, Failure.TIMED_OUT, ()),
+        GroupFailure(0, Failure.OVERDETERMINED, ()),
+        GroupFailure(3, Failure.NOT_CONVERGED, ()),
+    ]
+    assert [f for f in found if not _follows(f, found, paths)] == [found[0], conflict, found[4], found[5]]

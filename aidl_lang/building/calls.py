@@ -31,6 +31,7 @@ from aidl_lang.types import (
     NumberType,
     PointType,
     Signature,
+    TruthType,
     with_article,
 )
 from aidl_lang.values import (
@@ -172,10 +173,17 @@ def bound(
         value = _as_kind(it, values[indices[0]], kind, nodes[indices[0]], env)
         if value is None:
             return None
+        if isinstance(value, Condition) and isinstance(kind, TruthType) and _is_flag(binding.signature, name):
+            value = truth(it, value, nodes[indices[0]])
         result[name] = value
     if binding.signature.takes_any:
         result |= {name: values[indices[0]] for name, indices in binding.arguments.items()}
     return result
+
+
+def _is_flag(signature: Signature, name: str) -> bool:
+    """Whether a condition decides how something is made: it has to be known then."""
+    return signature.node is None or name == "rotatable"
 
 
 def _spliced(value: Value) -> Sequence[Value]:

@@ -12,22 +12,42 @@ from collections.abc import Callable, Mapping, Sequence
 
 from aidl_lang import ast
 from aidl_lang import expression as ex
+from aidl_lang.boxes import SIDES
 from aidl_lang.building.conditions import all_of, compare_numbers
 from aidl_lang.building.lettering import typeset
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.expression import Expression
-from aidl_lang.model import SIZES, Constraint, Geometry, Structure
+from aidl_lang.model import Constraint, Geometry, Measurement, Structure, is_size
 from aidl_lang.primitives import direction, distance, polar
+from aidl_lang.source import Span
 from aidl_lang.units import ANGLE, LENGTH, MaybeDimension
 from aidl_lang.values import Nothing, Num, PointVal, Status, Value, length, point
 
 Arguments = Mapping[str, Value]
 
 
+def solvable(it: Interpreter, value: Num, span: Span | None) -> Expression:
+    """What a number is for the solver; measures of what is drawn after solving are refused."""
+    if not math.isnan(value.value):
+        return value.expression
+    found = (n.payload for n in ex.nodes([value.expression]) if isinstance(n.payload, Measurement))
+    if (measured := next(found, None)) is None:
+        return value.expression
+    is_box = measured.kind in SIDES
+    it.report(
+        "E0519" if is_box else "E0512",
+        f"geometry cannot follow from {'this box' if is_box else f'`{measured.kind}`'}, which is known after "
+        "solving only",
+        span,
+        hints=["take the sizes and points of what is measured, or check it in an `assert`"],
+    )
+    return ex.ZERO
+
+
 def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: MaybeDimension = LENGTH) -> Num:
     """A number given as a size: kept if literal, exact if a param is in it, derived from unknowns."""
-    expression = value.expression
-    if name in SIZES and expression.is_constant and value.value < 0:
+    expression = solvable(it, value, holder.span)
+    if dimension in (None, LENGTH) and is_size(name) and expression.is_constant and value.value < 0:
         it.report(
             "E0515",
             f"the {name} of this {holder.type} is {value.value:g}, and sizes are never negative",
@@ -129,7 +149,7 @@ def _coordinate(
 ) -> Expression:
     """One coordinate: exact, a first guess, or a difference from the first guess before it."""
     if number.status >= Status.FIXED:
-        return number.expression
+        return solvable(it, number, holder.span)
     if axis not in anchors or number.status is Status.GUESS:
         made = it.unknown(number.value, holder, f"{name}.{axis}", owner=owner, dimension=LENGTH)
         anchors.setdefault(axis, (number, made))
@@ -159,7 +179,7 @@ def _point(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
     """A named point: its unknowns are called `p.x` and `p.y`."""
     x, y = (
-        n.expression
+        solvable(it, n, g.span)
         if n.status >= Status.FIXED
         else it.unknown(n.value, g, axis, owner=g.owner, dimension=LENGTH)
         for n, axis in ((at.x, "x"), (at.y, "y"))

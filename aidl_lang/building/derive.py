@@ -143,7 +143,7 @@ class Copier:
         """What a value of the source is in the copy. `name`: angles that are directions turn."""
         match value:
             case Geometry():
-                return self.geometry(value)
+                return self._operand(value)
             case Structure():
                 return self.structures.get(value, value)
             case Array():

@@ -50,15 +50,22 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
 
 
 def _as_relation(node: ast.Expression) -> ast.Expression:
-    """`angle(a, b) == v` states what `angle(a, b, v)` does, in the same reading."""
+    """`angle(a, b) == v` states what `angle(a, b, v)` does, in the same reading; so do `<=` and `>=`."""
     match node:
-        case ast.Comparison(operands=(ast.Call() as call, value), operators=("==",)):
+        case ast.Comparison(operands=(ast.Call() as call, value), operators=(relation,)):
             named = any(a.name is not None for a in call.arguments)
             count = len(call.arguments) + (call.receiver is not None)
-            if fold(call.callee.text) in ("angle", "anglebetween") and 1 <= count <= 3 and not named:
-                given = ast.Argument(None, value, span=value.span)
+            bound = _BOUNDS.get(relation)
+            if fold(call.callee.text) not in ("angle", "anglebetween") or named:
+                return node
+            if (relation == "==" and 1 <= count <= 3) or (bound is not None and count == 2):
+                name = ast.Identifier(bound, span=value.span) if bound else None
+                given = ast.Argument(name, value, span=value.span)
                 return ast.Call(call.callee, call.receiver, (*call.arguments, given), span=node.span)
     return node
+
+
+_BOUNDS = {"<=": "at_most", "<": "at_most", ">=": "at_least", ">": "at_least"}
 
 
 def _turn(env: Env) -> str:

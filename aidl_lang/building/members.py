@@ -241,9 +241,26 @@ def _box_field(it: Interpreter, box: Box, name: str, node: ast.Node, env: Env) -
     if key is None:
         return None
     value = box.field(key)
+    if value is not None and env.reach is Reach.OWN and env.here in box.sources:
+        return as_written(value) if it.watched else _refuse_own_box(it, node, env)
     owners = (s if isinstance(s, Structure) else getattr(s, "bound_to", None) for s in box.sources)
     reached = all(may_read(it, owner, node, env) for owner in owners if owner is not None)
     return value if reached or value is None else as_written(value)
+
+
+def _refuse_own_box(it: Interpreter, node: ast.Node, env: Env) -> Value:
+    text, here = node.span.text, env.here.path
+    it.report(
+        "E0401",
+        f"geometry of `{here}` cannot use `{text}`, which follows from the geometry of `{here}`",
+        node,
+        label="the box that this geometry is in",
+        hints=[
+            "take the box of a geometry, as `outline.bb`, or write a first guess here and say the relation "
+            "as a constraint"
+        ],
+    )
+    return NOTHING
 
 
 def no_index(it: Interpreter, node: ast.Index, known: list[int], wanted: int) -> Value:

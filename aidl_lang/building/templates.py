@@ -10,27 +10,35 @@ from __future__ import annotations
 from aidl_lang import ast
 from aidl_lang.building.coerce import as_written
 from aidl_lang.building.conditions import compare_numbers
-from aidl_lang.building.construct import positions
+from aidl_lang.building.construct import positions, solvable
 from aidl_lang.building.scopes import PassedBinding
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.model import Condition, Constraint, Geometry, Structure, convert_point
-from aidl_lang.values import Num, PointVal, Status, Value, kind_of
+from aidl_lang.values import Num, PointVal, RecordVal, Status, Value, kind_of, members
 
 
 def passed(
     it: Interpreter, name: str, value: Value, instance: Structure, holder: Structure, node: ast.Node
 ) -> Value | PassedBinding:
     """What the parameter of an instance is bound to."""
-    if isinstance(value, Geometry | Structure):
+    if (thing := _drawn(value)) is not None:
         it.report(
             "E0313",
-            f"a template takes numbers, points, texts and lists, and `{name}` is given {kind_of(value)}",
+            f"a template takes numbers, points, texts and lists, and `{name}` is given {kind_of(thing)}",
             node,
             hints=[f"pass one of its points or sizes, or constrain `{instance.name}` from outside"],
         )
     if isinstance(value, Num | PointVal):
         return PassedBinding(name, value, instance, holder, node)
     return value
+
+
+def _drawn(value: Value) -> Geometry | Structure | None:
+    """A geometry or a structure that a value is, or holds."""
+    if isinstance(value, Geometry | Structure):
+        return value
+    held = value.fields.values() if isinstance(value, RecordVal) else members(value) or ()
+    return next((thing for item in held if (thing := _drawn(item)) is not None), None)
 
 
 def read_passed(it: Interpreter, binding: PassedBinding, env: Env) -> Value:
@@ -44,6 +52,7 @@ def read_passed(it: Interpreter, binding: PassedBinding, env: Env) -> Value:
 def _tie(it: Interpreter, binding: PassedBinding, here: Structure) -> Value:
     match binding.value:
         case Num(status=Status.REFERENCE) as number:
+            solvable(it, number, binding.node.span)
             made = it.unknown(number.value, here, binding.name, owner=here, dimension=number.dimension)
             own = Num(made, number.dimension, Status.REFERENCE)
             _hold_equal(it, binding, [(own, number)])

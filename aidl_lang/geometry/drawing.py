@@ -14,7 +14,7 @@ from aidl_lang.geometry.bodies import Bodies, IdleHole, LooseCurves, Mass
 from aidl_lang.geometry.colors import css_color
 from aidl_lang.geometry.contacts import Contact, Solid, contacts
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
-from aidl_lang.geometry.evaluate import LARGEST, Bounds, bounds, is_finite
+from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import CHORD, FINE_CHORD, Network, union_bounds
@@ -23,9 +23,6 @@ from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.seams import visible_seams
 from aidl_lang.geometry.trace import Traced, trace_all
 from aidl_lang.solved import Scalar, SolvedGeometry, SolvedModel, SolvedStructure
-
-_NO_LENGTH = 1e-7
-"""Extent of a curve, in mm, that is none: its ends were made to meet, or its size to vanish."""
 
 
 @dataclass(frozen=True)
@@ -204,7 +201,7 @@ def _usable(curve: Piece) -> Piece | None:
     box = bounds(curve)
     if not all(map(math.isfinite, box)) or max(map(abs, box)) > LARGEST:
         return None
-    return curve if math.hypot(box[2] - box[0], box[3] - box[1]) >= _NO_LENGTH else None
+    return curve if math.hypot(box[2] - box[0], box[3] - box[1]) >= NO_LENGTH else None
 
 
 def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:

@@ -21,6 +21,9 @@ Bounds = tuple[float, float, float, float]
 LARGEST = 1e12
 """Coordinates beyond this, in mm, are a mistake and are not drawn."""
 
+NO_LENGTH = 1e-7
+"""Extent of a curve, in mm, that is none: its ends were made to meet, or its size to vanish."""
+
 
 def is_finite(curve: Piece) -> bool:
     """Whether every number of the curve is one that can be drawn."""

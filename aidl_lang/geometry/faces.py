@@ -58,7 +58,11 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
         closed = _is_closed(network, shape, uses)
         kept = _without_dangling(network, uses) if closed else []
         if kept:
-            result.faces.append(OwnFace((shape.geometry,), _alternating(network, kept)))
+            section = _alternating(network, kept)
+            if is_nothing(section):  # flat, or twice the same outline
+                result.loose += shape.leaves
+            else:
+                result.faces.append(OwnFace((shape.geometry,), section))
             outlines += kept
         used = {edge for edge, _ in kept}
         free += [leaf for leaf in shape.leaves if not _touches(network, leaf[1], used)]

@@ -10,8 +10,8 @@ from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.geometry.bodies import FilledHole, Finding, IdleHole, InnerLoop, LooseCurves
 from aidl_lang.geometry.colors import similar_colors
 from aidl_lang.geometry.contacts import Contact
-from aidl_lang.geometry.curves import Bezier, Vec
-from aidl_lang.geometry.evaluate import LARGEST, bounds, ends, is_finite
+from aidl_lang.geometry.curves import Bezier, Piece, Vec
+from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, bounds, ends, is_finite
 from aidl_lang.geometry.network import Network
 from aidl_lang.solved import Scalar, SolvedGeometry, SolvedStructure
 from aidl_lang.source import Span
@@ -118,7 +118,7 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
         else:
             hints.insert(0, "close the outline: draw the missing curve, sharing the end points")
     else:
-        hints.insert(0, "a face needs a closed outline: draw the missing curves, sharing the end points")
+        hints.insert(0, "a face needs a closed outline that is not flat: look at its sizes and its points")
     span = gap[0][0].span if gap else finding.curves[0][0].span
     return Diagnostic(
         "W0702", message, span or s.span, "its end is open" if gap else "", secondary, tuple(hints), fix
@@ -138,8 +138,14 @@ def _whole_names(structure: SolvedStructure, loose: Sequence[SolvedGeometry]) ->
 
 
 def _primitive_paths(geometry: SolvedGeometry) -> list[str]:
-    own = [] if geometry.curve is None or geometry.construction else [geometry.path]
+    is_seen = geometry.curve is not None and not geometry.construction and not _is_a_point(geometry.curve)
+    own = [geometry.path] if is_seen else []
     return own + [path for part in geometry.parts for path in _primitive_paths(part)]
+
+
+def _is_a_point(curve: Piece) -> bool:
+    left, bottom, right, top = bounds(curve)
+    return max(right - left, top - bottom) < NO_LENGTH
 
 
 End = tuple[SolvedGeometry, Vec, str]

@@ -16,7 +16,7 @@ from aidl_lang.geometry.boolean import common, united, without
 from aidl_lang.geometry.clipping import clipped
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.described import as_geometry
-from aidl_lang.geometry.evaluate import bounds, ends, reverse
+from aidl_lang.geometry.evaluate import LARGEST, bounds, ends, is_finite, reverse
 from aidl_lang.geometry.faces import Shape, own_faces, union_of
 from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish
 from aidl_lang.geometry.hulls import hull
@@ -54,10 +54,10 @@ def _within(g: SolvedGeometry) -> Iterator[SolvedGeometry]:
 
 
 def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:
-    """The primitives of a geometry that is drawn, with their curves."""
+    """The primitives of a geometry that is drawn, with their curves; those without a place are left out."""
     if g.construction:
         return
-    if g.curve is not None:
+    if g.curve is not None and is_finite(g.curve) and max(map(abs, bounds(g.curve))) <= LARGEST:
         yield g, g.curve
     for part in g.parts:
         yield from _leaves(part)
@@ -255,7 +255,8 @@ class _Outliner:
                 break
             numbers = [k for k, (g, _) in enumerate(sources) if g is not None and g.curve is not None]
             theirs = [(g, g.curve) for g, _ in sources if g is not None and g.curve is not None]
-            share = length(leaves[numbers[0]][1]) / length(theirs[0][1]) if theirs else 1.0
+            sizes = ((length(leaves[k][1]), length(c)) for k, (_, c) in zip(numbers, theirs, strict=True))
+            share = next((own / other for own, other in sizes if other > 0), 1.0)
             for f in self.finishes:
                 if not f.of or any(_is_of(g.path, f.of) for g, _ in theirs):
                     for corner in _corners(f, theirs, near / share):

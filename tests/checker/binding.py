@@ -17,19 +17,27 @@ _PRIMITIVES = ("line", "circle", "arc", "ellipse", "bezier")
 _GATHERED = 10
 
 
-def respelled(known: Sequence[str], named: dict[str, Any], taken: Iterable[str] = ()) -> dict[str, Any]:
+def respelled(
+    known: Sequence[str],
+    named: dict[str, Any],
+    taken: Iterable[str] = (),
+    value_of: Callable[[Any], Any] = lambda value: value,
+) -> dict[str, Any]:
     """Named arguments by the names of the parameters they can only mean; other words stay as they are."""
     by_fold = {fold(p): p for p in known}
     found = {by_fold.get(fold(n), n): v for n, v in named.items()}
     used = {*taken, *found}
-    for pair, (first, second) in PAIRS.items():
-        if pair in found and pair not in by_fold and {first, second} <= set(known):
-            found[first], found[second] = _halves(found.pop(pair))
+    for pair, parts in PAIRS.items():
+        if pair in found and pair not in by_fold and set(parts) <= set(known):
+            halves = _halves(value_of(found[pair]))
+            if halves is not None:
+                del found[pair]
+                found |= dict(zip(parts, halves, strict=True))
     for x, y, meanings in COORDINATES:
         words = {fold(n): n for n in found if fold(n) not in by_fold}
         target = next((m for m in meanings if m in by_fold), None)
         if target is not None and x in words and y in words:
-            found[by_fold[target]] = [found.pop(words[x]), found.pop(words[y])]
+            found[by_fold[target]] = [value_of(found.pop(words[w])) for w in (x, y)]
     for word in [n for n in found if fold(n) not in by_fold]:
         meant = [by_fold[fold(m)] for m in PARAMETERS.get(fold(word), ()) if fold(m) in by_fold]
         free = [m for m in meant if m not in used]
@@ -39,8 +47,11 @@ def respelled(known: Sequence[str], named: dict[str, Any], taken: Iterable[str] 
     return found
 
 
-def _halves(value: Any) -> tuple[Any, Any]:
-    return (value.x, value.y) if isinstance(value, Point) else tuple(value)  # type: ignore[return-value]
+def _halves(value: Any) -> tuple[Any, Any] | None:
+    """The two numbers of a pair."""
+    if isinstance(value, Point):
+        return value.x, value.y
+    return (value[0], value[1]) if isinstance(value, list) and len(value) == 2 else None
 
 
 def bound(
@@ -59,7 +70,7 @@ def bound(
             given = dict(zip(names, positional, strict=False))
         else:
             continue
-        words = respelled(names, named, given)
+        words = respelled(names, named, given, value_of)
         if not set(words) <= set(names) or set(words) & set(given):
             continue
         given |= words

@@ -112,18 +112,15 @@ def _member_of(ev: Evaluator, e: ast.Membership, scope: Scope) -> list[float]:
 def _call(ev: Evaluator, e: ast.Call, scope: Scope) -> list[float]:
     """A relation of a program, else one of the vocabulary, else a condition that a function gives."""
     positional, named = ev.arguments(e, scope)
-    for candidate, home in scope.candidates(e.callee.text):
-        inner = ev.entered(candidate, home, positional, named)
-        if inner is None:
-            continue
-        if isinstance(candidate, ast.ConstraintDefinition):
-            return [r for item in items(ev, candidate.body, inner) for r in item]
-        if isinstance(candidate, ast.FunctionDefinition):
-            return residuals(ev, candidate.value, inner)
+    found = ev.entered(scope.own(e.callee.text), positional, named)
+    if found is not None and isinstance(found[0], ast.ConstraintDefinition):
+        return [r for item in items(ev, found[0].body, found[1]) for r in item]
+    if found is not None and isinstance(found[0], ast.FunctionDefinition):
+        return residuals(ev, found[0].value, found[1])
     name = fold(scope.canonical(e.callee.text))
-    relation = RELATIONS.get(name)
+    relation = RELATIONS.get(fold(e.callee.text)) or RELATIONS.get(name)
     if relation is not None:
-        return relation(ev, *positional, **{fold(n): v for n, v in named.items()})
+        return relation(ev, *positional, **ev.renamed(relation, named))
     if name in FUNCTIONS:
         value = FUNCTIONS[name](ev, *positional, **named)
         if isinstance(value, bool):

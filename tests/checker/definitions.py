@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from aidl_lang import ast
+from tests.checker.binding import respelled
 from tests.checker.evaluate import Evaluator
+from tests.checker.paths import OUTLINES, joints
 from tests.checker.tree import Geo, Node
 from tests.checker.values import Exact, MistakeError, Num, Point, Scope, fold
 
@@ -36,7 +38,7 @@ _CONSTRUCTORS: dict[str, tuple[dict[str, str], ...]] = {
     "sector": ({"center": _P, "radius": _S},),
 }
 
-_OPTIONS = {"clockwise", "large", "rotatable", "sides", "startangle", "endangle", "angle"}
+_OPTIONS = ("clockwise", "large", "rotatable", "sides", "start_angle", "end_angle", "angle")
 
 
 @dataclass(frozen=True)
@@ -59,13 +61,26 @@ def expected(
 
     `least` is the exactness from which a position is exact: a constraint may hold what is written less so.
     """
-    if not isinstance(s.value, ast.Call):
-        return list(_shared_point(ev, s.value, geo, scope, least))
-    name = scope.canonical(s.value.callee.text)
+    return [] if geo.is_edited else _as_written(ev, s.value, geo, scope, changed, least)
+
+
+def _as_written(
+    ev: Evaluator, value: ast.Expression, geo: Geo, scope: Scope, changed: Collection[str], least: Exact
+) -> list[Expected]:
+    """By a constructor that is known here, also where a function or a branch leads to it."""
+    if isinstance(value, ast.Conditional):
+        value = value.then if ev.truth(value.test, scope) else value.otherwise
+        return _as_written(ev, value, geo, scope, changed, least)
+    if not isinstance(value, ast.Call):
+        return list(_shared_point(ev, value, geo, scope, least))
+    name = scope.canonical(value.callee.text)
+    if fold(name) in OUTLINES and not scope.own(name):
+        return [Expected(n, r) for n, r in joints(ev, value, geo, scope, changed)]
     kinds = next((c for n, c in _CONSTRUCTORS.items() if fold(n) == fold(name)), ())
-    if any(isinstance(c, ast.ShapeDefinition) for c, _ in scope.candidates(name)):
-        return []
-    written = _written(ev, s.value, scope, kinds)
+    written = {} if scope.own(name) else _written(ev, value, scope, kinds)
+    if not written:
+        inner = _within(ev, value, scope)
+        return [] if inner is None else _as_written(ev, inner[0], geo, inner[1], changed, least)
     found: list[Expected] = []
     for word, (kind, value) in written.items():
         if kind == "through":
@@ -75,6 +90,15 @@ def expected(
         elif kind != "coordinate":
             found += _size(ev, geo, word, value, changed)
     return found + _rigid(ev, geo, written, changed)
+
+
+def _within(ev: Evaluator, call: ast.Call, scope: Scope) -> tuple[ast.Expression, Scope] | None:
+    """What a function is made of."""
+    positional, named = ev.arguments(call, scope)
+    found = ev.entered(scope.candidates(call.callee.text), positional, named)
+    if found is None or not isinstance(found[0], ast.FunctionDefinition):
+        return None
+    return found[0].value, found[1]
 
 
 def _shared_point(
@@ -100,12 +124,12 @@ def _written(
     positional, named = ev.arguments(call, scope)
     named = {n: v for n, v in named.items() if v is not None}
     for parameters in kinds:
-        folded = {fold(p): p for p in parameters}
-        free = [p for p in parameters if fold(p) not in map(fold, named)]
-        if len(positional) > len(free) or not all(fold(n) in folded or fold(n) in _OPTIONS for n in named):
+        words = respelled([*parameters, *_OPTIONS], named)
+        free = [p for p in parameters if p not in words]
+        if len(positional) > len(free) or not all(n in parameters or n in _OPTIONS for n in words):
             continue
         bound = dict(zip(free, positional, strict=False))
-        bound |= {folded[fold(n)]: v for n, v in named.items() if fold(n) in folded}
+        bound |= {n: v for n, v in words.items() if n in parameters}
         if all(_fits(ev, parameters[p], v) for p, v in bound.items()):
             return {p: (parameters[p], v) for p, v in bound.items()}
     return {}
@@ -177,6 +201,8 @@ def frame(
 ) -> Iterator[Expected]:
     """`at` and `rotated` where they are exact; rotation is exact unless it is a guess."""
     local = child.local
+    if child.is_edited:
+        return
     if placement is not None and placement.at is not None:
         at = ev.point(ev.value(placement.at, scope))
         for axis, actual in (("x", local.x), ("y", local.y)):

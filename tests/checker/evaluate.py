@@ -6,10 +6,13 @@ import math
 from collections.abc import Callable
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from inspect import signature
 from typing import Any, TypeVar
 
 from aidl_lang import ast
+from aidl_lang.synonyms import PARAMETERS
 from tests.checker import fields, functions
+from tests.checker.binding import chosen, respelled, with_defaults
 from tests.checker.boxes import Box, around, extremes, structure_extremes
 from tests.checker.tree import Array, Geo, Node, Transform, Vec
 from tests.checker.values import (
@@ -28,6 +31,8 @@ from tests.checker.values import (
 
 T = TypeVar("T")
 _UNITS = {None: 1.0, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "ft": 304.8}
+_WORDS = {"x", "y", "left", "right", "center", "top", "bottom", "middle"}
+_WORDED = {"align", "side", "axis", "about", "place"}
 _ANGLES = {"deg": 1.0, "°": 1.0, "rad": 180 / math.pi, "turn": 360.0}
 
 
@@ -74,13 +79,14 @@ class Evaluator:
                 return known
         if fold(e.text) in ("x", "y"):
             return fold(e.text)
-        if fold(e.text) == "pi":
-            return Num(math.pi)
         raise MistakeError(f"no value named {e.text}")
 
     def forced(self, value: Any, scope: Scope) -> Any:
         if not isinstance(value, Thunk):
             return value
+        if value.kind == "let" and scope.is_library:  # the same for all who ask
+            scope.names[value.name] = self.value(value.expression, value.scope)
+            return scope.names[value.name]
         if value.kind == "let":
             return self.value(value.expression, value.scope)
         node = scope.node
@@ -103,8 +109,10 @@ class Evaluator:
 
     def _range(self, e: ast.Range, scope: Scope) -> list[Num]:
         start, end = (self.number(self.value(x, scope)).value for x in (e.start, e.end))
-        first, last = round(start), math.ceil(end - 1e-9) - 1 if e.exclusive else math.floor(end + 1e-9)
-        return [Num(float(i)) for i in range(first, last + 1)]
+        step = 1.0 if e.step is None else self.number(self.value(e.step, scope)).value
+        count = (end - start) / step
+        last = math.ceil(count - 1e-9) - 1 if e.exclusive else math.floor(count + 1e-9)
+        return [Num(start + i * step) for i in range(last + 1)]
 
     def _conditional(self, e: ast.Conditional, scope: Scope) -> Any:
         return self.value(e.then if self.truth(e.test, scope) else e.otherwise, scope)
@@ -118,9 +126,10 @@ class Evaluator:
     def _binary(self, e: ast.Binary, scope: Scope) -> Any:
         if e.operator in ("and", "or"):
             return self.truth(e, scope)
-        return arithmetic(
-            e.operator, self.plain(self.value(e.left, scope)), self.plain(self.value(e.right, scope))
-        )
+        left, right = self.value(e.left, scope), self.value(e.right, scope)
+        if e.operator == "+" and type(left) is type(right) and isinstance(left, str | list):
+            return arithmetic("+", left, right)
+        return arithmetic(e.operator, self.plain(left), self.plain(right))
 
     def _comparison(self, e: ast.Comparison, scope: Scope) -> bool:
         return self.truth(e, scope)
@@ -149,7 +158,10 @@ class Evaluator:
         return found
 
     def _index(self, e: ast.Index, scope: Scope) -> Any:
-        value, index = self.value(e.value, scope), round(self.value(e.index, scope).value)
+        value, key = self.value(e.value, scope), self.value(e.index, scope)
+        if isinstance(key, str):
+            return self.member(value, key)
+        index = round(key.value)
         if isinstance(value, Array) and index in value.items:
             return value.items[index]
         return self.items(value)[index]
@@ -159,6 +171,8 @@ class Evaluator:
             return value.list()
         if isinstance(value, list):
             return value
+        if isinstance(value, Point):
+            return [value.x, value.y]
         raise MistakeError(f"{type(value).__name__} is no list")
 
     # --- Conversions ---------------------------------------------------------------------------
@@ -235,42 +249,51 @@ class Evaluator:
     # --- Calls ---------------------------------------------------------------------------------
 
     def _call(self, e: ast.Call, scope: Scope) -> Any:
+        """A function of the program, else one known here, else one that the library defines."""
         positional, named = self.arguments(e, scope)
-        for candidate, home in scope.candidates(e.callee.text):
-            if isinstance(candidate, ast.FunctionDefinition):
-                inner = self.entered(candidate, home, positional, named)
-                if inner is not None:
-                    return self.value(candidate.value, inner)
-        function = functions.FUNCTIONS.get(fold(scope.canonical(e.callee.text)))
-        if function is None:
-            raise MistakeError(f"no function named {e.callee.text}")
-        return function(self, *positional, **named)
+        name = e.callee.text
+        known = functions.FUNCTIONS.get(fold(name)) or functions.FUNCTIONS.get(fold(scope.canonical(name)))
+        for candidates in (scope.own(name), [] if known else scope.candidates(name)):
+            functions_only = [c for c in candidates if isinstance(c[0], ast.FunctionDefinition)]
+            found = self.entered(functions_only, positional, named)
+            if found is not None:
+                return self.value(found[0].value, found[1])
+        if known is None:
+            raise MistakeError(f"no function named {name}")
+        return known(self, *positional, **self.renamed(known, named))
 
     def arguments(self, e: ast.Call, scope: Scope) -> tuple[list[Any], dict[str, Any]]:
         positional = [] if e.receiver is None else [self.value(e.receiver, scope)]
         positional += [self.value(a.value, scope) for a in e.arguments if a.name is None]
-        named = {a.name.text: self.value(a.value, scope) for a in e.arguments if a.name is not None}
+        named = {a.name.text: self._argument(a, scope) for a in e.arguments if a.name is not None}
         return positional, named
 
+    def _argument(self, a: ast.Argument, scope: Scope) -> Any:
+        """The value of a named argument; a bare word where a text is wanted is that word."""
+        name = fold(a.name.text) if a.name is not None else ""
+        if isinstance(a.value, ast.Name) and a.value.text in _WORDS:
+            if _WORDED & {name, *PARAMETERS.get(name, ())}:
+                return a.value.text
+        return self.value(a.value, scope)
+
     def entered(
-        self, definition: Any, home: Scope, positional: list[Any], named: dict[str, Any]
-    ) -> Scope | None:
-        """The scope of a call of a user's definition; None when the arguments do not fit it."""
-        names = [p.name.text for p in definition.parameters]
-        if len(positional) > len(names) or not all(fold(n) in map(fold, names) for n in named):
+        self, candidates: list[tuple[Any, Scope]], positional: list[Any], named: dict[str, Any]
+    ) -> tuple[Any, Scope] | None:
+        """The definition that a call means and the scope of that call; None when the arguments fit none."""
+        found = chosen(candidates, positional, named, lambda value: value)
+        if found is None:
             return None
-        given = dict(zip(names, positional, strict=False))
-        given |= {next(p for p in names if fold(p) == fold(n)): v for n, v in named.items()}
-        scope = Scope(home, given)
-        for parameter in definition.parameters:
-            if parameter.name.text not in given:
-                if parameter.default is None:
-                    return None
-                given[parameter.name.text] = self.value(parameter.default, scope)
         self.depth += 1
-        if self.depth > 2000:
+        if self.depth > 5000:
             raise MistakeError("calls without end")
-        return scope
+        return found[0], with_defaults(self, *found)
+
+    def renamed(self, relation: Callable[..., Any], named: dict[str, Any]) -> dict[str, Any]:
+        """Named arguments of a relation or function by the names that it has here."""
+        parameters = signature(relation).parameters
+        if any(p.kind == p.VAR_KEYWORD for p in parameters.values()):
+            return named
+        return respelled([n for n in parameters if n != "ev"], named)
 
     # --- Truth ---------------------------------------------------------------------------------
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from aidl_lang.synonyms import MEMBERS
 from tests.checker.tree import Array, Geo, Node, Vec
 from tests.checker.values import (
     Boxed,
@@ -31,7 +32,15 @@ def seen(ev: Evaluator, p: Any) -> Point:
 
 
 def member(ev: Evaluator, value: Any, name: str) -> Any:
-    """`value.name`, None when there is no such thing."""
+    """`value.name` or what other words mean by it, None when there is no such thing."""
+    for word in (name, *MEMBERS.get(fold(name), ())):
+        found = _member(ev, value, word)
+        if found is not None:
+            return found
+    return None
+
+
+def _member(ev: Evaluator, value: Any, name: str) -> Any:
     match value:
         case Point():
             return {"x": value.x, "y": value.y}.get(name) or _of_box(ev, value, name)
@@ -41,8 +50,14 @@ def member(ev: Evaluator, value: Any, name: str) -> Any:
             return of_structure(ev, value, name)
         case Geo():
             return of_geometry(ev, value, name)
+        case dict():
+            return _named(value, name)
         case Array() | list():
             items = ev.items(value)
+            if isinstance(value, Array) and value.pattern is not None:
+                known = value.pattern.field(ev, fold(name))
+                if known is not None:
+                    return known
             if name in ("bb", *_SIDES[4:]):
                 return _of_box(ev, value, name)
             return [ev.member(item, name) for item in items]

@@ -3,17 +3,31 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from tests.checker.boxes import Box
-from tests.checker.tree import Geo, Vec
-from tests.checker.values import Exact, MistakeError, Num, Point, arithmetic, marked, reference
+from tests.checker.clearance import clearance
+from tests.checker.tree import Array, Geo, Node, Vec
+from tests.checker.values import (
+    Boxed,
+    Exact,
+    MistakeError,
+    Num,
+    Point,
+    UnavailableError,
+    arithmetic,
+    marked,
+    point_at,
+    reference,
+)
 
 if TYPE_CHECKING:
     from tests.checker.evaluate import Evaluator
 
 Function = Callable[..., Any]
+EMPTY = Num(0.0)
 
 
 def _of_numbers(
@@ -131,10 +145,14 @@ def offset(ev: Evaluator, p: Vec, line: Any) -> float:
 
 
 def middle(ev: Evaluator, thing: Any) -> Vec:
-    """The point that stands for a point or something round."""
-    if isinstance(thing, Geo) and thing.type in ("circle", "arc", "ellipse"):
+    """The point that stands for a thing: itself, its centre, or the centre of its box."""
+    if isinstance(thing, Geo) and thing.type == "point":
+        return ev.point(thing).xy
+    if isinstance(thing, Geo | Node):
         center: Point = ev.member(thing, "center")
         return center.xy
+    if isinstance(thing, Boxed | Array) or (isinstance(thing, list) and not isinstance(thing[0], Num)):
+        return ev.box(thing).center
     return ev.point(thing).xy
 
 
@@ -158,9 +176,127 @@ def _along(axis: int) -> Function:
     return function
 
 
+def corner_angle(ev: Evaluator, a: Any, corner: Any, b: Any) -> float:
+    """The angle at the middle of three points, counter-clockwise from one arm to the other."""
+    p, c, q = (ev.point(x).xy for x in (a, corner, b))
+    v, w = minus(p, c), minus(q, c)
+    return math.degrees(math.atan2(cross(v, w), dot(v, w)))
+
+
+def _angle(ev: Evaluator, a: Any, b: Any = None, c: Any = None) -> Num:
+    if c is not None:
+        return reference(abs(corner_angle(ev, a, b, c)), is_angle=True)
+    if b is None:
+        return ev.member(a, "angle")
+    return reference(between(ev, a, b), is_angle=True)
+
+
 def between(ev: Evaluator, a: Any, b: Any) -> float:
     """The angle from the direction of one line to that of another, counter-clockwise."""
     return float(ev.member(b, "angle").value - ev.member(a, "angle").value)
+
+
+# --- Lines to be symmetric about -------------------------------------------------------------------
+
+
+def line(ev: Evaluator, start: Vec, end: Vec) -> Geo:
+    """A line that is not drawn, from points as the structure that asks sees them."""
+    ends = {"start": ev.frame.outward(start), "end": ev.frame.outward(end)}
+    return Geo("line", "line", "line", ends, {}, construction=True)
+
+
+def _line(ev: Evaluator, start: Any, end: Any = None, length: Any = None, angle: Any = None) -> Geo:
+    if end is None:
+        end = arithmetic("+", ev.point(start), _polar(ev, length, angle))
+    return line(ev, ev.point(start).xy, ev.point(end).xy)
+
+
+def _through(degrees: float) -> Function:
+    return lambda ev, p: _line_through(ev, p, Num(degrees))
+
+
+def _line_through(ev: Evaluator, p: Any, angle: Any) -> Geo:
+    (x, y), t = middle(ev, p), math.radians(ev.number(angle).value)
+    return line(ev, (x, y), (x + math.cos(t), y + math.sin(t)))
+
+
+def mirrored(ev: Evaluator, p: Vec, about: Any) -> Vec:
+    """The image of a point in a line, a point, an axis by its letter, or the upright line at an x."""
+    if isinstance(about, Num | str):
+        x = 0.0 if isinstance(about, str) else about.value
+        about = line(ev, (x, 0.0), (1.0, 0.0) if about == "x" else (x, 1.0))
+    if not is_line(about):
+        x, y = ev.point(about).xy
+        return 2 * x - p[0], 2 * y - p[1]
+    a, b = ends(ev, about)
+    way = minus(b, a)
+    t = dot(minus(p, a), way) / dot(way, way)
+    return 2 * (a[0] + t * way[0]) - p[0], 2 * (a[1] + t * way[1]) - p[1]
+
+
+def _between(ev: Evaluator, a: Any, b: Any, share: Any = None) -> Point:
+    (ax, ay), (bx, by) = middle(ev, a), middle(ev, b)
+    t = 0.5 if share is None else ev.number(share).value
+    return point_at((ax + t * (bx - ax), ay + t * (by - ay)))
+
+
+def _anchor(ev: Evaluator, of: Any, place: str = "center") -> Point:
+    box, words = ev.box(of), place.split("_")
+    x = box.left if "left" in words else box.right if "right" in words else box.center_x
+    y = box.bottom if "bottom" in words else box.top if "top" in words else box.center_y
+    return point_at((x, y))
+
+
+def _circumcenter(ev: Evaluator, a: Any, b: Any, c: Any) -> Point:
+    """Where the bisectors of two sides meet."""
+    p, q, r = (ev.point(x).xy for x in (a, b, c))
+    v, w = minus(q, p), minus(r, p)
+    d = 2 * cross(v, w)
+    x, y = (w[1] * dot(v, v) - v[1] * dot(w, w)) / d, (v[0] * dot(w, w) - w[0] * dot(v, v)) / d
+    return point_at((p[0] + x, p[1] + y))
+
+
+# --- Lists, texts and records ----------------------------------------------------------------------
+
+
+def _numbers(ev: Evaluator, first: Any, last: Any = None, step: Any = None) -> list[Num]:
+    """`range` as in Python."""
+    low, high = (Num(0.0), first) if last is None else (first, last)
+    by = 1 if step is None else round(ev.number(step).value)
+    return [Num(float(i)) for i in range(round(ev.number(low).value), round(ev.number(high).value), by)]
+
+
+def _enumerate(ev: Evaluator, values: Any) -> list[list[Any]]:
+    return [[Num(float(i)), v] for i, v in enumerate(ev.items(values))]
+
+
+def _zip(ev: Evaluator, *lists: Any) -> list[list[Any]]:
+    return [list(row) for row in zip(*map(ev.items, lists), strict=True)]
+
+
+def _str(ev: Evaluator, value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return value if isinstance(value, str) else f"{ev.number(value).value:.10g}"
+
+
+def _choice(ev: Evaluator, word: str, words: list[str]) -> str:
+    """The word of a list that is meant."""
+    plain = {re.sub(r"[^a-z0-9.]", "", w.lower()): w for w in words}
+    return plain[re.sub(r"[^a-z0-9.]", "", word.lower())]
+
+
+def _nearest(ev: Evaluator, value: Any, candidates: Any) -> Num:
+    now = ev.number(value).value
+    return min((ev.number(c) for c in ev.items(candidates)), key=lambda c: abs(c.value - now))
+
+
+def _mirror(ev: Evaluator, x: Any, about: Any) -> Any:
+    return point_at(mirrored(ev, ev.point(x).xy, about))
+
+
+def _on_the_drawing(ev: Evaluator, *things: Any) -> Any:
+    raise UnavailableError("areas are measured on the finished drawing")
 
 
 def room(a: Box, b: Box) -> float:
@@ -227,6 +363,30 @@ FUNCTIONS: dict[str, Function] = {
     "offsetfrom": lambda ev, p, line: reference(offset(ev, ev.point(p).xy, line)),
     "horizontaldistance": _along(0),
     "verticaldistance": _along(1),
-    "angle": lambda ev, a, b: reference(between(ev, a, b), is_angle=True),
+    "angle": _angle,
+    "length": lambda ev, of: ev.member(of, "length"),
+    "radius": lambda ev, of: ev.member(of, "radius"),
+    "diameter": lambda ev, of: arithmetic("*", ev.member(of, "radius"), Num(2.0)),
+    "clearance": clearance,
+    "area": _on_the_drawing,
+    "perimeter": _on_the_drawing,
+    "overlaps": _on_the_drawing,
+    "line": _line,
+    "verticalthrough": _through(90.0),
+    "horizontalthrough": _through(0.0),
+    "linethrough": _line_through,
+    "between": _between,
+    "anchor": _anchor,
+    "circumcenter": _circumcenter,
+    "mirror": _mirror,
+    "range": _numbers,
+    "enumerate": _enumerate,
+    "zip": _zip,
+    "reversed": lambda ev, values: ev.items(values)[::-1],
+    "str": _str,
+    "record": lambda ev, **named: named,
+    "choice": _choice,
+    "nearest": _nearest,
+    "written": lambda ev, value: value,
     "gap": lambda ev, a, b: reference(ev.together(lambda: room(ev.box(a), ev.box(b)))),
 }

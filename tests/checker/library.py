@@ -12,7 +12,7 @@ from pathlib import Path
 from aidl_lang import ast
 from aidl_lang.parser import parse
 from aidl_lang.source import SourceFile
-from tests.checker.values import Scope, Thunk
+from tests.checker.values import Scope, Thunk, fold
 
 FOLDER = Path(__file__).resolve().parents[2] / "stdlib"
 
@@ -25,29 +25,31 @@ def modules() -> tuple[ast.Module, ...]:
 
 @cache
 def scope() -> Scope:
-    """The outermost names. Nothing writes into it, so that all programs may share it."""
+    """The outermost names, constants among them, which all programs share."""
     found = Scope(None, is_library=True)
     for statement in (s for module in modules() for s in module.statements):
         match statement:
             case ast.Let(name, value):
                 found.names[name.text] = Thunk(value, found, "let", name.text)
             case ast.Alias(name, target):
-                found.aliases[name.text] = target.text
+                found.aliases[fold(name.text)] = target.text
             case ast.FunctionDefinition() | ast.ShapeDefinition():
-                found.functions.setdefault(statement.name.text, []).append((statement, found))
+                found.functions.setdefault(fold(statement.name.text), []).append((statement, found))
             case ast.Structure() if statement.parameters is not None:
-                found.functions.setdefault(statement.name.text, []).append((statement, found))
+                found.functions.setdefault(fold(statement.name.text), []).append((statement, found))
     return found
 
 
-def public(kind: type) -> set[str]:
-    """Names whose first definition is documented and whose definitions of this kind are several or one."""
+def public(kind: type, *files: str) -> set[str]:
+    """The names that have definitions of a kind and whose first one is documented; of some files, or of all."""
     first: dict[str, bool] = {}
     found: set[str] = set()
-    for statement in (s for module in modules() for s in module.statements):
-        if isinstance(statement, ast.FunctionDefinition | ast.ShapeDefinition | ast.ConstraintDefinition):
-            name = statement.name.text
-            first.setdefault(name, statement.doc is not None)
-            if isinstance(statement, kind) and first[name]:
-                found.add(name)
+    for module in modules():
+        for statement in module.statements:
+            if isinstance(statement, ast.FunctionDefinition | ast.ShapeDefinition | ast.ConstraintDefinition):
+                name = statement.name.text
+                first.setdefault(name, statement.doc is not None)
+                is_asked = not files or module.source.name.removesuffix(".aidl") in files
+                if isinstance(statement, kind) and first[name] and is_asked:
+                    found.add(name)
     return found

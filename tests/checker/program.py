@@ -11,10 +11,15 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from aidl_lang import ast
+from tests.checker import copies, library, patterns
+from tests.checker.binding import chosen
 from tests.checker.conditions import expressions
 from tests.checker.evaluate import Evaluator
-from tests.checker.tree import Geo, Node
-from tests.checker.values import MistakeError, Scope, Thunk, fold
+from tests.checker.tree import Array, Geo, Node
+from tests.checker.values import Exact, MistakeError, Num, Scope, Thunk, fold
+
+FINISHES = ("fillet", "chamfer")
+EDITS = ("move", "translate", "rotate", "scale")
 
 
 @dataclass(frozen=True)
@@ -32,23 +37,14 @@ class Program:
     assertions: list[Task] = field(default_factory=list)
     definitions: list[tuple[Task, Geo]] = field(default_factory=list)
     placements: list[tuple[Task, Node]] = field(default_factory=list)
-
-
-_LIBRARY_ALIASES = {
-    "rect": "rectangle",
-    "rounded_rect": "rounded_rectangle",
-    "annulus": "ring",
-    "capsule": "slot",
-    "stadium": "slot",
-    "wedge": "sector",
-    "diamond": "rhombus",
-}
+    copies: list[tuple[Task, copies.Copy, Geo | Node]] = field(default_factory=list)
+    patterns: list[tuple[Task, patterns.Pattern]] = field(default_factory=list)
 
 
 def walk(module: ast.Module, root: Node) -> Program:
     """Everything a module says about the structures below `root`."""
     program = Program()
-    top = Scope(None, aliases=dict(_LIBRARY_ALIASES))
+    top = Scope(library.scope())
     roots = [s for s in module.statements if isinstance(s, ast.Structure) and s.parameters is None]
     others = [s for s in module.statements if s not in roots]
     implicit = len(roots) != 1 or any(
@@ -96,11 +92,11 @@ class _Walker:
             case ast.Var(name, value):
                 scope.names[name.text] = Thunk(value, scope, "var", name.text)
             case ast.FunctionDefinition() | ast.ConstraintDefinition() | ast.ShapeDefinition():
-                scope.functions.setdefault(s.name.text, []).append((s, scope))
+                scope.functions.setdefault(fold(s.name.text), []).append((s, scope))
             case ast.Structure() if s.parameters is not None:
-                scope.functions.setdefault(s.name.text, []).append((s, scope))
+                scope.functions.setdefault(fold(s.name.text), []).append((s, scope))
             case ast.Alias(name, target):
-                scope.aliases[name.text] = target.text
+                scope.aliases[fold(name.text)] = target.text
 
     def _statement(self, s: ast.Statement, scope: Scope) -> None:
         ev = self.evaluator
@@ -120,52 +116,95 @@ class _Walker:
                     self.block(branch.statements, scope)
             case ast.Constrain(items):
                 self.program.constraints.append(Task(self.node, items, scope))
+            case ast.ExpressionStatement(ast.Call() as call) if self._is_edit(call, scope):
+                pass
             case ast.ExpressionStatement():
                 block = ast.Block((s,), span=s.span)
                 self.program.constraints.append(Task(self.node, block, scope))
             case ast.Assert():
                 self.program.assertions.append(Task(self.node, s, scope))
 
+    def _is_edit(self, call: ast.Call, scope: Scope) -> bool:
+        """`move(r, …)` and its like change what was written; `fillet` and `chamfer` come after solving."""
+        name = fold(scope.canonical(call.callee.text))
+        if scope.own(name) or name not in (*FINISHES, *EDITS):
+            return False
+        if name in EDITS:
+            thing = self.evaluator.arguments(call, scope)[0][0]
+            if isinstance(thing, Node):
+                for node in thing.walk():
+                    for geo in node.geometry.values():
+                        geo.is_edited = True
+            thing.is_edited = True
+        return True
+
     def _assign(self, s: ast.Assign, scope: Scope) -> None:
         key = self._key(s.name, s.indices, scope)
-        geo = self.node.geometry.get(key)
-        if geo is not None:
+        geo, child = self.node.geometry.get(key), self.node.children.get(key)
+        made = copies.origin(self.evaluator, s.value, scope)
+        if made is not None and (geo is not None or child is not None):
+            image = child if geo is None else geo
+            self.program.copies.append((Task(self.node, s, scope), made, image))
+            if isinstance(image, Node) and isinstance(made.source, Node):
+                copies.same_names(made.source, image)
+        elif geo is not None:
             self._geometry(s, geo, scope)
-            return
-        if key in self.node.children:
-            self._instance(s, self.node.children[key], scope)
-            return
-        scope.names[s.name.text] = Thunk(s.value, scope, "let", s.name.text)
+        elif child is not None:
+            self._instance(s, child, scope)
+        elif isinstance(found := self.node.members().get(s.name.text), Array) and _is_pattern(s, scope):
+            self._pattern(s, found, scope)
+        else:
+            scope.names[s.name.text] = Thunk(s.value, scope, "let", s.name.text)
 
     def _geometry(self, s: ast.Assign, geo: Geo, scope: Scope) -> None:
-        """Geometry: an instance of a user's shape can be asked for its arguments and `let`s."""
+        """Geometry: an instance of a shape can be asked for its arguments and `let`s."""
         geo.written = Task(self.node, s, scope)
         self.program.definitions.append((geo.written, geo))
-        if not isinstance(s.value, ast.Call):
-            return
-        for candidate, home in scope.candidates(s.value.callee.text):
-            if isinstance(candidate, ast.ShapeDefinition):
-                inner = _bind(candidate, home, s.value, scope)
-                if inner is not None:
-                    inner.names |= geo.members()
-                    for item in candidate.body.statements:
-                        self._declare(item, inner)
-                    geo.source = inner
-                    return
+        if isinstance(s.value, ast.Call):
+            geo.source = self._names_of(s.value, geo, scope)
+
+    def _names_of(self, call: ast.Call, geo: Geo, scope: Scope) -> Scope | None:
+        """The names in a shape, also of one that a function makes; the document tells its numbers."""
+        found = _entered(self.evaluator, scope.candidates(call.callee.text), call, scope)
+        if found is None:
+            return None
+        definition, inner = found
+        if isinstance(definition, ast.FunctionDefinition):
+            value = definition.value
+            return self._names_of(value, geo, inner) if isinstance(value, ast.Call) else None
+        if not isinstance(definition, ast.ShapeDefinition):
+            return None
+        told = geo.data.get("params", {})
+        inner.names |= {n: told_value(v) for n, v in told.items() if not isinstance(v, list)}
+        inner.names |= geo.members()
+        for item in definition.body.statements:
+            self._declare(item, inner)
+        return inner
 
     def _instance(self, s: ast.Assign, child: Node, scope: Scope) -> None:
         self._place(child, s.placement, scope)
         assert isinstance(s.value, ast.Call)
-        for candidate, home in scope.candidates(s.value.callee.text):
-            if isinstance(candidate, ast.Structure):
-                inner = _bind(candidate, home, s.value, scope)
-                if inner is not None:
-                    body = Scope(inner, node=child)
-                    body.names |= inner.names
-                    child.env = body
-                    _Walker(self.program, child).block(candidate.body.statements, body)
-                    return
-        raise MistakeError(f"no template {s.value.callee.text}")
+        self._template(s.value, child, scope)
+
+    def _template(self, call: ast.Call, child: Node, scope: Scope) -> None:
+        found = _entered(self.evaluator, scope.candidates(call.callee.text), call, scope)
+        if found is None or not isinstance(found[0], ast.Structure):
+            raise MistakeError(f"no template {call.callee.text}")
+        definition, inner = found
+        child.env = Scope(inner, names=dict(inner.names), node=child)
+        _Walker(self.program, child).block(definition.body.statements, child.env)
+
+    def _pattern(self, s: ast.Assign, members: Array, scope: Scope) -> None:
+        """The members of a template see what is written of it."""
+        assert isinstance(s.value, ast.Call)
+        thing = s.value.receiver or s.value.arguments[0].value
+        if 0 not in members.items:  # a thing with a name is the first member itself
+            members.items = {0: self.evaluator.value(thing, scope), **members.items}
+        members.pattern = patterns.Pattern(self.node, s.value, scope, members)
+        self.program.patterns.append((Task(self.node, s, scope), members.pattern))
+        for member in members.pattern.members() if isinstance(thing, ast.Call) else ():
+            if isinstance(member, Node):
+                self._template(thing, member, scope)
 
     def _place(self, child: Node, placement: ast.Placement | None, scope: Scope) -> None:
         child.placed = Task(self.node, placement, scope)
@@ -182,24 +221,32 @@ class _Walker:
         return name.text + "".join(f"[{round(ev.number(ev.value(i, scope)).value)}]" for i in indices)
 
 
-def _bind(definition: Any, home: Scope, call: ast.Call, scope: Scope) -> Scope | None:
-    """The arguments of a call as names; None when they do not fit."""
-    names = [p.name.text for p in definition.parameters]
-    positional = [a for a in call.arguments if a.name is None]
-    given = {n: Thunk(a.value, scope) for n, a in zip(names, positional, strict=False)}
-    for argument in call.arguments:
-        if argument.name is not None:
-            known = next((n for n in names if fold(n) == fold(argument.name.text)), None)
-            if known is None:
-                return None
-            given[known] = Thunk(argument.value, scope)
-    inner = Scope(home, dict(given))
+def _is_pattern(s: ast.Assign, scope: Scope) -> bool:
+    return isinstance(s.value, ast.Call) and fold(scope.canonical(s.value.callee.text)) in patterns.KINDS
+
+
+def _entered(
+    ev: Evaluator, candidates: list[tuple[Any, Scope]], call: ast.Call, scope: Scope
+) -> tuple[Any, Scope] | None:
+    """The definition that a call means, with the arguments as expressions that wait for their place."""
+    arguments = [(a.name, a.value) for a in call.arguments]
+    if call.receiver is not None:
+        arguments.insert(0, (None, call.receiver))
+    positional = [Thunk(v, scope) for n, v in arguments if n is None]
+    named = {n.text: Thunk(v, scope) for n, v in arguments if n is not None}
+    found = chosen(candidates, positional, named, lambda v: ev.forced(v, scope))
+    if found is None:
+        return None
+    definition, inner = found
     for parameter in definition.parameters:
-        if parameter.name.text not in given:
-            if parameter.default is None:
-                return None
+        if parameter.name.text not in inner.names and parameter.default is not None:
             inner.names[parameter.name.text] = Thunk(parameter.default, inner)
-    return inner
+    return definition, inner
+
+
+def told_value(value: Any) -> Any:
+    """A number of the document; its dimension is not said there."""
+    return value if isinstance(value, str | bool) else Num(float(value), Exact.REFERENCE)
 
 
 def stated(task: Task) -> Iterator[tuple[ast.Expression, Scope]]:

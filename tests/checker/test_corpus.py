@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import aidl_lang
+from aidl_lang import ast
+from aidl_lang.parser import parse
+from aidl_lang.source import SourceFile
+from tests.checker import library
 from tests.checker.checking import TOLERANCE, check
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -22,6 +28,7 @@ def _name(path: Path) -> str:
     return f"{path.parent.name}/{path.stem}"
 
 
+@cache
 def _solved(path: Path) -> tuple[str, dict[str, Any]]:
     text = path.read_text("utf-8")
     model = aidl_lang.compile(text)
@@ -59,8 +66,27 @@ def test_kept_sizes_change_only_where_the_program_says_they_must(path: Path) -> 
     assert changed == allowed
 
 
-def test_the_corpus_is_large_enough() -> None:
-    assert len(CORPUS) >= 25
+def _called(nodes: Iterable[ast.Node]) -> set[str]:
+    """The names of all calls, by the library's name for each."""
+    names = library.scope()
+    return {names.canonical(n.callee.text) for n in nodes if isinstance(n, ast.Call)}
+
+
+def _corpus() -> list[ast.Node]:
+    modules = [parse(SourceFile(p.name, p.read_text("utf-8"))).module for p in CORPUS]
+    return [node for module in modules for node in ast.walk(module)]
+
+
+def test_every_public_constraint_is_in_the_corpus() -> None:
+    blocks = [node.items for node in _corpus() if isinstance(node, ast.Constrain)]
+    items = [n.value for b in blocks for n in ast.walk(b) if isinstance(n, ast.ExpressionStatement)]
+    assert library.public(ast.ConstraintDefinition) - _called(items) == set()
+
+
+def test_every_measure_and_place_is_in_the_corpus() -> None:
+    wanted = library.public(ast.FunctionDefinition, "measures", "clearance", "placement")
+    assert {"gap", "clearance", "between"} <= wanted
+    assert wanted - _called(_corpus()) == set()
 
 
 def _ends(path: Path) -> list[dict[str, float]]:

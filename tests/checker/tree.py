@@ -54,7 +54,7 @@ class Transform:
         )
 
 
-@dataclass
+@dataclass(eq=False)
 class Geo:
     """A geometry: `data` are its fields in the root frame; `parts` those of a compound shape.
 
@@ -87,7 +87,7 @@ class Geo:
             yield from part.curves()
 
 
-@dataclass
+@dataclass(eq=False)
 class Node:
     """A structure. `world` leads from its frame to the root's, `local` to the parent's.
 

@@ -117,7 +117,10 @@ def fold(name: str) -> str:
 
 @dataclass
 class Scope:
-    """Names seen at a place. A value may be a `Thunk`. `node` is set for the scope of a structure's body."""
+    """Names seen at a place. A value may be a `Thunk`. `node` is set for the scope of a structure's body.
+
+    `functions` and `aliases` are by folded names.
+    """
 
     parent: Scope | None
     names: dict[str, Any] = field(default_factory=dict)
@@ -156,7 +159,7 @@ class Scope:
     def candidates(self, name: str) -> list[tuple[Any, Scope]]:
         """Callables of a name that a program defines, innermost first, and then those of the library."""
         wanted = fold(self.canonical(name))
-        return [c for here in self.chain() for n, cs in here.functions.items() if fold(n) == wanted for c in cs]
+        return [c for here in self.chain() for c in here.functions.get(wanted, ())]
 
     def own(self, name: str) -> list[tuple[Any, Scope]]:
         """The candidates that a program defines itself."""
@@ -164,9 +167,9 @@ class Scope:
 
     def canonical(self, name: str) -> str:
         for here in self.chain():
-            for alias, target in here.aliases.items():
-                if fold(alias) == fold(name):
-                    return self.canonical(target) if fold(target) != fold(name) else target
+            target = here.aliases.get(fold(name))
+            if target is not None:
+                return self.canonical(target) if fold(target) != fold(name) else target
         return name
 
 

@@ -245,13 +245,13 @@ curves = st.one_of(
 )
 
 
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=60)
 @given(st.lists(curves, min_size=2, max_size=6))
 def test_hulls_against_shapely(drawn: list[Piece]) -> None:
-    # Of a line its ends: among thousands of points that all but lie on one line, GEOS loses corners.
+    # Of a line its ends, and no two points that all but coincide: among such GEOS loses corners.
     counts = [2 if isinstance(c, Line) else 2001 for c in drawn]
     spots = np.concatenate([points(c, np.linspace(0, 1, n)) for c, n in zip(drawn, counts, strict=True)])
-    theirs = shapely.convex_hull(shapely.MultiPoint(spots))
+    theirs = shapely.convex_hull(shapely.MultiPoint(np.unique(np.round(spots, 5), axis=0)))
     ours = hull(drawn)
     assert area(ours) == pytest.approx(theirs.area, rel=1e-4, abs=5e-3)
     assert_closed(ours)

@@ -1,5 +1,5 @@
 /// Every relation of lines and points.
-// changes: a, b, c, d, e, f
+// changes: a, b, c, d, e
 drawing lines {
     a = line((0, 0), (30, 2))
     b = line((0, 10), (31, 13))

@@ -1,0 +1,35 @@
+/// Level, upright and at right angles: lines, centres of things, round things and shared ends.
+// changes: chord, other, post, shelf
+drawing directions {
+    shelf  = line((0, 0), (60, 4))
+    other  = line((0, 10), (60, 14))
+    post   = line((0, 0), (3, 60))
+    peg    = circle(center: (20, 12), radius: 3)
+    hook   = rectangle(center: (45, 15), width: 4, height: 4)
+    pin    = circle(center: (24, 40), radius: 3)
+    dial   = circle(center: (100, 20), radius: 10)
+    spoke  = line((80, 0), (115, 30))
+    bend   = arc(center: (140, 0), start: (150, 0), end: (140, 10))
+    stem   = line(bend.end, (137, 30))
+    flow   = bezier((200, 0), (210, 5), (220, 10), (230, 0))
+    drain  = line(flow.p3, (240, 20))
+    a      = line(fixed((0, 100)), fixed((30, 110)))
+    chord  = line((42, 118), (60, 130))
+    p      = (80, 120)
+    dot    = circle(center: (95, 140), radius: 1)
+    e      = (10, 200)
+    f      = (20, 211)
+    g      = circle(center: (35, 219), radius: 2)
+    constrain {
+        horizontal(shelf, other)
+        vertical(post)
+        horizontal(peg, hook)
+        vertical(peg.center, pin)
+        perpendicular(spoke, dial)
+        perpendicular(stem, bend)
+        perpendicular(drain, flow)
+        collinear(chord, p, dot, a)
+        collinear(e, f, g)
+        parallel(other, shelf)
+    }
+}

@@ -1,0 +1,52 @@
+/// Mirror images of every kind of thing, about lines, points, axes and coordinates; things symmetric in themselves.
+// changes: feather.p1, feather.p2, feather.p3, leaf, r, wing
+drawing images {
+    construction axis = line(fixed((0, -20)), fixed((10, 20)))
+    p = (30, 5)
+    q = (-20, 9)
+    left_eye  = circle(center: (-20, 12), radius: guess(4))
+    right_eye = circle(center: (30, 5), radius: 6)
+    wing  = line((-40, 0), (-60, 10))
+    other = line((50, 0), (66, 9))
+    bow   = arc(center: (60, 60), radius: 12, start_angle: 10deg, end_angle: 100deg)
+    twin  = arc(center: (-40, 80), radius: guess(11), start_angle: guess(100deg), end_angle: guess(190deg))
+    egg   = ellipse(center: (50, 110), rx: 9, ry: 5, angle: fixed(20deg))
+    yolk  = ellipse(center: (-20, 130), rx: guess(8), ry: guess(5), angle: guess(10deg))
+    fin   = bezier((60, 150), (70, 160), (80, 160), (90, 150))
+    gill  = bezier((-30, 170), (-40, 180), (-50, 180), (-60, 170))
+    house = rectangle(center: (60, 200), width: 20, height: 12)
+    barn  = rectangle(center: (-60, 199), width: guess(15), height: guess(10))
+    for i in 0..1 { a[i] = (100 + 10 * i, 20 * i) }
+    for i in 0..1 { b[i] = (-101 - 10 * i, 21 * i) }
+    c = circle(center: (150, 0), radius: 3)
+    d = circle(center: (250, 8), radius: guess(4))
+    e = circle(center: (150, 40), radius: 3)
+    f = circle(center: (250, 31), radius: guess(4))
+    nose = line((3, 40), length: 12, angle: 90deg)
+    leaf = line((-10, 60), (12, 62))
+    smile = arc(center: (2, 90), radius: 10, start_angle: 200deg, end_angle: 340deg)
+    feather = bezier((-10, 110), (-6, 120), (7, 121), (11, 109))
+    badge = regular_polygon(center: (2, 140), radius: 5, sides: 6)
+    for i in 0..4 { bead[i] = circle(center: (-20 + 11 * i, 260), radius: 3) }
+    r = line((300, 0), (320, 5))
+    s = line((340, 40), (361, 33))
+    constrain {
+        mirror_of(q, p, about: axis)
+        mirror_of(left_eye, right_eye, about: axis)
+        mirror_of(wing, other, about: y_axis)
+        mirror_of(twin, bow, about: y_axis)
+        mirror_of(yolk, egg, about: y_axis)
+        mirror_of(fin, gill, about: y_axis)
+        mirror_of(barn, house, about: y_axis)
+        mirror_of(b, a, about: y_axis)
+        symmetric(c, d, about: 200)
+        symmetric(e, f, about: (200, 36))
+        symmetric(nose, about: y_axis)
+        symmetric(leaf, axis: y)
+        symmetric(smile, axis: y)
+        symmetric(feather, about: y_axis)
+        symmetric(badge, about: y_axis)
+        symmetric(bead, about: y_axis)
+        symmetric(r, s, about: (330, 20))
+    }
+}

@@ -1,0 +1,38 @@
+/// Points on curves of every kind, between their ends, and things that share a centre or a middle.
+// changes: tail
+drawing incidence {
+    beam   = line(fixed((0, 0)), fixed((60, 20)))
+    rim    = circle(center: fixed((60, 60)), radius: 12)
+    bow    = arc(center: fixed((0, 60)), radius: 20, start_angle: fixed(0deg), end_angle: fixed(120deg))
+    oval   = ellipse(center: fixed((120, 0)), rx: 20, ry: 10, angle: fixed(30deg))
+    tail   = line((66, 34), (90, 40))
+    a      = (20, 10)
+    b      = (55, 70)
+    c      = (15, 75)
+    d      = (101, 3)
+    knob   = circle(center: (80, 9), radius: 4)
+    bead   = circle(center: (9, 77), radius: 2)
+    same   = circle(center: (58, 61), radius: guess(9))
+    turned = arc(center: (57, 62), radius: guess(11), start_angle: 10deg, end_angle: 90deg)
+    nut    = regular_polygon(center: (1, 57), radius: 9, sides: 6)
+    plate  = rectangle(center: (3, 62), width: 8, height: 6)
+    eye    = circle(center: (30, 40), radius: 4)
+    nail   = circle(center: (30, 30), radius: 2)
+    mark   = circle(center: (0, 80), radius: 1)
+    rod    = line((10, -30), (40, -32))
+    constrain {
+        coincident(a, beam)
+        coincident(b, rim)
+        coincident(bow, c)
+        coincident(d, oval)
+        coincident(tail, beam)
+        coincident(same, turned, rim)
+        on_segment(knob.center, beam)
+        on_segment(bead.center, bow)
+        concentric(nut, plate, bow)
+        midpoint(eye, beam)
+        midpoint(nail, eye, beam.end)
+        midpoint(mark, bow)
+        midpoint(rod, (20, -40))
+    }
+}
