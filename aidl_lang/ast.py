@@ -14,12 +14,17 @@ from typing import TypeAlias
 from aidl_lang.source import SourceFile, Span
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Node:
     span: Span = field(repr=False)
 
+    def __repr__(self) -> str:
+        """As dataclasses have it, without the span; one for all, since making each its own slows the start."""
+        shown = (f"{f.name}={getattr(self, f.name)!r}" for f in dataclasses.fields(self) if f.repr)
+        return f"{type(self).__name__}({', '.join(shown)})"
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Identifier(Node):
     """A name at the place where it is written (a definition, a member, an argument's name)."""
 
@@ -29,7 +34,7 @@ class Identifier(Node):
 # --- Expressions ---------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Number(Node):
     """`value` is the number as written, without its unit applied; `text` its digits, for the printer."""
 
@@ -38,22 +43,22 @@ class Number(Node):
     text: str
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class String(Node):
     value: str
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Boolean(Node):
     value: bool
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Name(Node):
     text: str
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Member(Node):
     """`value.name`"""
 
@@ -61,7 +66,7 @@ class Member(Node):
     name: Identifier
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Index(Node):
     """`value[index]`"""
 
@@ -69,13 +74,13 @@ class Index(Node):
     index: Expression
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Argument(Node):
     name: Identifier | None
     value: Expression
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Call(Node):
     """`callee(…)`, or `receiver.callee(…)`, which is the same call with the receiver as first argument."""
 
@@ -84,7 +89,7 @@ class Call(Node):
     arguments: tuple[Argument, ...]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Point(Node):
     """`(x, y)`"""
 
@@ -92,14 +97,14 @@ class Point(Node):
     y: Expression
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class List(Node):
     """`[a, b, …]`; with two numbers where a point is expected it is a point."""
 
     items: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Comprehension(Node):
     """`[element for variable in iterable if condition]`"""
 
@@ -109,7 +114,7 @@ class Comprehension(Node):
     condition: Expression | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Unary(Node):
     """`operator` is `-`, `+` or `not`."""
 
@@ -117,7 +122,7 @@ class Unary(Node):
     operand: Expression
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Binary(Node):
     """`operator` is one of `+ - * / % ^ and or`."""
 
@@ -126,7 +131,7 @@ class Binary(Node):
     right: Expression
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Comparison(Node):
     """A chain `a <= b < c`: one operand more than operators (`== != <= >= < >`)."""
 
@@ -134,7 +139,7 @@ class Comparison(Node):
     operators: tuple[str, ...]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Membership(Node):
     """`value in range`"""
 
@@ -142,7 +147,7 @@ class Membership(Node):
     container: Expression
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Range(Node):
     """`start..end` (both ends) or `start..<end` (without the last); what is run through may have a `step`."""
 
@@ -152,7 +157,7 @@ class Range(Node):
     step: Expression | None = None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Conditional(Node):
     """`if test then a else b`, also written `a if test else b`."""
 
@@ -184,7 +189,7 @@ Expression: TypeAlias = (
 # --- Statements ----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Parameter(Node):
     """A parameter of a template, shape, constraint or function: `name: type = default`."""
 
@@ -193,7 +198,7 @@ class Parameter(Node):
     default: Expression | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Placement(Node):
     """`at POINT` and `rotated ANGLE`, each at most once."""
 
@@ -201,7 +206,7 @@ class Placement(Node):
     rotated: Expression | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Attribute(Node):
     """`@name(arguments)`"""
 
@@ -209,14 +214,14 @@ class Attribute(Node):
     arguments: tuple[Argument, ...]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Block(Node):
     """`{ statements }`"""
 
     statements: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Structure(Node):
     """`KIND NAME[index] { … }`; with `parameters` (even an empty list) it is a template.
 
@@ -234,7 +239,7 @@ class Structure(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Param(Node):
     """`param name = value in domain step step`"""
 
@@ -245,21 +250,21 @@ class Param(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Var(Node):
     name: Identifier
     value: Expression
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Let(Node):
     name: Identifier
     value: Expression
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Assign(Node):
     """`name[index] = value at … rotated …`, or `construction name = value`."""
 
@@ -272,14 +277,14 @@ class Assign(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ExpressionStatement(Node):
     """A bare expression: a constraint without its keyword, or an operation such as `rotate(r, 30deg)`."""
 
     value: Expression
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Constrain(Node):
     """`constrain EXPR` (one item, no block) or `constrain { … }`.
 
@@ -290,7 +295,7 @@ class Constrain(Node):
     braces: bool
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Equation(Node):
     """`left = right` inside `constrain`, which means `==`."""
 
@@ -298,26 +303,26 @@ class Equation(Node):
     right: Expression
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Prefer(Node):
     value: Expression
     weight: Expression | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Assert(Node):
     test: Expression
     message: Expression | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class For(Node):
     variables: tuple[Identifier, ...]
     iterable: Expression
     body: Block
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class If(Node):
     """`otherwise` is a Block; `else if` is a block that holds one If."""
 
@@ -326,7 +331,7 @@ class If(Node):
     otherwise: Block | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Import(Node):
     """`import "path"`, `import "path" as alias`, `import a, b from "path"` (`names`)."""
 
@@ -335,7 +340,7 @@ class Import(Node):
     names: tuple[Identifier, ...]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FunctionDefinition(Node):
     """`fn name(parameters) = value`"""
 
@@ -345,7 +350,7 @@ class FunctionDefinition(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ShapeDefinition(Node):
     """`shape name(parameters) { … }`"""
 
@@ -355,7 +360,7 @@ class ShapeDefinition(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ConstraintDefinition(Node):
     """`constraint name(parameters) { … }`; the items of the body are those of `constrain`."""
 
@@ -365,7 +370,7 @@ class ConstraintDefinition(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Alias(Node):
     """`alias name = target`"""
 
@@ -374,7 +379,7 @@ class Alias(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Todo(Node):
     """`todo`: this body is to be filled in later, and its author knows."""
 
@@ -407,11 +412,11 @@ Callable: TypeAlias = FunctionDefinition | ShapeDefinition | ConstraintDefinitio
 class Comment:
     """A comment with its delimiters, kept for the printer."""
 
-    span: Span
+    span: Span = field(repr=False)
     text: str
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Module(Node):
     """A whole file. `comments` are all comments in text order, `///` ones included."""
 

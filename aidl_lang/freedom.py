@@ -272,7 +272,7 @@ class _Telling:
         places = np.stack((self.scene.places[at_x], self.scene.places[at_x + 1]))
         local = np.stack((self.local[at_x], self.local[at_x + 1]))
         stays = (local < 0).all(axis=0)
-        if self.is_done or stays.all() or not stays.any():
+        if self.is_done or stays.all() or not stays.any() or not np.isfinite(places).all():
             return
         x, y = places[:, stays][:, 0]
         needed = np.stack((y - places[1], places[0] - x))

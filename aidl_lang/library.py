@@ -27,9 +27,9 @@ from typing import Any, TypeAlias
 from aidl_lang import ast, resources
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.source import SourceFile, Span
-from aidl_lang.types import ANY, Signature, parameter_type
+from aidl_lang.types import ANY, Signature, Type, parameter_type, type_named
 
-_FORMAT = b"aidl-library-2\n"
+_FORMAT = b"aidl-library-3\n"
 _HEAD = struct.Struct(">II32s")
 _Place: TypeAlias = tuple[int, int, int]
 
@@ -97,7 +97,46 @@ def signature(node: ast.Callable, shapes: Sequence[str] = (), *, standard: bool 
     parameters = tuple(
         (p.name.text, parameter_type(p, shapes) or ANY, p.default is not None) for p in node.parameters or ()
     )
-    return Signature(node.name.text, parameters, node, standard=standard)
+    return Signature(node.name.text, parameters, node, type(node), standard=standard)
+
+
+class _Stored(Signature):
+    """A signature from the cache. Calls choose among many; the tree of the chosen one is decoded."""
+
+    def __init__(
+        self,
+        name: str,
+        parameters: tuple[tuple[str, Type, bool], ...],
+        kind: type[ast.Callable],
+        decode: Callable[[], ast.Callable],
+    ) -> None:
+        fields = {"name": name, "parameters": parameters, "kind": kind, "takes_any": False, "standard": True}
+        for field_name, value in (*fields.items(), ("_decode", decode)):
+            object.__setattr__(self, field_name, value)
+
+    @functools.cached_property
+    def node(self) -> ast.Callable:
+        decode: Callable[[], ast.Callable] = self._decode  # type: ignore[attr-defined]
+        return decode()
+
+
+def _brief(node: ast.Callable) -> str:
+    """Sort and parameters of a definition, as `ShapeDefinition center:point?,radius:length`."""
+    parameters = (
+        f"{p.name.text}:{p.type.text if p.type else 'any'}{'?' if p.default is not None else ''}"
+        for p in node.parameters or ()
+    )
+    return f"{type(node).__name__} {','.join(parameters)}"
+
+
+def _stored(name: str, brief: str, shapes: Sequence[str], decode: Callable[[], ast.Callable]) -> Signature:
+    kind, _, parameters = brief.partition(" ")
+    read = []
+    for parameter in filter(None, parameters.split(",")):
+        word, _, type_word = parameter.partition(":")
+        wanted = type_named(type_word.removesuffix("?"), shapes) or ANY
+        read.append((word, wanted, type_word.endswith("?")))
+    return _Stored(name, tuple(read), getattr(ast, kind), decode)
 
 
 def _collect(
@@ -200,8 +239,9 @@ def _write_private(path: Path, blob: bytes) -> None:
 def _to_cache(modules: Sequence[ast.Module], sources: Sequence[SourceFile]) -> bytes:
     """The format line, the lengths of index and trees, a checksum of the index, the index, and the trees.
 
-    The index maps a name to the places of its overloads, and each alias to its target. A place is where a
-    tree begins and ends, and its checksum: what is not used is not read, however large the library grows.
+    The index maps a name to its overloads, each in brief and with its place, and each alias to its target. A
+    place is where a tree begins and ends, and its checksum: what is not used is not read, however large the
+    library grows.
     """
     definitions, aliases, constants = _collect(modules)
     body = bytearray()
@@ -212,7 +252,7 @@ def _to_cache(modules: Sequence[ast.Module], sources: Sequence[SourceFile]) -> b
         return start, len(body), zlib.crc32(tree)
 
     index = {
-        "definitions": {name: [store(node) for node in nodes] for name, nodes in definitions.items()},
+        "definitions": {n: [(_brief(node), store(node)) for node in ns] for n, ns in definitions.items()},
         "shapes": _shape_names(definitions),
         "constants": {name: store(node) for name, node in constants.items()},
         "aliases": aliases,
@@ -233,21 +273,25 @@ def _from_cache(blob: bytes, sources: tuple[SourceFile, ...]) -> Library | None:
     index = _Trees(head, sources).load()
     parsed = functools.cache(lambda: from_modules(*_parse(sources)))
 
-    def trees(places: Sequence[_Place]) -> list[Any] | None:
-        found = [(body[start:end], check) for start, end, check in places]
-        if any(zlib.crc32(tree) != check for tree, check in found):
-            return None
-        return [_Trees(tree, sources).load() for tree, _ in found]
+    def tree(place: _Place) -> Any:
+        """None if it was damaged."""
+        start, end, checksum = place
+        return _Trees(body[start:end], sources).load() if zlib.crc32(body[start:end]) == checksum else None
 
     def overloads(name: str) -> tuple[Signature, ...]:
-        nodes = trees(index["definitions"][name])
-        if nodes is None:
-            return parsed().callables[name]
-        return tuple(signature(node, index["shapes"], standard=True) for node in nodes)
+        def decode(number: int, place: _Place) -> ast.Callable:
+            found: ast.Callable | None = tree(place) or parsed().callables[name][number].node
+            assert found is not None
+            return found
+
+        return tuple(
+            _stored(name, brief, index["shapes"], functools.partial(decode, number, place))
+            for number, (brief, place) in enumerate(index["definitions"][name])
+        )
 
     def constant(name: str) -> ast.Let:
-        nodes = trees([index["constants"][name]])
-        return nodes[0] if nodes else parsed().constants[name]
+        found: ast.Let = tree(index["constants"][name]) or parsed().constants[name]
+        return found
 
     return Library(
         sources=sources,

@@ -144,9 +144,12 @@ PARAMETER_TYPES: Mapping[str, Type] = {
 
 def parameter_type(parameter: ast.Parameter, shapes: Iterable[str] = ()) -> Type | None:
     """The type a parameter asks for; None when the word is unknown."""
-    if parameter.type is None:
-        return ANY
-    word = fold(parameter.type.text)
+    return type_named(parameter.type.text, shapes) if parameter.type is not None else ANY
+
+
+def type_named(word: str, shapes: Iterable[str] = ()) -> Type | None:
+    """The type of a word, the name of a shape being one; None when it is unknown."""
+    word = fold(word)
     if (known := PARAMETER_TYPES.get(word)) is not None:
         return known
     return next((GeometryType(shape) for shape in shapes if fold(shape) == word), None)
@@ -219,14 +222,15 @@ class Given:
 
 @dataclass(frozen=True)
 class Signature:
-    """A callable: `node` is its definition, None for one that is built in; `standard` is what every program
-    has. One that `takes_any` takes every named argument.
+    """A callable: `node` is its definition and `kind` what sort of one, both None for what is built in;
+    `standard` is what every program has. One that `takes_any` takes every named argument.
     """
 
     name: str
     parameters: tuple[tuple[str, Type, bool], ...]
     """name, type, and whether it has a default"""
     node: ast.Callable | None = None
+    kind: type[ast.Callable] | None = None
     takes_any: bool = False
     standard: bool = False
 

@@ -11,14 +11,14 @@ from aidl_lang.building.arguments import arranged
 from aidl_lang.building.blocks import run_block
 from aidl_lang.building.coerce import as_point, edge_coordinate
 from aidl_lang.building.conditions import all_of, replace_placed, value_unknowns
-from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, size, turn
+from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, refuses_measure, size, turn
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.lists import run
 from aidl_lang.building.outlines import remember, usable
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.builtins import SIGNATURES, is_word
+from aidl_lang.builtins import COPYING, SIGNATURES, is_word
 from aidl_lang.model import Condition, Geometry
 from aidl_lang.names import find, nearest
 from aidl_lang.types import (
@@ -65,7 +65,7 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
     if not candidates:
         _unknown_callable(it, node, env)
         return NOTHING
-    if any(isinstance(c.signature.node, ast.Structure) for c in candidates):
+    if any(c.signature.kind is ast.Structure for c in candidates):
         # References passed to a template are tied by its instantiating structure, which may reach further.
         env = Env(env.scope, env.here, Reach.SUBTREE if env.reach is Reach.OWN else env.reach)
     values: list[Value] = [] if receiver is None or isinstance(receiver, Namespace) else [receiver]
@@ -175,6 +175,10 @@ def bound(
             return None
         if isinstance(value, Condition) and isinstance(kind, TruthType) and _is_flag(binding.signature, name):
             value = truth(it, value, nodes[indices[0]])
+        if binding.signature.name in COPYING:
+            for number in (value.x, value.y) if isinstance(value, PointVal) else (value,):
+                if isinstance(number, Num) and refuses_measure(it, number, nodes[indices[0]].span):
+                    return None
         result[name] = value
     if binding.signature.takes_any:
         result |= {name: values[indices[0]] for name, indices in binding.arguments.items()}
@@ -183,7 +187,7 @@ def bound(
 
 def _is_flag(signature: Signature, name: str) -> bool:
     """Whether a condition decides how something is made: it has to be known then."""
-    return signature.node is None or name == "rotatable"
+    return signature.kind is None or name == "rotatable"
 
 
 def _spliced(value: Value) -> Sequence[Value]:

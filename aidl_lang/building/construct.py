@@ -27,12 +27,17 @@ Arguments = Mapping[str, Value]
 
 
 def solvable(it: Interpreter, value: Num, span: Span | None) -> Expression:
-    """What a number is for the solver; measures of what is drawn after solving are refused."""
+    """What a number is for the solver; 0 for a measure of what is drawn after solving, which is reported."""
+    return ex.ZERO if refuses_measure(it, value, span) else value.expression
+
+
+def refuses_measure(it: Interpreter, value: Num, span: Span | None) -> bool:
+    """Whether a number follows from a measure of what is drawn after solving, which is reported here."""
     if not math.isnan(value.value):
-        return value.expression
+        return False  # a measure has no value before
     found = (n.payload for n in ex.nodes([value.expression]) if isinstance(n.payload, Measurement))
     if (measured := next(found, None)) is None:
-        return value.expression
+        return False
     is_box = measured.kind in SIDES
     it.report(
         "E0519" if is_box else "E0512",
@@ -41,7 +46,7 @@ def solvable(it: Interpreter, value: Num, span: Span | None) -> Expression:
         span,
         hints=["take the sizes and points of what is measured, or check it in an `assert`"],
     )
-    return ex.ZERO
+    return True
 
 
 def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: MaybeDimension = LENGTH) -> Num:

@@ -65,7 +65,7 @@ def is_edit(it: Interpreter, node: ast.Node, scope: Scope) -> bool:
     if not isinstance(node, ast.Call) or _target(node) is None:
         return False
     candidates = find_candidates(it, node.callee.text, scope, None)
-    return bool(candidates) and candidates[0].signature.node is None and candidates[0].signature.name in EDITS
+    return bool(candidates) and candidates[0].signature.kind is None and candidates[0].signature.name in EDITS
 
 
 def _target(call: ast.Call) -> ast.Expression | None:

@@ -148,7 +148,7 @@ def usable(candidates: list[Candidate], values: Sequence[Value], env: Env) -> li
     if not candidates or candidates[0].signature.name not in OUTLINES:
         return candidates
     far = any(isinstance(v, Geometry) and v.owner is not env.here for v in values)
-    return [c for c in candidates if c.signature.node is None] if far else candidates
+    return [c for c in candidates if c.signature.kind is None] if far else candidates
 
 
 def remember(result: Value, name: str, arguments: Arguments) -> None:

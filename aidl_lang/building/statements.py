@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.building.blocks import declared_names, run_block
 from aidl_lang.building.coerce import as_point, numeric
-from aidl_lang.building.construct import loose_point
+from aidl_lang.building.construct import loose_point, refuses_measure
 from aidl_lang.building.declare import adopt, declare, give_name, index_values
 from aidl_lang.building.editing import edited
 from aidl_lang.building.edits import check_edit, edits_on, is_edit
@@ -116,6 +117,8 @@ def _var(it: Interpreter, node: ast.Var, scope: Scope, here: Structure) -> None:
         declare(it, scope, node.name, (), NOTHING, node)
         return
     holder = scope.declaring().container or here
+    if not refuses_measure(it, found, node.value.span) and not math.isfinite(found.value):
+        it.report("E0504", f"`{node.value.span.one_line}` has no value at the first guesses", node.value)
     made = it.unknown(found.value, holder, node.name.text, owner=here, dimension=found.dimension)
     assert isinstance(made.payload, ex.Unknown)
     var = VarBinding(Num(made, found.dimension, Status.REFERENCE), made.payload)

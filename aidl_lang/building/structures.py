@@ -10,6 +10,7 @@ from aidl_lang.building.attributes import read_attributes
 from aidl_lang.building.blocks import run_block
 from aidl_lang.building.calls import default_of
 from aidl_lang.building.coerce import as_point, numeric
+from aidl_lang.building.construct import solvable
 from aidl_lang.building.edits import Edit, edits_on, frame_edited
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.scopes import Scope, indexed
@@ -154,12 +155,12 @@ def _place(
     if edits:
         at, turn = frame_edited(it, edits, s, at, turn)
     x, y = (
-        n.expression
+        solvable(it, n, s.span)
         if n.status >= Status.FIXED
         else it.unknown(n.value, s, axis, owner=s.parent, dimension=LENGTH, frame_of=s)
         for n, axis in ((at.x, "x"), (at.y, "y"))
     )
-    rotation = turn.expression if turn is not None else ex.ZERO
+    rotation = solvable(it, turn, s.span) if turn is not None else ex.ZERO
     if turn is not None and turn.status is Status.GUESS:
         rotation = it.unknown(turn.value, s, "rotation", owner=s.parent, dimension=ANGLE, frame_of=s)
     s.frame = Frame(x, y, rotation)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from aidl_lang import ast
 from aidl_lang.building.coerce import as_written
 from aidl_lang.building.conditions import compare_numbers
-from aidl_lang.building.construct import positions, solvable
+from aidl_lang.building.construct import positions, refuses_measure
 from aidl_lang.building.scopes import PassedBinding
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.model import Condition, Constraint, Geometry, Structure, convert_point
@@ -52,7 +52,7 @@ def read_passed(it: Interpreter, binding: PassedBinding, env: Env) -> Value:
 def _tie(it: Interpreter, binding: PassedBinding, here: Structure) -> Value:
     match binding.value:
         case Num(status=Status.REFERENCE) as number:
-            solvable(it, number, binding.node.span)
+            refuses_measure(it, number, binding.node.span)
             made = it.unknown(number.value, here, binding.name, owner=here, dimension=number.dimension)
             own = Num(made, number.dimension, Status.REFERENCE)
             _hold_equal(it, binding, [(own, number)])

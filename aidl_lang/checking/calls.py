@@ -13,6 +13,7 @@ from aidl_lang.checking import fields
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, Place, joined
 from aidl_lang.checking.habits import check_habits
 from aidl_lang.checking.misfits import no_overload
+from aidl_lang.names import fold
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.types import (
     ANY,
@@ -165,7 +166,22 @@ def _function(check: Inference, definition: ast.FunctionDefinition, reads: froze
     finally:
         check.homes = before
         check.running.discard(definition)
-    return replace(fact, reads=fact.reads | reads, bare=None)
+    return replace(fact, reads=fact.reads | reads if _reads_arguments(definition) else fact.reads, bare=None)
+
+
+def _reads_arguments(definition: ast.FunctionDefinition) -> bool:
+    """Whether what a function gives depends on its arguments as they are solved, not only as written."""
+    names = {parameter.name.text for parameter in definition.parameters}
+    stack: list[ast.Node] = [definition.value]
+    while stack:
+        match stack.pop():
+            case ast.Name(text) if text in names:
+                return True
+            case ast.Call(callee=callee) if fold(callee.text) in _CONSTANT:
+                pass
+            case node:
+                stack.extend(ast.children(node))
+    return False
 
 
 def _built_in(

@@ -34,12 +34,12 @@ def find_cycles(infer: Inference) -> None:
 
 
 def _dependences(infer: Inference) -> dict[Symbol, list[tuple[Symbol, ast.Name]]]:
-    """Param or let → what its value names, and where."""
+    """Param or let → what its value names, and where. Members of an array may follow from one another."""
     uses = infer.resolution.uses
     return {
         symbol: [(uses[name], name) for node in symbol.nodes for name in _names(node) if name in uses]
         for symbol in infer.resolution.symbols
-        if symbol.kind in (SymbolKind.LET, SymbolKind.PARAM)
+        if symbol.kind in (SymbolKind.LET, SymbolKind.PARAM) and not symbol.is_array
     }
 
 

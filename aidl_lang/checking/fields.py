@@ -95,7 +95,7 @@ RESULTS: Mapping[str, Type] = {
     "len": NumberType(None, whole=True),
     "record": RecordType(),
     "ink": RecordType(),
-    "str": TextType(),
+    **dict.fromkeys(("str", "choice"), TextType()),
     **dict.fromkeys(("range", "enumerate", "zip", "reversed"), ListType(ANY)),
     **dict.fromkeys(("line", "arc", "circle", "bezier", "ellipse"), ANY),
     **{kind: GeometryType(kind) for kind in PRIMITIVE if kind != "point"},

@@ -212,7 +212,10 @@ class Inference:
 
     def _index(self, node: ast.Index) -> Fact:
         fact = self.fact(node.value)
-        if isinstance(fact.type, RecordType | AnyType) and isinstance(self.fact(node.index).type, TextType):
+        if isinstance(fact.type, RecordType):
+            self.wants(node.index, "the name of a field", TextType)
+            return Fact(ANY, fact.reads)
+        if isinstance(fact.type, AnyType) and isinstance(self.fact(node.index).type, TextType):
             return Fact(ANY, fact.reads)
         self.whole(node.index, "an index")
         match fact.type:

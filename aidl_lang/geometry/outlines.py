@@ -223,7 +223,7 @@ class _Outliner:
             if earlier is None:
                 works.append(Work(f.kind, corner, (f.sizes[0], f.sizes[-1])))
                 reasons.append(f)
-            elif told is not None and f in finishes:
+            elif told is not None and f in finishes and f.span != reasons[earlier].span:
                 self.notes.append(notes.twice(f, reasons[earlier], corner, told))
         result = finish([c for _, c in leaves], works)
         if told is not None:

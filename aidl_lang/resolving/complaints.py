@@ -182,18 +182,15 @@ def check_order(resolver: Resolver, node: ast.Name, symbol: Symbol, scope: Scope
         )
 
 
+_KINDS = {
+    ast.ShapeDefinition: SymbolKind.SHAPE,
+    ast.ConstraintDefinition: SymbolKind.CONSTRAINT,
+    ast.Structure: SymbolKind.TEMPLATE,
+}
+
+
 def kind_of(signature: Signature) -> SymbolKind:
-    match signature.node:
-        case ast.FunctionDefinition():
-            return SymbolKind.FUNCTION
-        case ast.ShapeDefinition():
-            return SymbolKind.SHAPE
-        case ast.ConstraintDefinition():
-            return SymbolKind.CONSTRAINT
-        case ast.Structure():
-            return SymbolKind.TEMPLATE
-        case _:
-            return SymbolKind.FUNCTION
+    return _KINDS.get(signature.kind, SymbolKind.FUNCTION) if signature.kind else SymbolKind.FUNCTION
 
 
 def did_you_mean(like: Sequence[str], mark: str = "") -> str:

@@ -41,10 +41,10 @@ def made_by(value: ast.Expression, scope: Scope) -> SymbolKind:
             if found is None:
                 return SymbolKind.LET
             name, signatures = found
-            kinds = {type(s.node) for s in signatures}
+            kinds = {s.kind for s in signatures}
             if ast.Structure in kinds:
                 return SymbolKind.STRUCTURE
-            is_maker = ast.ShapeDefinition in kinds or (name in _MAKERS and signatures[0].node is None)
+            is_maker = ast.ShapeDefinition in kinds or (name in _MAKERS and signatures[0].kind is None)
             return SymbolKind.GEOMETRY if is_maker else SymbolKind.LET
         case ast.Conditional(then=then, otherwise=otherwise):
             kind = made_by(then, scope)

@@ -1,4 +1,4 @@
-"""The arguments of a call for the parameters of a definition: overloads by type, and other words for names."""
+"""The arguments of a call for the parameters of a definition: overloads by type, other words for names."""
 
 from __future__ import annotations
 
@@ -100,19 +100,14 @@ def fits(kind: str, value: Any) -> int | None:
     match kind:
         case "angle" | "turn":
             return (0 if value.is_angle else 1) if isinstance(value, Num) else None
-        case "length" | "number" | "area":
-            return _number(value)
-        case "integer":
-            is_whole = isinstance(value, Num) and value.value == round(value.value)
-            return 0 if is_whole and not value.is_angle else None
+        case "length" | "number" | "area" | "integer":
+            return _number(value, is_whole=kind == "integer")
         case "text" | "string":
             return 0 if isinstance(value, str) else None
         case "bool" | "boolean":
             return 0 if isinstance(value, bool) else None
         case "point":
-            if isinstance(value, list):
-                return 2 if len(value) == 2 and all(isinstance(v, Num) for v in value) else None
-            return 0 if _is_point(value) else None
+            return _point(value)
         case "list" | "points":
             return 0 if isinstance(value, list | Array) else None
         case "record":
@@ -127,14 +122,19 @@ def fits(kind: str, value: Any) -> int | None:
             return 0 if isinstance(value, Geo) and fold(value.type) == kind else None
 
 
-def _number(value: Any) -> int | None:
-    if isinstance(value, Geo) and value.type == "line":
+def _number(value: Any, is_whole: bool) -> int | None:
+    """An edge stands for its coordinate."""
+    if isinstance(value, Geo) and value.type == "line" and not is_whole:
         return 2
-    return 0 if isinstance(value, Num) and not value.is_angle else None
+    if not isinstance(value, Num) or value.is_angle:
+        return None
+    return None if is_whole and value.value != round(value.value) else 0
 
 
-def _is_point(value: Any) -> bool:
-    return isinstance(value, Point) or (isinstance(value, Geo) and value.type == "point")
+def _point(value: Any) -> int | None:
+    if isinstance(value, list):
+        return 2 if len(value) == 2 and all(isinstance(v, Num) for v in value) else None
+    return 0 if isinstance(value, Point) or (isinstance(value, Geo) and value.type == "point") else None
 
 
 def _box(value: Any) -> int | None:

@@ -131,7 +131,7 @@ _MAKERS: dict[str, Callable[..., Copy]] = {
 
 
 def away(frame: Transform, made: Copy, image: Geo | Node) -> float:
-    """How far the curves of a copy are from where the curves of its source go."""
+    """How far the curves and points of a copy are from where those of its source go."""
     here = [_marks(c, frame) for c in _curves(image)]
     expected = [
         (kind, [made.motion(p) for p in points], [made.factor * s for s in sizes])
@@ -159,7 +159,7 @@ def _curves(thing: Geo | Node) -> Iterator[Geo]:
 
 
 def _leaves(geo: Geo) -> Iterator[Geo]:
-    if not geo.parts and geo.type != "point":
+    if not geo.parts:
         yield geo
     for part in geo.parts.values():
         yield from _leaves(part)
@@ -170,6 +170,7 @@ _NAMES = {
     "line": ("start", "end"),
     "arc": ("start", "center", "end"),
     "circle": ("center",),
+    "point": ("at",),
     "ellipse": ("center",),
 }
 

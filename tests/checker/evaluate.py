@@ -271,9 +271,9 @@ class Evaluator:
     def _argument(self, a: ast.Argument, scope: Scope) -> Any:
         """The value of a named argument; a bare word where a text is wanted is that word."""
         name = fold(a.name.text) if a.name is not None else ""
-        if isinstance(a.value, ast.Name) and a.value.text in _WORDS:
-            if _WORDED & {name, *PARAMETERS.get(name, ())}:
-                return a.value.text
+        takes_text = bool(_WORDED & {name, *PARAMETERS.get(name, ())})
+        if takes_text and isinstance(a.value, ast.Name) and a.value.text in _WORDS:
+            return a.value.text
         return self.value(a.value, scope)
 
     def entered(

@@ -58,7 +58,7 @@ def _gears(ev: Evaluator, a: Geo, b: Geo, room: float) -> list[float]:
 
 
 def _spread(ev: Evaluator, a: Geo, b: Geo) -> float:
-    """Profile shifts move gears apart: the cosines of the pressure angle and the working one, by bisection."""
+    """Profile shifts move gears apart: the cosines of the pressure and the working angle, by bisection."""
     pressure = math.radians(_told(ev, b, "pressure_angle"))
     shift = _told(ev, a, "profile_shift") + _told(ev, b, "profile_shift")
     involute = math.tan(pressure) - pressure
@@ -71,7 +71,7 @@ def _spread(ev: Evaluator, a: Geo, b: Geo) -> float:
 
 
 def _inside(ev: Evaluator, a: Geo, b: Geo, room: float) -> list[float]:
-    """A gear in a ring: `space`, what the ring leaves free, is itself a gear, and its tooth is the ring's gap."""
+    """A gear in a ring: `space`, what the ring leaves free, is a gear, and its tooth is the ring's gap."""
     space = b.parts["space"]
     way = minus(_center(ev, a), _center(ev, space))
     seen = _direction(way)

@@ -41,7 +41,7 @@ def scope() -> Scope:
 
 
 def public(kind: type, *files: str) -> set[str]:
-    """The names that have definitions of a kind and whose first one is documented; of some files, or of all."""
+    """The names with definitions of a kind whose first one is documented; of some files, or of all."""
     first: dict[str, bool] = {}
     found: set[str] = set()
     for module in modules():

@@ -1,4 +1,4 @@
-"""Paths and splines: each segment goes on where the one before ends, as smoothly and as wide as its step says."""
+"""Paths and splines: each segment goes on where the one before ends, smooth and wide as its step says."""
 
 from __future__ import annotations
 
@@ -26,6 +26,11 @@ def joints(
     segments = [p for n, p in geo.parts.items() if n.startswith("segment[")]
     for i, (a, b) in enumerate(pairwise(segments)):
         yield f"joint[{i + 1}]", math.dist(ev.member(a, "end").xy, ev.member(b, "start").xy)
+    for name, point in geo.parts.items():
+        if point.type == "point":
+            index = int(name.rstrip("]").partition("[")[2])
+            at, side = (index, "start") if index < len(segments) else (-1, "end")
+            yield name, math.dist(ev.point(point).xy, ev.member(segments[at], side).xy)
     closes = math.dist(ev.member(segments[-1], "end").xy, ev.member(segments[0], "start").xy) < 1e-9
     if geo.type == "spline":
         for i, (a, b) in enumerate(pairwise([*segments, *(segments[:1] if closes else [])])):
@@ -47,7 +52,11 @@ def _steps(
         if i and (step["smooth"] or step["kind"] in _GOES_ON):
             yield f"smooth[{i}]", _corner(ev, segments[i - 1], segment)
         radius = step.get("radius")
-        if radius is not None and radius.exact != Exact.GUESS and not (is_told and radius.exact < Exact.PARAM):
+        if (
+            radius is not None
+            and radius.exact != Exact.GUESS
+            and not (is_told and radius.exact < Exact.PARAM)
+        ):
             yield f"radius[{i}]", abs(segment.data["radius"] - radius.value)
     if any(s["kind"] == "close" for s in steps):
         a, b = ev.member(segments[-1], "end").xy, ev.member(segments[0], "start").xy

@@ -134,7 +134,9 @@ def _collinear(ev: Evaluator, *things: Any) -> list[float]:
     things = tuple(listed(ev, things))
     line = next((t for t in things if is_line(t)), None)
     if line is not None:
-        points = [p for t in things if t is not line for p in (ends(ev, t) if is_line(t) else [middle(ev, t)])]
+        points = [
+            p for t in things if t is not line for p in (ends(ev, t) if is_line(t) else [middle(ev, t)])
+        ]
         return [abs(offset(ev, p, line)) for p in points]
     a, b, *others = (middle(ev, t) for t in things)
     return [abs(cross(minus(b, a), minus(p, a))) / math.dist(a, b) for p in others]
@@ -265,7 +267,7 @@ def _images(ev: Evaluator, a: Any, b: Any, about: Any) -> list[float]:
         pairs = zip(ev.items(a), ev.items(b), strict=True)
         return [r for p, q in pairs for r in _images(ev, p, q, about)]
     if isinstance(a, Geo) and a.type in ("line", "circle", "arc", "ellipse", "bezier"):
-        if a is b and is_line(a) and isinstance(about, Geo) and sine(*_ways(ev, a, about)) < 1e-6:
+        if a is b and is_line(a) and is_line(about) and sine(*_ways(ev, a, about)) < 1e-6:
             return _collinear(ev, a, about)
         return [away(ev.frame, Copy(a, lambda p: mirrored(ev, p, about)), b)]
     if isinstance(a, Geo | Node) and not (isinstance(a, Geo) and a.type == "point"):

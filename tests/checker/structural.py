@@ -81,9 +81,7 @@ def _beyond(near: str, far: str, sign: int, across: dict[str, str]) -> Relation:
 
 def _beside(ev: Evaluator, a: Any, b: Any, **more: Any) -> list[float]:
     """On either side."""
-    return min(
-        STRUCTURAL["left_of"](ev, a, b, **more), STRUCTURAL["right_of"](ev, a, b, **more), key=max
-    )
+    return min(STRUCTURAL["left_of"](ev, a, b, **more), STRUCTURAL["right_of"](ev, a, b, **more), key=max)
 
 
 def _agree(p: Box, q: Box, *sides: str) -> list[float]:

@@ -18,8 +18,10 @@ from typing import Any
 import pytest
 
 import aidl_lang
-from aidl_lang import builtins, library
+from aidl_lang import ast, builtins, library, parser
+from aidl_lang.reference.collect import Entry, reference
 from aidl_lang.render.terminal import render
+from aidl_lang.source import SourceFile
 from aidl_lang.types import Signature
 
 SCALE = int(os.environ.get("AIDL_EXAMPLES", "1"))
@@ -57,26 +59,109 @@ assembly top {{
 """
 
 SMALL = ("1", "2", "7", "10", "2.5", "5mm", "30deg", "90deg", "360", "-3", "0")
-ODD = ("1e300", "-1e300", "1e-300", "1e9", "1e6", "-0.0", "0.1 + 0.2", "1e999", "0/0", "1/0", "sqrt(-1)", "3..1")
-UNKNOWN = ("v", "c.radius", "l.length", "p", "guess(4)", "fixed(4)", "s.width", "v / (v - v)", "sqrt(v - 99)", "-v")
+ODD = (
+    "1e300",
+    "-1e300",
+    "1e-300",
+    "1e9",
+    "1e6",
+    "-0.0",
+    "0.1 + 0.2",
+    "1e999",
+    "0/0",
+    "1/0",
+    "sqrt(-1)",
+    "3..1",
+)
+UNKNOWN = (
+    "v",
+    "c.radius",
+    "l.length",
+    "p",
+    "guess(4)",
+    "fixed(4)",
+    "s.width",
+    "v / (v - v)",
+    "sqrt(v - 99)",
+    "-v",
+)
 POINTS = (
     *("(0, 0)", "(0, 0)", "(10, 0)", "(3, 8)", "[4, 5]", "origin", "pt", "l.start", "c.center", "s.center"),
     *("(1e300, 0)", "(v, 0)", "(1/0, 1)", "fixed((1, 2))", "guess((3, 4))", "polar(5, 72)", "(l.end.x, 3)"),
 )
 TEXTS = (
     *('"m3"', '"left"', '""', '"AB"', '"x"', '"medium"', '"round"', '"608"', '"nema17"', "word", "str(v)"),
-    *('"\\u200f\\u0627"', '"日本 ß é"', '"a\\nb\\n\\nc"', '"' + "long " * 60 + '"', "sharp", "left", "str([1, [2]])"),
+    *(
+        '"\\u200f\\u0627"',
+        '"日本 ß é"',
+        '"a\\nb\\n\\nc"',
+        '"' + "long " * 60 + '"',
+        "sharp",
+        "left",
+        "str([1, [2]])",
+    ),
 )
 TRUTHS = ("true", "false", "v > 2", "p > 2", "c.radius == 5", "not (v > 2)", "overlaps(s, s2)", "1 == 1")
-GEOMETRY = ("l", "k", "a", "c", "r", "e", "b", "q", "t", "m", "m[0]", "pt", "q.segment[0]", "r.left", "r.top", "x_axis")
+GEOMETRY = (
+    "l",
+    "k",
+    "a",
+    "c",
+    "r",
+    "e",
+    "b",
+    "q",
+    "t",
+    "m",
+    "m[0]",
+    "pt",
+    "q.segment[0]",
+    "r.left",
+    "r.top",
+    "x_axis",
+)
 STRUCTURES = ("s", "s2", "self", "top", "s.body", "s.bb")
 LISTS = (
-    *("[]", "[1]", "n0", "[1, 2, 3, 4]", "[[1, 2], [3, 4], [5, 0]]", "[[[]]]", "m", '["a", "b"]', "[true, v]", "range(0)"),
-    *("[(0, 0), (10, 0), (0, 10)]", "[(0, 0), (0, 0), (0, 0)]", "[(0, 0), (5, 0), (10, 0)]", "[(0, 0)]", "[s, s2]"),
-    *("[l, a]", "[c, r]", "[i * v for i in 0..3]", "range(5)", "zip(n0, n0)", "[rec, rec]", "enumerate(m)", "0..4"),
+    *(
+        "[]",
+        "[1]",
+        "n0",
+        "[1, 2, 3, 4]",
+        "[[1, 2], [3, 4], [5, 0]]",
+        "[[[]]]",
+        "m",
+        '["a", "b"]',
+        "[true, v]",
+        "range(0)",
+    ),
+    *(
+        "[(0, 0), (10, 0), (0, 10)]",
+        "[(0, 0), (0, 0), (0, 0)]",
+        "[(0, 0), (5, 0), (10, 0)]",
+        "[(0, 0)]",
+        "[s, s2]",
+    ),
+    *(
+        "[l, a]",
+        "[c, r]",
+        "[i * v for i in 0..3]",
+        "range(5)",
+        "zip(n0, n0)",
+        "[rec, rec]",
+        "enumerate(m)",
+        "0..4",
+    ),
     *("[(0, 0), (10, 10), (10, 0), (0, 10)]", "[line_to(3, 4), close()]", "[p, (v, v), nothing]"),
 )
-RECORDS = ("rec", "record()", "record(a: v)", 'record(size: "m3", size: 3)', 'screw("m3")', 'nema("nema17")', "rec.place")
+RECORDS = (
+    "rec",
+    "record()",
+    "record(a: v)",
+    'record(size: "m3", size: 3)',
+    'screw("m3")',
+    'nema("nema17")',
+    "rec.place",
+)
 GROUPS: Sequence[Sequence[str]] = (
     *(SMALL, ODD, UNKNOWN, POINTS, TEXTS, TRUTHS, GEOMETRY, STRUCTURES, LISTS, RECORDS),
 )
@@ -100,8 +185,30 @@ FITTING: dict[str, Sequence[str]] = {
     "structure": STRUCTURES,
     "geometry": GEOMETRY,
 }
-WORDS = ("name", "radius", "width", "n", "center", "at", "x", "y", "size", "about", "gap", "angle", "of", "from")
-OUTLINES = ("offset({}, 2)", "hull({}, c)", "mirror({}, about: y_axis)", "shell({}, 1)", "copy({}, by: (5, 5))", "{}.bb")
+WORDS = (
+    "name",
+    "radius",
+    "width",
+    "n",
+    "center",
+    "at",
+    "x",
+    "y",
+    "size",
+    "about",
+    "gap",
+    "angle",
+    "of",
+    "from",
+)
+OUTLINES = (
+    "offset({}, 2)",
+    "hull({}, c)",
+    "mirror({}, about: y_axis)",
+    "shell({}, 1)",
+    "copy({}, by: (5, 5))",
+    "{}.bb",
+)
 MAKING = (
     "x = {call}",
     "x = {call} w = {outline}",
@@ -127,7 +234,7 @@ COUNTING = (
     "x = circle(radius: {call})",
     "constrain {call} == {value}",
     "constrain c.radius <= {call}",
-    "let y = {call} assert y > {number}, \"y\"",
+    'let y = {call} assert y > {number}, "y"',
     "hole h[{call}] {{ x = circle(radius: 3) }}",
     "if {call} {{ x = c }}",
     "x = polygon({call})",
@@ -224,6 +331,42 @@ def trouble(text: str) -> str | None:
     return f"{took:.1f} s" if took > LONGEST else None
 
 
-@pytest.mark.parametrize("name", CALLABLES)
+NAMES = list(CALLABLES) if SCALE > 1 else [n for n in CALLABLES if n in reference().entries]
+"""What a program may call; with `AIDL_EXAMPLES` also what only the library itself calls."""
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_no_call_breaks_the_compiler(name: str) -> None:
-    pass
+    for number in range(SCALE):
+        for overload in CALLABLES[name] if SCALE > 1 else CALLABLES[name][:1]:
+            text = Writer((number, str(overload))).program(name, overload)
+            try:
+                found = trouble(text)
+            except Exception as error:
+                error.add_note(text)
+                raise
+            assert found is None, f"{found}\n{text}"
+
+
+SHAPES = [entry for entry in reference().entries.values() if entry.sort == "shape" and entry.doc.example]
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.name)
+def test_every_number_counts(shape: Entry) -> None:
+    """Twice a size in the example of a shape gives another picture, or is told."""
+    example = shape.doc.example
+    module = parser.parse(SourceFile("<example>", example)).module
+    calls = [n for n in ast.walk(module) if isinstance(n, ast.Call) and n.callee.text == shape.name]
+    sizes = [a.value for call in calls for a in call.arguments if not isinstance(a.value, ast.Point)]
+    spans = [n.span for size in sizes for n in ast.walk(size) if isinstance(n, ast.Number)]
+    before = outcome(example)
+    for span in spans if SCALE > 1 else random.Random(shape.name).sample(spans, min(1, len(spans))):
+        text = f"{example[: span.start]}({span.text} * 2){example[span.end :]}"
+        assert outcome(text) != before, text
+
+
+def outcome(text: str) -> object:
+    """What is drawn, and what is said."""
+    model = aidl_lang.compile(text)
+    said = [d.message for d in model.diagnostics]
+    return (said, model.to_svg()) if model.status != "wrong" else said

@@ -7,6 +7,7 @@ assembly copies {
         curve = arc(center: (10, 40), radius: 6, start_angle: 10deg, end_angle: 200deg)
         chord = line(curve.end, curve.start)
         hole eye { rim = circle(center: (15, 10), radius: 3) }
+        fillet(body.corner[1], 2)
         twin = mirror(body, about: hinge)
         bent = mirror(curve, about: hinge)
         lid = mirror(chord, about: hinge)
