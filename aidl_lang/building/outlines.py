@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from aidl_lang import ast
+from aidl_lang.boxes import spelled_out
 from aidl_lang.building.coerce import as_written, may_read
 from aidl_lang.building.construct import size
 from aidl_lang.building.scopes import Candidate
@@ -206,7 +207,7 @@ def _named(key: str, kind: str) -> str:
 def _sizes(it: Interpreter, kind: str, a: Arguments, target: _Target) -> tuple[Num, ...]:
     """The sizes by the table of exactness; a literal one is a parameter of the first corner."""
     given = [a[name] for name in ("radius", "size", "distance", "second") if name in a]
-    numbers = [v for v in given if isinstance(v, Num)]
+    numbers = [replace(v, expression=spelled_out(v.expression)[0]) for v in given if isinstance(v, Num)]
     if target.of:
         names = (_named(target.key, kind), _named(target.key, f"{kind}_second"))
         return tuple(size(it, v, target.of[0], n) for v, n in zip(numbers, names, strict=False))

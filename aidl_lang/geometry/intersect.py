@@ -67,6 +67,8 @@ def line_circle(line: Line, circle: Arc | Circle, tolerance: float) -> list[Vec]
     (x, y), r = circle.center, circle.radius
     dx, dy = line.end[0] - line.start[0], line.end[1] - line.start[1]
     length = math.hypot(dx, dy)
+    if not length:
+        return []
     dx, dy = dx / length, dy / length
     along = (x - line.start[0]) * dx + (y - line.start[1]) * dy
     foot = line.start[0] + along * dx, line.start[1] + along * dy

@@ -133,7 +133,8 @@ class _Outliner:
                 points = [
                     p for group in groups for one in group if isinstance(p := one.values.get("at"), tuple)
                 ]
-                region = hull([*curves[0], *(Line(p, p) for p in points)])  # type: ignore[arg-type]
+                dots = [Line(p, p) for p in points]  # type: ignore[arg-type]
+                region = hull([*curves[0], *(d for d in dots if max(map(abs, bounds(d))) <= LARGEST)])
             case "thick":
                 width, words = recipe.numbers["width"], recipe.words
                 region = (

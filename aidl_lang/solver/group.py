@@ -17,7 +17,7 @@ break, and they join the system; a descendant that nothing outside mentions ther
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -216,14 +216,18 @@ class Group:
         for index in constraints:
             if all(self.tier(unknown) <= POSITIONS for unknown in hierarchy.cones[index].unknowns):
                 continue
-            roots = [row.expression for row in hierarchy.rows([index])]
-            hierarchy.values.refresh(hierarchy.cones[index])
-            for gradient in gradients(hierarchy.values, roots).values():
-                tiers = [self.tier(u) for u, slope in gradient.items() if abs(slope) > FLAT]
-                if tiers and min(tiers) > POSITIONS:
-                    found.append(index)
-                    break
+            reached = [set(map(self.tier, unknowns)) for unknowns in self._reached(index)]
+            if any(tiers and min(tiers) > POSITIONS for tiers in reached):
+                found.append(index)
         return found
+
+    def _reached(self, index: int) -> Iterator[list[int]]:
+        """For each row of a constraint the unknowns that change it where it is now."""
+        hierarchy = self.hierarchy
+        roots = [row.expression for row in hierarchy.rows([index])]
+        hierarchy.values.refresh(hierarchy.cones[index])
+        for gradient in gradients(hierarchy.values, roots).values():
+            yield [unknown for unknown, slope in gradient.items() if abs(slope) > FLAT]
 
     def _settle_sizes(self, rigid: list[int], part: list[int]) -> list[int] | None:
         """Changes the sizes that `rigid` need: those they place, then as in the stages for sizes. Returns the
@@ -231,16 +235,19 @@ class Group:
         """
         hierarchy = self.hierarchy
         mentioned = frozenset().union(*(hierarchy.cones[index].unknowns for index in rigid))
+        # Another row of such a constraint may hang on positions, which are free as they were before.
+        reached = frozenset(u for index in rigid for unknowns in self._reached(index) for u in unknowns)
+        positions = frozenset(unknown for unknown in reached if self.tier(unknown) <= POSITIONS)
         sizes = frozenset(unknown for unknown in mentioned if self.tier(unknown) > POSITIONS)
         unmet = [index for index in rigid if not hierarchy.satisfied(index)]
         placed = sizes & frozenset().union(*(self._placed_by(index) for index in unmet))
         levels = sorted({self.tier(unknown) for unknown in sizes})
         stages = [(level, frozenset(u for u in sizes if self.tier(u) <= level)) for level in levels]
         tried: frozenset[int] = frozenset()
-        for level, free in ((SIZES, placed), *stages):
-            if free <= tried:
+        for level, resized in ((SIZES, placed), *stages):
+            if resized <= tried:
                 continue
-            tried = free
+            tried, free = resized, resized | positions
             before = hierarchy.save(free)
             scope = Scope(free, tuple(sorted(rigid)))
             satisfied = hierarchy.attempt(scope, 1).satisfied

@@ -42,7 +42,7 @@ FUNCTIONS = {
 }
 VARIADIC = frozenset({Op.MINIMUM, Op.MAXIMUM})
 RESERVED = frozenset({*FUNCTIONS, "pi"})
-NAME = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*|\[[0-9]+\])*")
+NAME = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*|\[-?[0-9]+\])*")
 """`x`, `door.left.start.x`, `finger[3].x`."""
 LARGEST = 1e150
 """The greatest number that may be written: its square is still a number."""

@@ -187,7 +187,7 @@ def _angle(ev: Evaluator, a: Any, b: Any = None, c: Any = None) -> Num:
     if c is not None:
         return reference(abs(corner_angle(ev, a, b, c)), is_angle=True)
     if b is None:
-        return ev.member(a, "angle")
+        return reference(ev.member(a, "angle").value, is_angle=True)
     return reference(between(ev, a, b), is_angle=True)
 
 

@@ -142,8 +142,8 @@ class _Walker:
         key = self._key(s.name, s.indices, scope)
         geo, child = self.node.geometry.get(key), self.node.children.get(key)
         made = copies.origin(self.evaluator, s.value, scope)
-        if made is not None and (geo is not None or child is not None):
-            image = child if geo is None else geo
+        image = child if geo is None else geo
+        if made is not None and image is not None:
             self.program.copies.append((Task(self.node, s, scope), made, image))
             if isinstance(image, Node) and isinstance(made.source, Node):
                 copies.same_names(made.source, image)
@@ -202,8 +202,8 @@ class _Walker:
             members.items = {0: self.evaluator.value(thing, scope), **members.items}
         members.pattern = patterns.Pattern(self.node, s.value, scope, members)
         self.program.patterns.append((Task(self.node, s, scope), members.pattern))
-        for member in members.pattern.members() if isinstance(thing, ast.Call) else ():
-            if isinstance(member, Node):
+        for member in members.pattern.members():
+            if isinstance(member, Node) and isinstance(thing, ast.Call):
                 self._template(thing, member, scope)
 
     def _place(self, child: Node, placement: ast.Placement | None, scope: Scope) -> None:

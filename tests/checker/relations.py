@@ -166,7 +166,7 @@ def _touch(ev: Evaluator, a: Any, b: Any, inside: bool | None) -> float:
     if is_line(a):
         return abs(abs(offset(ev, center, a)) - _half_width(ev, b, a))
     apart, radius, other = math.dist(center, ev.member(a, "center").xy), b.data["radius"], a.data["radius"]
-    outer, inner = abs(apart - radius - other), abs(apart - abs(radius - other))
+    outer, inner = float(abs(apart - radius - other)), float(abs(apart - abs(radius - other)))
     return min(outer, inner) if inside is None else inner if inside else outer
 
 

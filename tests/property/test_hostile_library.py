@@ -358,7 +358,7 @@ def test_every_number_counts(shape: Entry) -> None:
     module = parser.parse(SourceFile("<example>", example)).module
     calls = [n for n in ast.walk(module) if isinstance(n, ast.Call) and n.callee.text == shape.name]
     sizes = [a.value for call in calls for a in call.arguments if not isinstance(a.value, ast.Point)]
-    spans = [n.span for size in sizes for n in ast.walk(size) if isinstance(n, ast.Number)]
+    spans = [n.span for size in sizes for n in ast.walk(size) if isinstance(n, ast.Number) and n.value]
     before = outcome(example)
     for span in spans if SCALE > 1 else random.Random(shape.name).sample(spans, min(1, len(spans))):
         text = f"{example[: span.start]}({span.text} * 2){example[span.end :]}"

@@ -1,5 +1,5 @@
 /// Things of one size: curves, shapes of a kind, structures, and numbers.
-// changes: c, d, flag.cloth, r
+// changes: c, flag.cloth, r
 drawing alike {
     a = line((0, 0), length: guess(20), angle: 0deg)
     b = arc(center: (0, 30), radius: 20, start_angle: 0deg, end_angle: 60deg)
