@@ -19,7 +19,7 @@ class Node:
     span: Span = field(repr=False)
 
     def __repr__(self) -> str:
-        """As dataclasses have it, without the span; one for all, since making each its own slows the start."""
+        """As dataclasses have it, without the span; one for all, as making one for each slows the start."""
         shown = (f"{f.name}={getattr(self, f.name)!r}" for f in dataclasses.fields(self) if f.repr)
         return f"{type(self).__name__}({', '.join(shown)})"
 

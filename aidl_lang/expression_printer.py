@@ -30,7 +30,7 @@ _BINARY = {
 
 @dataclass(frozen=True)
 class Group:
-    """`opening item, item closing`: on one line, or each item on its own."""
+    """`opening item, item closing`: on one line, all items on one line of their own, or each on its own."""
 
     opening: str
     items: tuple[Doc, ...]
@@ -95,7 +95,9 @@ def render(document: Doc, indent: int, column: int | None = None, after: int = 0
             column += _group_width(piece)
             continue
         inner = indent + INDENT
-        lines = [render(item, inner, after=1) for item in piece.items]
+        together = ", ".join(item.flat() for item in piece.items)
+        is_short = inner + len(together) <= WIDTH
+        lines = [together] if is_short else [render(item, inner, after=1) for item in piece.items]
         pad = "\n" + " " * inner
         out.append(piece.opening + pad + ("," + pad).join(lines) + "\n" + " " * indent + piece.closing)
         column = indent + len(piece.closing)

@@ -76,7 +76,7 @@ def _failed(assertion: Assertion, evaluate: Evaluator) -> Diagnostic:
         assertion.span,
         f"here {shown}" if shown else "false as written",
         hints=(
-            f"`{assertion.shape}` asks this of its arguments: `aidl doc {assertion.shape}` tells what they are"
+            f"`{assertion.shape}` asks this of its arguments: see `aidl doc {assertion.shape}`"
             if assertion.shape
             else "an `assert` steers nothing: to make it hold, state it with `constrain` as well",
         ),

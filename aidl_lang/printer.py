@@ -158,6 +158,8 @@ class _Printer:
             document = self._head(node, constraints)
             if isinstance(node, ast.Assert) and node.message and indent + document.width > WIDTH:
                 self._long_assert(node, node.message, indent)
+            elif isinstance(node, ast.FunctionDefinition) and indent + document.width > WIDTH:
+                self._long_function(node, document, indent)
             else:
                 self._leaf(document, indent)
             return
@@ -176,6 +178,16 @@ class _Printer:
         test = doc("assert ", self.expressions.expression(node.test, OR), ",")
         self._leaf(test, indent)
         self._leaf(self.expressions.expression(message, OR), indent + INDENT)
+
+    def _long_function(self, node: ast.FunctionDefinition, document: Doc, indent: int) -> None:
+        """The value on a line of its own if that is enough."""
+        head = doc("fn ", self._parameters(node.name, node.parameters), " =")
+        value = self.expressions.expression(node.value)
+        if indent + head.width <= WIDTH and indent + INDENT + value.width <= WIDTH:
+            self._leaf(head, indent)
+            self._leaf(value, indent + INDENT)
+        else:
+            self._leaf(document, indent)
 
     def _long(self, node: ast.Statement, indent: int, constraints: bool) -> None:
         """A statement whose blocks stand on lines of their own."""

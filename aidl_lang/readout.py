@@ -140,7 +140,8 @@ class _Reader:
                     case VarBinding(value=known) if scope is s.scope:
                         value = known
                     case PassedBinding(tied=tied):
-                        value = tied.get(s) or tied.get(binding.instance, binding.value)  # a copy shares its source's
+                        # A copy shares those of its source.
+                        value = tied.get(s) or tied.get(binding.instance, binding.value)
                     case Text() | bool() if scope is s.scope:
                         value = binding
                 if isinstance(value, Num | Text | bool):

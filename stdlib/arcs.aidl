@@ -43,10 +43,7 @@ shape double_d(
     assert across_flats < 2 * radius, "the flats of a double D cut its circle"
     let opening = asin(across_flats / (2 * radius))
     right = arc(
-        center: center,
-        radius: radius,
-        start_angle: angle - opening,
-        end_angle: angle + opening
+        center: center, radius: radius, start_angle: angle - opening, end_angle: angle + opening
     )
     left = arc(
         center: center,

@@ -206,11 +206,8 @@ fn place_along(a: box, axis: text) = if axis == "x" then a.center_x else a.cente
 fn longer_way(a: list) = if abs(way_along(a, "x")) < abs(way_along(a, "y")) then "y" else "x"
 
 // The gap from one thing to the next, which lies beyond it (`up`) or before it along the axis.
-fn room_between(a: box, b: box, axis: text, up: bool) = if up then room(a, b, axis) else room(
-    b,
-    a,
-    axis
-)
+fn room_between(a: box, b: box, axis: text, up: bool) =
+    if up then room(a, b, axis) else room(b, a, axis)
 fn room(a: box, b: box, axis: text) = if axis == "x" then b.left - a.right else b.bottom - a.top
 
 alias left_aligned = align_left

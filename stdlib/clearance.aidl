@@ -51,10 +51,7 @@ fn core_distance(a: list, b: list) = if len(a) == 1 and len(b) == 1 then norm(
 fn edge_distance(a: list, b: list, of_a: list, of_b: list) = parted_or_deep(
     max(
         [beyond_edge(b, e[0], e[1], e[3]) for e in of_a] + [beyond_edge(
-            a,
-            e[0],
-            e[1],
-            e[3]
+            a, e[0], e[1], e[3]
         ) for e in of_b]
     ),
     min([to_core(p, b, of_b) for p in a] + [to_core(p, a, of_a) for p in b])
@@ -64,28 +61,21 @@ fn parted_or_deep(parted, apart) = where(parted, apart, parted)
 // The edges of a core: each a corner, the way to the one before, and its length, without and with the sign of
 // the turn. An edge alone has two sides.
 fn core_edges(core: list) = [core_edge(
-    core[i],
-    core[i - 1] - core[i],
-    turn_of(core)
+    core[i], core[i - 1] - core[i], turn_of(core)
 ) for i in 0..<len(core) if len(core) > 1]
 fn core_edge(corner: point, way: point, turn: number) = [corner, way, norm(way), norm(way) * turn]
 
 // 1 for corners that run counter-clockwise, -1 for clockwise.
-fn turn_of(core: list) = if len(core) < 3 then 1 else where(
-    cross(core[1] - core[0], core[2] - core[1]),
-    1,
-    -1
-)
+fn turn_of(core: list) =
+    if len(core) < 3 then 1 else where(cross(core[1] - core[0], core[2] - core[1]), 1, -1)
 
 // The distance of a corner from the edges of a core, and from one edge.
 fn to_core(p: point, core: list, edges: list) = if len(core) == 1 then norm(p - core[0]) else min(
     [to_segment(p - e[0], e[1], e[2]) for e in edges]
 )
-fn to_segment(p: point, way: point, long: length) = norm(
-    p - way * max(0, min(1, dot(p, way) / long / long))
-)
+fn to_segment(p: point, way: point, long: length) =
+    norm(p - way * max(0, min(1, dot(p, way) / long / long)))
 
 // By how much an edge has all corners of a core beyond it.
-fn beyond_edge(corners: list, from: point, way: point, long: length) = min(
-    [cross(way, p - from) / long for p in corners]
-)
+fn beyond_edge(corners: list, from: point, way: point, long: length) =
+    min([cross(way, p - from) / long for p in corners])

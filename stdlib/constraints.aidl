@@ -176,8 +176,7 @@ constraint vertical(things: list) {
 
 // Whether all are lines; a mix of lines and other things is refused, since a line has no one height.
 fn alike_in_kind(things: list) = if len([t for t in things if is_line(t)]) in [
-    0,
-    len(things)
+    0, len(things)
 ] then len(things) > 0 and is_line(things[0]) else refuse(
     "it takes lines, or points and things with centres, not both"
 )

@@ -1,12 +1,8 @@
 // Rectangles whose corners are round or cut off: the names of a rectangle stay, and each corner gets one more.
 
 // A quarter of a circle, counter-clockwise from a direction.
-fn quarter_arc(center: point, radius: length, from: angle) = arc(
-    center: center,
-    radius: radius,
-    start_angle: fixed(from),
-    end_angle: fixed(from + 90deg)
-)
+fn quarter_arc(center: point, radius: length, from: angle) =
+    arc(center: center, radius: radius, start_angle: fixed(from), end_angle: fixed(from + 90deg))
 
 /// A rectangle with round corners, by its centre, a corner or the middle of a side, with one radius or four.
 ///
@@ -42,24 +38,29 @@ shape rounded_rectangle(
     right = line(corner_bottom_right.end, corner_top_right.start)
     top = line(corner_top_right.end, corner_top_left.start)
     left = line(corner_top_left.end, corner_bottom_left.start)
-    assert 2 * radius <= min(width, height), "the radius of the corners is at most half of the shorter side"
+    assert 2 * radius <= min(width, height),
+        "the radius of the corners is at most half of the shorter side"
 }
 
 /// With a radius for each corner, as a list counter-clockwise from the bottom left one, or by name.
 fn rounded_rectangle(
-    center: point = (0, 0), width: length, height: length, radii: list, angle = 0deg, rotatable = false
-) =
-    if len(radii) == 4 then rounded_rectangle(
-        center: center,
-        width: width,
-        height: height,
-        radius_bottom_left: radii[0],
-        radius_bottom_right: radii[1],
-        radius_top_right: radii[2],
-        radius_top_left: radii[3],
-        angle: angle,
-        rotatable: rotatable
-    ) else refuse("a rectangle has four radii, counter-clockwise from the bottom left corner")
+    center: point = (0, 0),
+    width: length,
+    height: length,
+    radii: list,
+    angle = 0deg,
+    rotatable = false
+) = if len(radii) == 4 then rounded_rectangle(
+    center: center,
+    width: width,
+    height: height,
+    radius_bottom_left: radii[0],
+    radius_bottom_right: radii[1],
+    radius_top_right: radii[2],
+    radius_top_left: radii[3],
+    angle: angle,
+    rotatable: rotatable
+) else refuse("a rectangle has four radii, counter-clockwise from the bottom left corner")
 shape rounded_rectangle(
     center: point = (0, 0),
     width: length,
@@ -97,10 +98,20 @@ shape rounded_rectangle(
 
 /// By a corner, about which it turns.
 fn rounded_rectangle(
-    bottom_left: point, width: length, height: length, radius: length, angle = 0deg, rotatable = false
+    bottom_left: point,
+    width: length,
+    height: length,
+    radius: length,
+    angle = 0deg,
+    rotatable = false
 ) = rounded_rectangle(bottom_left, -1, -1, width, height, radius, angle, rotatable)
 fn rounded_rectangle(
-    bottom_right: point, width: length, height: length, radius: length, angle = 0deg, rotatable = false
+    bottom_right: point,
+    width: length,
+    height: length,
+    radius: length,
+    angle = 0deg,
+    rotatable = false
 ) = rounded_rectangle(bottom_right, 1, -1, width, height, radius, angle, rotatable)
 fn rounded_rectangle(
     top_right: point, width: length, height: length, radius: length, angle = 0deg, rotatable = false
@@ -111,16 +122,36 @@ fn rounded_rectangle(
 
 /// By the middle of a side, about which it turns.
 fn rounded_rectangle(
-    bottom_center: point, width: length, height: length, radius: length, angle = 0deg, rotatable = false
+    bottom_center: point,
+    width: length,
+    height: length,
+    radius: length,
+    angle = 0deg,
+    rotatable = false
 ) = rounded_rectangle(bottom_center, 0, -1, width, height, radius, angle, rotatable)
 fn rounded_rectangle(
-    right_center: point, width: length, height: length, radius: length, angle = 0deg, rotatable = false
+    right_center: point,
+    width: length,
+    height: length,
+    radius: length,
+    angle = 0deg,
+    rotatable = false
 ) = rounded_rectangle(right_center, 1, 0, width, height, radius, angle, rotatable)
 fn rounded_rectangle(
-    top_center: point, width: length, height: length, radius: length, angle = 0deg, rotatable = false
+    top_center: point,
+    width: length,
+    height: length,
+    radius: length,
+    angle = 0deg,
+    rotatable = false
 ) = rounded_rectangle(top_center, 0, 1, width, height, radius, angle, rotatable)
 fn rounded_rectangle(
-    left_center: point, width: length, height: length, radius: length, angle = 0deg, rotatable = false
+    left_center: point,
+    width: length,
+    height: length,
+    radius: length,
+    angle = 0deg,
+    rotatable = false
 ) = rounded_rectangle(left_center, -1, 0, width, height, radius, angle, rotatable)
 
 // By a point of its border, as the rectangle.
@@ -150,7 +181,8 @@ shape rounded_rectangle(
     right = line(corner_bottom_right.end, corner_top_right.start)
     top = line(corner_top_right.end, corner_top_left.start)
     left = line(corner_top_left.end, corner_bottom_left.start)
-    assert 2 * radius <= min(width, height), "the radius of the corners is at most half of the shorter side"
+    assert 2 * radius <= min(width, height),
+        "the radius of the corners is at most half of the shorter side"
 }
 
 /// A rectangle whose corners are cut off at 45 degrees, by its centre, a corner or the middle of a side.
@@ -191,13 +223,28 @@ shape chamfered_rectangle(
 
 /// By a corner, about which it turns.
 fn chamfered_rectangle(
-    bottom_left: point, width: length, height: length, chamfer: length, angle = 0deg, rotatable = false
+    bottom_left: point,
+    width: length,
+    height: length,
+    chamfer: length,
+    angle = 0deg,
+    rotatable = false
 ) = chamfered_rectangle(bottom_left, -1, -1, width, height, chamfer, angle, rotatable)
 fn chamfered_rectangle(
-    bottom_right: point, width: length, height: length, chamfer: length, angle = 0deg, rotatable = false
+    bottom_right: point,
+    width: length,
+    height: length,
+    chamfer: length,
+    angle = 0deg,
+    rotatable = false
 ) = chamfered_rectangle(bottom_right, 1, -1, width, height, chamfer, angle, rotatable)
 fn chamfered_rectangle(
-    top_right: point, width: length, height: length, chamfer: length, angle = 0deg, rotatable = false
+    top_right: point,
+    width: length,
+    height: length,
+    chamfer: length,
+    angle = 0deg,
+    rotatable = false
 ) = chamfered_rectangle(top_right, 1, 1, width, height, chamfer, angle, rotatable)
 fn chamfered_rectangle(
     top_left: point, width: length, height: length, chamfer: length, angle = 0deg, rotatable = false
@@ -205,16 +252,36 @@ fn chamfered_rectangle(
 
 /// By the middle of a side, about which it turns.
 fn chamfered_rectangle(
-    bottom_center: point, width: length, height: length, chamfer: length, angle = 0deg, rotatable = false
+    bottom_center: point,
+    width: length,
+    height: length,
+    chamfer: length,
+    angle = 0deg,
+    rotatable = false
 ) = chamfered_rectangle(bottom_center, 0, -1, width, height, chamfer, angle, rotatable)
 fn chamfered_rectangle(
-    right_center: point, width: length, height: length, chamfer: length, angle = 0deg, rotatable = false
+    right_center: point,
+    width: length,
+    height: length,
+    chamfer: length,
+    angle = 0deg,
+    rotatable = false
 ) = chamfered_rectangle(right_center, 1, 0, width, height, chamfer, angle, rotatable)
 fn chamfered_rectangle(
-    top_center: point, width: length, height: length, chamfer: length, angle = 0deg, rotatable = false
+    top_center: point,
+    width: length,
+    height: length,
+    chamfer: length,
+    angle = 0deg,
+    rotatable = false
 ) = chamfered_rectangle(top_center, 0, 1, width, height, chamfer, angle, rotatable)
 fn chamfered_rectangle(
-    left_center: point, width: length, height: length, chamfer: length, angle = 0deg, rotatable = false
+    left_center: point,
+    width: length,
+    height: length,
+    chamfer: length,
+    angle = 0deg,
+    rotatable = false
 ) = chamfered_rectangle(left_center, -1, 0, width, height, chamfer, angle, rotatable)
 
 // By a point of its border, as the rectangle.

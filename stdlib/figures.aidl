@@ -10,7 +10,9 @@
 shape arrow(start: point, end: point, width: length, head_length: length, head_width: length) {
     let length = norm(end - start)
     let way = atan2(end.y - start.y, end.x - start.x)
-    outline = polygon(arrow_corners(start, way, length, width / 2, length - head_length, head_width / 2))
+    outline = polygon(
+        arrow_corners(start, way, length, width / 2, length - head_length, head_width / 2)
+    )
     let tip = end
     assert head_length <= length, "the head of an arrow is not longer than the arrow"
     assert width <= head_width, "the head of an arrow is not narrower than its shaft"
@@ -24,7 +26,9 @@ shape arrow(
     angle: turn = 0deg,
     rotatable: bool = false
 ) {
-    outline = polygon(arrow_corners(start, angle, length, width / 2, length - head_length, head_width / 2))
+    outline = polygon(
+        arrow_corners(start, angle, length, width / 2, length - head_length, head_width / 2)
+    )
     let end = outline.corner[3]
     let tip = end
     assert head_length <= length, "the head of an arrow is not longer than the arrow"
@@ -32,10 +36,11 @@ shape arrow(
 }
 
 // Half the width of the shaft is b, of the head h; the head begins at `neck`.
-fn arrow_corners(start: point, way: angle, length: length, b: length, neck: length, h: length) = [
-    start + turned(p, way)
-    for p in [(0, -b), (neck, -b), (neck, -h), (length, 0), (neck, h), (neck, b), (0, b)]
-]
+fn arrow_corners(
+    start: point, way: angle, length: length, b: length, neck: length, h: length
+) = [start + turned(p, way) for p in [
+    (0, -b), (neck, -b), (neck, -h), (length, 0), (neck, h), (neck, b), (0, b)
+]]
 
 /// An arrow with a head at both ends.
 ///
@@ -44,7 +49,9 @@ fn arrow_corners(start: point, way: angle, length: length, b: length, neck: leng
 ///     body = double_arrow(start: (0, 0), end: (80, 0), width: 6, head_length: 16, head_width: 18)
 /// }
 /// ```
-shape double_arrow(start: point, end: point, width: length, head_length: length, head_width: length) {
+shape double_arrow(
+    start: point, end: point, width: length, head_length: length, head_width: length
+) {
     let length = norm(end - start)
     let way = atan2(end.y - start.y, end.x - start.x)
     let b = width / 2

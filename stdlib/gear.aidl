@@ -26,12 +26,14 @@ shape gear(
     addendum = 1,
     rotatable: bool = false
 ) {
-    assert teeth >= 3 and written(module) > 0, "a gear has at least 3 teeth and a module of more than 0"
+    assert teeth >= 3 and written(module) > 0,
+        "a gear has at least 3 teeth and a module of more than 0"
     if pressure_angle < 5deg or pressure_angle > 40deg {
         assert false, "the pressure angle of a gear is from 5deg to 40deg; 20deg is customary"
     }
     if not (clearance >= 0 and addendum >= 0 and abs(profile_shift) <= 1) {
-        assert false, "in modules, a gear has a clearance and an addendum of 0 or more and a profile shift of -1 to 1"
+        assert false,
+            "in modules, a gear has a clearance and an addendum of 0 or more and a profile shift of -1 to 1"
     }
 
     // Of a gear of module 1 mm: its radii, and its flank from where it leaves the root circle to the tip.
@@ -49,7 +51,9 @@ shape gear(
 
     // Half of a tooth, seen from the centre: at the base circle, at the root and at the tip.
     let thinner = from_radians(backlash / pitch_diameter)
-    let half = (90deg + from_radians(2 * written(profile_shift) * slope)) / teeth + swing(from_radians(slope))
+    let half = (90deg + from_radians(2 * written(profile_shift) * slope)) / teeth + swing(
+        from_radians(slope)
+    )
     let half_root = half - swing(foot) - thinner
     let half_tip = half - swing(top) - thinner
     assert half_root < 180deg / teeth, "the teeth of this gear run into each other at their roots"
@@ -65,14 +69,18 @@ shape gear(
     for i in 0..<teeth {
         let gap = angle + 360deg / teeth * (i + 0.5)
         let reach = 180deg / teeth - half_root
-        root[i] = arc(center: center, radius: root_radius, start_angle: gap - reach, end_angle: gap + reach)
+        root[i] = arc(
+            center: center, radius: root_radius, start_angle: gap - reach, end_angle: gap + reach
+        )
     }
     for i in 0..<teeth {
         let way = angle + 360deg / teeth * i
         let right_axis = polar(module, way - half + thinner)
         let left_axis = polar(module, way + half - thinner)
         tooth[i] = gear_tooth(
-            [root[(i + teeth - 1) % teeth].end] + [center + placed(p.x, p.y, right_axis) for p in side],
+            [root[(i + teeth - 1) % teeth].end] + [center + placed(
+                p.x, p.y, right_axis
+            ) for p in side],
             [root[i].start] + [center + placed(p.x, -p.y, left_axis) for p in side],
             center,
             radius: outer_radius,
@@ -100,7 +108,9 @@ fn gear(
 )
 
 // One tooth: an arc for its tip, and sides through points from the root up; a straight foot comes before the flank.
-shape gear_tooth(right: list, left: list, center: point, radius: length, first: angle, last: angle) {
+shape gear_tooth(
+    right: list, left: list, center: point, radius: length, first: angle, last: angle
+) {
     tip = arc(center: center, radius: radius, start_angle: first, end_angle: last)
     let foot = len(right) % 3
     if foot == 1 {
@@ -117,17 +127,16 @@ shape gear_tooth(right: list, left: list, center: point, radius: length, first: 
 }
 
 // The vector with these coordinates along an axis, which is as long as 1 mm of them, and across it.
-fn placed(x: length, y: length, axis: point) = (
-    (axis.x * x - axis.y * y) / 1mm,
-    (axis.y * x + axis.x * y) / 1mm
-)
+fn placed(x: length, y: length, axis: point) =
+    ((axis.x * x - axis.y * y) / 1mm, (axis.y * x + axis.x * y) / 1mm)
 
 // --- The involute of a circle --------------------------------------------------------------------
 // What a taut thread draws that is unwound from a circle. `roll` is the angle that has been unwound: the point is
 // then roll * base away from where the thread leaves the circle, and the curve runs in the direction `roll`.
 
 fn from_radians(radians: number) = radians * 180deg / pi
-fn unwound(base: length, roll: angle) = polar(base, roll) + polar(base * radians(roll), roll - 90deg)
+fn unwound(base: length, roll: angle) =
+    polar(base, roll) + polar(base * radians(roll), roll - 90deg)
 fn roll_at(radius: length, base: length) = from_radians(sqrt(square(radius / base) - 1))
 
 // The direction in which a point of the involute is seen from the centre.
@@ -135,13 +144,9 @@ fn swing(roll: angle) = roll - atan(radians(roll))
 
 // The involute between two rolls as two Béziers, seven points. Their handles have its directions, and such lengths
 // that they meet the involute once more between; at 53 % of the roll the error is least: 1/10000 of a module.
-fn involute(base: length, first: angle, last: angle) = (
-    [unwound(base, first)] + involute_piece(base, first, (first + last) / 2) + involute_piece(
-        base,
-        (first + last) / 2,
-        last
-    )
-)
+fn involute(base: length, first: angle, last: angle) = [unwound(base, first)] + involute_piece(
+    base, first, (first + last) / 2
+) + involute_piece(base, (first + last) / 2, last)
 fn involute_piece(base: length, first: angle, last: angle) = involute_between(
     unwound(base, first),
     unwound(base, last),
@@ -151,13 +156,8 @@ fn involute_piece(base: length, first: angle, last: angle) = involute_between(
 )
 
 // A Bézier without its first point: from start in direction `out` to end in direction `on`, its middle at a point.
-fn involute_between(start: point, end: point, middle: point, out: point, on: point) = involute_handles(
-    start,
-    end,
-    (middle - (start + end) / 2) * (8 / 3),
-    out,
-    on
-)
+fn involute_between(start: point, end: point, middle: point, out: point, on: point) =
+    involute_handles(start, end, (middle - (start + end) / 2) * (8 / 3), out, on)
 fn involute_handles(start: point, end: point, bulge: point, out: point, on: point) = [
     start + out * (cross(bulge, on) / cross(out, on)),
     end - on * (cross(bulge, out) / cross(out, on)),
@@ -200,7 +200,8 @@ shape internal_gear(
     let pitch_diameter = teeth * module
     let pitch_radius = pitch_diameter / 2
     let inner_radius = space.root_radius
-    assert outer_radius > space.outer_radius, "the ring is not larger than the spaces between its teeth"
+    assert outer_radius > space.outer_radius,
+        "the ring is not larger than the spaces between its teeth"
 }
 
 /// A toothed bar: `center` is the middle of its pitch line, along which the teeth stand `pi * module` apart.
@@ -260,31 +261,32 @@ shape rack(
 /// ```
 constraint meshes(a: gear, b: gear, backlash: length = 0) {
     let shift = 2 * (a.profile_shift + b.profile_shift) / (a.teeth + b.teeth)
-    distance(a.center, b.center) == spread_by_shift(written(shift), written(b.pressure_angle)) * (
-        a.pitch_radius + b.pitch_radius
-    ) + backlash
+    distance(a.center, b.center) == spread_by_shift(
+        written(shift), written(b.pressure_angle)
+    ) * (a.pitch_radius + b.pitch_radius) + backlash
     a.module == b.module
     a.pressure_angle == b.pressure_angle
-    (heading(b.center - a.center) - a.angle) * a.teeth + (
-        heading(a.center - b.center) - b.angle
-    ) * b.teeth == 180deg
+    (heading(b.center - a.center) - a.angle) * a.teeth + (heading(
+        a.center - b.center
+    ) - b.angle) * b.teeth == 180deg
 }
 constraint meshes(a: gear, b: internal_gear, backlash: length = 0) {
     distance(a.center, b.center) == b.pitch_radius - a.pitch_radius - backlash
     a.module == b.module
     a.pressure_angle == b.pressure_angle
-    (heading(a.center - b.center) - a.angle) * a.teeth - (
-        heading(a.center - b.center) - b.angle
-    ) * b.teeth == 180deg
+    (heading(a.center - b.center) - a.angle) * a.teeth - (heading(
+        a.center - b.center
+    ) - b.angle) * b.teeth == 180deg
 }
-constraint meshes(a: internal_gear, b: gear, backlash: length = 0) { meshes(b, a, backlash: backlash) }
+constraint meshes(a: internal_gear, b: gear, backlash: length = 0) {
+    meshes(b, a, backlash: backlash)
+}
 constraint meshes(a: gear, b: rack, backlash: length = 0) {
     offset_from(a.center, b.pitch_line) == a.pitch_radius + backlash
     a.module == b.module
     a.pressure_angle == b.pressure_angle
     (a.angle - b.pitch_line.angle + 90deg) * a.teeth + 360deg * dot(
-        a.center - b.center,
-        direction(b.pitch_line)
+        a.center - b.center, direction(b.pitch_line)
     ) / (pi * a.module * 1mm) == 180deg * b.teeth
 }
 constraint meshes(a: rack, b: gear, backlash: length = 0) { meshes(b, a, backlash: backlash) }
@@ -293,10 +295,11 @@ fn heading(v: point) = atan2(v.y, v.x)
 
 // By how much profile shifts spread two gears: cosines of the pressure angle and of the working one, whose involute
 // (the tangent without the angle) is larger by shift * tan(pressure angle). Newton's steps find it.
-fn spread_by_shift(shift: number, pressure: angle) = cos(pressure) / cos(
-    working_angle(pressure, tan(pressure) * (1 + shift) - radians(pressure), 8)
-)
-fn working_angle(near: angle, involute: number, steps: integer) = if steps == 0 then near else working_angle(
+fn spread_by_shift(shift: number, pressure: angle) =
+    cos(pressure) / cos(working_angle(pressure, tan(pressure) * (1 + shift) - radians(pressure), 8))
+fn working_angle(
+    near: angle, involute: number, steps: integer
+) = if steps == 0 then near else working_angle(
     near - from_radians((tan(near) - radians(near) - involute) / square(tan(near))),
     involute,
     steps - 1
@@ -313,10 +316,7 @@ fn working_angle(near: angle, involute: number, steps: integer) = if steps == 0 
 /// }
 /// ```
 fn mesh_angle(
-    teeth: integer,
-    other_teeth: integer,
-    direction: angle = 180deg,
-    other_angle: angle = 0deg
+    teeth: integer, other_teeth: integer, direction: angle = 180deg, other_angle: angle = 0deg
 ) = direction + (180deg + (direction + 180deg - other_angle) * other_teeth) / teeth
 
 alias spur_gear = gear

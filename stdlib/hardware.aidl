@@ -38,8 +38,8 @@ fn screw_sizes(
     washer_thickness: fixed(washer_thickness)
 )
 
+//          d, pitch,  tap, close, clear, loose, head, bore, sunk, nut, height, washer, thickness
 let screws = record(
-    //          d, pitch,  tap, close, clear, loose, head, bore, sunk, nut, height, washer, thickness
     m2: screw_sizes(2, 0.4, 1.6, 2.2, 2.4, 2.6, 3.8, 4.3, 4.4, 4, 1.6, 5, 0.3),
     m2_5: screw_sizes(2.5, 0.45, 2.05, 2.7, 2.9, 3.1, 4.5, 5, 5.5, 5, 2, 6, 0.5),
     m3: screw_sizes(3, 0.5, 2.5, 3.2, 3.4, 3.6, 5.5, 6.5, 6.72, 5.5, 2.4, 7, 0.5),
@@ -74,9 +74,8 @@ let m12 = screws.m12
 ///     hole bore { rim = circle(center: origin, diameter: screw(size).close) }
 /// }
 /// ```
-fn screw(size: text) = screws[screw_key(
-    choice(size, ["m2", "m2.5", "m3", "m4", "m5", "m6", "m8", "m10", "m12"])
-)]
+fn screw(size: text) =
+    screws[screw_key(choice(size, ["m2", "m2.5", "m3", "m4", "m5", "m6", "m8", "m10", "m12"]))]
 fn screw(size: record) = size
 
 fn screw_key(size: text) = if size == "m2.5" then "m2_5" else size
@@ -90,10 +89,11 @@ fn screw_key(size: text) = if size == "m2.5" then "m2_5" else size
 /// }
 /// ```
 fn clearance_diameter(size, fit: text = "medium") = clearance_of(
-    screw(size),
-    choice(fit, ["close", "fine", "medium", "normal", "loose", "coarse", "free"])
+    screw(size), choice(fit, ["close", "fine", "medium", "normal", "loose", "coarse", "free"])
 )
-fn clearance_of(screw: record, fit: text) = if fit == "close" or fit == "fine" then screw.close else if fit == "medium" or fit == "normal" then screw.clearance else screw.loose
+fn clearance_of(
+    screw: record, fit: text
+) = if fit == "close" or fit == "fine" then screw.close else if fit == "medium" or fit == "normal" then screw.clearance else screw.loose
 
 /// The through hole of a screw, as a circle: `fit` is close, medium or loose.
 ///
@@ -105,10 +105,8 @@ fn clearance_of(screw: record, fit: text) = if fit == "close" or fit == "fine" t
 ///     }
 /// }
 /// ```
-fn clearance_hole(size, center: point = (0, 0), fit: text = "medium") = circle(
-    center: center,
-    diameter: clearance_diameter(size, fit)
-)
+fn clearance_hole(size, center: point = (0, 0), fit: text = "medium") =
+    circle(center: center, diameter: clearance_diameter(size, fit))
 
 /// The hole to be drilled for the thread of a screw, as a circle.
 ///
@@ -134,10 +132,8 @@ fn tap_hole(size, center: point = (0, 0)) = circle(center: center, diameter: scr
 ///     }
 /// }
 /// ```
-fn counterbore(size, center: point = (0, 0)) = circle(
-    center: center,
-    diameter: screw(size).counterbore
-)
+fn counterbore(size, center: point = (0, 0)) =
+    circle(center: center, diameter: screw(size).counterbore)
 
 /// The rim of a countersink in which a flat head lies flush, as a circle.
 ///
@@ -149,10 +145,8 @@ fn counterbore(size, center: point = (0, 0)) = circle(
 ///     constrain sunk.rim.center == bolt.rim.center
 /// }
 /// ```
-fn countersink(size, center: point = (0, 0)) = circle(
-    center: center,
-    diameter: screw(size).countersink
-)
+fn countersink(size, center: point = (0, 0)) =
+    circle(center: center, diameter: screw(size).countersink)
 
 /// A pocket that holds a hexagon nut, `play` wider than the nut across its flats.
 ///
@@ -163,11 +157,7 @@ fn countersink(size, center: point = (0, 0)) = circle(
 /// }
 /// ```
 shape hex_pocket(
-    size,
-    center: point = (0, 0),
-    angle: turn = 0deg,
-    play: length = 0.2,
-    rotatable: bool = false
+    size, center: point = (0, 0), angle: turn = 0deg, play: length = 0.2, rotatable: bool = false
 ) {
     let across = screw(size).nut + play
     outline = regular_polygon(

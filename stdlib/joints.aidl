@@ -23,22 +23,25 @@ shape finger_panel(
     center: point = (0, 0)
 ) {
     assert len(edges) in [1, 2, 4], "the edges of a panel are named by one, two or four words"
-    if not (finger > 0mm) { assert false, "the fingers of a panel have a width" }
+    if not finger > 0mm { assert false, "the fingers of a panel have a width" }
     let kinds = [choice(edges[i % len(edges)], ["tabs", "notches", "flat"]) for i in 0..3]
     let ways = [(1mm, 0mm), (0mm, 1mm), (-1mm, 0mm), (0mm, -1mm)]
     let sizes = [width, height, width, height]
-    let corners = [center + (x * width / 2, y * height / 2) for x, y in [[-1, -1], [1, -1], [1, 1], [-1, 1]]]
-    let side = [fingers(corners[i], ways[i], sizes[i], thickness, finger, kerf, kinds[i]) for i in 0..3]
+    let corners = [center + (x * width / 2, y * height / 2) for x, y in [
+        [-1, -1], [1, -1], [1, 1], [-1, 1]
+    ]]
+    let side = [fingers(
+        corners[i], ways[i], sizes[i], thickness, finger, kerf, kinds[i]
+    ) for i in 0..3]
     for i in 0..3 {
         let part = sizes[i] / finger_count(sizes[i], finger, kinds[i])
-        assert kinds[i] == "flat" or part > thickness + kerf, "the fingers of a panel are wider than it is thick"
+        assert kinds[i] == "flat" or part > thickness + kerf,
+            "the fingers of a panel are wider than it is thick"
     }
     // Where the edges on both sides of a corner begin with a notch, the corner belongs to neither.
-    let ends = [
-        corners[i] + ways[(i + 1) % 4] * (finger_inset(kinds[i], thickness) / 1mm)
-            + ways[i] * (finger_inset(kinds[i - 1], thickness) / 1mm)
-        for i in 0..3
-    ]
+    let ends = [corners[i] + ways[(i + 1) % 4] * (finger_inset(
+        kinds[i], thickness
+    ) / 1mm) + ways[i] * (finger_inset(kinds[i - 1], thickness) / 1mm) for i in 0..3]
     outline = polygon(
         [ends[0]] + side[0] + [ends[1]] + side[1] + [ends[2]] + side[2] + [ends[3]] + side[3]
     )
@@ -69,7 +72,9 @@ shape finger_edge(
     let way = unit(end - start)
     let deep = turned(way, 90deg) * (finger_inset(kind, thickness) / 1mm)
     outline = polyline(
-        [start + deep] + fingers(start, way, norm(end - start), thickness, finger, kerf, kind) + [end + deep]
+        [start + deep] + fingers(start, way, norm(end - start), thickness, finger, kerf, kind) + [
+            end + deep
+        ]
     )
 }
 
@@ -103,34 +108,41 @@ shape finger_slots(
 }
 
 // The corners of a rectangle about a point, along a way of 1 mm.
-fn rectangle_on(middle: point, way: point, length: length, width: length) = [
-    middle + way * (x * length / 2mm) + turned(way, 90deg) * (y * width / 2mm)
-    for x, y in [[-1, -1], [1, -1], [1, 1], [-1, 1]]
-]
+fn rectangle_on(
+    middle: point, way: point, length: length, width: length
+) = [middle + way * (x * length / 2mm) + turned(way, 90deg) * (y * width / 2mm) for x, y in [
+    [-1, -1], [1, -1], [1, 1], [-1, 1]
+]]
 
 fn finger_inset(kind: text, thickness: length) = if kind == "notches" then thickness else fixed(0mm)
 
 // The odd number of parts into which an edge is divided.
-fn finger_count(length: length, finger: length, kind: text) = if kind == "flat" then 1 else (
-    2 * max(1, floor(written(length) / finger / 2)) + 1
-)
+fn finger_count(length: length, finger: length, kind: text) =
+    if kind == "flat" then 1 else 2 * max(1, floor(written(length) / finger / 2)) + 1
 
 // The corners of an edge between its ends: two where a part ends and the next begins.
-fn fingers(start: point, way: point, length: length, thickness: length, finger: length, kerf: length, kind: text) = [
-    finger_corner(start, way, length / finger_count(length, finger, kind), thickness, kerf, j, kind)
-    for j in 0..<2 * finger_count(length, finger, kind) - 2
-]
-fn finger_corner(start: point, way: point, pitch: length, thickness: length, kerf: length, j: integer, kind: text) = (
-    finger_point(
-        start,
-        way,
-        part: floor(j / 2),
-        is_tab: (floor(j / 2) % 2 == 0) == (kind == "tabs"),
-        is_next: j % 2,
-        pitch: pitch,
-        thickness: thickness,
-        kerf: kerf
-    )
+fn fingers(
+    start: point,
+    way: point,
+    length: length,
+    thickness: length,
+    finger: length,
+    kerf: length,
+    kind: text
+) = [finger_corner(
+    start, way, length / finger_count(length, finger, kind), thickness, kerf, j, kind
+) for j in 0..<2 * finger_count(length, finger, kind) - 2]
+fn finger_corner(
+    start: point, way: point, pitch: length, thickness: length, kerf: length, j: integer, kind: text
+) = finger_point(
+    start,
+    way,
+    part: floor(j / 2),
+    is_tab: (floor(j / 2) % 2 == 0) == (kind == "tabs"),
+    is_next: j % 2,
+    pitch: pitch,
+    thickness: thickness,
+    kerf: kerf
 )
 
 // A corner at the end of a part, on its own level or (is_next: 1) on that of the next part.
@@ -143,10 +155,9 @@ fn finger_point(
     pitch: length,
     thickness: length,
     kerf: length
-) = (
-    start + way * ((pitch * (part + 1) + kerf / 2 * (if is_tab then 1 else -1)) / 1mm)
-    + turned(way, 90deg) * (thickness * (if is_tab then is_next else 1 - is_next) / 1mm)
-)
+) = start + way * ((pitch * (part + 1) + kerf / 2 * (if is_tab then 1 else -1)) / 1mm) + turned(
+    way, 90deg
+) * (thickness * (if is_tab then is_next else 1 - is_next) / 1mm)
 
 /// A T-slot for a screw and a captive nut, cut into a sheet from its edge: `mouth` is on the edge, `angle` points in.
 ///
@@ -219,10 +230,8 @@ shape dogbone_rectangle(width: length, height: length, tool: length, center: poi
 ///     }
 /// }
 /// ```
-fn corner_relief(corner: point, angle: angle, tool: length) = circle(
-    center: corner + polar(tool / 2, angle),
-    radius: tool / 2
-)
+fn corner_relief(corner: point, angle: angle, tool: length) =
+    circle(center: corner + polar(tool / 2, angle), radius: tool / 2)
 
 /// Slits that let a stiff sheet bend about an upright axis: columns `spacing` apart, set off by half a slit in turns.
 ///
@@ -246,7 +255,7 @@ shape living_hinge(
     center: point = (0, 0)
 ) {
     assert rows >= 1, "a hinge has at least one row of slits"
-    if not (spacing > 0) { assert false, "the columns of a hinge are some way apart" }
+    if not spacing > 0 { assert false, "the columns of a hinge are some way apart" }
     let columns = hinge_columns(written(width), spacing)
     let row = height / max(rows, 1)
     for i in 0..columns {
@@ -257,7 +266,9 @@ shape living_hinge(
             let low = if i % 2 == 1 and k == 0 then -slit else row * (k + offset - 0.5) + link / 2
             let high = if i % 2 == 1 and k == rows then height + slit else row * (k + offset + 0.5) - link / 2
             cut[i][k] = polygon(
-                rectangle_on(middle + (0mm, (low + high - height) / 2), (0mm, 1mm), high - low, slit)
+                rectangle_on(
+                    middle + (0mm, (low + high - height) / 2), (0mm, 1mm), high - low, slit
+                )
             )
         }
     }

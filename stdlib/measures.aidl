@@ -68,10 +68,8 @@ constraint vertical_distance(a, b, at_most: length) { vertical_distance(a, b) <=
 ///     assert gap(a, b) == 4
 /// }
 /// ```
-fn gap(a: box, b: box) = hypot(
-    max(0, a.left - b.right, b.left - a.right),
-    max(0, a.bottom - b.top, b.bottom - a.top)
-)
+fn gap(a: box, b: box) =
+    hypot(max(0, a.left - b.right, b.left - a.right), max(0, a.bottom - b.top, b.bottom - a.top))
 
 /// The angle between two lines, at the middle of three points, or of one line to the x axis.
 ///
@@ -114,21 +112,16 @@ constraint angle(a: point, corner: point, b: point, value: angle) {
 
 // How far two lines open, 0 to 180 degrees: from end to end, or with `way` -1 from the end of one to the start of
 // the other.
-fn opening(a: line, b: line, way: number) = atan2(
-    abs(cross(vector(a), vector(b))),
-    way * dot(vector(a), vector(b))
-)
+fn opening(a: line, b: line, way: number) =
+    atan2(abs(cross(vector(a), vector(b))), way * dot(vector(a), vector(b)))
 
 // The way in which two lines, as written, open as an angle does: sharp or blunt.
-fn way_like(bound: angle, a: line, b: line) = if written(
-    (90deg - bound) * dot(vector(a), vector(b))
-) >= 0 then 1 else -1
+fn way_like(bound: angle, a: line, b: line) =
+    if written((90deg - bound) * dot(vector(a), vector(b))) >= 0 then 1 else -1
 
 // The angle from one arm of a corner to the other, counter-clockwise, at most half a turn either way.
-fn corner_angle(a: point, corner: point, b: point) = atan2(
-    cross(a - corner, b - corner),
-    dot(a - corner, b - corner)
-)
+fn corner_angle(a: point, corner: point, b: point) =
+    atan2(cross(a - corner, b - corner), dot(a - corner, b - corner))
 
 /// The length of a line, an arc, or whatever has a `length`.
 ///

@@ -63,12 +63,8 @@ hole hole_rectangle(width: length, height: length, size = "m3", fit: text = "med
 // bolts  side of the square of the bolts, which for 17, 23 and 34 is 1.725, 2.625 and 3.875 inches across
 // pilot  the round boss around the shaft
 // screw  that usual flanges take
-fn motor_sizes(body: length, bolts: length, pilot: length, screw: text) = record(
-    body: fixed(body),
-    bolts: fixed(bolts),
-    pilot: fixed(pilot),
-    screw: screw
-)
+fn motor_sizes(body: length, bolts: length, pilot: length, screw: text) =
+    record(body: fixed(body), bolts: fixed(bolts), pilot: fixed(pilot), screw: screw)
 
 let nema = record(
     n14: motor_sizes(35.2, 26, 22, "m3"),
@@ -98,7 +94,9 @@ fn nema(size: text) = nema["n" + nema_number(
 fn nema(size: integer) = nema(str(size))
 fn nema(size: record) = size
 
-fn nema_number(size: text) = if size in ["14", "nema14"] then "14" else if size in ["17", "nema17"] then "17" else if size in ["23", "nema23"] then "23" else "34"
+fn nema_number(size: text) = if size in ["14", "nema14"] then "14" else if size in [
+    "17", "nema17"
+] then "17" else if size in ["23", "nema23"] then "23" else "34"
 
 /// The holes of a stepper motor: four bolts `rim[i]` and the `pilot`, which is `play` wider than the motor's boss.
 ///
@@ -155,11 +153,8 @@ hole raspberry_pi_mount(fit: text = "close") {
 
 // --- Ball bearings: boundary dimensions of ISO 15 ----------------------------------------------------
 
-fn bearing_sizes(bore: length, outside: length, width: length) = record(
-    bore: fixed(bore),
-    outside: fixed(outside),
-    width: fixed(width)
-)
+fn bearing_sizes(bore: length, outside: length, width: length) =
+    record(bore: fixed(bore), outside: fixed(outside), width: fixed(width))
 
 let bearings = record(
     b623: bearing_sizes(3, 10, 4),
@@ -186,8 +181,7 @@ let bearings = record(
 /// }
 /// ```
 fn bearing(number: text) = bearings["b" + choice(
-    number,
-    ["623", "624", "625", "626", "608", "6000", "6001", "6002", "6200", "6201", "6202"]
+    number, ["623", "624", "625", "626", "608", "6000", "6001", "6002", "6200", "6201", "6202"]
 )]
 fn bearing(number: integer) = bearing(str(number))
 
@@ -199,10 +193,8 @@ fn bearing(number: integer) = bearing(str(number))
 ///     hole hub { seat = bearing_seat(608, center: origin) }
 /// }
 /// ```
-fn bearing_seat(number, center: point = (0, 0), play: length = 0) = circle(
-    center: center,
-    diameter: fixed(bearing(number).outside + play)
-)
+fn bearing_seat(number, center: point = (0, 0), play: length = 0) =
+    circle(center: center, diameter: fixed(bearing(number).outside + play))
 
 alias bolt_pattern = bolt_circle
 alias corner_holes = hole_rectangle

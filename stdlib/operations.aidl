@@ -63,7 +63,8 @@ constraint mirror_of(a: list, b: list, about) {
 }
 
 // Points in the order, from the front or from the back, in which they were written nearer to others.
-fn matched(a: list, b: list) = if distances(a, b) <= distances(a, reversed(b)) then b else reversed(b)
+fn matched(a: list, b: list) =
+    if distances(a, b) <= distances(a, reversed(b)) then b else reversed(b)
 fn distances(a: list, b: list) = sum([norm(written(a[i] - b[i])) for i in 0..<len(a)])
 
 alias mirrored_from = mirror_of

@@ -24,7 +24,8 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
     let closes = closed or len(drawn) < len(steps)
     assert len(drawn) >= 1, "a path has at least one step that draws"
     if len(drawn) < len(steps) {
-        assert len(drawn) == len(steps) - 1 and as_step(steps[-1]).kind == "close", "`close()` is the last step"
+        assert len(drawn) == len(steps) - 1 and as_step(steps[-1]).kind == "close",
+            "`close()` is the last step"
     }
     corner[0] = from
     for i in 0..<len(drawn) {
@@ -38,14 +39,18 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
         let to = if is_there then from else reached
         if is_home and not is_there { constrain reached == from }
 
-        let is_half = move.kind == "arc_radius" and abs(written(norm(to - pen) - 2 * move.radius)) < 0.000001
+        let is_half = move.kind == "arc_radius" and abs(
+            written(norm(to - pen) - 2 * move.radius)
+        ) < 0.000001
         if move.kind == "slanted" {
             assert false, "the edges of a rectilinear polygon are level and upright in turns"
         } else if move.kind == "arc_tangent" {
             let aside = written(dot(to_left(way), to - pen)) / 1mm
-            assert abs(aside) > 0.000001, "`tangent_arc_to` goes to a point straight ahead, where `line_to` goes"
+            assert abs(aside) > 0.000001,
+                "`tangent_arc_to` goes to a point straight ahead, where `line_to` goes"
         } else if move.kind == "arc_by" {
-            assert 0deg < abs(written(move.turn)) < 360deg, "`arc_by` turns by less than a whole turn, and not by 0"
+            assert 0deg < abs(written(move.turn)) < 360deg,
+                "`arc_by` turns by less than a whole turn, and not by 0"
         }
         if move.kind in ["arc_by", "arc_radius"] {
             assert written(move.radius) > 0, "the radius of an arc is more than 0"
@@ -84,7 +89,8 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
         }
     }
     if len(drawn) > 0 and drawn[0].smooth {
-        assert closes or meets(end, from), "the first step of an open path has nothing to go on from smoothly"
+        assert closes or meets(end, from),
+            "the first step of an open path has nothing to go on from smoothly"
         constrain smoothly(segment[-1], segment[0])
     }
     let start = from
@@ -93,18 +99,10 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
 }
 
 /// By `start:`, or with the start as the first argument.
-fn path(steps: list, start: point, heading: angle = 0deg, closed: bool = false) = path(
-    steps,
-    from: start,
-    heading: heading,
-    closed: closed
-)
-fn path(steps: list, heading: angle = 0deg, closed: bool = false) = path(
-    [steps[i] for i in 1..<len(steps)],
-    from: steps[0],
-    heading: heading,
-    closed: closed
-)
+fn path(steps: list, start: point, heading: angle = 0deg, closed: bool = false) =
+    path(steps, from: start, heading: heading, closed: closed)
+fn path(steps: list, heading: angle = 0deg, closed: bool = false) =
+    path([steps[i] for i in 1..<len(steps)], from: steps[0], heading: heading, closed: closed)
 
 let placed_kinds = [
     "line_to", "bezier_to", "quadratic_to", "arc_radius", "arc_center", "arc_through", "arc_tangent"
@@ -117,35 +115,35 @@ fn as_step(p: point) = line_to(p)
 fn meets(a: point, b: point) = norm(written(a - b)) < 0.000001
 
 // Where a step that begins at `pen` in the direction `way` ends.
-fn step_end(move: record, pen: point, way: point, start: point) = (
-    if move.kind == "line_by" then pen + (move.dx, move.dy)
-    else if move.kind == "line_along" then pen + polar(move.length, move.angle)
-    else if move.kind == "forward" then pen + turned(unit(way), move.turn) * (move.distance / 1mm)
-    else if move.kind == "level_to" then (move.to.x, pen.y)
-    else if move.kind == "upright_to" then (pen.x, move.to.y)
-    else if move.kind == "level_home" then (start.x, pen.y)
-    else if move.kind == "upright_home" then (pen.x, start.y)
-    else if move.kind == "arc_by" then turned_about(arc_hub(move, pen, way, pen), pen, move.turn)
-    else move.to
-)
+fn step_end(
+    move: record, pen: point, way: point, start: point
+) = if move.kind == "line_by" then pen + (move.dx, move.dy) else if move.kind == "line_along" then pen + polar(
+    move.length, move.angle
+) else if move.kind == "forward" then pen + turned(
+    unit(way), move.turn
+) * (move.distance / 1mm) else if move.kind == "level_to" then (move.to.x, pen.y) else if move.kind == "upright_to" then (pen.x, move.to.y) else if move.kind == "level_home" then (start.x, pen.y) else if move.kind == "upright_home" then (pen.x, start.y) else if move.kind == "arc_by" then turned_about(
+    arc_hub(move, pen, way, pen), pen, move.turn
+) else move.to
 fn turned_about(hub: point, p: point, angle: angle) = hub + turned(p - hub, angle)
 
 // The centre of an arc that begins at `pen` in the direction `way`.
-fn arc_hub(move: record, pen: point, way: point, to: point) = (
-    if move.kind == "arc_center" then move.center
-    else if move.kind == "arc_through" then circumcenter(pen, move.through, to)
-    else if move.kind == "arc_by" then pen + to_left(way) * (
-        move.radius * (if written(move.turn) >= 0deg then 1 else -1) / 1mm
-    )
-    else pen + to_left(way) * (dot(to - pen, to - pen) / (2 * dot(to_left(way), to - pen)))
-)
+fn arc_hub(
+    move: record, pen: point, way: point, to: point
+) = if move.kind == "arc_center" then move.center else if move.kind == "arc_through" then circumcenter(
+    pen, move.through, to
+) else if move.kind == "arc_by" then pen + to_left(way) * (move.radius * (if written(
+    move.turn
+) >= 0deg then 1 else -1) / 1mm) else pen + to_left(way) * (dot(to - pen, to - pen) / (2 * dot(
+    to_left(way), to - pen
+)))
 fn to_left(way: point) = turned(unit(way), 90deg)
-fn is_clockwise(move: record, pen: point, way: point, to: point) = (
-    if move.kind == "arc_center" then move.clockwise
-    else if move.kind == "arc_through" then cross(written(move.through - pen), written(to - pen)) < 0
-    else if move.kind == "arc_by" then written(move.turn) < 0deg
-    else cross(written(way), written(to - pen)) < 0
-)
+fn is_clockwise(
+    move: record, pen: point, way: point, to: point
+) = if move.kind == "arc_center" then move.clockwise else if move.kind == "arc_through" then cross(
+    written(move.through - pen), written(to - pen)
+) < 0 else if move.kind == "arc_by" then written(move.turn) < 0deg else cross(
+    written(way), written(to - pen)
+) < 0
 
 // The directions in which a segment begins and ends.
 fn entering(l: line) = l.end - l.start
@@ -154,9 +152,12 @@ fn entering(b: bezier) = b.p1 - b.p0
 fn leaving(l: line) = l.end - l.start
 fn leaving(a: arc) = turned(a.end - a.center, quarter_of(a))
 fn leaving(b: bezier) = b.p3 - b.p2
-fn quarter_of(a: arc) = if cross(written(a.midpoint - a.start), written(a.end - a.start)) >= 0 then 90deg else -90deg
+fn quarter_of(a: arc) =
+    if cross(written(a.midpoint - a.start), written(a.end - a.start)) >= 0 then 90deg else -90deg
 
-constraint smoothly(a, b) { cross(leaving(a), entering(b)) / norm(leaving(a)) / norm(entering(b)) == 0 }
+constraint smoothly(a, b) {
+    cross(leaving(a), entering(b)) / norm(leaving(a)) / norm(entering(b)) == 0
+}
 
 // --- Steps ---------------------------------------------------------------------------------------
 
@@ -174,25 +175,18 @@ fn line_to(x: length, y: length, smooth: bool = false) = line_to((x, y), smooth:
 /// solid ramp { edge = path(from: (0, 0), line_by((40, 0)), line_by(length: 20, angle: 120deg), close()) }
 /// ```
 fn line_by(way: point, smooth: bool = false) = line_by(dx: way.x, dy: way.y, smooth: smooth)
-fn line_by(dx: length, dy: length, smooth: bool = false) = record(
-    kind: "line_by",
-    dx: dx,
-    dy: dy,
-    smooth: smooth
-)
-fn line_by(length: length, angle: angle, smooth: bool = false) = record(
-    kind: "line_along",
-    length: length,
-    angle: angle,
-    smooth: smooth
-)
+fn line_by(dx: length, dy: length, smooth: bool = false) =
+    record(kind: "line_by", dx: dx, dy: dy, smooth: smooth)
+fn line_by(length: length, angle: angle, smooth: bool = false) =
+    record(kind: "line_along", length: length, angle: angle, smooth: smooth)
 
 /// A step of a path: to the right, exactly level.
 ///
 /// ```aidl
 /// solid stair { edge = path(from: (0, 0), right(30), up(10), left(15), up(10), left(15), close()) }
 /// ```
-fn right(distance: length, smooth: bool = false) = line_by(dx: distance, dy: fixed(0), smooth: smooth)
+fn right(distance: length, smooth: bool = false) =
+    line_by(dx: distance, dy: fixed(0), smooth: smooth)
 
 /// A step of a path: to the left, exactly level.
 ///
@@ -222,12 +216,8 @@ fn down(distance: length, smooth: bool = false) = up(-distance, smooth: smooth)
 ///     edge = path(from: (0, 0), forward(20), [forward(20, turn: 60deg) for i in 1..4], close())
 /// }
 /// ```
-fn forward(distance: length, turn: angle = 0deg, smooth: bool = false) = record(
-    kind: "forward",
-    distance: distance,
-    turn: turn,
-    smooth: smooth
-)
+fn forward(distance: length, turn: angle = 0deg, smooth: bool = false) =
+    record(kind: "forward", distance: distance, turn: turn, smooth: smooth)
 
 /// A step of a path: level, as far as an x.
 ///
@@ -239,22 +229,16 @@ fn forward(distance: length, turn: angle = 0deg, smooth: bool = false) = record(
 ///     )
 /// }
 /// ```
-fn horizontal_to(x: length, smooth: bool = false) = record(
-    kind: "level_to",
-    to: (x, fixed(0)),
-    smooth: smooth
-)
+fn horizontal_to(x: length, smooth: bool = false) =
+    record(kind: "level_to", to: (x, fixed(0)), smooth: smooth)
 
 /// A step of a path: upright, as far as a y.
 ///
 /// ```aidl
 /// solid gable { edge = path(from: (0, 0), right(40), vertical_to(20), line_to((20, 35)), line_to((0, 20)), close()) }
 /// ```
-fn vertical_to(y: length, smooth: bool = false) = record(
-    kind: "upright_to",
-    to: (fixed(0), y),
-    smooth: smooth
-)
+fn vertical_to(y: length, smooth: bool = false) =
+    record(kind: "upright_to", to: (fixed(0), y), smooth: smooth)
 
 /// A step of a path: straight through several points.
 ///
@@ -278,27 +262,15 @@ fn polyline_to(points: list) = [line_to(p) for p in points]
 ///     )
 /// }
 /// ```
-fn arc_to(to: point, radius: length, large: bool = false, clockwise: bool = false, smooth: bool = false) = record(
-    kind: "arc_radius",
-    to: to,
-    radius: radius,
-    large: large,
-    clockwise: clockwise,
-    smooth: smooth
+fn arc_to(
+    to: point, radius: length, large: bool = false, clockwise: bool = false, smooth: bool = false
+) = record(
+    kind: "arc_radius", to: to, radius: radius, large: large, clockwise: clockwise, smooth: smooth
 )
-fn arc_to(to: point, center: point, clockwise: bool = false, smooth: bool = false) = record(
-    kind: "arc_center",
-    center: center,
-    to: to,
-    clockwise: clockwise,
-    smooth: smooth
-)
-fn arc_to(to: point, through: point, smooth: bool = false) = record(
-    kind: "arc_through",
-    through: through,
-    to: to,
-    smooth: smooth
-)
+fn arc_to(to: point, center: point, clockwise: bool = false, smooth: bool = false) =
+    record(kind: "arc_center", center: center, to: to, clockwise: clockwise, smooth: smooth)
+fn arc_to(to: point, through: point, smooth: bool = false) =
+    record(kind: "arc_through", through: through, to: to, smooth: smooth)
 
 /// A step of a path: an arc that goes on without a corner and turns by an angle, clockwise if it is negative.
 ///
@@ -307,19 +279,16 @@ fn arc_to(to: point, through: point, smooth: bool = false) = record(
 ///     edge = path(from: (0, 0), right(40), arc_by(180deg, radius: 15), forward(20), close())
 /// }
 /// ```
-fn arc_by(turn: angle, radius: length, smooth: bool = true) = record(
-    kind: "arc_by",
-    turn: turn,
-    radius: radius,
-    smooth: false
-)
+fn arc_by(turn: angle, radius: length, smooth: bool = true) =
+    record(kind: "arc_by", turn: turn, radius: radius, smooth: false)
 
 /// A step of a path: the arc to a point that goes on without a corner.
 ///
 /// ```aidl
 /// solid paddle { edge = path(from: (0, 0), line_to((40, 5)), tangent_arc_to((40, -5)), close()) }
 /// ```
-fn tangent_arc_to(to: point, smooth: bool = true) = record(kind: "arc_tangent", to: to, smooth: false)
+fn tangent_arc_to(to: point, smooth: bool = true) =
+    record(kind: "arc_tangent", to: to, smooth: false)
 
 /// A step of a path: a cubic Bézier by its two control points and its end.
 ///
@@ -328,25 +297,16 @@ fn tangent_arc_to(to: point, smooth: bool = true) = record(kind: "arc_tangent", 
 ///     edge = path(from: (0, 0), bezier_to((15, 20), (30, -10), (45, 10)), vertical_to(-15), left(45), close())
 /// }
 /// ```
-fn bezier_to(first: point, second: point, to: point, smooth: bool = false) = record(
-    kind: "bezier_to",
-    first: first,
-    second: second,
-    to: to,
-    smooth: smooth
-)
+fn bezier_to(first: point, second: point, to: point, smooth: bool = false) =
+    record(kind: "bezier_to", first: first, second: second, to: to, smooth: smooth)
 
 /// A step of a path: a quadratic Bézier by its control point and its end.
 ///
 /// ```aidl
 /// solid arch { edge = path(from: (0, 0), quadratic_to((20, 40), (40, 0)), close()) }
 /// ```
-fn quadratic_to(by: point, to: point, smooth: bool = false) = record(
-    kind: "quadratic_to",
-    by: by,
-    to: to,
-    smooth: smooth
-)
+fn quadratic_to(by: point, to: point, smooth: bool = false) =
+    record(kind: "quadratic_to", by: by, to: to, smooth: smooth)
 
 /// The last step of a path: straight back to where it starts, unless it is there.
 ///
@@ -372,10 +332,8 @@ fn move_to(x: length, y: length) = (x, y)
 /// ```aidl
 /// solid angle_iron { body = rectilinear_polygon((0, 0), (40, 0), (40, 5), (5, 5), (5, 30), (0, 30)) }
 /// ```
-fn rectilinear_polygon(points: list) = path(
-    [axis_step(points, i) for i in 0..<len(points) - 1] + [close()],
-    from: points[0]
-)
+fn rectilinear_polygon(points: list) =
+    path([axis_step(points, i) for i in 0..<len(points) - 1] + [close()], from: points[0])
 
 // The step from a corner to the next one. The last before the end goes as far as the start, so that the edge that
 // closes the outline is level or upright, too.
@@ -386,13 +344,10 @@ fn axis_step(points: list, i: integer) = axis_move(
     is_last: i == len(points) - 2,
     is_even: len(points) % 2 == 0
 )
-fn axis_move(way: point, seen: point, is_level: bool, is_last: bool, is_even: bool) = (
-    if not is_even or abs(if is_level then seen.y else seen.x) > 0.000001 then record(
-        kind: "slanted",
-        to: way,
-        smooth: false
-    )
-    else if is_last then record(kind: if is_level then "level_home" else "upright_home", smooth: false)
-    else if is_level then right(way.x)
-    else up(way.y)
-)
+fn axis_move(
+    way: point, seen: point, is_level: bool, is_last: bool, is_even: bool
+) = if not is_even or abs(if is_level then seen.y else seen.x) > 0.000001 then record(
+    kind: "slanted", to: way, smooth: false
+) else if is_last then record(
+    kind: if is_level then "level_home" else "upright_home", smooth: false
+) else if is_level then right(way.x) else up(way.y)

@@ -142,9 +142,7 @@ fn between(a, b, share: number) = center_of(a) + (center_of(b) - center_of(a)) *
 /// }
 /// ```
 fn anchor(of: box, place: text = "center") = (share_of(
-    of.left,
-    of.right,
-    side_of(place, "left", "right")
+    of.left, of.right, side_of(place, "left", "right")
 ), share_of(of.bottom, of.top, side_of(place, "bottom", "top")))
 fn share_of(low: length, high: length, share: number) = low + (high - low) * share
 fn side_of(place: text, low: text, high: text) = if anchor_word(place) in words_of(
@@ -168,14 +166,8 @@ fn anchor_word(place: text) = choice(
         "right_center"
     ]
 )
-fn words_of(side: text) = [
-    side,
-    side + "_center",
-    side + "_left",
-    side + "_right",
-    "top_" + side,
-    "bottom_" + side
-]
+fn words_of(side: text) =
+    [side, side + "_center", side + "_left", side + "_right", "top_" + side, "bottom_" + side]
 
 /// The endless upright line through a point, to be symmetric about or to lie on.
 ///
@@ -210,10 +202,8 @@ fn horizontal_through(p) = level_through(center_of(p))
 ///     constrain coincident(pin.center, line_through(hub.center, 45deg))
 /// }
 /// ```
-fn line_through(p, angle: angle) = line(
-    fixed(center_of(p)),
-    fixed(center_of(p) + (cos(angle) * 1mm, sin(angle) * 1mm))
-)
+fn line_through(p, angle: angle) =
+    line(fixed(center_of(p)), fixed(center_of(p) + (cos(angle) * 1mm, sin(angle) * 1mm)))
 
 alias vertical_axis = vertical_through
 alias horizontal_axis = horizontal_through

@@ -18,8 +18,9 @@ shape polygon(points: points) {
 }
 
 /// With `sides` and a `radius` it is a `regular_polygon`.
-fn polygon(center: point = (0, 0), radius: length, sides: integer, angle = 0deg, rotatable = false) =
-    regular_polygon(center, radius, sides, angle, rotatable)
+fn polygon(
+    center: point = (0, 0), radius: length, sides: integer, angle = 0deg, rotatable = false
+) = regular_polygon(center, radius, sides, angle, rotatable)
 
 /// Straight edges through the points, not closed.
 ///
@@ -105,12 +106,18 @@ fn regular_polygon(
 /// ```
 fn pentagon(center: point = (0, 0), radius: length, angle: angle = 90deg, rotatable: bool = false) =
     regular_polygon(center: center, radius: radius, sides: 5, angle: angle, rotatable: rotatable)
-fn pentagon(center: point = (0, 0), diameter: length, angle: angle = 90deg, rotatable: bool = false) =
-    regular_polygon(center: center, diameter: diameter, sides: 5, angle: angle, rotatable: rotatable)
+fn pentagon(
+    center: point = (0, 0), diameter: length, angle: angle = 90deg, rotatable: bool = false
+) = regular_polygon(
+    center: center, diameter: diameter, sides: 5, angle: angle, rotatable: rotatable
+)
 fn pentagon(center: point = (0, 0), side: length, angle: angle = 90deg, rotatable: bool = false) =
     regular_polygon(center: center, side: side, sides: 5, angle: angle, rotatable: rotatable)
-fn pentagon(center: point = (0, 0), inradius: length, angle: angle = 90deg, rotatable: bool = false) =
-    regular_polygon(center: center, inradius: inradius, sides: 5, angle: angle, rotatable: rotatable)
+fn pentagon(
+    center: point = (0, 0), inradius: length, angle: angle = 90deg, rotatable: bool = false
+) = regular_polygon(
+    center: center, inradius: inradius, sides: 5, angle: angle, rotatable: rotatable
+)
 
 /// A regular polygon of six sides; with the default angle its first corner is on the right.
 ///
@@ -119,30 +126,49 @@ fn pentagon(center: point = (0, 0), inradius: length, angle: angle = 90deg, rota
 /// ```
 fn hexagon(center: point = (0, 0), radius: length, angle: angle = 0deg, rotatable: bool = false) =
     regular_polygon(center: center, radius: radius, sides: 6, angle: angle, rotatable: rotatable)
-fn hexagon(center: point = (0, 0), diameter: length, angle: angle = 0deg, rotatable: bool = false) =
-    regular_polygon(center: center, diameter: diameter, sides: 6, angle: angle, rotatable: rotatable)
+fn hexagon(
+    center: point = (0, 0), diameter: length, angle: angle = 0deg, rotatable: bool = false
+) = regular_polygon(
+    center: center, diameter: diameter, sides: 6, angle: angle, rotatable: rotatable
+)
 fn hexagon(center: point = (0, 0), side: length, angle: angle = 0deg, rotatable: bool = false) =
     regular_polygon(center: center, side: side, sides: 6, angle: angle, rotatable: rotatable)
-fn hexagon(center: point = (0, 0), inradius: length, angle: angle = 0deg, rotatable: bool = false) =
-    regular_polygon(center: center, inradius: inradius, sides: 6, angle: angle, rotatable: rotatable)
-fn hexagon(center: point = (0, 0), across_flats: length, angle: angle = 0deg, rotatable: bool = false) =
-    regular_polygon(center: center, across_flats: across_flats, sides: 6, angle: angle, rotatable: rotatable)
+fn hexagon(
+    center: point = (0, 0), inradius: length, angle: angle = 0deg, rotatable: bool = false
+) = regular_polygon(
+    center: center, inradius: inradius, sides: 6, angle: angle, rotatable: rotatable
+)
+fn hexagon(
+    center: point = (0, 0), across_flats: length, angle: angle = 0deg, rotatable: bool = false
+) = regular_polygon(
+    center: center, across_flats: across_flats, sides: 6, angle: angle, rotatable: rotatable
+)
 
 /// A regular polygon of eight sides; with the default angle it lies on a level side.
 ///
 /// ```aidl
 /// solid stop_sign { plate = octagon(across_flats: 60) }
 /// ```
-fn octagon(center: point = (0, 0), radius: length, angle: angle = 22.5deg, rotatable: bool = false) =
-    regular_polygon(center: center, radius: radius, sides: 8, angle: angle, rotatable: rotatable)
-fn octagon(center: point = (0, 0), diameter: length, angle: angle = 22.5deg, rotatable: bool = false) =
-    regular_polygon(center: center, diameter: diameter, sides: 8, angle: angle, rotatable: rotatable)
+fn octagon(
+    center: point = (0, 0), radius: length, angle: angle = 22.5deg, rotatable: bool = false
+) = regular_polygon(center: center, radius: radius, sides: 8, angle: angle, rotatable: rotatable)
+fn octagon(
+    center: point = (0, 0), diameter: length, angle: angle = 22.5deg, rotatable: bool = false
+) = regular_polygon(
+    center: center, diameter: diameter, sides: 8, angle: angle, rotatable: rotatable
+)
 fn octagon(center: point = (0, 0), side: length, angle: angle = 22.5deg, rotatable: bool = false) =
     regular_polygon(center: center, side: side, sides: 8, angle: angle, rotatable: rotatable)
-fn octagon(center: point = (0, 0), inradius: length, angle: angle = 22.5deg, rotatable: bool = false) =
-    regular_polygon(center: center, inradius: inradius, sides: 8, angle: angle, rotatable: rotatable)
-fn octagon(center: point = (0, 0), across_flats: length, angle: angle = 22.5deg, rotatable: bool = false) =
-    regular_polygon(center: center, across_flats: across_flats, sides: 8, angle: angle, rotatable: rotatable)
+fn octagon(
+    center: point = (0, 0), inradius: length, angle: angle = 22.5deg, rotatable: bool = false
+) = regular_polygon(
+    center: center, inradius: inradius, sides: 8, angle: angle, rotatable: rotatable
+)
+fn octagon(
+    center: point = (0, 0), across_flats: length, angle: angle = 22.5deg, rotatable: bool = false
+) = regular_polygon(
+    center: center, across_flats: across_flats, sides: 8, angle: angle, rotatable: rotatable
+)
 
 /// A star with `points` tips on one circle and its notches on another; the first tip is at `angle`.
 ///

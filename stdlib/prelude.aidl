@@ -94,9 +94,8 @@ fn midpoint(l: line) = l.midpoint
 ///     hem = line(upper.end, lower.end)
 /// }
 /// ```
-fn turned(v: point, angle: angle) = (v.x * cos(angle) - v.y * sin(angle), v.x * sin(
-    angle
-) + v.y * cos(angle))
+fn turned(v: point, angle: angle) =
+    (v.x * cos(angle) - v.y * sin(angle), v.x * sin(angle) + v.y * cos(angle))
 
 /// The vector from the start of a line to its end.
 ///
@@ -149,17 +148,14 @@ fn circumcenter(a: point, b: point, c: point) = a + circumcenter_from(b - a, c -
 
 // The same, seen from the first point.
 fn circumcenter_from(b: point, c: point) = ((c.y * dot(b, b) - b.y * dot(c, c)) / (2 * cross(
-    b,
-    c
+    b, c
 )), (b.x * dot(c, c) - c.x * dot(b, b)) / (2 * cross(b, c)))
 
 // --- Primitives by other means -------------------------------------------------------------------
 
 /// The circle through three points.
-fn circle(a: point, b: point, c: point) = circle(
-    center: circumcenter(a, b, c),
-    radius: norm(a - circumcenter(a, b, c))
-)
+fn circle(a: point, b: point, c: point) =
+    circle(center: circumcenter(a, b, c), radius: norm(a - circumcenter(a, b, c)))
 
 /// The arc through three points, in the order given.
 fn arc(start: point, mid: point, end: point) = arc(

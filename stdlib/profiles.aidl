@@ -187,7 +187,8 @@ shape z_shape(
     rotatable: bool = false
 ) {
     fn place(x, y) = center + turned((x - width / 2, y - height / 2), angle)
-    assert thickness < width and 2 * thickness < height, "the bars of a Z are thinner than it is long"
+    assert thickness < width and 2 * thickness < height,
+        "the bars of a Z are thinner than it is long"
     outline = polygon(
         [
             place((width - thickness) / 2, 0),
@@ -210,11 +211,7 @@ shape z_shape(
 /// solid plus_sign { body = cross_shape(size: 40, width: 12) }
 /// ```
 shape cross_shape(
-    center: point = (0, 0),
-    size: length,
-    width: length,
-    angle: turn = 0deg,
-    rotatable: bool = false
+    center: point = (0, 0), size: length, width: length, angle: turn = 0deg, rotatable: bool = false
 ) {
     assert width < size, "the bars of a cross are longer than wide"
     outline = polygon(cross_corners(center, size / 2, size / 2, width / 2, angle))
@@ -232,29 +229,29 @@ shape cross_shape(
 }
 
 // The corners of a cross that reaches x and y from its centre; b is half the width of its bars.
-fn cross_corners(center: point, x: length, y: length, b: length, angle: angle) = [
-    center + turned(p, angle)
-    for p in [
-        (b, b),
-        (b, y),
-        (-b, y),
-        (-b, b),
-        (-x, b),
-        (-x, -b),
-        (-b, -b),
-        (-b, -y),
-        (b, -y),
-        (b, -b),
-        (x, -b),
-        (x, b)
-    ]
-]
+fn cross_corners(center: point, x: length, y: length, b: length, angle: angle) = [center + turned(
+    p, angle
+) for p in [
+    (b, b),
+    (b, y),
+    (-b, y),
+    (-b, b),
+    (-x, b),
+    (-x, -b),
+    (-b, -b),
+    (-b, -y),
+    (b, -y),
+    (b, -b),
+    (x, -b),
+    (x, b)
+]]
 
 // `cross(a, b)` of two vectors is their product; with sizes it is the shape.
 fn cross(center: point = (0, 0), size: length, width: length, angle: angle = 0deg) =
     cross_shape(center: center, size: size, width: width, angle: angle)
-fn cross(center: point = (0, 0), width: length, height: length, thickness: length, angle: angle = 0deg) =
-    cross_shape(center: center, width: width, height: height, thickness: thickness, angle: angle)
+fn cross(
+    center: point = (0, 0), width: length, height: length, thickness: length, angle: angle = 0deg
+) = cross_shape(center: center, width: width, height: height, thickness: thickness, angle: angle)
 
 /// A chevron that points to the right; `thickness` is measured level.
 ///

@@ -50,14 +50,10 @@ fn rectangle(start: point, end: point) = rectangle(
     top_right: (written_max(start.x, end.x), written_max(start.y, end.y))
 )
 fn rectangle(bottom_left: point, top_right: point) = rectangle(
-    bottom_left: bottom_left,
-    width_to: (top_right.x, fixed(0)),
-    height_to: (fixed(0), top_right.y)
+    bottom_left: bottom_left, width_to: (top_right.x, fixed(0)), height_to: (fixed(0), top_right.y)
 )
-fn rectangle(top_left: point, bottom_right: point) = rectangle(
-    bottom_left: (top_left.x, bottom_right.y),
-    top_right: (bottom_right.x, top_left.y)
-)
+fn rectangle(top_left: point, bottom_right: point) =
+    rectangle(bottom_left: (top_left.x, bottom_right.y), top_right: (bottom_right.x, top_left.y))
 
 /// By the coordinates of its sides.
 fn rectangle(left: length, right: length, bottom: length, top: length) =
@@ -68,36 +64,33 @@ fn rectangle(left: length, top: length, width: length, height: length) =
     rectangle((left, top), -1, 1, width, height)
 
 /// By a corner, about which it turns.
-fn rectangle(
-    bottom_left: point, width: length, height: length, angle = 0deg, rotatable = false
-) = rectangle(bottom_left, -1, -1, width, height, angle, rotatable)
-fn rectangle(
-    bottom_right: point, width: length, height: length, angle = 0deg, rotatable = false
-) = rectangle(bottom_right, 1, -1, width, height, angle, rotatable)
-fn rectangle(
-    top_right: point, width: length, height: length, angle = 0deg, rotatable = false
-) = rectangle(top_right, 1, 1, width, height, angle, rotatable)
-fn rectangle(
-    top_left: point, width: length, height: length, angle = 0deg, rotatable = false
-) = rectangle(top_left, -1, 1, width, height, angle, rotatable)
+fn rectangle(bottom_left: point, width: length, height: length, angle = 0deg, rotatable = false) =
+    rectangle(bottom_left, -1, -1, width, height, angle, rotatable)
+fn rectangle(bottom_right: point, width: length, height: length, angle = 0deg, rotatable = false) =
+    rectangle(bottom_right, 1, -1, width, height, angle, rotatable)
+fn rectangle(top_right: point, width: length, height: length, angle = 0deg, rotatable = false) =
+    rectangle(top_right, 1, 1, width, height, angle, rotatable)
+fn rectangle(top_left: point, width: length, height: length, angle = 0deg, rotatable = false) =
+    rectangle(top_left, -1, 1, width, height, angle, rotatable)
 
 /// By the middle of a side, about which it turns.
-fn rectangle(
-    bottom_center: point, width: length, height: length, angle = 0deg, rotatable = false
-) = rectangle(bottom_center, 0, -1, width, height, angle, rotatable)
-fn rectangle(
-    right_center: point, width: length, height: length, angle = 0deg, rotatable = false
-) = rectangle(right_center, 1, 0, width, height, angle, rotatable)
-fn rectangle(
-    top_center: point, width: length, height: length, angle = 0deg, rotatable = false
-) = rectangle(top_center, 0, 1, width, height, angle, rotatable)
-fn rectangle(
-    left_center: point, width: length, height: length, angle = 0deg, rotatable = false
-) = rectangle(left_center, -1, 0, width, height, angle, rotatable)
+fn rectangle(bottom_center: point, width: length, height: length, angle = 0deg, rotatable = false) =
+    rectangle(bottom_center, 0, -1, width, height, angle, rotatable)
+fn rectangle(right_center: point, width: length, height: length, angle = 0deg, rotatable = false) =
+    rectangle(right_center, 1, 0, width, height, angle, rotatable)
+fn rectangle(top_center: point, width: length, height: length, angle = 0deg, rotatable = false) =
+    rectangle(top_center, 0, 1, width, height, angle, rotatable)
+fn rectangle(left_center: point, width: length, height: length, angle = 0deg, rotatable = false) =
+    rectangle(left_center, -1, 0, width, height, angle, rotatable)
 
 /// With a `radius` it is a `rounded_rectangle`.
 fn rectangle(
-    center: point = (0, 0), width: length, height: length, radius: length, angle = 0deg, rotatable = false
+    center: point = (0, 0),
+    width: length,
+    height: length,
+    radius: length,
+    angle = 0deg,
+    rotatable = false
 ) = rounded_rectangle(center, width, height, radius, angle, rotatable)
 
 // By a point of its border: `across` and `up` tell which, from -1 (left, bottom) over 0 (middle) to 1.
@@ -176,18 +169,14 @@ shape square(center: point = (0, 0), size: length, angle: turn = 0deg, rotatable
 }
 
 /// By a corner, about which it turns.
-fn square(
-    bottom_left: point, size: length, angle = 0deg, rotatable = false
-) = square(bottom_left, -1, -1, size, angle, rotatable)
-fn square(
-    bottom_right: point, size: length, angle = 0deg, rotatable = false
-) = square(bottom_right, 1, -1, size, angle, rotatable)
-fn square(
-    top_right: point, size: length, angle = 0deg, rotatable = false
-) = square(top_right, 1, 1, size, angle, rotatable)
-fn square(
-    top_left: point, size: length, angle = 0deg, rotatable = false
-) = square(top_left, -1, 1, size, angle, rotatable)
+fn square(bottom_left: point, size: length, angle = 0deg, rotatable = false) =
+    square(bottom_left, -1, -1, size, angle, rotatable)
+fn square(bottom_right: point, size: length, angle = 0deg, rotatable = false) =
+    square(bottom_right, 1, -1, size, angle, rotatable)
+fn square(top_right: point, size: length, angle = 0deg, rotatable = false) =
+    square(top_right, 1, 1, size, angle, rotatable)
+fn square(top_left: point, size: length, angle = 0deg, rotatable = false) =
+    square(top_left, -1, 1, size, angle, rotatable)
 
 // By a point of its border, as the rectangle.
 shape square(
@@ -224,7 +213,8 @@ shape square(
 shape frame(center: point = (0, 0), width: length, height: length, thickness: length) {
     outer = rectangle(center: center, width: width, height: height)
     inner = rectangle(center: center, width: width - 2 * thickness, height: height - 2 * thickness)
-    assert 2 * thickness < min(width, height), "the bars of a frame are thinner than half of its shorter side"
+    assert 2 * thickness < min(width, height),
+        "the bars of a frame are thinner than half of its shorter side"
 }
 
 alias rect = rectangle

@@ -49,10 +49,7 @@ shape sector(center: point = (0, 0), radius: length, start_angle: angle, end_ang
 }
 shape sector(center: point = (0, 0), radius: length, sweep: angle, start_angle: angle = 0deg) {
     rim = arc(
-        center: center,
-        radius: radius,
-        start_angle: start_angle,
-        end_angle: start_angle + sweep
+        center: center, radius: radius, start_angle: start_angle, end_angle: start_angle + sweep
     )
     first = line(center, rim.start)
     last = line(rim.end, center)
@@ -103,10 +100,7 @@ shape segment(start: point, end: point, radius: length) {
 /// solid protractor { body = semicircle(radius: 40) }
 /// ```
 shape semicircle(
-    center: point = (0, 0),
-    radius: length,
-    angle: turn = 0deg,
-    rotatable: bool = false
+    center: point = (0, 0), radius: length, angle: turn = 0deg, rotatable: bool = false
 ) {
     rim = half_turn(center, radius, angle)
     chord = line(rim.end, rim.start)
@@ -120,10 +114,7 @@ fn semicircle(center: point = (0, 0), diameter: length, angle = 0deg, rotatable 
 /// solid corner_shelf { body = quarter_circle(center: (0, 0), radius: 40) }
 /// ```
 shape quarter_circle(
-    center: point = (0, 0),
-    radius: length,
-    angle: turn = 0deg,
-    rotatable: bool = false
+    center: point = (0, 0), radius: length, angle: turn = 0deg, rotatable: bool = false
 ) {
     rim = quarter_arc(center, radius, angle)
     first = line(center, rim.start)
@@ -131,12 +122,8 @@ shape quarter_circle(
 }
 
 // Half of a circle, counter-clockwise from a direction.
-fn half_turn(center: point, radius: length, from: angle) = arc(
-    center: center,
-    radius: radius,
-    start_angle: fixed(from),
-    end_angle: fixed(from + 180deg)
-)
+fn half_turn(center: point, radius: length, from: angle) =
+    arc(center: center, radius: radius, start_angle: fixed(from), end_angle: fixed(from + 180deg))
 
 /// A piece of a ring, counter-clockwise from `start_angle` to `end_angle`.
 ///
@@ -154,9 +141,14 @@ shape ring_sector(
     start_angle: angle,
     end_angle: angle
 ) {
-    assert inner_radius < outer_radius, "the inner radius of a piece of a ring is smaller than the outer one"
-    outer = arc(center: center, radius: outer_radius, start_angle: start_angle, end_angle: end_angle)
-    inner = arc(center: center, radius: inner_radius, start_angle: start_angle, end_angle: end_angle)
+    assert inner_radius < outer_radius,
+        "the inner radius of a piece of a ring is smaller than the outer one"
+    outer = arc(
+        center: center, radius: outer_radius, start_angle: start_angle, end_angle: end_angle
+    )
+    inner = arc(
+        center: center, radius: inner_radius, start_angle: start_angle, end_angle: end_angle
+    )
     first = line(inner.start, outer.start)
     last = line(outer.end, inner.end)
     let thickness = outer_radius - inner_radius
@@ -170,8 +162,12 @@ shape ring_sector(
 ) {
     assert thickness < outer_radius, "a piece of a ring is thinner than its outer radius"
     let inner_radius = outer_radius - thickness
-    outer = arc(center: center, radius: outer_radius, start_angle: start_angle, end_angle: end_angle)
-    inner = arc(center: center, radius: inner_radius, start_angle: start_angle, end_angle: end_angle)
+    outer = arc(
+        center: center, radius: outer_radius, start_angle: start_angle, end_angle: end_angle
+    )
+    inner = arc(
+        center: center, radius: inner_radius, start_angle: start_angle, end_angle: end_angle
+    )
     first = line(inner.start, outer.start)
     last = line(outer.end, inner.end)
 }
@@ -239,26 +235,16 @@ shape slot(
 /// }
 /// ```
 shape arc_slot(
-    center: point = (0, 0),
-    radius: length,
-    width: length,
-    start_angle: angle,
-    end_angle: angle
+    center: point = (0, 0), radius: length, width: length, start_angle: angle, end_angle: angle
 ) {
     assert width < 2 * radius, "a slot along an arc is narrower than the circle"
     start = center + polar(radius, start_angle)
     end = center + polar(radius, end_angle)
     outer = arc(
-        center: center,
-        radius: radius + width / 2,
-        start_angle: start_angle,
-        end_angle: end_angle
+        center: center, radius: radius + width / 2, start_angle: start_angle, end_angle: end_angle
     )
     inner = arc(
-        center: center,
-        radius: radius - width / 2,
-        start_angle: start_angle,
-        end_angle: end_angle
+        center: center, radius: radius - width / 2, start_angle: start_angle, end_angle: end_angle
     )
     end_cap = half_turn(end, width / 2, end_angle)
     start_cap = half_turn(start, width / 2, start_angle + 180deg)
@@ -283,10 +269,7 @@ shape tapered_slot(start: point, end: point, start_radius: length, end_radius: l
         end_angle: way + 360deg - opening
     )
     end_cap = arc(
-        center: end,
-        radius: end_radius,
-        start_angle: way - opening,
-        end_angle: way + opening
+        center: end, radius: end_radius, start_angle: way - opening, end_angle: way + opening
     )
     right = line(start_cap.end, end_cap.start)
     left = line(end_cap.end, start_cap.start)

@@ -35,15 +35,16 @@ shape spline(points: list, closed: bool = false) {
 
 // The direction in a knot is that of the circle through it and its neighbours; at an open end it mirrors that of the
 // next knot about the chord between. A handle is as long as that of a Bézier along a circle.
-fn spline_way(chord: list, i: integer, closed: bool) = (
-    if closed then circle_way(chord[(i + len(chord) - 1) % len(chord)], chord[i % len(chord)])
-    else if len(chord) == 1 then chord[0]
-    else if i == 0 then mirrored_way(circle_way(chord[0], chord[1]), chord[0])
-    else if i == len(chord) then mirrored_way(circle_way(chord[i - 2], chord[i - 1]), chord[i - 1])
-    else circle_way(chord[i - 1], chord[i])
-)
-fn circle_way(before: point, after: point) = unit(unit(before) * norm(after) + unit(after) * norm(before))
-fn mirrored_way(way: point, chord: point) = unit(chord) * (2 * dot(way, unit(chord)) / 1mm / 1mm) - way
-fn spline_handle(way: point, chord: point) = unit(way) * (
-    norm(chord) * 2 / 3 / (1mm + dot(unit(way), unit(chord)) / 1mm)
-)
+fn spline_way(chord: list, i: integer, closed: bool) = if closed then circle_way(
+    chord[(i + len(chord) - 1) % len(chord)], chord[i % len(chord)]
+) else if len(chord) == 1 then chord[0] else if i == 0 then mirrored_way(
+    circle_way(chord[0], chord[1]), chord[0]
+) else if i == len(chord) then mirrored_way(
+    circle_way(chord[i - 2], chord[i - 1]), chord[i - 1]
+) else circle_way(chord[i - 1], chord[i])
+fn circle_way(before: point, after: point) =
+    unit(unit(before) * norm(after) + unit(after) * norm(before))
+fn mirrored_way(way: point, chord: point) =
+    unit(chord) * (2 * dot(way, unit(chord)) / 1mm / 1mm) - way
+fn spline_handle(way: point, chord: point) =
+    unit(way) * (norm(chord) * 2 / 3 / (1mm + dot(unit(way), unit(chord)) / 1mm))

@@ -30,9 +30,8 @@ constraint symmetric(a, axis: text) { symmetric(a, about: axis_of(axis)) }
 constraint symmetric(a, axis: line) { symmetric(a, about: axis) }
 
 // The axis that a word means, and the endless lines through a point.
-fn axis_of(word: text) = if choice(word, ["x", "y"]) == "x" then level_through(
-    (0, 0)
-) else upright_through((0, 0))
+fn axis_of(word: text) =
+    if choice(word, ["x", "y"]) == "x" then level_through((0, 0)) else upright_through((0, 0))
 fn level_through(p: point) = line(fixed(p), fixed(p + (1, 0)))
 fn upright_through(p: point) = line(fixed(p), fixed(p + (0, 1)))
 
@@ -43,9 +42,7 @@ fn mirror_error(a: point, b: point, about: line) = norm(written(mirrored(a, abou
 
 // Whether two curves are images from start to start, as written, rather than from start to end.
 fn keeps_sense(a, b, about: line) = mirror_error(a.start, b.start, about) + mirror_error(
-    a.end,
-    b.end,
-    about
+    a.end, b.end, about
 ) <= mirror_error(a.start, b.end, about) + mirror_error(a.end, b.start, about)
 
 // Whether an arc runs clockwise: then it lies to the left of the way from its start to its end.

@@ -46,9 +46,8 @@ fn along(b: bezier, at_end: point) = if norm(written(at_end - b.p0)) <= norm(
 ) then b.p1 - b.p0 else b.p3 - b.p2
 
 // The ends that two curves share as they were written; an empty list when they share none.
-fn shared_end(a: list, b: list) = [p for p in a if len(b) > 0 and min(
-    [norm(written(p - q)) for q in b]
-) < 0.000001]
+fn shared_end(a: list, b: list) =
+    [p for p in a if len(b) > 0 and min([norm(written(p - q)) for q in b]) < 0.000001]
 
 // Two curves that share no end touch somewhere.
 constraint touches(l: line, c: circle) { beside_line(l, c.center, c.radius) }

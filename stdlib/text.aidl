@@ -71,13 +71,10 @@ shape text(
 }
 
 // The middle of the ink of a text from its start, and the line under its first line.
-fn middle_of(ink: record, height: length) = (
-    (ink.left + ink.right) / 2 * height,
-    (ink.bottom + ink.top) / 2 * height
-)
+fn middle_of(ink: record, height: length) =
+    ((ink.left + ink.right) / 2 * height, (ink.bottom + ink.top) / 2 * height)
 fn baseline_of(ink: record, start: point, height: length, angle: angle) = line(
-    start + turned((ink.left * height, 0), angle),
-    start + turned((ink.right * height, 0), angle)
+    start + turned((ink.left * height, 0), angle), start + turned((ink.right * height, 0), angle)
 )
 
 alias lettering = text

@@ -56,8 +56,7 @@ fn triangle(a: point = (0, 0), angle_a: angle, ab: length, angle_b: angle, angle
     triangle(a, angle_a: angle_a, length_ab: ab, angle_b: angle_b, angle: angle)
 
 /// Sides `a`, `b`, `c` as in a textbook: each is opposite to the corner of its name.
-fn triangle(a: length, b: length, c: length) =
-    triangle(length_ab: c, length_bc: a, length_ca: b)
+fn triangle(a: length, b: length, c: length) = triangle(length_ab: c, length_bc: a, length_ca: b)
 
 /// Of three equal sides, see `equilateral_triangle`.
 fn triangle(center: point = (0, 0), side: length, angle = 0deg, rotatable = false) =
@@ -121,8 +120,9 @@ shape triangle(
 }
 
 // Where the bisectors of the angles meet: the centre of the largest circle inside.
-fn incenter_of(a: point, b: point, c: point) =
-    (a * norm(c - b) + b * norm(a - c) + c * norm(b - a)) / (norm(c - b) + norm(a - c) + norm(b - a))
+fn incenter_of(a: point, b: point, c: point) = (a * norm(c - b) + b * norm(a - c) + c * norm(
+    b - a
+)) / (norm(c - b) + norm(a - c) + norm(b - a))
 
 /// A triangle with a right angle at `corner`, one leg to the right (`width`) and one up (`height`).
 ///
@@ -159,10 +159,7 @@ fn right_triangle(base: length, height: length, corner: point = (0, 0), angle = 
 /// solid sign { plate = equilateral_triangle(side: 50) }
 /// ```
 shape equilateral_triangle(
-    center: point = (0, 0),
-    side: length,
-    angle: turn = 0deg,
-    rotatable: bool = false
+    center: point = (0, 0), side: length, angle: turn = 0deg, rotatable: bool = false
 ) {
     let radius = side / sqrt(3)
     let inradius = radius / 2

@@ -11,7 +11,8 @@ PROMISED = {
     "geometry": "point line arc circle bezier ellipse",
     "shapes": """
         rectangle square rounded_rectangle chamfered_rectangle triangle trapezoid parallelogram rhombus kite
-        regular_polygon polygon polyline star slot arc_slot ring sector segment gear cross arrow keyhole capsule heart
+        regular_polygon polygon polyline star slot arc_slot ring sector segment gear cross arrow
+        keyhole capsule heart
         drop crescent path text
     """,
     "operations": """
@@ -20,7 +21,8 @@ PROMISED = {
     """,
     "constraints": """
         coincident horizontal vertical parallel perpendicular collinear concentric tangent equal equal_length
-        equal_radius midpoint symmetric fixed distance horizontal_distance vertical_distance angle length radius
+        equal_radius midpoint symmetric fixed distance horizontal_distance vertical_distance angle
+        length radius
         diameter mirror_of
     """,
     "relations": """
@@ -33,10 +35,12 @@ PROMISED = {
         on_circle at_corners spread between anchor vertical_through horizontal_through clearance
     """,
     "path": """
-        line_to line_by up down left right arc_to arc_by tangent_arc_to bezier_to close spline rectilinear_polygon
+        line_to line_by up down left right arc_to arc_by tangent_arc_to bezier_to close spline
+        rectilinear_polygon
     """,
     "functions": """
-        sin cos tan asin acos atan atan2 sqrt abs norm square min max hypot floor ceil round dot cross unit lerp
+        sin cos tan asin acos atan atan2 sqrt abs norm square min max hypot floor ceil round dot
+        cross unit lerp
         polar midpoint len sum area perimeter overlaps guess written record enumerate zip range
     """,
     "synonyms": """

@@ -102,10 +102,33 @@ def test_long_lists_are_broken() -> None:
         "rotatable: true, angle: 45deg)",
         """
         edge = polygon(
+            [(-100, -100), (100, -100), (100, 100), (-100, 100), (-150, 0)], rotatable: true, angle: 45deg
+        )
+        """,
+    )
+
+
+def test_what_does_not_fit_on_one_line_of_its_own_has_a_line_each() -> None:
+    check(
+        "edge = polygon([(-100, -100), (100, -100), (100, 100), (-100, 100), (-150, 0)], "
+        "rotatable: true, angle: 45deg + 3 * turn_of_the_part)",
+        """
+        edge = polygon(
             [(-100, -100), (100, -100), (100, 100), (-100, 100), (-150, 0)],
             rotatable: true,
-            angle: 45deg
+            angle: 45deg + 3 * turn_of_the_part
         )
+        """,
+    )
+
+
+def test_the_value_of_a_function_may_stand_below_its_head() -> None:
+    check(
+        "fn pentagon(center: point = (0, 0), radius: length) = "
+        "regular_polygon(center: center, radius: radius, sides: 5)",
+        """
+        fn pentagon(center: point = (0, 0), radius: length) =
+            regular_polygon(center: center, radius: radius, sides: 5)
         """,
     )
 
