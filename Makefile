@@ -17,7 +17,7 @@ demo: $(READY) ## set up, then draw examples/telephone.aidl
 	@echo "The drawing is in $(CURDIR)/build/telephone.svg; open it in a browser."
 
 test: $(READY) ## run all tests
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto
 
 lint: $(READY) ## style, format, types and the direction of imports
 	$(BIN)/ruff check .

@@ -51,8 +51,7 @@ assembly gear_pair {
     }
 
     assert distance(
-        bar.pivot[0].rim,
-        bar.pivot[1].rim
+        bar.pivot[0].rim, bar.pivot[1].rim
     ) == module * (pinion_teeth + wheel_teeth) / 2 + backlash,
         "the bar does not keep the gears apart"
     assert clearance(pinion, wheel) > 0, "the teeth jam"

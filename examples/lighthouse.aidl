@@ -15,10 +15,7 @@ assembly lighthouse {
         walls = trapezoid(bottom_width: foot, top_width: head, height: tower_height)
         hole door {
             arch = arc(
-                center: (0, 10),
-                radius: 6,
-                start_angle: fixed(0deg),
-                end_angle: fixed(180deg)
+                center: (0, 10), radius: 6, start_angle: fixed(0deg), end_angle: fixed(180deg)
             )
             left = line(arch.end, (-6, 0))
             sill = line(left.end, (6, 0))

@@ -112,6 +112,12 @@ constrains = expressions.map(
     )
 )
 
+
+def _is_no_pair(node: ast.Assert) -> bool:
+    """`assert (test, "why")` is read as a test and its reason, not as a point."""
+    return not isinstance(node.test, ast.Point) or node.message is not None
+
+
 plain_statements = st.one_of(
     _node(ast.Param, identifiers, simple, maybe_simple, maybe_simple, no_doc),
     _node(ast.Var, identifiers, expressions, no_doc),
@@ -129,7 +135,7 @@ plain_statements = st.one_of(
     _node(ast.ExpressionStatement, calls),
     constrains,
     prefers,
-    _node(ast.Assert, expressions, maybe_simple),
+    _node(ast.Assert, expressions, maybe_simple).filter(_is_no_pair),
     _node(ast.Import, _node(ast.String, texts), st.none() | identifiers, st.just(())),
     _node(ast.Import, _node(ast.String, texts), st.none(), _tuples(identifiers, 1, 2)),
     _node(ast.FunctionDefinition, identifiers, parameters, expressions, no_doc),

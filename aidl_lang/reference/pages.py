@@ -18,7 +18,8 @@ _WIDTH = 200
 _INTRODUCTION = f"""\
 Every public name with its signature, an example and the picture that the example draws. `aidl doc NAME` shows
 the same in a terminal; [signatures.md]({_SIGNATURES}) has all signatures in tables,
-[coverage.md](coverage.md) tells which constraint takes what. These pages are made from the library by `make reference`.
+[coverage.md](coverage.md) tells which constraint takes what. These pages are made from the library by
+`make reference`.
 """
 _TYPES = """\
 A `length` is in millimetres and an `angle` or `turn` in degrees, unless a unit says otherwise. What has a

@@ -25,10 +25,7 @@ solid hanger {
     solid hook {
         stem = rectangle(width: stock, height: 40)
         bend = arc(
-            center: (30, 60),
-            radius: 30,
-            start_angle: fixed(-30deg),
-            end_angle: fixed(180deg)
+            center: (30, 60), radius: 30, start_angle: fixed(-30deg), end_angle: fixed(180deg)
         )
         inner = arc(
             center: bend.center,

@@ -1,4 +1,4 @@
-/// A ruler with a tick every millimetre, longer ones at 5 and 10 mm, and a hole to hang it by.
+/// A ruler with a tick every millimetre, longer ones at 5 and 10 mm with their numbers, and a hole to hang it by.
 assembly ruler {
     param length = 100mm in 50..300
     param width = 30mm in 20..40
@@ -24,12 +24,19 @@ assembly ruler {
                 fixed((i, if i % 10 == 0 then -9 else if i % 5 == 0 then -6.5 else -4))
             )
         }
+        for i in 0..length step 10 {
+            number[i] = text(str(i), center: fixed((i, -12)), height: 3)
+        }
+        unit = text("mm", start: fixed((2.5, -18)), height: 2)
     }
 
     constrain {
         scale.top == blade.top
-        scale.left == blade.left + margin
+        scale.tick[0].start.x == blade.left + margin
     }
 
-    assert scale.right <= blade.eye.left - margin, "the ticks run into the hole"
+    assert scale.right <= blade.eye.left - 2mm, "the scale runs into the hole"
+    assert scale.bottom >= blade.bottom + 1mm, "the blade is too narrow for the numbers"
+    assert scale.number[50].center.x - scale.number[0].center.x == 50mm,
+        "a number is not at its tick"
 }

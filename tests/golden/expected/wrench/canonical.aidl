@@ -9,10 +9,7 @@ solid wrench {
     hole jaw(nut = 13) {
         slot_walls = rectangle(center: (nut, 0), width: 2 * nut, height: nut)
         seat = regular_polygon(
-            center: (0, 0),
-            radius: nut / (2 * cos(30deg)),
-            sides: 6,
-            angle: fixed(30deg)
+            center: (0, 0), radius: nut / (2 * cos(30deg)), sides: 6, angle: fixed(30deg)
         )
     }
 
