@@ -171,6 +171,19 @@ shape ring_sector(
     first = line(inner.start, outer.start)
     last = line(outer.end, inner.end)
 }
+fn ring_sector(
+    center: point = (0, 0),
+    inner_radius: length,
+    thickness: length,
+    start_angle: angle,
+    end_angle: angle
+) = ring_sector(
+    center: center,
+    outer_radius: inner_radius + thickness,
+    inner_radius: inner_radius,
+    start_angle: start_angle,
+    end_angle: end_angle
+)
 
 /// A straight slot with round ends.
 ///

@@ -20,6 +20,15 @@ constraint symmetric(a, b, about: point) { turned_image(a, b, about: about) }
 constraint symmetric(a, b, about: length) { image(a, b, about: upright_through((about, 0))) }
 constraint symmetric(a, b, about: text) { image(a, b, about: axis_of(about)) }
 constraint symmetric(a, b, axis: text) { image(a, b, about: axis_of(axis)) }
+constraint symmetric(a, b, about: point, axis: text) {
+    image(
+        a,
+        b,
+        about: if choice(axis, ["x", "y"]) == "x" then level_through(about) else upright_through(
+            about
+        )
+    )
+}
 constraint symmetric(a, b, axis: length) { image(a, b, about: upright_through((axis, 0))) }
 constraint symmetric(a, b, axis: line) { image(a, b, about: axis) }
 constraint symmetric(a, about: line) {

@@ -21,7 +21,7 @@ from aidl_lang.building.scopes import (
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.templates import read_passed
 from aidl_lang.builtins import FINISHES
-from aidl_lang.diagnostics import Label
+from aidl_lang.diagnostics import Edit, Fix, Label
 from aidl_lang.model import Condition, Geometry, Structure
 from aidl_lang.names import find, fold, nearest
 from aidl_lang.synonyms import MEMBERS
@@ -265,6 +265,18 @@ def _refuse_own_box(it: Interpreter, node: ast.Node, env: Env) -> Value:
 
 def no_index(it: Interpreter, node: ast.Index, known: list[int], wanted: int) -> Value:
     name = node.value.span.text
-    has = f"its indices are {known[0]} to {known[-1]}" if known else "it is empty"
-    it.report("E0503", f"`{name}` has no member {wanted}: {has}", node.index)
+    is_run = known == list(range(known[0], known[-1] + 1)) if known else False
+    listed = f"{known[0]} to {known[-1]}" if is_run or len(known) > 8 else ", ".join(map(str, known))
+    has = f"its indices are {listed}" if known else "it is empty"
+    by_place = isinstance(node.index, ast.Number) and 0 <= wanted < len(known)
+    meant = f"{known[wanted]}" if by_place else ""
+    it.report(
+        "E0503",
+        f"`{name}` has no member {wanted}: {has}",
+        node.index,
+        hints=[f"members have the indices they were given: in order, number {wanted} is `{name}[{meant}]`"]
+        if by_place
+        else (),
+        fix=Fix(f"write `{name}[{meant}]`", (Edit(node.index.span, meant),)) if by_place else None,
+    )
     return NOTHING

@@ -8,8 +8,10 @@ from aidl_lang import ast, units
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.scopes import ParamBinding
 from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.model import Knob, Structure
 from aidl_lang.names import fold, nearest
+from aidl_lang.source import Span
 from aidl_lang.units import UNITS
 from aidl_lang.values import (
     NOTHING,
@@ -78,6 +80,7 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
             node.value if value is written else node.name,
             label=f"allowed: {allowed}",
             hints=[f"give a value in {allowed}, or widen the range of the `param`"],
+            fix=_unit_of_range(node) if value is written else None,
         )
     unit = (
         "deg"
@@ -100,6 +103,18 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
     if isinstance(value, Num):
         return Num(value.expression, value.dimension, Status.PARAM)
     return Text(value.value, is_param=True) if isinstance(value, Text) else value
+
+
+def _unit_of_range(node: ast.Param) -> Fix | None:
+    """`8m in 6..14` meant `8m in 6m..14m`: the unit goes to the ends, where it makes the range hold."""
+    match node.value, node.domain:
+        case ast.Number(unit=str() as unit), ast.Range(
+            ast.Number(unit=None) as low, ast.Number(unit=None) as high
+        ):
+            if low.value <= node.value.value <= high.value:
+                ends = [Span(end.span.source, end.span.end, end.span.end) for end in (low, high)]
+                return Fix(f"write the range in {unit} too", tuple(Edit(end, unit) for end in ends))
+    return None
 
 
 def _plain(value: Value) -> float | str | bool:

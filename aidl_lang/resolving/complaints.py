@@ -78,8 +78,9 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: Scope) -> None:
     value = scope.value(name)
     if value is not None and value.kind is not SymbolKind.BUILTIN:
         declared = (Label(value.declarations[0].span, "declared here"),) if value.declarations else ()
-        hint = f"`{name}` alone names it"
+        hint, fix = f"`{name}` alone names it", None
         if isinstance(value.node, ast.Structure):
+            fix = _as_template(value.node)
             hint = (
                 f"with a parameter list, `{value.node.kind} {name}() {{ … }}`, it is a template to be called"
             )
@@ -89,6 +90,7 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: Scope) -> None:
             node.callee,
             secondary=declared,
             hints=(hint,),
+            fix=fix,
         )
         return
     if (answer := call_answer(node)) is not None:
@@ -108,6 +110,14 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: Scope) -> None:
         hints=hints,
         fix=respell(node.callee, like),
     )
+
+
+def _as_template(node: ast.Structure) -> Fix | None:
+    """A parameter list for a structure that is called."""
+    if node.indices:
+        return None
+    behind = Span(node.name.span.source, node.name.span.end, node.name.span.end)
+    return Fix(f"make `{node.name.text}` a template", (Edit(behind, "()"),))
 
 
 def called_field(node: ast.Call) -> tuple[str, Fix]:

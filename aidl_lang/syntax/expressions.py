@@ -59,8 +59,12 @@ class ExpressionBuilder:
     def member(self, start: int, end: int, value: ast.Expression, name: Token) -> ast.Member:
         return ast.Member(value, self.identifier(name), span=Span(self.source, start, end))
 
-    def index_of(self, start: int, end: int, value: ast.Expression, index: ast.Expression) -> ast.Index:
-        return ast.Index(value, index, span=Span(self.source, start, end))
+    def index_of(self, start: int, end: int, value: ast.Expression, *indices: ast.Expression) -> ast.Index:
+        """`a[i, j]` is `a[i][j]`."""
+        span = Span(self.source, start, end)
+        for index in indices[:-1]:
+            value = ast.Index(value, index, span=span)
+        return ast.Index(value, indices[-1], span=span)
 
     def call(self, start: int, end: int, callee: Token, arguments: Any = ()) -> ast.Call:
         return ast.Call(

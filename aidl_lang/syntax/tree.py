@@ -50,7 +50,7 @@ class Builder(ExpressionBuilder):
     def structure(self, start: int, end: int, *parts: Any) -> ast.Structure:
         attributes, rest = _split(parts)
         kind, name = rest[0], rest[1]
-        indices = tuple(p[1] for p in rest if isinstance(p, tuple) and p[0] == "index")
+        indices = tuple(i for p in rest if isinstance(p, tuple) and p[0] == "index" for i in p[1])
         return self._structure(start, end, attributes, kind, name, indices, None, rest)
 
     def template(self, start: int, end: int, *parts: Any) -> ast.Structure:
@@ -123,8 +123,8 @@ class Builder(ExpressionBuilder):
         by_word = dict(parts)
         return ast.Placement(by_word.get("at"), by_word.get("rotated"), span=self.span(start, end))
 
-    def index(self, start: int, end: int, value: ast.Expression) -> tuple[str, ast.Expression]:
-        return "index", value
+    def index(self, start: int, end: int, *values: ast.Expression) -> tuple[str, tuple[ast.Expression, ...]]:
+        return "index", values
 
     def parameters(self, start: int, end: int, *items: ast.Parameter) -> tuple[ast.Parameter, ...]:
         return items
@@ -294,9 +294,14 @@ class Builder(ExpressionBuilder):
         end: int,
         variables: tuple[ast.Identifier, ...],
         iterable: ast.Expression,
-        body: ast.Block,
+        *rest: Any,
     ) -> ast.For:
-        return ast.For(variables, iterable, body, span=self.span(start, end))
+        """`for x in a, y in b { … }` is one loop in another."""
+        span, body = self.span(start, end), rest[-1]
+        if len(rest) > 1:
+            inner = self.for_(start, end, *rest)
+            body = ast.Block((inner,), span=body.span)
+        return ast.For(variables, iterable, body, span=span)
 
     def if_(
         self,

@@ -533,6 +533,14 @@ def ring_sector(second: str) -> Form:
 FORMS += [ring_sector(second) for second in ("inner_radius", "thickness")]
 
 
+@form
+def ring_sector_by_its_inside(n: Draw) -> tuple[str, float, float]:
+    inner, thickness, sweep = n(1, 40), n(1, 40), n(10, 350)
+    call = f"ring_sector(inner_radius: {inner}, thickness: {thickness}, start_angle: 0, end_angle: {sweep})"
+    outer, turn = inner + thickness, radians(sweep)
+    return call, (outer**2 - inner**2) * turn / 2, (outer + inner) * turn + 2 * thickness
+
+
 def slot_measures(between: float, width: float) -> tuple[float, float]:
     return between * width + math.pi * width**2 / 4, 2 * between + math.pi * width
 
