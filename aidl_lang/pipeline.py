@@ -168,6 +168,15 @@ def _new(found: Sequence[Diagnostic], known: Sequence[Diagnostic]) -> Iterator[D
             yield d
 
 
+def _completed(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
+    """The model with its derived outlines and finished corners; few programs have any to load code for."""
+    if not model.is_unfinished:
+        return model, []
+    from aidl_lang.geometry.outlines import complete
+
+    return complete(model)
+
+
 def _beside(notes: Sequence[Diagnostic], errors: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
     """Remarks on places of which nothing worse is said."""
     places = [d.span for d in errors if d.is_error and d.span is not None]
@@ -233,7 +242,6 @@ def _finish(
     memory: Memory | None,
 ) -> Compiled:
     from aidl_lang.geometry.drawing import draw
-    from aidl_lang.geometry.outlines import complete
     from aidl_lang.lower import lower
     from aidl_lang.outcome import assertion_notes, solution_notes
     from aidl_lang.readout import read_out
@@ -250,9 +258,9 @@ def _finish(
     with watch("read out"):
         model, evaluator = read_out(built.model, lowered, solution, freedom)
     with watch("regions"):
-        model, found = complete(model)
+        model, wrong = _completed(model)
         drawing, notes = draw(model)
-        notes = [*found, *notes]
+        notes = [*wrong, *notes]
     with watch("asserts"):
         found = solution_notes(lowered, solution, freedom, model)
         found += assertion_notes(

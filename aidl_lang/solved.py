@@ -91,6 +91,12 @@ class SolvedGeometry:
     recipe: Recipe | None = None
     source: str | None = None
 
+    def walk(self) -> Iterator[SolvedGeometry]:
+        """This geometry and all its parts."""
+        yield self
+        for part in self.parts:
+            yield from part.walk()
+
     def curves(self) -> Iterator[Piece]:
         """The drawn curves in order of writing; none of construction geometry."""
         if self.construction:
@@ -200,6 +206,14 @@ class SolvedModel:
     readings: tuple[Reading, ...] = ()
     describe: Callable[[], tuple[Motion, ...]] = field(default=tuple, repr=False, compare=False)
     """what `motions` is made by, when it is asked for"""
+
+    @property
+    def is_unfinished(self) -> bool:
+        """Whether outlines are to be made of others, or corners to be finished (see `geometry.outlines`)."""
+        structures = list(self.root.walk())
+        return any(s.finishes for s in structures) or any(
+            part.recipe for s in structures for geometry in s.geometry for part in geometry.walk()
+        )
 
     @cached_property
     def motions(self) -> tuple[Motion, ...]:

@@ -38,19 +38,10 @@ _HALVINGS = 24
 def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
     """The model with its derived outlines and finished corners, and what is wrong with them."""
     structures = list(model.root.walk())
-    has_recipes = any(g.recipe for s in structures for top in s.geometry for g in _within(top))
-    if not has_recipes and not any(s.finishes for s in structures):
-        return model, []
-    index = {g.path: g for s in structures for top in s.geometry for g in _within(top)}
+    index = {g.path: g for s in structures for top in s.geometry for g in top.walk()}
     outliner = _Outliner(tuple(f for s in structures for f in s.finishes), index)
     root = outliner.structure(model.root)
     return replace(model, root=root), list(dict.fromkeys(outliner.notes))
-
-
-def _within(g: SolvedGeometry) -> Iterator[SolvedGeometry]:
-    yield g
-    for part in g.parts:
-        yield from _within(part)
 
 
 def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:

@@ -43,9 +43,13 @@ def flattened(loop: Loop, count: int = 400) -> Polygon:
     return Polygon(np.concatenate(rows))
 
 
+FINE = 2000
+"""Chords for each curve, the same on both sides of a comparison."""
+
+
 def shapely_of(region: Region) -> shapely.Geometry:
     faces = [
-        flattened(f.outer).difference(shapely.unary_union([flattened(h) for h in f.holes]))
+        flattened(f.outer, FINE).difference(shapely.unary_union([flattened(h, FINE) for h in f.holes]))
         for f in region.faces
     ]
     return shapely.unary_union(faces)
@@ -296,7 +300,7 @@ def named(shapes: list[SolvedGeometry]) -> list[SolvedGeometry]:
 
 
 def outline(shape: SolvedGeometry) -> Polygon:
-    return flattened(Loop(tuple(shape.curves())), 2000)
+    return flattened(Loop(tuple(shape.curves())), FINE)
 
 
 @settings(max_examples=60, deadline=None)
