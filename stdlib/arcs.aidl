@@ -15,7 +15,7 @@ shape d_shape(
     angle: turn = 0deg,
     rotatable: bool = false
 ) {
-    assert height < 2 * radius, "the flat of a D cuts its circle"
+    assert 0.000001 * radius < height < 2 * radius, "the flat of a D cuts its circle"
     let opening = acos((height - radius) / radius)
     rim = arc(
         center: center,
