@@ -20,6 +20,7 @@ from aidl_lang.source import SourceFile, Span
 from aidl_lang.version import __version__
 
 if TYPE_CHECKING:
+    from aidl_lang.export import Options
     from aidl_lang.model import Knob
     from aidl_lang.pipeline import Compiled, Settings
     from aidl_lang.solved import Change, ConstraintReport, SolvedModel, SolvedStructure
@@ -94,16 +95,28 @@ class Model:
 
     def to_svg(self, show: frozenset[str] = frozenset()) -> str:
         """The drawing as SVG; `show` adds overlays: names, points, bbox, constraints, dof, plan."""
-        return self._compiled.export(".svg", show).decode()
+        from aidl_lang.export import Options
+
+        return self._compiled.export(".svg", Options(show)).decode()
 
     def to_json(self, *, timings: bool = False) -> str:
         """The solved model as JSON (docs/json.md)."""
-        return self._compiled.export(".json", timings=timings).decode()
+        from aidl_lang.export import Options
+
+        options = Options(timings=self.timings if timings else None)
+        return self._compiled.export(".json", options).decode()
+
+    def export(self, suffix: str, options: Options | None = None) -> bytes:
+        """The drawing in the format of a file suffix (`.dxf`).
+
+        Raises KeyError for an unknown suffix, and ValueError where the format cannot hold the drawing.
+        """
+        return self._compiled.export(suffix, options)
 
     def save(self, path: str | Path) -> None:
-        """Write the drawing in the format of the file's suffix. Raises KeyError for an unknown one."""
+        """Write the drawing in the format of the file's suffix; raises as `export` does."""
         path = Path(path)
-        path.write_bytes(self._compiled.export(path.suffix))
+        path.write_bytes(self.export(path.suffix))
 
     def _repr_svg_(self) -> str | None:
         return self.to_svg() if self._compiled.model is not None else None

@@ -30,6 +30,7 @@ from aidl_lang.typecheck import check as typecheck
 from aidl_lang.world import World
 
 if TYPE_CHECKING:
+    from aidl_lang.export import Exported, Options
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.solved import SolvedModel
     from aidl_lang.solver.solution import StageReport
@@ -70,23 +71,22 @@ class Compiled:
     def ok(self) -> bool:
         return self.status == "solved" and not has_errors(self.diagnostics)
 
-    def export(self, suffix: str, show: frozenset[str] | None = None, *, timings: bool = False) -> bytes:
-        """The drawing in the format of a file suffix (`.svg`, `.json`).
+    def exported(self, suffix: str, options: Options | None = None) -> Exported:
+        """The drawing in the format of a file suffix (`.svg`), with what there is to say of it.
 
-        Raises KeyError for an unknown suffix and ValueError when there is nothing to export.
+        Raises KeyError for an unknown suffix, `ExportError` where the format cannot hold the drawing, and
+        ValueError when there is nothing to export.
         """
-        from aidl_lang.export import EXPORTERS, Job
+        from aidl_lang.export import Job, Options, export
 
         if self.model is None or self.drawing is None:
             raise ValueError("the program is wrong, so there is no drawing")
-        job = Job(
-            self.model,
-            self.drawing,
-            tuple(self.diagnostics),
-            self.show if show is None else show,
-            self.timings if timings else None,
-        )
-        return EXPORTERS[suffix](job)
+        options = Options(self.show) if options is None else options
+        return export(Job(self.model, self.drawing, tuple(self.diagnostics), options), suffix)
+
+    def export(self, suffix: str, options: Options | None = None) -> bytes:
+        """The content of the file alone (see `exported`)."""
+        return self.exported(suffix, options).data
 
 
 class _Stopwatch:

@@ -82,7 +82,7 @@ def print_warm(program: Path, runs: int) -> None:
             stages.setdefault(stage, []).append(seconds)
 
     compiled = pipeline.compile(source, world)
-    calls = {"compile": compile_it, "export to SVG": lambda: compiled.export(".svg", frozenset())}
+    calls = {"compile": compile_it, "export to SVG": lambda: compiled.export(".svg")}
     times = sample(calls, runs)
     parts = {f"- {stage}": taken[1:] for stage, taken in stages.items()}
     _print_table(f"{program.name}, warm", {"compile": times.pop("compile"), **parts, **times})

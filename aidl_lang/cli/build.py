@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +13,8 @@ from aidl_lang.cli import files
 from aidl_lang.cli.report import UseError, exit_code
 
 if TYPE_CHECKING:
+    from aidl_lang.diagnostics import Diagnostic
+    from aidl_lang.export import Options
     from aidl_lang.pipeline import Compiled, Memory
 
 
@@ -32,6 +35,7 @@ class Outcome:
 
     compiled: Compiled
     written: tuple[str, ...]
+    notes: tuple[Diagnostic, ...]
     seconds: float
 
     @property
@@ -83,15 +87,55 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> Outcom
     params, show = dict(arguments.params), tuple(sorted(arguments.show))
     compiled = pipeline.compile(source, world, params=params, show=show, memory=memory)
     written: tuple[str, ...] = ()
+    notes: tuple[Diagnostic, ...] = ()
     if compiled.ok or (arguments.best_effort and compiled.drawing is not None):
-        data = [
-            (target.name, compiled.export(target.suffix, arguments.show, timings=arguments.timings))
-            for target in outputs
-        ]
-        for name, content in data:
-            files.write(name, content)
-        written = tuple(name for name, _ in data)
-    return Outcome(compiled, written, time.perf_counter() - start)
+        written, notes = _write(compiled, outputs, _options(arguments, compiled))
+    return Outcome(compiled, written, notes, time.perf_counter() - start)
+
+
+def _options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
+    from aidl_lang.export import Options
+
+    return Options(
+        show=arguments.show,
+        dimension=arguments.dimension,
+        cut=arguments.cut,
+        pixels=arguments.pixels,
+        thickness=arguments.thickness,
+        timings=compiled.timings if arguments.timings else None,
+    )
+
+
+def _write(
+    compiled: Compiled, outputs: Sequence[Target], options: Options
+) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
+    """Write all outputs once all could be made: their names, and what there is to say of them."""
+    from aidl_lang.export import ExportError
+
+    try:
+        made = [(target, compiled.exported(target.suffix, options)) for target in outputs]
+    except ExportError as reason:
+        raise UseError.of(reason.diagnostic) from None
+    contents = [
+        (name, data)
+        for target, result in made
+        for name, data in zip(
+            _names(target, len(result.further)), (result.data, *result.further), strict=True
+        )
+    ]
+    for name, data in contents:
+        files.write(name, data)
+    notes = dict.fromkeys(note for _, result in made for note in result.notes)
+    return tuple(name for name, _ in contents), tuple(notes)
+
+
+def _names(target: Target, further: int) -> list[str]:
+    """The name of the output, and those of further files: `part.svg`, `part-2.svg`, …"""
+    if further and target.name == files.STANDARD:
+        raise UseError("E0914", f"{further + 1} files do not fit on standard output", "name a file with -o")
+    path = Path(target.name)
+    more = [str(path.with_name(f"{path.stem}-{k}{path.suffix}")) for k in range(2, further + 2)]
+    return [target.name, *more]
 
 
 def _default_output(program: str) -> str:
@@ -100,16 +144,16 @@ def _default_output(program: str) -> str:
 
 def _suffix(name: str, fallback: str | None) -> str:
     """The format of an output: its own suffix, else `--format`, else SVG on standard output."""
-    from aidl_lang.export import EXPORTERS
+    from aidl_lang.export import FORMATS
 
     own = "" if name == files.STANDARD else Path(name).suffix.lower()
     said = f".{fallback.lower().lstrip('.')}" if fallback else _DEFAULT_FORMAT * (name == files.STANDARD)
     for suffix in (own, said):
-        if suffix in EXPORTERS:
+        if suffix in FORMATS:
             return suffix
     asked = (said or own).lstrip(".")
     message = f"there is no format `{asked}`" if asked else f"the name `{name}` does not tell a format"
-    raise UseError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in EXPORTERS))}")
+    raise UseError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in FORMATS))}")
 
 
 def _count(number: int, noun: str) -> str:

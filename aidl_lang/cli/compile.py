@@ -31,7 +31,7 @@ def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
 
 def run(arguments: argparse.Namespace) -> int:
     outcome = build(arguments)
-    show(outcome.compiled.diagnostics, arguments.quiet)
+    show([*outcome.compiled.diagnostics, *outcome.notes], arguments.quiet)
     if arguments.trace_solve:
         _show_stages(outcome.compiled.stages)
     if arguments.timings:

@@ -37,6 +37,19 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
         metavar="LAYERS",
         help="draw these over the picture, separated by commas: names, points, bbox, constraints, dof, plan",
     )
+    parser.add_argument("--dimension", action="store_true", help="draw dimensions of what is sized")
+    parser.add_argument(
+        "--cut", action="store_true", help="the outlines alone, as hairlines: what a cutter follows"
+    )
+    parser.add_argument(
+        "--pixels", type=_pixels, default=1600, metavar="N", help="larger side of a PNG (default: 1600)"
+    )
+    parser.add_argument(
+        "--thickness",
+        type=_thickness,
+        metavar="MM",
+        help="thickness of parts without `@thickness`, for STEP, STL and 3MF",
+    )
     parser.add_argument(
         "--best-effort", action="store_true", help="draw how far the solver came even if it did not solve"
     )
@@ -47,6 +60,22 @@ def _definition(text: str) -> tuple[str, str]:
     if not (name and equals and value):
         raise argparse.ArgumentTypeError(f"expected NAME=VALUE, as in width=200, not `{text}`")
     return name, value
+
+
+def _pixels(text: str) -> int:
+    if not text.isdecimal() or not 16 <= int(text) <= 20_000:
+        raise argparse.ArgumentTypeError(f"expected a number from 16 to 20000, not `{text}`")
+    return int(text)
+
+
+def _thickness(text: str) -> float:
+    try:
+        value = float(text.removesuffix("mm"))
+    except ValueError:
+        value = 0.0
+    if not 0 < value < 1e9:
+        raise argparse.ArgumentTypeError(f"expected millimetres above 0, as in 3, not `{text}`")
+    return value
 
 
 def _layers(text: str) -> frozenset[str]:

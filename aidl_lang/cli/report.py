@@ -18,6 +18,11 @@ class UseError(Exception):
         super().__init__(message)
         self.diagnostic = Diagnostic(code, message, hints=hints)
 
+    @classmethod
+    def of(cls, diagnostic: Diagnostic) -> UseError:
+        """The error that says what a diagnostic says."""
+        return cls(diagnostic.code, diagnostic.message, *diagnostic.hints)
+
 
 def show(diagnostics: Iterable[Diagnostic], quiet: bool = False) -> None:
     """Print diagnostics for a reader, errors only if `quiet`."""
