@@ -86,9 +86,10 @@ def export(job: Job, suffix: str) -> Exported:
 
 
 def _svg(job: Job) -> Exported:
+    from aidl_lang.export.picture import picture
     from aidl_lang.export.svg import to_svg
 
-    return Exported(to_svg(job.model, job.drawing, job.options.show).encode())
+    return Exported(to_svg(picture(job)).encode())
 
 
 def _json(job: Job) -> Exported:

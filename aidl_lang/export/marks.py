@@ -1,30 +1,54 @@
-"""The few kinds of marks that overlays are made of. Coordinates in mm, y upwards."""
+"""What pictures are made of, as data: areas, curves, texts, dots and frames. Coordinates in mm, y upwards."""
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass
-from typing import Any
+import math
+from dataclasses import dataclass, field
+from typing import TypeAlias
 
-from aidl_lang.export.numbers import fixed
-from aidl_lang.geometry.curves import Vec
+from aidl_lang.geometry.curves import Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.region import Face
 
-FONT = "DejaVu Sans, Verdana, Arial, sans-serif"
 CHARACTER = 0.6
-"""Mean width of a character of this font, relative to its size."""
-
-_NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Mean width of a character of the font, relative to its size."""
 
 
-def clean(text: str) -> str:
-    """Without the characters that XML cannot hold."""
-    return _NOT_XML.sub("\ufffd", text)
+@dataclass(frozen=True)
+class Ink:
+    """How a line looks: a CSS colour, width in mm, dash and gap in mm, opacity, round ends."""
+
+    color: str
+    width: float
+    dash: tuple[float, float] | None = None
+    opacity: float = 1.0
+    is_round: bool = False
+
+
+@dataclass(frozen=True)
+class Area:
+    """A face with its holes cut out, filled, outlined, or both. `role` is told to readers of the SVG."""
+
+    face: Face
+    fill: str | None
+    ink: Ink | None
+    role: str = ""
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Curves drawn as lines."""
+
+    pieces: tuple[Piece, ...]
+    ink: Ink
+    role: str = ""
 
 
 @dataclass(frozen=True)
 class Text:
-    """A line of text; `anchor` is start, middle or end, `at` lies on its baseline."""
+    """A line of text; `anchor` is start, middle or end, `at` lies on its baseline, which rises by `angle`
+    degrees.
+    """
 
     at: Vec
     text: str
@@ -33,31 +57,20 @@ class Text:
     anchor: str = "start"
     bold: bool = False
     halo: bool = True
+    angle: float = 0.0
 
     @property
     def box(self) -> Bounds:
         width = CHARACTER * self.size * len(self.text)
-        left = self.at[0] - {"start": 0.0, "middle": 0.5, "end": 1.0}[self.anchor] * width
-        return left, self.at[1] - 0.25 * self.size, left + width, self.at[1] + 0.8 * self.size
-
-    def element(self, svg: Any) -> Any:
-        looks = {"font_size": fixed(self.size), "font_family": FONT, "fill": self.color}
-        if self.anchor != "start":
-            looks["text_anchor"] = self.anchor
-        if self.bold:
-            looks["font_weight"] = "bold"
-        at = (fixed(self.at[0]), fixed(-self.at[1]))
-        text = svg.text.Text(clean(self.text), insert=at, **looks, debug=False)
-        if not self.halo:
-            return text
-        # The halo is a text of its own below: not every renderer knows `paint-order`.
-        looks |= {"fill": "#ffffff", "stroke": "#ffffff", "stroke_width": fixed(0.22 * self.size)}
-        halo = svg.text.Text(clean(self.text), insert=at, stroke_linejoin="round", **looks, debug=False)
-        halo["aria-hidden"] = "true"
-        both = svg.container.Group(debug=False)
-        both.add(halo)
-        both.add(text)
-        return both
+        left = -{"start": 0.0, "middle": 0.5, "end": 1.0}[self.anchor] * width
+        bottom, right, top = -0.25 * self.size, left + width, 0.8 * self.size
+        if not self.angle:
+            return self.at[0] + left, self.at[1] + bottom, self.at[0] + right, self.at[1] + top
+        c, s = math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))
+        corners = [(left, bottom), (right, bottom), (right, top), (left, top)]
+        xs = [self.at[0] + c * x - s * y for x, y in corners]
+        ys = [self.at[1] + s * x + c * y for x, y in corners]
+        return min(xs), min(ys), max(xs), max(ys)
 
 
 @dataclass(frozen=True)
@@ -67,16 +80,6 @@ class Dot:
     at: Vec
     radius: float
     color: str
-
-    def element(self, svg: Any) -> Any:
-        return svg.shapes.Circle(
-            center=(fixed(self.at[0]), fixed(-self.at[1])),
-            r=fixed(self.radius),
-            fill=self.color,
-            stroke="#ffffff",
-            stroke_width=fixed(0.3 * self.radius),
-            debug=False,
-        )
 
 
 @dataclass(frozen=True)
@@ -88,18 +91,30 @@ class Frame:
     width: float
     dash: float = 0.0
 
-    def element(self, svg: Any) -> Any:
-        left, bottom, right, top = self.box
-        extra = {"stroke_dasharray": f"{fixed(self.dash)} {fixed(0.7 * self.dash)}"} if self.dash else {}
-        return svg.shapes.Rect(
-            insert=(fixed(left), fixed(-top)),
-            size=(fixed(right - left), fixed(top - bottom)),
-            fill="none",
-            stroke=self.color,
-            stroke_width=fixed(self.width),
-            debug=False,
-            **extra,
-        )
+
+Mark: TypeAlias = Area | Curves | Text | Dot | Frame
 
 
-Mark = Text | Dot | Frame
+@dataclass(frozen=True)
+class Group:
+    """Marks that belong together. `name` is unique in a picture; `attributes` tell programs what it is."""
+
+    name: str
+    marks: tuple[Mark, ...]
+    attributes: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Picture:
+    """All that is to be drawn, from back to front, and what of the plane is in sight."""
+
+    box: Bounds
+    groups: tuple[Group, ...]
+
+    @property
+    def width(self) -> float:
+        return self.box[2] - self.box[0]
+
+    @property
+    def height(self) -> float:
+        return self.box[3] - self.box[1]

@@ -3,150 +3,130 @@
 from __future__ import annotations
 
 import io
-from collections import defaultdict
+import re
+from functools import singledispatch
 from typing import Any
 
-from aidl_lang.export import palette
-from aidl_lang.export.marks import clean
+from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.numbers import fixed
-from aidl_lang.export.overlay import Overlay, explain
 from aidl_lang.export.paths import face_path, open_path
-from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
-from aidl_lang.geometry.evaluate import Bounds
-from aidl_lang.solved import SolvedModel, SolvedStructure
 
-MARGIN = 0.03
-OUTLINE_WIDTH, SEAM_WIDTH, STROKE_WIDTH = 0.0025, 0.001, 0.003
-"""Relative to the larger side of the picture."""
+FONT = "DejaVu Sans, Verdana, Arial, sans-serif"
+
+_NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def to_svg(model: SolvedModel, drawing: Drawing, show: frozenset[str] = frozenset()) -> str:
-    """The drawing as an SVG document; `show` adds layers that explain it (see `overlay`)."""
+def to_svg(picture: Picture) -> str:
+    """The picture as an SVG document."""
     import svgwrite  # takes longer to import than most drawings to draw
 
-    box = _picture_box(model, drawing, show)
-    size = max(box[2] - box[0], box[3] - box[1]) or 1.0
-    overlay = explain(model, drawing, show, box, size)
-    left, bottom, right, top = _grown(overlay.box, MARGIN * size)
-    width, height = right - left, top - bottom
+    left, _, _, top = picture.box
+    width, height = fixed(picture.width), fixed(picture.height)
     document = svgwrite.Drawing(
-        size=(f"{fixed(width)}mm", f"{fixed(height)}mm"),
-        viewBox=f"{fixed(left)} {fixed(-top)} {fixed(width)} {fixed(height)}",
+        size=(f"{width}mm", f"{height}mm"),
+        viewBox=f"{fixed(left)} {fixed(-top)} {width} {height}",
         debug=False,
     )
-    for group in _groups(svgwrite, model, drawing, size):
-        document.add(group)
-    _draw_overlay(svgwrite, document, overlay)
+    for group in picture.groups:
+        document.add(_group(svgwrite, group))
     text = io.StringIO()
     document.write(text)
     # One element per line. Text is escaped, so this pattern stands between tags only.
     return text.getvalue().replace("><", ">\n<") + "\n"
 
 
-def _picture_box(model: SolvedModel, drawing: Drawing, show: frozenset[str]) -> Bounds:
-    """What must be in sight. The box of the root stands in for a drawing without curves."""
-    boxes = []
-    if drawing.bodies or drawing.strokes:
-        boxes.append(drawing.box)
-    if "plan" in show:
-        boxes += [plan.box for plan in drawing.plans]
-    if show and (root := model.root.box) is not None:
-        boxes.append((root.left, root.bottom, root.right, root.top))
-    if not boxes:
-        root = model.root.box
-        return (root.left, root.bottom, root.right, root.top) if root else (0.0, 0.0, 10.0, 10.0)
-    lefts, bottoms, rights, tops = zip(*boxes, strict=True)
-    return min(lefts), min(bottoms), max(rights), max(tops)
+def _group(svg: Any, group: Group) -> Any:
+    attributes = {key: _clean(value) for key, value in group.attributes.items()}
+    element = svg.container.Group(id=_clean(group.name), debug=False)
+    element.attribs.update(attributes)
+    for mark in group.marks:
+        element.add(_element(mark, svg))
+    return element
 
 
-def _grown(box: Bounds, by: float) -> Bounds:
-    return box[0] - by, box[1] - by, box[2] + by, box[3] + by
+def _clean(text: str) -> str:
+    """Without the characters that XML cannot hold."""
+    return _NOT_XML.sub("\ufffd", text)
 
 
-def _groups(svg: Any, model: SolvedModel, drawing: Drawing, size: float) -> list[Any]:
-    """One group per structure in order of writing, drawings after all others so that they lie on top."""
-    bodies = defaultdict(list)
-    for index, body in enumerate(drawing.bodies):
-        bodies[body.path].append((index, body))
-    seams = defaultdict(list)
-    for seam in drawing.seams:
-        seams[seam.path].append(seam)
-    strokes = defaultdict(list)
-    for stroke in drawing.strokes:
-        strokes[stroke.path].append(stroke)
-    order = sorted(model.root.walk(), key=lambda s: s.kind == "drawing")
-    groups = []
-    for structure in order:
-        group = svg.container.Group(**_identity(structure, drawing), debug=False)
-        for index, body in bodies[structure.path]:
-            _add_body(svg, group, body, index, size)
-        for seam in seams[structure.path]:
-            group.add(_seam(svg, seam, size))
-        for stroke in strokes[structure.path]:
-            group.add(_stroke(svg, stroke, size))
-        groups.append(group)
-    return groups
+@singledispatch
+def _element(mark: Mark, svg: Any) -> Any:
+    raise TypeError(mark)
 
 
-def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:
-    """The attributes by which programs find a structure in the picture."""
-    style = drawing.styles[structure.path]
-    identity = {"id": structure.path, "data-kind": structure.kind, "data-path": structure.path}
-    if style.layer is not None:
-        identity["data-layer"] = style.layer
-    return {key: clean(value) for key, value in identity.items()}
+@_element.register
+def _(mark: Area, svg: Any) -> Any:
+    looks = {"fill": mark.fill or "none", "fill_rule": "evenodd"}
+    looks |= {"stroke": "none"} if mark.ink is None else _looks(mark.ink, closed=True)
+    return svg.path.Path(d=face_path(mark.face), **looks, **_role(mark.role), debug=False)
 
 
-def _add_body(svg: Any, group: Any, body: Body, index: int, size: float) -> None:
-    fill = body.style.color or palette.body_fill(index)
-    for face in body.region.faces:
-        group.add(
-            svg.path.Path(
-                d=face_path(face),
-                fill=fill,
-                fill_rule="evenodd",
-                stroke=palette.OUTLINE,
-                stroke_width=fixed(OUTLINE_WIDTH * size),
-                stroke_linejoin="round",
-                debug=False,
-            )
-        )
+@_element.register
+def _(mark: Curves, svg: Any) -> Any:
+    looks = {"fill": "none"} | _looks(mark.ink)
+    return svg.path.Path(d=open_path(mark.pieces), **looks, **_role(mark.role), debug=False)
 
 
-def _seam(svg: Any, seam: Seam, size: float) -> Any:
-    return svg.path.Path(
-        d=open_path(seam.pieces),
-        class_="seam",
-        fill="none",
-        stroke=palette.SEAM,
-        stroke_width=fixed(SEAM_WIDTH * size),
-        stroke_opacity="0.55",
+def _role(role: str) -> dict[str, str]:
+    return {"class_": role} if role else {}
+
+
+def _looks(ink: Ink, *, closed: bool = False) -> dict[str, str]:
+    looks = {"stroke": ink.color, "stroke_width": fixed(ink.width)}
+    if ink.is_round:
+        looks["stroke_linejoin"] = "round"
+    if ink.is_round and not closed:
+        looks["stroke_linecap"] = "round"
+    if ink.opacity != 1:
+        looks["stroke_opacity"] = fixed(ink.opacity)
+    if ink.dash is not None:
+        looks["stroke_dasharray"] = " ".join(map(fixed, ink.dash))
+    return looks
+
+
+@_element.register
+def _(mark: Text, svg: Any) -> Any:
+    looks = {"font_size": fixed(mark.size), "font_family": FONT, "fill": mark.color}
+    if mark.anchor != "start":
+        looks["text_anchor"] = mark.anchor
+    if mark.bold:
+        looks["font_weight"] = "bold"
+    at = (fixed(mark.at[0]), fixed(-mark.at[1]))
+    if mark.angle:
+        looks["transform"] = f"rotate({fixed(-mark.angle)} {at[0]} {at[1]})"
+    text = svg.text.Text(_clean(mark.text), insert=at, **looks, debug=False)
+    if not mark.halo:
+        return text
+    # The halo is a text of its own below: not every renderer knows `paint-order`.
+    looks |= {"fill": "#ffffff", "stroke": "#ffffff", "stroke_width": fixed(0.22 * mark.size)}
+    halo = svg.text.Text(_clean(mark.text), insert=at, stroke_linejoin="round", **looks, debug=False)
+    halo["aria-hidden"] = "true"
+    both = svg.container.Group(debug=False)
+    both.add(halo)
+    both.add(text)
+    return both
+
+
+@_element.register
+def _(mark: Dot, svg: Any) -> Any:
+    return svg.shapes.Circle(
+        center=(fixed(mark.at[0]), fixed(-mark.at[1])),
+        r=fixed(mark.radius),
+        fill=mark.color,
+        stroke="#ffffff",
+        stroke_width=fixed(0.3 * mark.radius),
         debug=False,
     )
 
 
-def _stroke(svg: Any, stroke: Stroke, size: float) -> Any:
-    ink = stroke.style.color or palette.OUTLINE
-    extra = {}
-    if stroke.role != "drawing":
-        ink = palette.LOOSE
-        extra = {"stroke_dasharray": f"{fixed(0.012 * size)} {fixed(0.008 * size)}", "class_": stroke.role}
-    return svg.path.Path(
-        d=open_path(stroke.pieces),
+@_element.register
+def _(mark: Frame, svg: Any) -> Any:
+    left, bottom, right, top = mark.box
+    ink = Ink(mark.color, mark.width, (mark.dash, 0.7 * mark.dash) if mark.dash else None)
+    return svg.shapes.Rect(
+        insert=(fixed(left), fixed(-top)),
+        size=(fixed(right - left), fixed(top - bottom)),
         fill="none",
-        stroke=ink,
-        stroke_width=fixed(STROKE_WIDTH * size),
-        stroke_linecap="round",
-        stroke_linejoin="round",
+        **_looks(ink),
         debug=False,
-        **extra,
     )
-
-
-def _draw_overlay(svg: Any, document: Any, overlay: Overlay) -> None:
-    """The layers of the overlay, each a group of its own."""
-    for name, marks in overlay.layers.items():
-        group = svg.container.Group(id=f"show-{name}", class_="overlay", debug=False)
-        for mark in marks:
-            group.add(mark.element(svg))
-        document.add(group)

@@ -9,9 +9,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from aidl_lang.export import SHOW
+from aidl_lang.export import SHOW, Job, Options, export
 from aidl_lang.export.paths import face_path, loop_path, open_path
-from aidl_lang.export.svg import to_svg
 from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.region import Face, Loop
@@ -27,7 +26,11 @@ def written(root: SolvedStructure, *show: str) -> ElementTree.Element:
 
 
 def of_model(m: SolvedModel, *show: str) -> ElementTree.Element:
-    return ElementTree.fromstring(to_svg(m, draw(m)[0], frozenset(show)))
+    return ElementTree.fromstring(as_svg(m, *show))
+
+
+def as_svg(m: SolvedModel, *show: str) -> str:
+    return export(Job(m, draw(m)[0], options=Options(frozenset(show))), ".svg").data.decode()
 
 
 def groups(svg: ElementTree.Element) -> dict[str, ElementTree.Element]:
@@ -152,6 +155,6 @@ def test_an_empty_model_is_still_a_picture(show: tuple[str, ...]):
 
 def test_numbers_are_short_and_never_minus_zero():
     m = model(structure("solid", "s", circle("c", 0, 0, 1 / 3)))
-    text = to_svg(m, draw(m)[0])
+    text = as_svg(m)
     assert not re.search(r"-0[ \"A-Z]", text)
     assert not re.search(r"\.\d{7}", text)

@@ -1,0 +1,110 @@
+"""From a drawing to a picture: what is filled, outlined and written, in which ink.
+
+One group for each structure in order of writing; those of drawings come after all others, so that they lie on
+top, and what explains the picture lies above them all.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+
+from aidl_lang.export import Job, palette
+from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture
+from aidl_lang.export.overlay import explain
+from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
+from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.solved import SolvedModel, SolvedStructure
+
+MARGIN = 0.03
+OUTLINE_WIDTH, SEAM_WIDTH, STROKE_WIDTH = 0.0025, 0.001, 0.003
+"""Relative to the larger side of the picture."""
+HAIRLINE = 0.1
+"""Width in mm of the lines that a cutter follows."""
+
+
+def picture(job: Job) -> Picture:
+    """The drawing as the options want it seen."""
+    options = job.options
+    box = _picture_box(job.model, job.drawing, options.show)
+    size = max(box[2] - box[0], box[3] - box[1]) or 1.0
+    overlay = explain(job.model, job.drawing, options.show, box, size)
+    marks = _cut_marks(job.drawing) if options.cut else _marks(job.drawing, size)
+    groups = [*_groups(job.model, job.drawing, marks)]
+    groups += [
+        Group(f"show-{name}", tuple(layer), {"class": "overlay"}) for name, layer in overlay.layers.items()
+    ]
+    return Picture(_grown(overlay.box, MARGIN * size), tuple(groups))
+
+
+def _picture_box(model: SolvedModel, drawing: Drawing, show: frozenset[str]) -> Bounds:
+    """What must be in sight. The box of the root stands in for a drawing without curves."""
+    boxes = []
+    if drawing.bodies or drawing.strokes:
+        boxes.append(drawing.box)
+    if "plan" in show:
+        boxes += [plan.box for plan in drawing.plans]
+    root = model.root.box
+    if root is not None and (show or not boxes):
+        boxes.append((root.left, root.bottom, root.right, root.top))
+    return union_bounds(boxes) if boxes else (0.0, 0.0, 10.0, 10.0)
+
+
+def _grown(box: Bounds, by: float) -> Bounds:
+    return box[0] - by, box[1] - by, box[2] + by, box[3] + by
+
+
+def _groups(model: SolvedModel, drawing: Drawing, marks: Iterable[tuple[str, Mark]]) -> Iterator[Group]:
+    of = defaultdict(list)
+    for path, mark in marks:
+        of[path].append(mark)
+    for structure in sorted(model.root.walk(), key=lambda s: s.kind == "drawing"):
+        yield Group(structure.path, tuple(of[structure.path]), _identity(structure, drawing))
+
+
+def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:
+    """The attributes by which programs find a structure in the picture."""
+    style = drawing.styles[structure.path]
+    identity = {"data-kind": structure.kind, "data-path": structure.path}
+    return identity if style.layer is None else {**identity, "data-layer": style.layer}
+
+
+def _marks(drawing: Drawing, size: float) -> Iterator[tuple[str, Mark]]:
+    """Everything, with the path of the structure it belongs to."""
+    for index, body in enumerate(drawing.bodies):
+        for area in _areas(body, index, size):
+            yield body.path, area
+    for seam in drawing.seams:
+        yield seam.path, _seam(seam, size)
+    for stroke in drawing.strokes:
+        yield stroke.path, _stroke(stroke, size)
+
+
+def _cut_marks(drawing: Drawing) -> Iterator[tuple[str, Mark]]:
+    """Outlines to cut and drawings to engrave. Curves that bound nothing have had their warning."""
+    for body in drawing.bodies:
+        for face in body.region.faces:
+            yield body.path, Area(face, None, Ink(palette.CUT, HAIRLINE), "cut")
+    for stroke in drawing.strokes:
+        if stroke.role == "drawing":
+            ink = Ink(stroke.style.color or palette.ENGRAVE, HAIRLINE)
+            yield stroke.path, Curves(stroke.pieces, ink, "engrave")
+
+
+def _areas(body: Body, index: int, size: float) -> Iterator[Area]:
+    fill = body.style.color or palette.body_fill(index)
+    ink = Ink(palette.OUTLINE, OUTLINE_WIDTH * size, is_round=True)
+    for face in body.region.faces:
+        yield Area(face, fill, ink)
+
+
+def _seam(seam: Seam, size: float) -> Curves:
+    return Curves(seam.pieces, Ink(palette.SEAM, SEAM_WIDTH * size, opacity=0.55), "seam")
+
+
+def _stroke(stroke: Stroke, size: float) -> Curves:
+    ink, dash, role = stroke.style.color or palette.OUTLINE, None, ""
+    if stroke.role != "drawing":
+        ink, dash, role = palette.LOOSE, (0.012 * size, 0.008 * size), stroke.role
+    return Curves(stroke.pieces, Ink(ink, STROKE_WIDTH * size, dash, is_round=True), role)
