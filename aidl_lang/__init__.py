@@ -6,7 +6,8 @@
     print(model.status)
     model.save("plate.svg")
 
-`check` finds what is wrong without solving, `format` prints the canonical form.
+`check` finds what is wrong without solving, `diff` tells what differs between two models, `format` prints the
+canonical form.
 """
 
 from __future__ import annotations
@@ -20,10 +21,12 @@ from aidl_lang.source import SourceFile, Span
 from aidl_lang.version import __version__
 
 if TYPE_CHECKING:
+    from aidl_lang.comparison import Comparison, Version
     from aidl_lang.export import Options
     from aidl_lang.model import Knob
     from aidl_lang.pipeline import Compiled, Settings
     from aidl_lang.solved import Change, ConstraintReport, SolvedModel, SolvedStructure
+    from aidl_lang.survey import Part
 
 __all__ = [
     "Diagnostic",
@@ -34,6 +37,7 @@ __all__ = [
     "__version__",
     "check",
     "compile",
+    "diff",
     "format",
 ]
 
@@ -85,6 +89,14 @@ class Model:
         """Seconds per stage."""
         return self._compiled.timings
 
+    @property
+    def _version(self) -> Version:
+        from aidl_lang.comparison import Version
+
+        solved, drawing = self.solved, self._compiled.drawing
+        assert drawing is not None
+        return Version(solved, drawing)
+
     def __getitem__(self, path: str) -> SolvedStructure:
         """A structure by its dotted path, with or without the root's name. Raises KeyError."""
         root = self.solved.root
@@ -92,6 +104,18 @@ class Model:
         if found is None:
             raise KeyError(path)
         return found
+
+    def measure(self, path: str | None = None, densities: Mapping[str, float] | None = None) -> Part:
+        """What a structure, a geometry or the whole measures: area, inertia, walls, gaps, mass.
+
+        `densities` adds to the known ones, in kg/m³. Raises KeyError where there is no area to measure, and
+        ValueError when the program is wrong.
+        """
+        from aidl_lang.survey import measured
+
+        model, drawing = self.solved, self._compiled.drawing
+        assert drawing is not None
+        return measured(model, drawing, path, densities)
 
     def to_svg(self, show: frozenset[str] = frozenset()) -> str:
         """The drawing as SVG; `show` adds overlays: names, points, bbox, constraints, dof, plan."""
@@ -157,6 +181,16 @@ def compile(
     source, root = _source(text_or_path)
     world = DiskWorld(root) if root is not None else None
     return Model(pipeline.compile(source, world, params, settings or pipeline.Settings()))
+
+
+def diff(before: Model, after: Model) -> Comparison:
+    """What moved, turned, grew, appeared and vanished between two models.
+
+    `str` of it is a text for a reader, `to_dict` the same as data. Raises ValueError when one of the programs is wrong.
+    """
+    from aidl_lang.comparison import compare
+
+    return compare(before._version, after._version)
 
 
 def format(text: str) -> str:

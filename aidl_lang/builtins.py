@@ -155,7 +155,9 @@ EVERYWHERE = ("self", "origin", "x_axis", "y_axis")
 MATH = ("math", "np", "numpy")
 """Modules of other languages whose functions are known here by the same names: `math.sqrt(2)`, `np.pi`."""
 
-ATTRIBUTES = ("orientation", "color", "colour", "layer", "thickness", "material", "detached", "note")
+ATTRIBUTES = (
+    *("orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note"),
+)
 """What may stand behind `@` before a definition; `colour` is another spelling of `color`."""
 
 WORDED = frozenset({"orientation", "color", "colour", "layer", "material", "note"})

@@ -139,12 +139,17 @@ class _Measure:
         """What a structure covers in the drawing; what a geometry would cover as a solid of its own."""
         if isinstance(thing, Structure):
             return self.drawing.regions.get(thing.path, Region(()))
-        found = (g for g in _all_geometry(self.model.root) if g.path == thing.path)
-        geometry = tuple(replace(g, construction=False) for g in found)
-        frame = Frame(0.0, 0.0, 0.0)
-        alone = SolvedStructure("it", "it", "solid", "top", frame, {}, {}, geometry, (), None, False, 0, None)
-        drawing, _ = draw(SolvedModel(self.model.status, alone, (), 0, (), ()))
-        return drawing.regions.get("it", Region(()))
+        return region_alone(self.model, thing.path)
+
+
+def region_alone(model: SolvedModel, path: str) -> Region:
+    """What a geometry would cover as a solid of its own."""
+    found = (g for g in _all_geometry(model.root) if g.path == path)
+    geometry = tuple(replace(g, construction=False) for g in found)
+    frame = Frame(0.0, 0.0, 0.0)
+    alone = SolvedStructure("it", "it", "solid", "top", frame, {}, {}, geometry, (), None, False, 0, None)
+    drawing, _ = draw(SolvedModel(model.status, alone, (), 0, (), ()))
+    return drawing.regions.get("it", Region(()))
 
 
 def _all_geometry(root: SolvedStructure) -> Iterator[SolvedGeometry]:

@@ -8,9 +8,9 @@ from __future__ import annotations
 import gc
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from aidl_lang import library as library_module
@@ -31,8 +31,9 @@ from aidl_lang.world import World
 
 if TYPE_CHECKING:
     from aidl_lang.export import Exported, Options
+    from aidl_lang.expression import Evaluator
     from aidl_lang.geometry.drawing import Drawing
-    from aidl_lang.solved import SolvedModel
+    from aidl_lang.solved import Dimension, SolvedModel
     from aidl_lang.solver.solution import StageReport
 
 _RECURSION = 20_000
@@ -177,6 +178,18 @@ def _completed(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
     return complete(model)
 
 
+def _sizes(built: Interpretation, evaluator: Evaluator) -> Callable[[SolvedModel], tuple[Dimension, ...]]:
+    """What tells the sizes of a solved model, loaded when they are asked for."""
+
+    def sizes(solved: SolvedModel) -> tuple[Dimension, ...]:
+        from aidl_lang.dimensions import sizes
+
+        with _working():
+            return sizes(built.model, solved, evaluator)
+
+    return sizes
+
+
 def _beside(notes: Sequence[Diagnostic], errors: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
     """Remarks on places of which nothing worse is said."""
     places = [d.span for d in errors if d.is_error and d.span is not None]
@@ -258,7 +271,7 @@ def _finish(
     with watch("read out"):
         model, evaluator = read_out(built.model, lowered, solution, freedom)
     with watch("regions"):
-        model, wrong = _completed(model)
+        model, wrong = _completed(replace(model, size_up=_sizes(built, evaluator)))
         drawing, notes = draw(model)
         notes = [*wrong, *notes]
     with watch("asserts"):

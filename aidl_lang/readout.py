@@ -148,8 +148,12 @@ class _Reader:
                     yield name, self._scalar(value)
 
     def _orientation(self, s: Structure) -> str:
-        word = s.attributes.get("orientation", (Text("top"),))
-        return word[0].value if word and isinstance(word[0], Text) else "top"
+        """Its own, else that of what is around it."""
+        match s.attributes.get("orientation"):
+            case (Text(word, _),):
+                return word
+            case _:
+                return self._orientation(s.parent) if s.parent is not None else "top"
 
     def _scalar(self, value: Value) -> Scalar:
         match value:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeAlias
 
-from aidl_lang.geometry.curves import Piece, Vec
+from aidl_lang.geometry.curves import Arc, Circle, Piece, Vec
 from aidl_lang.source import Span
 
 Scalar: TypeAlias = float | int | bool | str
@@ -109,10 +109,11 @@ class SolvedGeometry:
 
 @dataclass(frozen=True)
 class SolvedStructure:
-    """`box` is None where there is nothing to bound. `attributes`: name → argument values (`color`, `layer`,
-    `thickness`, `material`, `detached`, `note`, `orientation`). `degrees` is None where they could not be
-    counted. `is_empty`: no geometry of its own and no children, so that `box` is that of the plan. `state`
-    says how it is constrained: `fully`, `under`, `over`, `contradictory` or `unknown`.
+    """`box` is None where there is nothing to bound. `orientation` is its own, or that of what is around it.
+    `attributes`: name → argument values as written (`color`, `layer`, `thickness`, `elevation`, `material`,
+    `detached`, `note`, `orientation`). `degrees` is None where they could not be counted. `is_empty`: no
+    geometry of its own and no children, so that `box` is that of the plan. `state` says how it is
+    constrained: `fully`, `under`, `over`, `contradictory` or `unknown`.
     """
 
     name: str
@@ -196,6 +197,64 @@ class Reading:
 
 
 @dataclass(frozen=True)
+class Dimension:
+    """A measure that a drawing of the model should state.
+
+    value   mm or degrees, as it came out
+    origin  where it comes from: `param` for an exact size (through a param or `fixed`), `constraint`, `size`
+            for one written as a number, `overall`, `pattern` for how equal holes stand to each other
+    of      the path of what it is a size of, or the constraint as written
+    name    the param that it is, where it is one and nothing else
+    group   equal dimensions of one group are shown once, with their number
+    """
+
+    value: float
+    origin: str
+    of: str = ""
+    name: str | None = None
+    group: object = None
+
+
+@dataclass(frozen=True)
+class Length(Dimension):
+    """A length along `along` (a unit vector) from any of the points `start` to any of the points `end`."""
+
+    start: tuple[Vec, ...] = ()
+    end: tuple[Vec, ...] = ()
+    along: Vec = (1.0, 0.0)
+
+    @property
+    def kind(self) -> str:
+        return {(1.0, 0.0): "horizontal", (0.0, 1.0): "vertical"}.get(self.along, "aligned")
+
+
+@dataclass(frozen=True)
+class Roundness(Dimension):
+    """The diameter of a circle, or the radius of an arc."""
+
+    curve: Circle | Arc = Circle((0.0, 0.0), 0.0)
+
+    @property
+    def kind(self) -> str:
+        return "diameter" if isinstance(self.curve, Circle) else "radius"
+
+
+@dataclass(frozen=True)
+class Opening(Dimension):
+    """An angle at `corner`, counter-clockwise from the direction `first` by `value` degrees. The arms are there
+    from and to these distances from the corner.
+    """
+
+    corner: Vec = (0.0, 0.0)
+    first: float = 0.0
+    arms: tuple[tuple[float, float], tuple[float, float]] = ((0.0, 0.0), (0.0, 0.0))
+
+    @property
+    def kind(self) -> str:
+        return "angle"
+
+
+@dataclass(frozen=True)
 class SolvedModel:
     status: str
     root: SolvedStructure
@@ -206,6 +265,10 @@ class SolvedModel:
     readings: tuple[Reading, ...] = ()
     describe: Callable[[], tuple[Motion, ...]] = field(default=tuple, repr=False, compare=False)
     """what `motions` is made by, when it is asked for"""
+    size_up: Callable[[SolvedModel], tuple[Dimension, ...]] = field(
+        default=lambda _: (), repr=False, compare=False
+    )
+    """what `sizes` is made by"""
 
     @property
     def is_unfinished(self) -> bool:
@@ -219,3 +282,8 @@ class SolvedModel:
     def motions(self) -> tuple[Motion, ...]:
         """Independent ways to move, the simplest that were found; the first hundreds of a large model."""
         return self.describe()
+
+    @cached_property
+    def sizes(self) -> tuple[Dimension, ...]:
+        """What the program states the size of, the more important first (see `dimensions`)."""
+        return self.size_up(self)

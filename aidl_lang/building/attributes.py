@@ -52,6 +52,10 @@ def _fits(it: Interpreter, name: str, values: Sequence[Value], attribute: ast.At
             wanted = "" if thickness.value > 0 else "a thickness above 0"
         case ("thickness", *_):
             wanted = "a length above 0, as in `@thickness(3mm)`"
+        case ("elevation", Num() as elevation) if elevation.dimension in (None, units.LENGTH):
+            pass
+        case ("elevation", *_):
+            wanted = "a length, as in `@elevation(18mm)` or `@elevation(-3)`"
         case ("layer" | "material" | "note", Text()) | ("detached",) | ("detached", bool()):
             pass
         case ("layer" | "material" | "note", *_):

@@ -30,7 +30,7 @@ class Wording:
 
     def comparisons(self, node: ast.Expression) -> tuple[Comparison, ...]:
         """What `node` would state here; nothing if it makes no sense or is decided already."""
-        value = self._value(node)
+        value = self.value(node)
         return tuple(value.comparisons()) if isinstance(value, Condition) else ()
 
     def dials(self) -> Iterator[tuple[ast.Expression, float]]:
@@ -41,7 +41,7 @@ class Wording:
         while stack:
             match stack.pop():
                 case (ast.Number() | ast.Unary(operator="-", operand=ast.Number()) | ast.Name()) as node:
-                    value = self._value(node)
+                    value = self.value(node)
                     if isinstance(value, Num) and value.expression.is_constant:
                         yield node, value.value
                 case ast.Index(value=inner):
@@ -54,7 +54,7 @@ class Wording:
         stack: list[ast.Node] = [self.node]
         while stack:
             node = stack.pop()
-            if isinstance(node, ast.Name | ast.Member | ast.Index) and _is_exact(self._value(node)):
+            if isinstance(node, ast.Name | ast.Member | ast.Index) and _is_exact(self.value(node)):
                 yield node.span.text
             else:
                 stack.extend(reversed(list(ast.children(node))))
@@ -66,7 +66,8 @@ class Wording:
         readers = [node for node, other in uses.items() if other is symbol and isinstance(node, ast.Name)]
         return symbol.node if symbol and len(readers) == 1 and isinstance(symbol.node, ast.Param) else None
 
-    def _value(self, node: ast.Expression) -> Value | None:
+    def value(self, node: ast.Expression) -> Value | None:
+        """What a part of the statement is, as the structure that holds it sees it; None if that takes too long."""
         it = self.it
         it.deadline = time.monotonic() + it.limits.seconds
         try:

@@ -12,14 +12,14 @@ import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
 
-from aidl_lang.cli import check, compile, doc, explain, fmt, guide, new, params, watch
+from aidl_lang.cli import check, compile, diff, doc, explain, fmt, guide, measure, new, params, watch
 from aidl_lang.cli.report import UseError, show
 from aidl_lang.version import __version__
 
 INTERRUPTED = 130
 BROKEN_PIPE = 141
 
-_VERBS = (compile, check, fmt, params, doc, guide, explain, watch, new)
+_VERBS = (compile, check, measure, diff, fmt, params, doc, guide, explain, watch, new)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

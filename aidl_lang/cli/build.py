@@ -103,6 +103,11 @@ def _options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
         pixels=arguments.pixels,
         thickness=arguments.thickness,
         timings=compiled.timings if arguments.timings else None,
+        sheet=arguments.sheet,
+        spacing=arguments.spacing,
+        kerf=arguments.kerf,
+        tile=arguments.tile,
+        overlap=arguments.overlap,
     )
 
 

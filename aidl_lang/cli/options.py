@@ -4,9 +4,28 @@ from __future__ import annotations
 
 import argparse
 
+from aidl_lang.cli import sizes
+
 
 def add_program(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="the program; - reads standard input")
+
+
+def add_params(
+    parser: argparse.ArgumentParser,
+    option: str = "-D",
+    name: str = "params",
+    help: str = "set a param, by name or by path (part.bolt.size=4)",
+) -> None:
+    parser.add_argument(
+        option, dest=name, action="append", default=[], type=_definition, metavar="NAME=VALUE", help=help
+    )
+
+
+def add_pixels(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--pixels", type=_pixels, default=1600, metavar="N", help="larger side of a PNG (default: 1600)"
+    )
 
 
 def add_drawing(parser: argparse.ArgumentParser) -> None:
@@ -21,15 +40,7 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
         "(default: FILE with .svg)",
     )
     parser.add_argument("--format", metavar="SUFFIX", help="format of outputs whose name does not tell it")
-    parser.add_argument(
-        "-D",
-        dest="params",
-        action="append",
-        default=[],
-        type=_definition,
-        metavar="NAME=VALUE",
-        help="set a param, by name or by path (part.bolt.size=4)",
-    )
+    add_params(parser)
     parser.add_argument(
         "--show",
         type=_layers,
@@ -41,17 +52,53 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--cut", action="store_true", help="the outlines alone, as hairlines: what a cutter follows"
     )
-    parser.add_argument(
-        "--pixels", type=_pixels, default=1600, metavar="N", help="larger side of a PNG (default: 1600)"
-    )
+    add_pixels(parser)
     parser.add_argument(
         "--thickness",
         type=_thickness,
         metavar="MM",
         help="thickness of parts without `@thickness`, for STEP, STL and 3MF",
     )
+    _add_cutting(parser)
     parser.add_argument(
         "--best-effort", action="store_true", help="draw how far the solver came even if it did not solve"
+    )
+
+
+def _add_cutting(parser: argparse.ArgumentParser) -> None:
+    """The options for cutters and for printing 1:1."""
+    parser.add_argument(
+        "--sheet",
+        type=sizes.size,
+        metavar="SIZE",
+        help="lay the parts apart on sheets to cut them from: 600x400, 60x40cm, 24x18in, a3, letter",
+    )
+    parser.add_argument(
+        "--spacing",
+        type=sizes.length,
+        default=3.0,
+        metavar="MM",
+        help="between parts on a sheet, and to its edge (default: 3)",
+    )
+    parser.add_argument(
+        "--kerf",
+        type=sizes.length,
+        default=0.0,
+        metavar="MM",
+        help="width of the cut: outlines grow by half of it, so that parts keep their size",
+    )
+    parser.add_argument(
+        "--tile",
+        type=sizes.size,
+        metavar="SIZE",
+        help="print 1:1 over several pages of this size: a4, letter",
+    )
+    parser.add_argument(
+        "--overlap",
+        type=sizes.length,
+        default=10.0,
+        metavar="MM",
+        help="of neighbouring pages (default: 10)",
     )
 
 

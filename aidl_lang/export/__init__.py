@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from importlib.util import find_spec
+from typing import TYPE_CHECKING
 
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.solved import SolvedModel
+
+if TYPE_CHECKING:
+    from aidl_lang.export.marks import Picture
 
 SHOW = ("names", "points", "bbox", "constraints", "dof", "plan")
 
@@ -23,6 +27,11 @@ class Options:
     pixels     larger side of a raster picture
     thickness  of bodies that have none of their own, mm, for solids
     timings    seconds per stage, for formats that carry them
+    sheet      width and height in mm of the sheets that parts are laid on to be cut
+    spacing    between parts on a sheet, and to its edge, mm
+    kerf       width of the cut, mm: outlines grow by half of it
+    tile       width and height in mm of the pages that a picture is printed over, 1:1
+    overlap    of neighbouring pages, mm
     """
 
     show: frozenset[str] = field(default_factory=frozenset)
@@ -31,6 +40,16 @@ class Options:
     pixels: int = 1600
     thickness: float | None = None
     timings: Mapping[str, float] | None = None
+    sheet: tuple[float, float] | None = None
+    spacing: float = 3.0
+    kerf: float = 0.0
+    tile: tuple[float, float] | None = None
+    overlap: float = 10.0
+
+    @property
+    def for_cutter(self) -> bool:
+        """Whether outlines alone are wanted."""
+        return self.cut or self.sheet is not None or self.kerf > 0
 
 
 @dataclass(frozen=True)
@@ -62,11 +81,18 @@ class ExportError(ValueError):
 
 @dataclass(frozen=True)
 class Format:
-    """A writer. `extra` names the optional extra of the package that brings the module it needs."""
+    """A writer. `extra` names the optional extra of the package that brings the module it needs.
+
+    `cuts` says whether it holds outlines for a cutter, `tiles` whether it can be printed over several pages.
+    What takes several sheets goes to as many files, unless `write_all` puts them into one.
+    """
 
     write: Callable[[Job], Exported]
     needs: str | None = None
     extra: str | None = None
+    cuts: bool = False
+    tiles: bool = False
+    write_all: Callable[[Sequence[Job]], Exported] | None = None
 
 
 def export(job: Job, suffix: str) -> Exported:
@@ -82,14 +108,38 @@ def export(job: Job, suffix: str) -> Exported:
             f"`{suffix}` needs a package that is not installed",
             f"pip install 'aidl-lang[{wanted.extra}]'",
         )
-    return wanted.write(job)
+    options = job.options
+    _refuse(suffix, "--sheet", options.sheet is not None and not wanted.cuts)
+    _refuse(suffix, "--kerf", options.kerf > 0 and not wanted.cuts)
+    _refuse(suffix, "--tile", options.tile is not None and not wanted.tiles)
+    if options.sheet is None and not options.kerf:
+        return wanted.write(job)
+    from aidl_lang.export.sheets import prepared
+
+    jobs, notes = prepared(job)
+    made = _files(list(map(wanted.write, jobs))) if wanted.write_all is None else wanted.write_all(jobs)
+    return replace(made, notes=(*notes, *made.notes))
+
+
+def _refuse(suffix: str, option: str, is_refused: bool) -> None:
+    if is_refused:
+        able = sorted(s for s, f in FORMATS.items() if (f.tiles if option == "--tile" else f.cuts))
+        raise ExportError(
+            "E0924", f"`{option}` has no meaning for `{suffix}`", f"formats for it: {', '.join(able)}"
+        )
+
+
+def _files(parts: Sequence[Exported]) -> Exported:
+    """Several contents as one file and those beside it."""
+    data, *further = (content for part in parts for content in (part.data, *part.further))
+    return Exported(data, tuple(further), tuple(note for part in parts for note in part.notes))
 
 
 def _svg(job: Job) -> Exported:
-    from aidl_lang.export.picture import picture
+    from aidl_lang.export.picture import pages
     from aidl_lang.export.svg import to_svg
 
-    return Exported(to_svg(picture(job)).encode())
+    return _files([Exported(to_svg(page).encode()) for page in pages(job)])
 
 
 def _json(job: Job) -> Exported:
@@ -98,7 +148,50 @@ def _json(job: Job) -> Exported:
     return Exported(to_json(job.model, job.drawing, job.diagnostics, job.options.timings).encode())
 
 
+def _dxf(job: Job) -> Exported:
+    from aidl_lang.export.dxf import to_dxf
+
+    return to_dxf(job)
+
+
+def _step(job: Job) -> Exported:
+    from aidl_lang.export.step import to_step
+
+    return to_step(job)
+
+
+def _stl(job: Job) -> Exported:
+    from aidl_lang.export.stl import to_stl
+
+    return to_stl(job)
+
+
+def _3mf(job: Job) -> Exported:
+    from aidl_lang.export.threemf import to_3mf
+
+    return to_3mf(job)
+
+
 FORMATS: dict[str, Format] = {
-    ".svg": Format(_svg),
+    ".svg": Format(_svg, cuts=True, tiles=True),
     ".json": Format(_json),
+    ".step": Format(_step),
+    ".stp": Format(_step),
+    ".stl": Format(_stl),
+    ".3mf": Format(_3mf, "lib3mf", "3mf"),
+    ".dxf": Format(_dxf, cuts=True),
 }
+
+
+def render(picture: Picture, suffix: str, options: Options) -> bytes:
+    """A single picture in the format of a file suffix among `PICTURES`. Raises as `export` does."""
+    return PICTURES[suffix](picture, options)
+
+
+def _svg_picture(picture: Picture, options: Options) -> bytes:
+    from aidl_lang.export.svg import to_svg
+
+    return to_svg(picture).encode()
+
+
+PICTURES: dict[str, Callable[[Picture, Options], bytes]] = {".svg": _svg_picture}

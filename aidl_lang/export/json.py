@@ -11,15 +11,23 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from aidl_lang.diagnostics import Diagnostic
-from aidl_lang.export.numbers import significant
+from aidl_lang.export.numbers import rounded
 from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.described import described
 from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.measures import Measures
+from aidl_lang.geometry.region import Loop, Region
+from aidl_lang.geometry.tessellate import face_polygons
 from aidl_lang.render.data import to_dict as diagnostic_dict
 from aidl_lang.solved import Box, Finish, SolvedGeometry, SolvedModel, SolvedStructure
 
 VERSION = 1
 _NUMBERS = re.compile(r"\[\n\s*[-+.\deE]+(?:,\n\s*[-+.\deE]+)*\n\s*\]")
+_POLYGONS = re.compile(r'(?<="coordinates": )\d+')
 Json = dict[str, Any]
+
+TOLERANCE = 1e-3
+"""Largest distance of the polygons of regions from their outlines, relative to the size of the drawing."""
 
 _FIELDS = {
     "point": ("at",),
@@ -38,11 +46,22 @@ def to_json(
     diagnostics: Iterable[Diagnostic] = (),
     timings: Mapping[str, float] | None = None,
 ) -> str:
-    """The document as text with one member per line, lists of numbers in one line."""
+    """The document as text with one member per line, lists of numbers and polygons in one line."""
     document = to_dict(model, drawing, diagnostics, timings)
+    polygons = _cut_out(document)
     text = json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False)
-    # No JSON string holds a line break, so this pattern is never inside one.
-    return _NUMBERS.sub(lambda match: "".join(match[0].split()).replace(",", ", "), text) + "\n"
+    # JSON strings hold no line breaks and no quotes, so these patterns are never inside one.
+    text = _NUMBERS.sub(lambda match: "".join(match[0].split()).replace(",", ", "), text)
+    return _POLYGONS.sub(lambda match: polygons[int(match[0])], text) + "\n"
+
+
+def _cut_out(document: Json) -> list[str]:
+    """The polygons of the regions as text; the document is left with their numbers in that list."""
+    polygons = []
+    for region in document["regions"].values():
+        polygons.append(json.dumps(region["geometry"]["coordinates"]))
+        region["geometry"]["coordinates"] = len(polygons) - 1
+    return polygons
 
 
 def to_dict(
@@ -52,6 +71,7 @@ def to_dict(
     timings: Mapping[str, float] | None = None,
 ) -> Json:
     """The document as plain dicts and lists, its numbers rounded."""
+    tolerance = TOLERANCE * drawing.size
     document: Json = {
         "aidl": VERSION,
         "units": "mm",
@@ -76,9 +96,9 @@ def to_dict(
             for m in model.motions
         ],
         "changed": [{"path": c.path, "written": c.written, "solved": c.solved} for c in model.changed],
+        "tolerance": tolerance,
         "regions": {
-            path: {"area": m.area, "perimeter": m.perimeter, "loops": m.loops}
-            for path, m in drawing.measures.items()
+            path: _region(drawing.regions[path], m, tolerance) for path, m in drawing.measures.items()
         },
         "pairs": [_pair(p) for p in drawing.pairs],
         "diagnostics": [diagnostic_dict(d) for d in diagnostics],
@@ -90,20 +110,8 @@ def to_dict(
         ]
     if timings is not None:
         document["timings"] = dict(timings)
-    rounded: Json = _rounded(document)
-    return rounded
-
-
-def _rounded(value: Any) -> Any:
-    """The same value with rounded numbers; what is not finite becomes null."""
-    if isinstance(value, float):
-        value = significant(value)
-        return value if value - value == 0 else None
-    if isinstance(value, Mapping):
-        return {key: _rounded(v) for key, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_rounded(v) for v in value]
-    return value
+    result: Json = rounded(document)
+    return result
 
 
 def _structure(s: SolvedStructure) -> Json:
@@ -144,6 +152,32 @@ def _finishes(f: Finish) -> Iterator[Json]:
 
 def _box(box: Box) -> Json:
     return {"left": box.left, "right": box.right, "top": box.top, "bottom": box.bottom}
+
+
+def _region(region: Region, measures: Measures, tolerance: float) -> Json:
+    """What it measures, its exact outlines, and polygons of them in the form of RFC 7946 (GeoJSON)."""
+    return {
+        "area": measures.area,
+        "perimeter": measures.perimeter,
+        "loops": measures.loops,
+        "centroid": measures.centroid,
+        "bb": _box(Box(*measures.box)),
+        "faces": [
+            {"outer": _pieces(face.outer), "holes": [_pieces(hole) for hole in face.holes]}
+            for face in region.faces
+        ],
+        "geometry": {
+            "type": "MultiPolygon",
+            "coordinates": [
+                [[*ring, ring[0]] for ring in (p.tolist() for p in face_polygons(face, tolerance))]
+                for face in region.faces
+            ],
+        },
+    }
+
+
+def _pieces(loop: Loop) -> list[Json]:
+    return [{"type": kind} | values for kind, values in map(described, loop.pieces)]
 
 
 def _geometry(g: SolvedGeometry) -> Json:

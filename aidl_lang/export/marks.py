@@ -97,11 +97,14 @@ Mark: TypeAlias = Area | Curves | Text | Dot | Frame
 
 @dataclass(frozen=True)
 class Group:
-    """Marks that belong together. `name` is unique in a picture; `attributes` tell programs what it is."""
+    """Marks that belong together. `name` is unique in a picture; `attributes` tell programs what it is; nothing
+    of it is seen outside of `clip`.
+    """
 
     name: str
     marks: tuple[Mark, ...]
     attributes: dict[str, str] = field(default_factory=dict)
+    clip: Bounds | None = None
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 
 def fixed(value: float, decimals: int = 6) -> str:
@@ -18,3 +20,20 @@ def significant(value: float) -> float:
     if value == 0 or not math.isfinite(value):
         return 0.0 if value == 0 else value
     return float(f"{value:.12g}")
+
+
+def rounded(value: Any) -> Any:
+    """Data for JSON with its numbers rounded so; what is not finite becomes null."""
+    if isinstance(value, float):
+        value = significant(value)
+        return value if value - value == 0 else None
+    if isinstance(value, Mapping):
+        return {key: rounded(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [rounded(v) for v in value]
+    return value
+
+
+def size_text(size: Sequence[float]) -> str:
+    """Width and height in mm for a sentence: `600 × 400 mm`."""
+    return f"{fixed(size[0], 3)} × {fixed(size[1], 3)} mm"

@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 
 from aidl_lang.export import Job, palette
-from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture
+from aidl_lang.export.marks import CHARACTER, Area, Curves, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.overlay import explain
 from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
 from aidl_lang.geometry.evaluate import Bounds
@@ -22,20 +22,61 @@ OUTLINE_WIDTH, SEAM_WIDTH, STROKE_WIDTH = 0.0025, 0.001, 0.003
 """Relative to the larger side of the picture."""
 HAIRLINE = 0.1
 """Width in mm of the lines that a cutter follows."""
+NAME_SIZE = 5.0
+"""Font size of the names of parts on sheets, mm."""
 
 
 def picture(job: Job) -> Picture:
     """The drawing as the options want it seen."""
     options = job.options
+    if options.sheet is not None:
+        return _sheet(job)
     box = _picture_box(job.model, job.drawing, options.show)
     size = max(box[2] - box[0], box[3] - box[1]) or 1.0
-    overlay = explain(job.model, job.drawing, options.show, box, size)
-    marks = _cut_marks(job.drawing) if options.cut else _marks(job.drawing, size)
+    seen, dimensions = box, tuple[Group, ...]()
+    if options.dimension and not options.for_cutter:
+        from aidl_lang.export.dimensioning import dimensioned
+
+        seen, dimensions = dimensioned(job.model, job.drawing, box)
+    overlay = explain(job.model, job.drawing, options.show, seen, size)
+    marks = _cut_marks(job.drawing) if options.for_cutter else _marks(job.drawing, size)
     groups = [*_groups(job.model, job.drawing, marks)]
+    groups += dimensions
     groups += [
         Group(f"show-{name}", tuple(layer), {"class": "overlay"}) for name, layer in overlay.layers.items()
     ]
-    return Picture(_grown(overlay.box, MARGIN * size), tuple(groups))
+    # Pages have margins of their own.
+    return Picture(_grown(overlay.box, 0.0 if options.tile else MARGIN * size), tuple(groups))
+
+
+def pages(job: Job) -> list[Picture]:
+    """The picture, over as many pages as the options ask for."""
+    whole, options = picture(job), job.options
+    if options.tile is None:
+        return [whole]
+    from aidl_lang.export.tiles import tiled
+
+    return tiled(whole, options.tile, overlap=options.overlap)
+
+
+def _sheet(job: Job) -> Picture:
+    """Parts laid on a sheet; the picture is the sheet."""
+    marks = _cut_marks(job.drawing)
+    groups = [group for group in _groups(job.model, job.drawing, marks) if group.marks]
+    if "names" in job.options.show:
+        names = tuple(_part_names(job.drawing, job.model.root.path))
+        groups.append(Group("show-names", names, {"class": "overlay"}))
+    return Picture(job.drawing.box, tuple(groups))
+
+
+def _part_names(drawing: Drawing, root: str) -> Iterator[Text]:
+    """The name of each part as large as it allows, up to what is read easily."""
+    for body in drawing.bodies:
+        name = body.path.removeprefix(f"{root}.")
+        left, bottom, right, top = body.box
+        size = min(NAME_SIZE, 0.9 * (right - left) / (CHARACTER * len(name)), 0.9 * (top - bottom))
+        at = (left + right) / 2, (bottom + top) / 2 - 0.3 * size
+        yield Text(at, name, size, palette.NAME, "middle", halo=False)
 
 
 def _picture_box(model: SolvedModel, drawing: Drawing, show: frozenset[str]) -> Bounds:

@@ -10,6 +10,7 @@ from typing import Any
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.numbers import fixed
 from aidl_lang.export.paths import face_path, open_path
+from aidl_lang.geometry.evaluate import Bounds
 
 FONT = "DejaVu Sans, Verdana, Arial, sans-serif"
 
@@ -27,8 +28,16 @@ def to_svg(picture: Picture) -> str:
         viewBox=f"{fixed(left)} {fixed(-top)} {width} {height}",
         debug=False,
     )
+    clips = {clip: f"clip-{k}" for k, clip in enumerate(dict.fromkeys(g.clip for g in picture.groups)) if clip}
+    for clip, name in clips.items():
+        path = svgwrite.masking.ClipPath(id=name, debug=False)
+        path.add(_rectangle(clip, svgwrite))
+        document.defs.add(path)
     for group in picture.groups:
-        document.add(_group(svgwrite, group))
+        element = _group(svgwrite, group)
+        if group.clip is not None:
+            element["clip-path"] = f"url(#{clips[group.clip]})"
+        document.add(element)
     text = io.StringIO()
     document.write(text)
     # One element per line. Text is escaped, so this pattern stands between tags only.
@@ -121,12 +130,11 @@ def _(mark: Dot, svg: Any) -> Any:
 
 @_element.register
 def _(mark: Frame, svg: Any) -> Any:
-    left, bottom, right, top = mark.box
     ink = Ink(mark.color, mark.width, (mark.dash, 0.7 * mark.dash) if mark.dash else None)
-    return svg.shapes.Rect(
-        insert=(fixed(left), fixed(-top)),
-        size=(fixed(right - left), fixed(top - bottom)),
-        fill="none",
-        **_looks(ink),
-        debug=False,
-    )
+    return _rectangle(mark.box, svg, fill="none", **_looks(ink))
+
+
+def _rectangle(box: Bounds, svg: Any, **looks: str) -> Any:
+    left, bottom, right, top = box
+    insert, size = (fixed(left), fixed(-top)), (fixed(right - left), fixed(top - bottom))
+    return svg.shapes.Rect(insert=insert, size=size, **looks, debug=False)

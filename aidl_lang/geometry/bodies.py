@@ -14,13 +14,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
 from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
+from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.sections import (
     Section,
     box_within,
+    boxes_meet,
     covers,
     difference,
     intersection,
@@ -151,19 +151,20 @@ class Bodies:
 
     def _find_inner_loops(self, structure: SolvedStructure, faces: list[OwnFace]) -> None:
         """Faces that the others cover; of two alike the later one."""
-        kept = np.ones(len(faces), dtype=np.bool_)
-        boxes = np.array([face.section.bounds() for face in faces]).reshape(-1, 4)
-        low, high = boxes[:, :2], boxes[:, 2:]
+        beside: list[list[int]] = [[] for _ in faces]
+        for i, j in near_pairs([face.section.bounds() for face in faces], 0.0):
+            beside[i].append(j)
+            beside[j].append(i)
+        dropped: set[int] = set()
         for number in reversed(range(len(faces))):
             face = faces[number]
-            meets = kept & (low < high[number]).all(axis=1) & (high > low[number]).all(axis=1)
-            meets[number] = False
-            near = [faces[i] for i in np.flatnonzero(meets)]
+            near = [faces[i] for i in sorted(beside[number]) if i not in dropped]
+            near = [f for f in near if boxes_meet(face.section, f.section)]
             around = [f for f in near if box_within(face.section, f.section)]
             if not near or not (around or len(near) > 1):
                 continue
             if covers(union_of(near), face.section):
-                kept[number] = False
+                dropped.add(number)
                 names = tuple(g for f in around or near for g in f.geometries)
                 self.findings.append(InnerLoop(structure, face, names))
 
@@ -175,7 +176,9 @@ class Bodies:
         before = union([*([] if own is None else [own]), *(m.section for m in children)])
         after = difference(before, union([c.section for c in cuts]))
         after = union([after, *(m.section for m in islands)]) if islands else after
-        kept = self._still_open(solid, self._voids(solid, before, cuts), after, islands)
+        kept = self._voids(solid, before, cuts)
+        if islands:
+            kept = self._still_open(solid, kept, after, islands)
         for m in children:
             kept += self._still_open(solid, m.voids, after, [c for c in children if c is not m])
         if after.is_empty():

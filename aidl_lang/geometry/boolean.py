@@ -8,7 +8,7 @@ from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.distance import region_distance
 from aidl_lang.geometry.evaluate import is_closed
 from aidl_lang.geometry.measures import area
-from aidl_lang.geometry.network import Network
+from aidl_lang.geometry.network import Network, exactly
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import Section, difference, fill, intersection, union
 from aidl_lang.geometry.trace import trace
@@ -46,7 +46,11 @@ def _combined(a: Region, b: Region, operation: Callable[[Section, Section], Sect
     pieces: list[Piece] = [p for region in (a, b) for loop in region.loops for p in loop.pieces]
     network = Network(pieces)
     first = sum(len(loop.pieces) for loop in a.loops)
-    return trace(network, operation(section_of(network, a, 0), section_of(network, b, first))).region
+
+    def traced() -> Region:
+        return trace(network, operation(section_of(network, a, 0), section_of(network, b, first))).region
+
+    return exactly(network, traced)
 
 
 def section_of(network: Network, region: Region, number: int) -> Section:

@@ -14,7 +14,8 @@ from typing import Literal
 from aidl_lang.geometry.distance import region_distance
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.measures import area
-from aidl_lang.geometry.network import Network, near_pairs
+from aidl_lang.geometry.nearness import near_pairs
+from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import Section, intersection, is_nothing
 from aidl_lang.geometry.trace import trace

@@ -10,12 +10,12 @@ from aidl_lang.solved import Scalar, SolvedGeometry
 
 def as_geometry(name: str, of: SolvedGeometry, curve: Piece, around: str = "") -> SolvedGeometry:
     """A curve as a geometry: a part of another, or beside it in a structure."""
-    kind, values = _described(curve)
+    kind, values = described(curve)
     path = f"{around or of.path}.{name}"
     return SolvedGeometry(name, path, kind, values, curve, (), False, of.span)
 
 
-def _described(curve: Piece) -> tuple[str, dict[str, Scalar | Vec | tuple[Vec, ...]]]:
+def described(curve: Piece) -> tuple[str, dict[str, Scalar | Vec | tuple[Vec, ...]]]:
     """The type and the fields of a curve."""
     match curve:
         case Line(start, end):

@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 from aidl_lang.diagnostics import Diagnostic, ordered
 from aidl_lang.geometry.bodies import Bodies, IdleHole, LooseCurves, Mass
@@ -16,9 +16,10 @@ from aidl_lang.geometry.contacts import Contact, Solid, contacts
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
 from aidl_lang.geometry.faces import Shape
+from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
-from aidl_lang.geometry.network import CHORD, FINE_CHORD, Network, union_bounds
-from aidl_lang.geometry.notes import color_note, detached_notes, finding_note, unusable_note
+from aidl_lang.geometry.network import Network, exactly, union_bounds
+from aidl_lang.geometry.notes import color_note, detached_notes, finding_note, gap_note, unusable_note
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.seams import visible_seams
 from aidl_lang.geometry.trace import Traced, trace_all
@@ -111,9 +112,8 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     """The drawing of a model, and what is noteworthy about its curves and parts."""
     notes: list[Diagnostic] = []
     curves, shapes = _collect(model.root, notes)
-    network, walk, masses, traced = _arranged(model.root, curves, shapes, CHORD)
-    if network.blurred:
-        network, walk, masses, traced = _arranged(model.root, curves, shapes, FINE_CHORD)
+    network, walk, masses, traced, gaps = _closed(model.root, curves, shapes)
+    notes += [gap_note(gap) for gap in gaps]
     regions = {path: outline.region for path, outline in traced.items()}
     styles = _styles(model.root, notes)
     bodies = tuple(
@@ -136,18 +136,36 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     return Drawing(bodies, regions, seams, strokes, plans, pairs, styles, union_bounds(boxes)), ordered(notes)
 
 
+def _closed(
+    root: SolvedStructure, curves: list[Piece], shapes: dict[str, list[Shape]]
+) -> tuple[Network, Bodies, list[Mass], dict[str, Traced], list[Gap]]:
+    """What the curves enclose, once small gaps between them are closed, and their network and gaps."""
+    network = Network(curves)
+    found = exactly(network, lambda: _arranged(root, network, shapes))
+    gaps = open_gaps(network, found[0].findings, shapes)
+    while gaps:
+        joined = Network(without_gaps(curves, gaps))
+        then = exactly(joined, partial(_arranged, root, joined, shapes))
+        kept = effective(gaps, then[0].findings)
+        if len(kept) == len(gaps):
+            network, found = joined, then
+            break
+        gaps = kept
+    gaps += welded_gaps(network, found[0].findings, root.walk(), shapes)
+    return network, *found, gaps
+
+
 def _arranged(
-    root: SolvedStructure, curves: list[Piece], shapes: dict[str, list[Shape]], chord: float
-) -> tuple[Network, Bodies, list[Mass], dict[str, Traced]]:
+    root: SolvedStructure, network: Network, shapes: dict[str, list[Shape]]
+) -> tuple[Bodies, list[Mass], dict[str, Traced]]:
     """The bodies, and the outlines of everything that has material or cuts, in order of writing."""
-    network = Network(curves, chord)
     walk = Bodies(network, shapes)
     masses = _root_masses(walk, root)
     walk.sections.update((m.structure.path, m.section) for m in masses)
     paths = [s.path for s in root.walk() if s.path in walk.sections]
     outlines = trace_all(network, [walk.sections[path] for path in paths])
     traced = dict(zip(paths, outlines, strict=True))
-    return network, walk, [m for m in masses if traced[m.structure.path].region], traced
+    return walk, [m for m in masses if traced[m.structure.path].region], traced
 
 
 def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[list[Piece], dict[str, list[Shape]]]:

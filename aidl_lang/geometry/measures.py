@@ -32,12 +32,13 @@ class Measures:
     loops: int
 
 
-def _gauss(count: int) -> tuple[tuple[float, float], ...]:
+def gauss(count: int) -> tuple[tuple[float, float], ...]:
+    """Nodes and weights of Gauss-Legendre quadrature over 0..1."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return tuple((float(x + 1) / 2, float(w) / 2) for x, w in zip(nodes, weights, strict=True))
 
 
-_GAUSS_5, _GAUSS_16 = _gauss(5), _gauss(16)
+_GAUSS_5, _GAUSS_16 = gauss(5), gauss(16)
 
 
 def measure(region: Region) -> Measures:
@@ -73,13 +74,19 @@ def loop_area(loop: Loop) -> float:
 
 
 def loop_moments(loop: Loop) -> Moments:
-    """Area and first moments, summed about the loop's own start so that far away nothing cancels."""
-    x, y = ends(loop.pieces[0])[0]
+    """Area and first moments."""
+    (x, y), (a, mx, my) = moments_about_start(loop)
+    return a, mx + a * x, my + a * y
+
+
+def moments_about_start(loop: Loop) -> tuple[Vec, Moments]:
+    """The loop's own start, and its moments about it: far from the origin nothing cancels there."""
+    start = ends(loop.pieces[0])[0]
     a = mx = my = 0.0
-    for da, dx, dy in (_moments(piece, (x, y)) for piece in loop.pieces):
+    for da, dx, dy in (_moments(piece, start) for piece in loop.pieces):
         a, mx, my = a + da, mx + dx, my + dy
     sign = -1 if loop.reversed else 1
-    return sign * a, sign * (mx + a * x), sign * (my + a * y)
+    return start, (sign * a, sign * mx, sign * my)
 
 
 def _moments(piece: Piece, origin: Vec) -> Moments:
@@ -91,7 +98,7 @@ def _moments(piece: Piece, origin: Vec) -> Moments:
     if isinstance(piece, Line):
         return chord
     first, sweep = round_range(piece)
-    a = (sweep - math.sin(sweep)) / 2
+    a = _less_sine(sweep) / 2
     moment = 2 / 3 * math.sin(sweep / 2) ** 3
     bisector = first + sweep / 2
     x, y = moment * math.cos(bisector), moment * math.sin(bisector)
@@ -104,6 +111,17 @@ def _moments(piece: Piece, origin: Vec) -> Moments:
     a, x, y = a * rx * ry, x * rx * rx * ry, y * rx * rx * ry
     cx, cy = piece.center[0] - origin[0], piece.center[1] - origin[1]
     return chord[0] + a, chord[1] + x + a * cx, chord[2] + y + a * cy
+
+
+def _less_sine(angle: float) -> float:
+    """The angle without its sine, by the series where the difference would lose digits."""
+    if abs(angle) > 1:
+        return angle - math.sin(angle)
+    term = total = angle**3 / 6
+    for k in range(4, 20, 2):
+        term *= -angle * angle / (k * (k + 1))
+        total += term
+    return total
 
 
 def _triangle(p: Vec, q: Vec) -> Moments:

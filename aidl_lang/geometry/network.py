@@ -10,9 +10,10 @@ of a result leads back to the curve it came from (`trace`).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,18 +31,21 @@ from aidl_lang.geometry.evaluate import (
     round_range,
 )
 from aidl_lang.geometry.intersect import intersections, self_crossing, sorted_cuts
+from aidl_lang.geometry.nearness import Sides, near_pairs
 
 RELATIVE_TOLERANCE = 1e-6
 CHORD = 1e-4
 """Largest distance of a chord from its curve, relative to the size of the drawing."""
 FINE_CHORD = CHORD / 100
-"""For curves that come so close to each other that their chords cross."""
+"""The same for curves that come so close to each other that their chords cross."""
 GRID = 1e-8
 """Manifold rounds plane coordinates to this step; the drawing is scaled to about 16 units before."""
 
 NODE, UNKNOWN = -1, -2
 
+T = TypeVar("T")
 Ints = NDArray[np.int64]
+_NO_POINTS: Ints = np.zeros((0, 2), dtype=np.int64)
 Use = tuple[int, bool]
 """An edge and whether it is run through forwards."""
 
@@ -86,28 +90,28 @@ class Weld:
 class Network:
     """Nodes and edges of a set of curves. `uses[i]` lists the edges of curve i in its own direction.
 
-    `blurred` is set once a result had a vertex that no curve owns: chords crossed where their curves do not.
-    Then a smaller `chord` (relative to the size) gives the exact result.
+    A result may have vertices that no curve owns: chords crossed where their curves do not. `blurred` has the
+    numbers of these curves; `exactly` then cuts them finer.
     """
 
-    def __init__(self, curves: Sequence[Piece], chord: float = CHORD) -> None:
+    def __init__(self, curves: Sequence[Piece]) -> None:
         self.curves = list(curves)
         self.boxes = [bounds(c) for c in self.curves]
         self.box = union_bounds(self.boxes)
         left, bottom, right, top = self.box
         self.size = max(right - left, top - bottom) or 1.0
-        self.chord = chord * self.size
         self.tolerance = RELATIVE_TOLERANCE * self.size
         self.middle = (left + right) / 2, (bottom + top) / 2
         self.scale = 2.0 ** math.floor(math.log2(16 / self.size))
-        self.blurred = False
+        self.blurred: set[int] = set()
         self._weld, self._middles = Weld(self.tolerance), Weld(self.tolerance)
         self.nodes = self._weld.points
         self.node = self._weld.number
         self.edges: list[Edge] = []
         self._known: dict[tuple[int, ...], int] = {}
+        self._fine: set[int] = set()
         self.uses: list[list[Use]] = self._arrange()
-        self._index()
+        self._draw_polylines()
 
     def to_grid(self, xy: NDArray[np.float64]) -> Ints:
         grid: Ints = np.rint((xy - np.array(self.middle)) * (self.scale / GRID)).astype(np.int64)
@@ -170,36 +174,74 @@ class Network:
         if known is not None:
             edge = self.edges[known]
             return known, self._same_way(edge, number, t0, t1, start)
-        count = _segments(curve, t1 - t0, self.chord)
-        ts = t0 + (t1 - t0) * np.arange(1, count) / count
-        inner = self.to_grid(points(curve, ts))
         self._known[key] = len(self.edges)
-        self.edges.append(Edge(number, t0, t1, start, end, inner))
+        self.edges.append(Edge(number, t0, t1, start, end, _NO_POINTS))
         return len(self.edges) - 1, True
 
     def _same_way(self, edge: Edge, number: int, t0: float, t1: float, start: int) -> bool:
         if edge.start != edge.end:
             return edge.start == start
-        early = self.to_grid(points(self.curves[number], np.array([t0 + (t1 - t0) / 8])))[0]
-        span = len(edge.inner)
-        first, last = edge.inner[span // 8], edge.inner[-1 - span // 8]
-        return bool(np.abs(early - first).sum() <= np.abs(early - last).sum())
+        early = point(self.curves[number], t0 + (t1 - t0) / 8)
+        ways = (edge.t1 - edge.t0) / 8
+        first, last = (point(self.curves[edge.curve], t) for t in (edge.t0 + ways, edge.t1 - ways))
+        return math.dist(early, first) <= math.dist(early, last)
 
     # -- polylines and the way back ------------------------------------------------------------------------
+
+    def _draw_polylines(self) -> None:
+        """Give each edge its inner points, then index all."""
+        edges, curves = self.edges, self.curves
+        chords = [self.size * (FINE_CHORD if e.curve in self._fine else CHORD) for e in edges]
+        counts = [
+            _segments(curves[e.curve], e.t1 - e.t0, chord) for e, chord in zip(edges, chords, strict=True)
+        ]
+        inner = dict(self._round_points([k for k, count in enumerate(counts) if count > 1], counts))
+        self.edges = [replace(e, inner=inner.get(k, _NO_POINTS)) for k, e in enumerate(edges)]
+        self._index()
+
+    def _round_points(self, numbers: Sequence[int], counts: Sequence[int]) -> Iterator[tuple[int, Ints]]:
+        """The inner points of edges cut into many chords: those of circles and arcs in one go."""
+        rounds, centers = [], []
+        for k in numbers:
+            edge, curve = self.edges[k], self.curves[self.edges[k].curve]
+            if isinstance(curve, Arc | Circle):
+                rounds.append((k, edge.t0, edge.t1 - edge.t0, curve.radius, *round_range(curve)))
+                centers.append(curve.center)
+            else:
+                ts = edge.t0 + (edge.t1 - edge.t0) * np.arange(1, counts[k]) / counts[k]
+                yield k, self.to_grid(points(curve, ts))
+        if not rounds:
+            return
+        table = np.array(rounds)
+        count = np.array([counts[k] for k, *_ in rounds])
+        row = np.repeat(np.arange(len(rounds)), count - 1)
+        place = np.arange(1, len(row) + 1) - np.repeat(np.cumsum(count - 1) - (count - 1), count - 1)
+        _, t0, share, radius, first, sweep = table[row].T
+        u = first + sweep * (t0 + share * place / count[row])
+        spots = np.array(centers)[row] + radius[:, None] * np.stack((np.cos(u), np.sin(u)), axis=1)
+        grids = np.split(self.to_grid(spots), np.cumsum(count - 1)[:-1])
+        yield from zip((k for k, *_ in rounds), grids, strict=True)
+
+    def refine(self) -> bool:
+        """Cut the curves finer whose chords crossed; False if that cannot be."""
+        finer, self.blurred = self.blurred - self._fine, set()
+        if not finer:
+            return False
+        self._fine |= finer
+        self._draw_polylines()
+        return True
 
     def _index(self) -> None:
         """A sorted table of all grid points with the edge they lie inside of (-1 for nodes)."""
         self.node_grid = self.to_grid(np.array(self.nodes, dtype=float).reshape(-1, 2))
-        grids = [self.node_grid, *(e.inner for e in self.edges)]
-        owners = [np.full(len(self.node_grid), -1, dtype=np.int64)]
-        owners += [np.full(len(e.inner), k, dtype=np.int64) for k, e in enumerate(self.edges)]
-        keys, owner = pack(np.concatenate(grids)), np.concatenate(owners)
-        numbers = np.arange(len(keys))
+        inner = [e.inner for e in self.edges if len(e.inner)]
+        sizes = np.array([len(self.node_grid), *(len(e.inner) for e in self.edges)])
+        keys = pack(np.concatenate([self.node_grid, *inner]))
+        owner = np.repeat(np.arange(-1, len(self.edges)), sizes)
         order = np.lexsort((owner, keys))
-        self._keys, self._owner, self._number = keys[order], owner[order], numbers[order]
-        sizes = [len(self.node_grid), *(len(e.inner) for e in self.edges)]
+        self._keys, self._owner, self._number = keys[order], owner[order], order
         self._offset = np.cumsum(sizes)[:-1] if self.edges else np.zeros(1, dtype=np.int64)
-        self._sides: tuple[Ints, NDArray[np.float64]] | None = None
+        self._sides: tuple[Ints, Sides] | None = None
         self._straight: dict[tuple[int, int], int] = {}
         for k, edge in enumerate(self.edges):
             if not len(edge.inner):
@@ -241,28 +283,41 @@ class Network:
         x, y = vertex / self.scale + np.array(self.middle)
         return float(x), float(y)
 
-    def nearest_edge(self, vertex: NDArray[np.float64]) -> int:
-        """The edge whose polyline passes nearest to a vertex that no curve owns."""
-        self.blurred = True
+    def nearest_edges(self, spots: NDArray[np.float64]) -> Ints:
+        """For each spot on a result the edge whose polyline passes nearest."""
+        numbers, sides = self._all_sides()
+        return numbers[sides.nearest(spots, 4 * GRID)]
+
+    def blur(self, vertices: NDArray[np.float64]) -> None:
+        """Note the curves whose chords pass a vertex that none of them owns."""
+        numbers, sides = self._all_sides()
+        _, near, _ = sides.near(vertices, 4 * GRID)
+        found = {*numbers[near].tolist(), *self.nearest_edges(vertices).tolist()}
+        self.blurred |= {self.edges[k].curve for k in found}
+
+    def _all_sides(self) -> tuple[Ints, Sides]:
+        """All sides of polylines, and the numbers of their edges."""
         if self._sides is None:
-            numbers: list[int] = []
-            lines: list[NDArray[np.float64]] = []
-            for k, edge in enumerate(self.edges):
+            lines = []
+            for edge in self.edges:
                 nodes = self.node_grid[[edge.start, edge.end]]
                 line = np.concatenate((nodes[:1], edge.inner, nodes[1:])) * GRID
-                numbers += [k] * (len(line) - 1)
                 lines.append(np.concatenate((line[:-1], line[1:]), axis=1))
-            self._sides = np.array(numbers), np.concatenate(lines)
-        numbers_, sides = self._sides
-        start, way = sides[:, :2], sides[:, 2:] - sides[:, :2]
-        square = np.maximum((way**2).sum(axis=1), GRID**2)
-        t = np.clip(((vertex - start) * way).sum(axis=1) / square, 0, 1)
-        away = ((start + t[:, None] * way - vertex) ** 2).sum(axis=1)
-        return int(numbers_[int(np.argmin(away))])
+            numbers = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
+            self._sides = numbers, Sides(np.concatenate(lines))
+        return self._sides
 
     def straight(self, start: int, end: int, default: int) -> int:
         """The line edge between two nodes."""
         return self._straight.get((start, end), default)
+
+
+def exactly(network: Network, work: Callable[[], T]) -> T:
+    """What is made of a network, once more with finer chords where curves came too close for them."""
+    while True:
+        result = work()
+        if not network.refine():
+            return result
 
 
 def pack(grid: Ints) -> Ints:
@@ -302,16 +357,3 @@ def union_bounds(boxes: Sequence[Bounds]) -> Bounds:
         return 0.0, 0.0, 0.0, 0.0
     lefts, bottoms, rights, tops = zip(*boxes, strict=True)
     return min(lefts), min(bottoms), max(rights), max(tops)
-
-
-def near_pairs(boxes: Sequence[Bounds], margin: float) -> Iterator[tuple[int, int]]:
-    """Pairs i < j whose boxes come closer than the margin, by a sweep from left to right."""
-    order = sorted(range(len(boxes)), key=lambda i: boxes[i][0])
-    active: list[int] = []
-    for i in order:
-        left, bottom, _, top = boxes[i]
-        active = [j for j in active if boxes[j][2] + margin >= left]
-        for j in active:
-            if boxes[j][1] - margin <= top and boxes[j][3] + margin >= bottom:
-                yield min(i, j), max(i, j)
-        active.append(i)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.geometry.bodies import FilledHole, Finding, IdleHole, InnerLoop, LooseCurves
@@ -12,6 +14,7 @@ from aidl_lang.geometry.colors import similar_colors
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.curves import Bezier, Piece, Vec
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, bounds, ends, is_finite
+from aidl_lang.geometry.gaps import Gap
 from aidl_lang.geometry.network import Network
 from aidl_lang.solved import Scalar, SolvedGeometry, SolvedStructure
 from aidl_lang.source import Span
@@ -82,17 +85,22 @@ def _fresh(structure: SolvedStructure, name: str) -> str:
     return next(n for n in (base, *(f"{base}{k}" for k in range(2, 99))) if n not in taken)
 
 
+@lru_cache(maxsize=4)
+def _words(text: str) -> Counter[str]:
+    """How often each word is written."""
+    return Counter(re.findall(r"\w+", text))
+
+
 def _wrap_fix(structure: SolvedStructure, geometries: Sequence[SolvedGeometry]) -> Fix | None:
     """Wrap the definition into a hole, where nothing else in the program speaks of it."""
     geometry = geometries[0]
     span = geometry.span
     if span is None or not re.fullmatch(rf"{re.escape(geometry.name)}\s*=\s*\w+\(.*\)", span.text, re.DOTALL):
         return None
-    rest = span.source.text[: span.start] + span.source.text[span.end :]
-    spoken = {geometry.name, *(g.name for g in structure.geometry)}
-    if re.search(rf"\b{re.escape(geometry.name)}\b", rest) or spoken & set(
-        re.findall(r"[^\W\d]\w*(?!\s*[:=(\w])", span.text.partition("=")[2])
-    ):
+    spoken = set(re.findall(r"[^\W\d]\w*(?!\s*[:=(\w])", span.text.partition("=")[2]))
+    within = re.findall(rf"\b{re.escape(geometry.name)}\b", span.text)
+    elsewhere = _words(span.source.text)[geometry.name] > len(within)
+    if elsewhere or (spoken and any(g.name in spoken for g in (geometry, *structure.geometry))):
         return None
     hole = f"hole {_fresh(structure, geometry.name)} {{ {span.text} }}"
     return Fix(f"make `{geometry.name}` a hole", (Edit(span, hole),))
@@ -171,6 +179,30 @@ def _end(structure: SolvedStructure, end: End) -> str:
     if isinstance(geometry.curve, Bezier):
         name = {"start": "p0", "end": "p3"}[name]
     return f"{local(structure, geometry)}.{name}"
+
+
+def gap_note(gap: Gap) -> Diagnostic:
+    """That two ends which do not quite meet were taken for one."""
+    s = gap.structure
+    moved, kept = ((e.geometry, e.at, "end" if e.is_last else "start") for e in (gap.moved, gap.kept))
+    one, other = _end(s, moved), _end(s, kept)
+    name, itself = local(s, gap.moved.geometry), gap.moved.number == gap.kept.number
+    round_ = itself and not isinstance(gap.moved.geometry.curve, Bezier)
+    hint = (
+        f"to close it exactly, write a `circle` in place of `{name}`"
+        if round_
+        else f"to let them meet exactly: `constrain {one} == {other}`"
+    )
+    return Diagnostic(
+        "N0708",
+        f"a gap of {short(gap.width)} mm between `{one}` and `{other}` at {at(kept[1])} was closed "
+        f"in {s.kind} `{s.path}`",
+        gap.moved.geometry.span or s.span,
+        "its end was moved",
+        (Label(gap.kept.geometry.span, "to this end"),) if gap.kept.geometry.span and not itself else (),
+        (hint,),
+        None if round_ else _join_fix(s, f"{one} == {other}"),
+    )
 
 
 def _join_fix(structure: SolvedStructure, equation: str) -> Fix | None:

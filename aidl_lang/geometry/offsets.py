@@ -13,7 +13,7 @@ from aidl_lang.geometry.boolean import section_of
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import bounds, ends, is_closed, point
 from aidl_lang.geometry.finishing import direction
-from aidl_lang.geometry.network import CHORD, FINE_CHORD, Network, union_bounds
+from aidl_lang.geometry.network import Network, exactly, union_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import difference, fill, union
 from aidl_lang.geometry.strips import Strip, beside, cap, disc, wedge
@@ -104,8 +104,9 @@ def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
     pieces = [p for loop in region.loops for p in loop.pieces]
     number = len(pieces)
     pieces += [p for strip in strips for outline in strip for p in outline]
-    for chord in (CHORD, FINE_CHORD):
-        network = Network(pieces, chord)
+    network = Network(pieces)
+
+    def traced() -> Region:
         place = number
         sections = []
         for strip in strips:
@@ -118,7 +119,6 @@ def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
             # Normals of a curve that bends closely cross: all that a single outline goes around counts.
             sections.append(fill(polygons, "NonZero" if len(strip) == 1 else "EvenOdd"))
         base, added = section_of(network, region, 0), union(sections)
-        result = trace(network, difference(base, added) if cut else union([base, added])).region
-        if not network.blurred:
-            break
-    return result
+        return trace(network, difference(base, added) if cut else union([base, added])).region
+
+    return exactly(network, traced)

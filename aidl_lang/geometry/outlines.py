@@ -21,7 +21,7 @@ from aidl_lang.geometry.faces import Shape, own_faces, union_of
 from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish
 from aidl_lang.geometry.hulls import hull
 from aidl_lang.geometry.measures import area, length
-from aidl_lang.geometry.network import CHORD, FINE_CHORD, Network, union_bounds
+from aidl_lang.geometry.network import Network, exactly, union_bounds
 from aidl_lang.geometry.offsets import NEAR, offset, thick
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.trace import trace
@@ -333,13 +333,8 @@ def _region(geometry: Sequence[SolvedGeometry]) -> Region:
             curves.append(curve)
         if leaves:
             shapes.append(Shape(g, tuple(leaves)))
-    result = Region()
-    for chord in (CHORD, FINE_CHORD) if curves else ():
-        network = Network(curves, chord)
-        result = trace(network, union_of(own_faces(network, shapes).faces)).region
-        if not network.blurred:
-            break
-    return result
+    network = Network(curves)
+    return exactly(network, lambda: trace(network, union_of(own_faces(network, shapes).faces)).region)
 
 
 def _pieces(region: Region) -> list[Piece]:

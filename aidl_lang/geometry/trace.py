@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import TAU, ends, is_closed, nearest, part, point, points
+from aidl_lang.geometry.evaluate import TAU, bounds, ends, is_closed, nearest, part, point, points
 from aidl_lang.geometry.measures import length, loop_area
-from aidl_lang.geometry.network import NODE, UNKNOWN, Edge, Network
+from aidl_lang.geometry.network import NODE, UNKNOWN, Edge, Network, union_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import Section, in_polygon
 
@@ -51,7 +51,7 @@ class Run:
 class Sides:
     """The sides of many polygons in one table: where each vertex belongs, and the edge each side follows.
 
-    Polygon k has the rows `bounds[k]:bounds[k + 1]`.
+    Polygon k has the rows `bounds[k]:bounds[k + 1]`; `starts[k]` are those at which another edge begins.
     """
 
     vertices: NDArray[np.float64]
@@ -59,6 +59,7 @@ class Sides:
     owner: NDArray[np.int64]
     place: NDArray[np.int64]
     edges: NDArray[np.int64]
+    starts: list[list[int]]
 
 
 def trace(network: Network, section: Section) -> Traced:
@@ -93,19 +94,28 @@ def _components(section: Section) -> list[Section]:
 def _faces(loops: list[tuple[float, Loop]]) -> list[Face]:
     """Outer loops with the holes that lie in them: one, or several that touch in a point."""
     outers = [loop for _, loop in sorted(loops, key=lambda pair: pair[0]) if _ > 0]
+    inner = [loop for area, loop in loops if area < 0 and outers]
     holes: list[list[Loop]] = [[] for _ in outers]
-    for _, hole in (pair for pair in loops if pair[0] < 0 and outers):
-        p = point(hole.pieces[0], 0.5)
-        holder = 0 if len(outers) == 1 else next((k for k, o in enumerate(outers) if _contains(o, p)), -1)
+    for hole, holder in zip(inner, _holders(outers, inner), strict=True):
         holes[holder].append(hole)
     return [Face(o, tuple(sorted(h, key=_first_point))) for o, h in zip(outers, holes, strict=True)]
 
 
-def _contains(loop: Loop, p: Vec) -> bool:
-    """Whether a point that is not on the loop lies inside."""
+def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
+    """For each hole the first outer loop that it lies in."""
+    if len(outers) == 1 or not holes:
+        return [0] * len(holes)
+    holder = np.full(len(holes), -1)
+    spots = np.array([point(hole.pieces[0], 0.5) for hole in holes]).reshape(-1, 2)
     ts = np.linspace(0, 1, 65)
-    polygon = np.concatenate([points(piece, ts)[:-1] for piece in loop.pieces])
-    return bool(in_polygon(polygon, np.array([p]))[0])
+    for number, outer in enumerate(outers):
+        left, bottom, right, top = union_bounds([bounds(piece) for piece in outer.pieces])
+        within = (spots >= (left, bottom)).all(axis=1) & (spots <= (right, top)).all(axis=1)
+        seekers = np.flatnonzero(within & (holder < 0))
+        if len(seekers):
+            polygon = np.concatenate([points(piece, ts)[:-1] for piece in outer.pieces])
+            holder[seekers[in_polygon(polygon, spots[seekers])]] = number
+    return [int(k) for k in holder]
 
 
 def _first_point(loop: Loop) -> Vec:
@@ -118,6 +128,8 @@ def _sides(network: Network, polygons: list[NDArray[np.float64]]) -> Sides:
     vertices = np.concatenate(polygons) if polygons else np.zeros((0, 2))
     after = np.arange(1, len(vertices) + 1)
     after[[b - 1 for b in bounds[1:]]] = bounds[:-1]
+    before = np.empty_like(after)
+    before[after] = np.arange(len(after))
     owner, place = network.look_up(vertices)
     owner_after = owner[after]
     edges = np.where(owner >= 0, owner, np.where(owner_after >= 0, owner_after, STRAIGHT))
@@ -126,24 +138,27 @@ def _sides(network: Network, polygons: list[NDArray[np.float64]]) -> Sides:
     edges[between] = [network.straight(a, b, STRAIGHT) for a, b in ways]
     # Chords that cross where their curves only touch leave vertices unknown to the network.
     changed = (owner >= 0) & (owner_after >= 0) & (owner != owner_after)
-    for k in np.flatnonzero((owner == UNKNOWN) | (owner_after == UNKNOWN) | changed):
-        edges[k] = network.nearest_edge((vertices[k] + vertices[after[k]]) / 2)
-    return Sides(vertices, bounds, owner, place, edges)
+    unsure = np.flatnonzero((owner == UNKNOWN) | (owner_after == UNKNOWN) | changed)
+    if len(unsure):
+        network.blur(vertices[unsure])
+        edges[unsure] = network.nearest_edges((vertices[unsure] + vertices[after[unsure]]) / 2)
+    begins = (edges[after] != edges)[before] | (owner == NODE) | (edges == STRAIGHT)
+    rows = np.flatnonzero(begins)
+    starts = [part.tolist() for part in np.split(rows, np.searchsorted(rows, bounds[1:-1]))]
+    return Sides(vertices, bounds, owner, place, edges, starts)
 
 
 def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[tuple[float, Loop]]:
     """One polygon as loops of exact pieces with their areas, without those no wider than the tolerance."""
     low, high = sides.bounds[number], sides.bounds[number + 1]
-    edges, owner = sides.edges[low:high], sides.owner[low:high]
-    before = np.concatenate((edges[-1:], edges[:-1]))
-    changes = np.flatnonzero((edges != before) | (owner == NODE) | (edges == STRAIGHT))
-    starts = changes.tolist() or [0]
+    starts = sides.starts[number] or [low]
     runs: list[Run] = []
     for begin, end in zip(starts, [*starts[1:], starts[0]], strict=True):
-        edge = int(edges[begin])
+        edge = int(sides.edges[begin])
         used.add(edge)
-        second, last = low + (begin + 1) % (high - low), low + (end - 1) % (high - low)
-        runs.append(_run(network, sides, edge, (low + begin, second), (low + end, last)))
+        second = begin + 1 if begin + 1 < high else low
+        last = end - 1 if end > low else high - 1
+        runs.append(_run(network, sides, edge, (begin, second), (end, last)))
     used.discard(STRAIGHT)
     result = []
     for simple in _split_at_pinches(_snapped(runs, network.tolerance)):
@@ -160,11 +175,14 @@ def _split_at_pinches(runs: list[Run]) -> list[list[Run]]:
         return [runs] if runs else []
     loops: list[list[Run]] = []
     stack: list[Run] = []
+    place: dict[Vec, int] = {}
     for run in runs:
+        place[run.start] = len(stack)
         stack.append(run)
-        first = next((k for k, r in enumerate(stack) if r.start == run.end), None)
-        if first is not None:
+        if (first := place.get(run.end)) is not None:
             loops.append(stack[first:])
+            for passed in stack[first:]:
+                del place[passed.start]
             del stack[first:]
     return loops
 

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
+import shapely
+import shapely.affinity
+import shapely.geometry
 
 import aidl_lang
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
@@ -21,6 +26,7 @@ from aidl_lang.source import SourceFile, Span
 from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
 
 SCHEMA = json.loads((Path(__file__).parents[2] / "docs" / "model.schema.json").read_text(encoding="utf-8"))
+EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.aidl"))
 SOURCE = SourceFile("x.aidl", "assembly a {\n    b.above(c)\n}\n")
 SPAN = Span(SOURCE, 17, 27)
 
@@ -78,7 +84,14 @@ def test_members():
         "start": [0.0, 0.0],
         "end": [10.0, 0.0],
     }
-    assert document["regions"]["a.b"] == {"area": 87.4336293856, "perimeter": 52.5663706144, "loops": 2}
+    region = document["regions"]["a.b"]
+    assert {k: v for k, v in region.items() if k not in ("faces", "geometry")} == {
+        "area": 87.4336293856,
+        "perimeter": 52.5663706144,
+        "loops": 2,
+        "centroid": [5.0, 5.0],
+        "bb": {"left": 0.0, "right": 10.0, "top": 10.0, "bottom": 0.0},
+    }
     assert document["pairs"] == [
         {"a": "a.b", "b": "a.c", "relation": "apart", "gap": significant(draw(m)[0].pairs[0].gap or 0)}
     ]
@@ -152,3 +165,85 @@ def test_readings_of_ambiguous_calls_are_told():
     }"""
     (reading,) = json.loads(aidl_lang.compile(program).to_json())["readings"]
     assert reading == {"text": "tangent(b, a)", "line": 4, "column": 19, "reading": "taken as 8 (1 of 3)"}
+
+
+def regions(program: str) -> tuple[dict[str, Any], float]:
+    document = json.loads(aidl_lang.compile(program).to_json())
+    jsonschema.validate(document, SCHEMA)
+    return document["regions"], document["tolerance"]
+
+
+PLATE = """solid plate {
+    body = slot(center: origin, length: 60, width: 20)
+    hole bore { rim = circle(center: fixed((20, 0)), radius: 4) }
+    hole eye { rim = ellipse(center: fixed((-15, 0)), rx: 6, ry: 3, angle: 30deg) }
+}"""
+
+
+def test_the_exact_outlines_of_a_region():
+    found, _ = regions(PLATE)
+    (face,) = found["plate"]["faces"]
+    outer = face["outer"]
+    assert sorted(piece["type"] for piece in outer) == ["arc", "arc", "line", "line"]
+    for piece, after in zip(outer, outer[1:] + outer[:1], strict=True):
+        assert piece["end"] == after["start"]
+    assert all(p["radius"] == 10 and p["clockwise"] is False for p in outer if p["type"] == "arc")
+    assert {"type": "circle", "center": [20.0, 0.0], "radius": 4.0} in [h[0] for h in face["holes"]]
+    (eye,) = (h[0] for h in face["holes"] if h[0]["type"] == "ellipse")
+    assert eye == {"type": "ellipse", "center": [-15.0, 0.0], "rx": 6.0, "ry": 3.0, "angle": 30.0}
+    area = 40 * 20 + math.pi * (100 - 16 - 18)
+    assert found["plate"]["area"] == pytest.approx(area, rel=1e-11)
+    assert found["plate"]["centroid"][0] == pytest.approx(math.pi * (15 * 18 - 20 * 16) / area, rel=1e-9)
+
+
+def test_pieces_of_every_kind_follow_each_other():
+    """A leaf of a Bézier curve and a line, cut by an ellipse and a circle."""
+    found, _ = regions("""solid leaf {
+        bow = bezier(fixed((0, 0)), fixed((10, 30)), fixed((30, 30)), fixed((40, 0)))
+        foot = line(bow.end, bow.start)
+        hole bite { rim = ellipse(center: fixed((0, 0)), rx: 12, ry: 6) }
+        hole nick { rim = circle(center: fixed((30, 0)), radius: 5) }
+    }""")
+    (face,) = found["leaf"]["faces"]
+    outer = face["outer"]
+    assert {p["type"] for p in outer} == {"bezier", "line", "arc", "ellipse_arc"}
+    ends = [(p["points"][0], p["points"][3]) if "points" in p else (p["start"], p["end"]) for p in outer]
+    assert [end for _, end in ends] == [start for start, _ in [*ends[1:], ends[0]]]
+    assert all(p["clockwise"] for p in outer if p["type"] in ("arc", "ellipse_arc"))
+
+
+def test_shapely_reads_the_polygons():
+    found, tolerance = regions(PLATE)
+    assert tolerance == 0.06
+    polygons = shapely.geometry.shape(found["plate"]["geometry"])
+    assert polygons.is_valid
+    (polygon,) = polygons.geoms
+    assert polygon.exterior.is_ccw
+    assert [hole.is_ccw for hole in polygon.interiors] == [False, False]
+    exact = shapely.LineString([(-20, 0), (20, 0)]).buffer(10, quad_segs=2000)
+    exact -= shapely.Point(20, 0).buffer(4, quad_segs=2000)
+    eye = shapely.affinity.scale(shapely.Point(0, 0).buffer(1, quad_segs=2000), 6, 3)
+    exact -= shapely.affinity.translate(shapely.affinity.rotate(eye, 30, origin=(0, 0)), -15, 0)
+    assert shapely.hausdorff_distance(polygons, exact) <= tolerance
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+def test_polygons_of_the_examples_have_the_areas_of_the_regions(path: Path):
+    found, tolerance = regions(path.read_text("utf-8"))
+    for region in found.values():
+        polygons = shapely.geometry.shape(region["geometry"])
+        assert polygons.is_valid
+        rings = [ring for p in polygons.geoms for ring in (p.exterior, *p.interiors)]
+        assert len(rings) == region["loops"]
+        assert all(p.exterior.is_ccw and not any(h.is_ccw for h in p.interiors) for p in polygons.geoms)
+        assert polygons.area == pytest.approx(region["area"], abs=tolerance * region["perimeter"])
+        box, bounds = region["bb"], polygons.bounds
+        sides = (box["left"], box["bottom"], box["right"], box["top"])
+        assert bounds == pytest.approx(sides, abs=tolerance)
+
+
+def test_what_encloses_nothing_has_no_faces():
+    m = model(structure("drawing", "d", circle("c", 0, 0, 3)))
+    document = to_dict(m, draw(m)[0])
+    assert document["regions"] == {}
+    assert document["tolerance"] == 0.006

@@ -316,7 +316,7 @@ def test_booleans_agree_with_shapely(adds: list[SolvedGeometry], cuts: list[Solv
     )
     assert measure(region).area == pytest.approx(expected.area, rel=2e-5, abs=2e-2)
     without_slivers = expected.buffer(-1e-3).buffer(1e-3)
-    assert measure(region).perimeter == pytest.approx(without_slivers.length, rel=1e-2, abs=1)
+    assert 0.99 * without_slivers.length - 1 <= measure(region).perimeter <= 1.01 * expected.length + 1
     assert shapely_of(region).symmetric_difference(expected).area <= 1e-4 * expected.area + 0.05
     assert_closed(region)
 

@@ -1,0 +1,104 @@
+"""What a machine follows, in the order in which it should: what is drawn on parts, then their outlines.
+
+Outlines come from the inside out: holes before the outline around them, and a part that lies in the hole of
+another before that hole, so that nothing is cut in a piece that has come loose.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+
+from aidl_lang.export.chains import chains
+from aidl_lang.export.numbers import significant
+from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.evaluate import bounds, ends, locate, point, reverse
+from aidl_lang.geometry.measures import loop_area
+from aidl_lang.geometry.network import RELATIVE_TOLERANCE
+from aidl_lang.geometry.region import Loop
+from aidl_lang.solved import SolvedModel
+
+HOLE, OPEN = "hole", "open"
+
+
+@dataclass(frozen=True)
+class Outline:
+    """Pieces end to end, and what is said of them.
+
+    path   of the body, or of the structure that draws the lines
+    layer  what `@layer` says, else the kind of the structure, `open` for curves that were to bound something
+    color  as CSS has it
+    hole   path of the hole that an inner outline comes from; a ring has its inner one without any
+    """
+
+    pieces: tuple[Piece, ...]
+    closed: bool
+    path: str
+    layer: str
+    color: str | None
+    hole: str | None = None
+
+
+def outlines(model: SolvedModel, drawing: Drawing) -> list[Outline]:
+    """All of a drawing in the order in which it should be drawn and cut."""
+    return [*_lines(drawing), *_cuts(model, drawing)]
+
+
+def _lines(drawing: Drawing) -> Iterator[Outline]:
+    tolerance = RELATIVE_TOLERANCE * drawing.size
+    for (path, role), strokes in groupby(drawing.strokes, key=lambda s: (s.path, s.role)):
+        style = drawing.styles[path]
+        layer = role if role == OPEN else style.layer or role
+        if role == HOLE:
+            for loop in drawing.regions[path].loops:
+                yield Outline(loop.pieces, True, path, layer, style.color)
+            continue
+        for pieces in chains([piece for s in strokes for piece in s.pieces], tolerance):
+            start, end = ends(pieces[0])[0], ends(pieces[-1])[1]
+            closed = len(pieces) > 1 and math.dist(start, end) <= tolerance
+            yield Outline(pieces, closed, path, layer, style.color)
+
+
+def _cuts(model: SolvedModel, drawing: Drawing) -> Iterator[Outline]:
+    kinds = {s.path: s.kind for s in model.root.walk()}
+    edges = _HoleEdges(model, drawing)
+    faces = [(face, body) for body in drawing.bodies for face in body.region.faces]
+    faces.sort(key=lambda pair: significant(loop_area(pair[0].outer)))
+    for face, body in faces:
+        for loop in face.holes:
+            hole = edges.owner(loop)
+            style = drawing.styles[hole or body.path]
+            yield Outline(loop.pieces, True, body.path, style.layer or HOLE, style.color, hole)
+        layer = body.style.layer or kinds[body.path]
+        yield Outline(face.outer.pieces, True, body.path, layer, body.style.color)
+
+
+class _HoleEdges:
+    """The outlines of all holes of a model, to tell which hole an inner loop of a body comes from."""
+
+    def __init__(self, model: SolvedModel, drawing: Drawing) -> None:
+        self._tolerance = RELATIVE_TOLERANCE * drawing.size
+        self._edges = [
+            (s.path, piece)
+            for s in model.root.walk()
+            if s.kind == "hole" and s.path in drawing.regions
+            for loop in drawing.regions[s.path].loops
+            for piece in loop.pieces
+        ]
+        self._same = {p: path for path, piece in self._edges for p in (piece, reverse(piece))}
+        boxes = np.array([bounds(piece) for _, piece in self._edges]).reshape(-1, 4)
+        self._low, self._high = boxes[:, :2] - self._tolerance, boxes[:, 2:] + self._tolerance
+
+    def owner(self, loop: Loop) -> str | None:
+        """The hole with an edge where the loop has its first, the innermost if there are several."""
+        if (path := self._same.get(loop.pieces[0])) is not None:
+            return path
+        p = point(loop.pieces[0], 0.5)
+        near = np.flatnonzero(((self._low <= p) & (p <= self._high)).all(axis=1))
+        found = (self._edges[k] for k in reversed(near))
+        return next((path for path, edge in found if locate(edge, p, self._tolerance) is not None), None)

@@ -1,0 +1,283 @@
+"""Dimensions in a picture: where each stands, so that all can be read.
+
+Sizes along the axes stand in rows outside the drawing, short ones nearer to it, or in the free space beside
+what they measure; leaders and slanted sizes look for the place where they cover and cross least.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+from aidl_lang.dimensions import dimensions
+from aidl_lang.dimensions.features import X_AXIS, Y_AXIS
+from aidl_lang.export import palette
+from aidl_lang.export.dimension_marks import CAPITAL, HEIGHT, Pen, Placed, words_of
+from aidl_lang.export.dimension_sheet import Sheet, broken
+from aidl_lang.export.marks import Group, Text
+from aidl_lang.geometry.curves import Arc, Circle, Vec
+from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.evaluate import Bounds, point
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.solved import Dimension, Length, Opening, Roundness, SolvedModel
+
+MOST = 40
+"""More dimensions than this are counted, not drawn."""
+SHARE = 0.0125
+"""Height of digits relative to the larger side of the picture: 20 of 1600 pixels."""
+FIRST, NEXT = 10.0, 8.0
+"""The first row from the outline and further ones from each other, mm on paper."""
+CROSS = 1.5
+"""Arms of the crosses at centres, mm on paper."""
+ROWS = 60
+"""Rows that are tried before a dimension is given up."""
+
+_REACHES = (6, 9, 13, 18, 25, 34, 46, 62, 84)
+_TURNS = tuple(a + b for a in (0, 90, 180, 270) for b in (45, 60, 30, 75, 15))
+
+
+def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Bounds, tuple[Group, ...]]:
+    """A group of marks for each dimension, as large as can be read when the whole is seen, and the box that holds
+    what `box` does and them.
+    """
+    wanted = _visible(dimensions(model, drawing), Sheet(drawing, Pen(0.005 * drawing.size)))
+    size = max(box[2] - box[0], box[3] - box[1])
+    if not wanted or not size > 0:
+        return box, ()
+    height = 1.3 * SHARE * size
+    for _ in range(6):
+        whole, groups = _Layout(drawing, Pen(height / HEIGHT), box).make(wanted)
+        needed = SHARE * max(whole[2] - whole[0], whole[3] - whole[1])
+        if height >= needed:
+            break
+        height = 1.05 * needed
+    return whole, groups
+
+
+def _visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tuple[Dimension, ...]]:
+    """Without those that end where there is nothing: a hole may reach beyond what it cuts."""
+    centers = {d.curve.center for group in wanted for d in group if isinstance(d, Roundness)}
+
+    def ends_at_something(points: tuple[Vec, ...]) -> bool:
+        return any(p in centers or sheet.is_drawn(p) or sheet.is_material(p) for p in points)
+
+    return [
+        group
+        for group in wanted
+        if not isinstance(group[0], Length)
+        or group[0].origin in ("constraint", "overall")
+        or (ends_at_something(group[0].start) and ends_at_something(group[0].end))
+    ]
+
+
+@dataclass
+class _Row:
+    """A dimension line outside the drawing: on which side, from where to where, in which row."""
+
+    side: tuple[Vec, int]
+    low: float
+    high: float
+    row: int
+
+
+@dataclass
+class _Layout:
+    drawing: Drawing
+    pen: Pen
+    box: Bounds
+    rows: list[_Row] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.sheet = Sheet(self.drawing, self.pen)
+
+    def make(self, wanted: Sequence[tuple[Dimension, ...]]) -> tuple[Bounds, tuple[Group, ...]]:
+        placed: dict[int, Placed] = {}
+        for index in sorted(range(min(len(wanted), MOST)), key=lambda i: _turn(wanted[i][0])):
+            found = self.place(wanted[index])
+            if found is not None:
+                self.sheet.add(found)
+                placed[index] = found
+        boxes = [self.box, *map(self.pen.box_of, placed.values())]
+        groups = [self._group(n, wanted[i], placed[i]) for n, i in enumerate(sorted(placed), 1)]
+        if left := len(wanted) - len(placed):
+            note = self._remark(left, union_bounds(boxes))
+            groups.append(Group("dimensions-left-out", (note,), {"class": "dimension"}))
+            boxes.append(note.box)
+        return union_bounds(boxes), tuple(groups)
+
+    def _group(self, number: int, wanted: tuple[Dimension, ...], placed: Placed) -> Group:
+        first = wanted[0]
+        own = self.pen.block(placed.text)
+        others = [block for block in self.sheet.texts if block != own]
+        lines = tuple(part for e in placed.extensions for part in broken(e, others))
+        attributes = {
+            "class": "dimension",
+            "data-kind": first.kind,  # type: ignore[attr-defined]
+            "data-value": f"{first.value:.12g}",
+            "data-origin": first.origin,
+        }
+        attributes |= {"data-of": first.of} if first.of else {}
+        attributes |= {"data-param": first.name} if first.name else {}
+        return Group(f"dimension-{number}", tuple(self.pen.marks(replace(placed, extensions=lines))), attributes)
+
+    def _remark(self, left: int, box: Bounds) -> Text:
+        words = f"{left} more dimension{'s' if left > 1 else ''} not shown"
+        size = 0.8 * self.pen.font
+        return Text((box[0], box[1] - 1.6 * size), words, size, palette.DIMENSION)
+
+    def place(self, wanted: tuple[Dimension, ...]) -> Placed | None:
+        words = words_of(wanted[0], len(wanted))
+        match wanted[0]:
+            case Length() as length:
+                return self._length(length, words)
+            case Opening() as opening:
+                return self._best(self._arcs(opening, words))
+            case _:
+                curves = [d.curve for d in wanted if isinstance(d, Roundness)]
+                found = self._best(self._leaders(curves, words))
+                centers = [(c.center, min(CROSS * self.pen.mm, 0.5 * c.radius)) for c in curves]
+                if found is None or isinstance(curves[0], Arc):
+                    return found
+                ring = curves[0] if wanted[0].origin == "pattern" else None
+                return replace(found, crosses=tuple(centers), ring=ring)
+
+    def _length(self, of: Length, words: str) -> Placed | None:
+        """Measured from what is seen where there is something; a cross marks an end that is not."""
+        start, end = self._seen(of.start), self._seen(of.end)
+        of = replace(of, start=start or of.start, end=end or of.end)
+        is_straight = of.along in (X_AXIS, Y_AXIS)
+        placed = self._in_row(of, words) if is_straight else self._best(self._beside(of, words))
+        unseen = [points[0] for points, seen in ((of.start, start), (of.end, end)) if not seen]
+        crosses = tuple((p, CROSS * self.pen.mm) for p in unseen)
+        return replace(placed, crosses=crosses) if placed is not None else None
+
+    def _seen(self, points: tuple[Vec, ...]) -> tuple[Vec, ...]:
+        """Those that lie on an outline, or such places between them: the end of an edge may be hidden."""
+        (x0, y0), (x1, y1) = points[0], points[-1]
+        between = tuple((x0 + k / 12 * (x1 - x0), y0 + k / 12 * (y1 - y0)) for k in range(1, 12))
+        on_outline = (tuple(filter(self.sheet.is_drawn, spots)) for spots in (points, between))
+        return next(filter(None, on_outline), ())
+
+    def _best(self, candidates: Iterator[tuple[float, Placed]]) -> Placed | None:
+        """The candidate that costs least, of those that keep clear of all values."""
+        best, least = None, math.inf
+        for cost, candidate in sorted(candidates, key=lambda c: c[0]):
+            if cost >= least:
+                break
+            if self.sheet.is_free(candidate) and (total := cost + self.sheet.harm(candidate)) < least:
+                best, least = candidate, total
+        return best
+
+    # --- Along the axes ----------------------------------------------------------------------------
+
+    def _in_row(self, of: Length, words: str) -> Placed | None:
+        best: tuple[float, Placed, _Row | None] | None = None
+        for side in (-1, 1):
+            for after in (True, False):
+                found = self._row(of, words, side, after)
+                if found is None:
+                    continue
+                placed, row = found
+                # Below and to the right where nothing speaks against it.
+                cost = self._stretch(placed) + self.sheet.harm(placed) + 0.3 * (side > 0) + 0.1 * (not after)
+                if best is None or cost < best[0]:
+                    best = cost, placed, row
+        for cost, placed in self._near(of, words):
+            if (best is None or cost < best[0]) and self.sheet.is_free(placed):
+                total = cost + self.sheet.harm(placed)
+                if best is None or total < best[0]:
+                    best = total, placed, None
+        if best is None:
+            return None
+        if best[2] is not None:
+            self.rows.append(best[2])
+        return best[1]
+
+    def _stretch(self, placed: Placed) -> float:
+        """What long extension lines cost."""
+        return sum(math.dist(*e) for e in placed.extensions) / (20 * self.pen.mm)
+
+    def _row(self, of: Length, words: str, side: int, after: bool) -> tuple[Placed, _Row] | None:
+        """The first row on a side of the drawing that is free, beyond those of shorter lengths there."""
+        mm, axis = self.pen.mm, int(of.along == X_AXIS)
+        # Across a vertical length is towards the left.
+        bounds = (self.box[axis], self.box[axis + 2]) if axis else (-self.box[2], -self.box[0])
+        edge = bounds[side > 0]
+        trial = self.pen.straight(of, words, edge, after)
+        ends = [p[1 - axis] for p in trial.lines[0]]
+        low, high = min(ends), max(ends)
+        key = of.along, side
+        inner = [
+            r.row for r in self.rows if r.side == key and r.low < high - 0.1 * mm and low < r.high - 0.1 * mm
+        ]
+        for row in range(max(inner, default=-1) + 1, ROWS):
+            placed = self.pen.straight(of, words, edge + side * (FIRST + NEXT * row) * mm, after)
+            if self.sheet.is_free(placed):
+                return placed, _Row(key, low, high, row)
+        return None
+
+    def _near(self, of: Length, words: str) -> Iterator[tuple[float, Placed]]:
+        """In the free space right beside what is measured, within the drawing."""
+        mm, axis = self.pen.mm, int(of.along == X_AXIS)
+        bounds = (self.box[axis], self.box[axis + 2]) if axis else (-self.box[2], -self.box[0])
+        across = [p[1] if axis else -p[0] for p in (*of.start, *of.end)]
+        for side, edge in ((-1, min(across)), (1, max(across))):
+            for k in range(12):
+                level = edge + side * (FIRST - 2 + NEXT * k) * mm
+                if not bounds[0] < level < bounds[1]:
+                    break
+                placed = self.pen.straight(of, words, level, after=True)
+                material = self.sheet.covers_material(placed)
+                yield self._stretch(placed) + 0.5 + 0.4 * k + 4.0 * material, placed
+
+    # --- Free places -------------------------------------------------------------------------------
+
+    def _beside(self, of: Length, words: str) -> Iterator[tuple[float, Placed]]:
+        """A slanted length beside what it measures, rather on the outside."""
+        u, v = of.along
+        mm, n = self.pen.mm, (-v, u)
+        across = [p[0] * n[0] + p[1] * n[1] for p in (*of.start, *of.end)]
+        for side, edge in ((-1, min(across)), (1, max(across))):
+            for k in range(ROWS):
+                for after in (True, False):
+                    placed = self.pen.straight(of, words, edge + side * (FIRST - 2 + NEXT * k) * mm, after)
+                    inside = self.sheet.covers_material(placed)
+                    yield 0.7 * k + 2.0 * self._stretch(placed) + 3.0 * inside + 0.1 * (not after), placed
+
+    def _arcs(self, of: Opening, words: str) -> Iterator[tuple[float, Placed]]:
+        for k in range(24):
+            placed = self.pen.angle(of, words, (12 + 4 * k) * self.pen.mm)
+            yield 0.6 * k + 1.0 * self.sheet.covers_material(placed), placed
+
+    def _leaders(self, curves: Sequence[Circle | Arc], words: str) -> Iterator[tuple[float, Placed]]:
+        mm = self.pen.mm
+        step = max(1, len(curves) // 8)
+        for curve in curves[::step]:
+            for rank, way in enumerate(_ways(curve)):
+                r = curve.radius
+                tip = curve.center[0] + r * way[0], curve.center[1] + r * way[1]
+                hidden = 0.0 if self.sheet.is_drawn(tip) else 12.0
+                for reach in _REACHES:
+                    for outward in (True, False):
+                        if not outward and (reach > 12 or reach * mm > 0.9 * r):
+                            continue
+                        out = way if outward else (-way[0], -way[1])
+                        placed = self.pen.leader(tip, out, reach * mm, out[0] >= 0, outward, words)
+                        cost = reach / 8 + 0.1 * (rank % 7 if isinstance(curve, Arc) else rank % 5) + hidden + 0.6 * (not outward)
+                        yield cost, placed
+
+
+def _turn(of: Dimension) -> tuple[int, float]:
+    """The order in which places are taken: lengths along the axes from the shortest, then what can evade."""
+    if isinstance(of, Length):
+        return int(of.along not in (X_AXIS, Y_AXIS)), of.value
+    return 2 + isinstance(of, Roundness), of.value
+
+
+def _ways(curve: Circle | Arc) -> list[Vec]:
+    """Directions from the centre to places where a leader may end."""
+    if isinstance(curve, Circle):
+        return [(math.cos(math.radians(a)), math.sin(math.radians(a))) for a in _TURNS]
+    spots = [point(curve, t) for t in (0.5, 0.4, 0.6, 0.25, 0.75, 0.1, 0.9)]
+    return [((x - curve.center[0]) / curve.radius, (y - curve.center[1]) / curve.radius) for x, y in spots]

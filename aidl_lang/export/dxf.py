@@ -1,0 +1,186 @@
+"""DXF R2010 for laser cutters, routers and other CAD systems: exact entities, 1:1 in mm, y upwards.
+
+An outline of lines and arcs is one LWPOLYLINE; with other curves in it, each piece is an entity of its own.
+The order is that of `cuts`, the layers those of `dxf_layers`.
+
+Each entity carries the path of its body as XDATA of the application AIDL, and that of the hole it comes from
+as XDATA of AIDL_HOLE. A GROUP would need the path changed to what DXF takes as a name, and is lost when an
+entity is copied to another file.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.export import Exported, Job
+from aidl_lang.export.cuts import Outline, outlines
+from aidl_lang.export.dxf_layers import Layers
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.evaluate import TAU, ends, point, round_range
+
+BODY, HOLE = "AIDL", "AIDL_HOLE"
+MILLIMETRES, METRIC = 4, 1
+LONGEST = 1.01 * math.pi
+"""Largest sweep of an arc in a polyline. The nearer the ends of a longer one, the less is left of its radius.
+Half circles stay whole, whatever rounding did to them.
+"""
+THINNEST = 1e-6
+"""Smallest ratio of the axes that DXF takes for an ellipse; it moves no point by more."""
+DIGITS = 13
+"""Coordinates have this many digits of the size of the drawing, past which rounding errors begin."""
+TEXT_BYTES = 255
+
+
+def to_dxf(job: Job) -> Exported:
+    """The outlines and lines of a drawing as a DXF document."""
+    import ezdxf
+
+    library: Any = ezdxf
+    before = library.options.write_fixed_meta_data_for_testing
+    # Else the document holds the time and random numbers.
+    library.options.write_fixed_meta_data_for_testing = True
+    try:
+        return _written(library.new("R2010", units=MILLIMETRES), job)
+    finally:
+        library.options.write_fixed_meta_data_for_testing = before
+
+
+def _written(document: Any, job: Job) -> Exported:
+    found = outlines(job.model, job.drawing)
+    for application in (BODY, HOLE):
+        document.appids.new(application)
+    document.header["$MEASUREMENT"] = METRIC
+    entities, layers = _Entities(document.modelspace(), job.drawing), Layers(document, job.model)
+    for outline in found:
+        attributes: dict[str, Any] = {"layer": layers.name(outline.layer)}
+        if outline.color is not None:
+            attributes["true_color"] = _rgb(outline.color)
+        names = [(BODY, outline.path)] + ([(HOLE, outline.hole)] if outline.hole else [])
+        for entity in entities.add(outline, attributes):
+            for application, path in names:
+                entity.set_xdata(application, [(1000, text) for text in _split(path)])
+    if found:
+        _set_view(document, job.drawing)
+    text = io.StringIO()
+    document.write(text)
+    notes = layers.notes if found else [_empty_note(job.drawing)]
+    return Exported(text.getvalue().encode(), notes=tuple(notes))
+
+
+def _set_view(document: Any, drawing: Drawing) -> None:
+    """Extents, limits and a first view that show the drawing."""
+    left, bottom, right, top = drawing.box
+    space = document.modelspace()
+    space.dxf.extmin, space.dxf.extmax = (left, bottom, 0.0), (right, top, 0.0)
+    space.dxf.limmin, space.dxf.limmax = (left, bottom), (right, top)
+    document.set_modelspace_vport(1.1 * drawing.size, ((left + right) / 2, (bottom + top) / 2))
+
+
+def _rgb(color: str) -> int:
+    """A CSS colour as DXF has it."""
+    from PIL import ImageColor
+
+    red, green, blue = ImageColor.getrgb(color)[:3]
+    return red << 16 | green << 8 | blue
+
+
+def _split(path: str) -> list[str]:
+    """A path in texts of the length that XDATA allows."""
+    count = TEXT_BYTES if path.isascii() else TEXT_BYTES // 4
+    return [path[k : k + count] for k in range(0, len(path), count)]
+
+
+def _empty_note(drawing: Drawing) -> Diagnostic:
+    plans = [f"`{plan.path}`" for plan in drawing.plans[:3]]
+    hints = (f"draw the parts of {', '.join(plans)}",) if plans else ()
+    return Diagnostic("W0721", "nothing is drawn, so the DXF is empty", hints=hints)
+
+
+class _Entities:
+    """Writes outlines as entities."""
+
+    def __init__(self, space: Any, drawing: Drawing) -> None:
+        self._space = space
+        self._decimals = DIGITS - 1 - math.floor(math.log10(drawing.size))
+
+    def _rounded(self, value: float) -> float:
+        return round(value, self._decimals) + 0.0
+
+    def _at(self, p: Vec) -> Vec:
+        return self._rounded(p[0]), self._rounded(p[1])
+
+    def add(self, outline: Outline, attributes: dict[str, Any]) -> Iterator[Any]:
+        """The entities of an outline, made one by one."""
+        pieces = outline.pieces
+        if len(pieces) > 1 and all(isinstance(piece, Line | Arc) for piece in pieces):
+            yield self._polyline(pieces, outline.closed, attributes)
+        else:
+            for piece in pieces:
+                yield self._single(piece, attributes)
+
+    def _polyline(self, pieces: Sequence[Piece], closed: bool, attributes: dict[str, Any]) -> Any:
+        corners = [corner for piece in pieces for corner in self._corners(piece)]
+        if not closed:
+            corners.append((*self._at(ends(pieces[-1])[1]), 0.0))
+        return self._space.add_lwpolyline(corners, "xyb", close=closed, dxfattribs=attributes)
+
+    def _corners(self, piece: Piece) -> Iterator[tuple[float, float, float]]:
+        """x, y and bulge where a piece starts, and where it is split. The bulge is tan(sweep / 4)."""
+        if not isinstance(piece, Arc):
+            yield (*self._at(ends(piece)[0]), 0.0)
+            return
+        parts = math.ceil(abs(piece.sweep) / LONGEST)
+        bulge = math.tan(piece.sweep / parts / 4)
+        for k in range(parts):
+            yield (*self._at(point(piece, k / parts)), bulge)
+
+    def _single(self, piece: Piece, attributes: dict[str, Any]) -> Any:
+        space = self._space
+        match piece:
+            case Line(start, end):
+                return space.add_line(self._at(start), self._at(end), dxfattribs=attributes)
+            case Circle(center, radius):
+                return space.add_circle(self._at(center), self._rounded(radius), dxfattribs=attributes)
+            case Arc():
+                return self._arc(piece, attributes)
+            case Bezier(p0, p1, p2, p3):
+                # The knots of the one span are 0 0 0 0 1 1 1 1: a Bézier curve.
+                return space.add_open_spline(list(map(self._at, (p0, p1, p2, p3))), 3, dxfattribs=attributes)
+            case Ellipse() | EllipseArc():
+                return self._ellipse(piece, attributes)
+
+    def _arc(self, arc: Arc, attributes: dict[str, Any]) -> Any:
+        """DXF runs from the first angle to the last counter-clockwise."""
+        center, radius = self._at(arc.center), self._rounded(arc.radius)
+        if abs(arc.sweep) >= TAU:
+            return self._space.add_circle(center, radius, dxfattribs=attributes)
+        first, last = (
+            math.degrees(math.atan2(p[1] - arc.center[1], p[0] - arc.center[0])) % 360
+            for p in ((arc.start, arc.end) if arc.sweep > 0 else (arc.end, arc.start))
+        )
+        return self._space.add_arc(center, radius, first, last, dxfattribs=attributes)
+
+    def _ellipse(self, piece: Ellipse | EllipseArc, attributes: dict[str, Any]) -> Any:
+        """DXF has the larger half-axis first, and runs from the first eccentric anomaly to the last
+        counter-clockwise.
+        """
+        major, minor, angle = piece.rx, piece.ry, piece.angle
+        first, sweep = round_range(piece)
+        if minor > major:
+            major, minor, angle, first = minor, major, angle + TAU / 4, first - TAU / 4
+        if sweep < 0:
+            first, sweep = first + sweep, -sweep
+        whole = sweep >= TAU
+        return self._space.add_ellipse(
+            self._at(piece.center),
+            self._at((major * math.cos(angle), major * math.sin(angle))),
+            max(minor / major, THINNEST),
+            0.0 if whole else first % TAU,
+            TAU if whole else (first + sweep) % TAU,
+            dxfattribs=attributes,
+        )

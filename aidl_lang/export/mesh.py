@@ -1,0 +1,77 @@
+"""Triangles around the bodies that have a thickness, for STL and 3MF.
+
+A triangle mesh has no curves: chords depart from the outline by at most `FINENESS` of the size of a body, or
+by `FINEST` if that is more. Manifold extrudes, so a mesh is closed and does not cross itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import manifold3d
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.export import ExportError, Job
+from aidl_lang.export.solids import Placed, thick_bodies
+from aidl_lang.geometry.drawing import Body
+from aidl_lang.geometry.placement import placement_notes
+from aidl_lang.geometry.tessellate import region_polygons
+
+FINENESS = 1e-4
+FINEST = 0.001
+"""mm"""
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A closed surface: points in mm, shape (n, 3), and triangles of them, counter-clockwise from outside."""
+
+    body: Body
+    points: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+
+    @property
+    def name(self) -> str:
+        return printable(self.body.path)
+
+    @property
+    def corners(self) -> NDArray[np.float64]:
+        """The corners of each triangle, shape (n, 3, 3)."""
+        return self.points[self.triangles]
+
+
+def meshes(job: Job) -> tuple[list[Mesh], tuple[Diagnostic, ...]]:
+    """The meshes of the bodies in order of drawing, and what there is to say of them. Raises ExportError
+    where no body has a thickness (E0917), or one cannot be made solid (E0918).
+    """
+    bodies, notes = thick_bodies(job)
+    return [_mesh(placed) for placed in bodies], (*notes, *placement_notes(job.model.root, job.drawing))
+
+
+def printable(name: str) -> str:
+    """A name without what XML and lines of text cannot hold."""
+    return "".join(c if c.isprintable() else "_" for c in name)
+
+
+def _mesh(placed: Placed) -> Mesh:
+    body, thickness = placed.body, placed.thickness
+    assert thickness is not None
+    left, bottom, right, top = body.box
+    # About its own centre, so that no digits are lost far out.
+    center = np.array(((left + right) / 2, (bottom + top) / 2))
+    tolerance = max(FINEST, FINENESS * max(right - left, top - bottom))
+    polygons = [polygon - center for polygon in region_polygons(body.region, tolerance)]
+    solid = manifold3d.CrossSection(polygons, manifold3d.FillRule.Positive).extrude(thickness)
+    if solid.is_empty():
+        raise ExportError(
+            "E0918",
+            f"`{body.path}` cannot be made a solid of triangles: it is too thin for them",
+            "look for a size that was written in another unit, or shrank to nothing",
+        )
+    made = solid.to_mesh64()
+    motion = placed.plane.placed(thickness)
+    flat = np.asarray(made.vert_properties)[:, :3] + (*center, 0.0)
+    points = flat @ motion[:, :3].T + motion[:, 3]
+    return Mesh(body, points, np.asarray(made.tri_verts, dtype=np.int64))

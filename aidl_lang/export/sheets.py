@@ -1,0 +1,105 @@
+"""Jobs for cutters: outlines widened by the cut, parts laid out on sheets, one job for each sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.export import ExportError, Job
+from aidl_lang.export.numbers import fixed, size_text
+from aidl_lang.geometry.drawing import Drawing, Stroke
+from aidl_lang.geometry.measures import region_bounds
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.notes import listed
+from aidl_lang.geometry.offsets import offset
+from aidl_lang.geometry.sheets import Size, laid_out
+from aidl_lang.solved import SolvedModel
+
+MOST_PARTS = 5000
+"""Parts beyond this are a mistake, and would take minutes to pack."""
+
+
+def prepared(job: Job) -> tuple[list[Job], list[Diagnostic]]:
+    """The job as a cutter needs it, one for each sheet; raises ExportError where that cannot be."""
+    if job.options.kerf:
+        job = replace(job, drawing=_widened(job, job.options.kerf / 2))
+    if job.options.sheet is None:
+        return [job], []
+    return _on_sheets(job, job.options.sheet, job.options.spacing)
+
+
+def _on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[Diagnostic]]:
+    if unfit := sorted(job.options.show - {"names"}):
+        raise ExportError(
+            "E0924",
+            f"`--show {','.join(unfit)}` explains the assembled drawing and has no place on cut sheets",
+            "`--show names` puts the names of the parts on them",
+        )
+    if min(sheet) <= 2 * spacing:
+        raise ExportError(
+            "E0924",
+            f"a sheet of {size_text(sheet)} has no room within a spacing of {fixed(spacing)} mm",
+            "give a larger `--sheet` or a smaller `--spacing`",
+        )
+    bodies = job.drawing.bodies
+    if not bodies:
+        raise ExportError(
+            "E0924", "there is no part to lay on a sheet", "only a `solid` is cut; a `drawing` is engraved on it"
+        )
+    if len(bodies) > MOST_PARTS:
+        raise ExportError("E0924", f"{len(bodies)} parts are more than the {MOST_PARTS} that sheets are made for")
+    layout = laid_out(job.drawing, sheet, spacing)
+    if layout.oversize:
+        raise _oversize(layout.oversize, sheet, spacing)
+    notes = [_stray_note(job.model, layout.strays)] if layout.strays else []
+    return [replace(job, drawing=drawing) for drawing in layout.sheets], notes
+
+
+def _oversize(parts: Sequence[tuple[str, Size]], sheet: Size, spacing: float) -> ExportError:
+    path, size = max(parts, key=lambda part: max(part[1]))
+    names = listed([path for path, _ in parts])
+    needed = tuple(side + 2 * spacing for side in size)
+    if len(parts) == 1:
+        message = f"{names} measures {size_text(size)} and does not fit on a sheet of {size_text(sheet)}"
+    else:
+        message = f"{names} do not fit on a sheet of {size_text(sheet)}; `{path}` measures {size_text(size)}"
+    around = f" with {fixed(spacing)} mm around it" if spacing else ""
+    return ExportError(
+        "E0923",
+        message,
+        f"{'it' if len(parts) == 1 else f'`{path}`'} needs a sheet of at least {size_text(needed)}{around}",
+        "to print it on small paper and join the pages, use `--tile a4` in place of `--sheet`",
+    )
+
+
+def _stray_note(model: SolvedModel, strays: Sequence[Stroke]) -> Diagnostic:
+    """The warning about what is engraved beside all parts."""
+    spans = {g.path: g.span for s in model.root.walk() for geometry in s.drawn for g in geometry.walk()}
+    names = list(dict.fromkeys(stroke.geometry for stroke in strays))
+    return Diagnostic(
+        "W0736",
+        f"what of {listed(names)} lies on no part is left off the sheets",
+        spans.get(names[0]),
+        hints=("a drawing inside a `solid` is laid out with it",),
+    )
+
+
+def _widened(job: Job, by: float) -> Drawing:
+    """The drawing with all material grown by half the width of the cut, and holes shrunk by as much."""
+    drawing = job.drawing
+    holes = {s.path for s in job.model.root.walk() if s.kind == "hole"}
+    grown = {p: -by for p in holes} | {body.path: by for body in drawing.bodies}
+    regions = {p: offset(r, grown.get(p, 0.0)) for p, r in drawing.regions.items()}
+    bodies = []
+    for body in drawing.bodies:
+        region = regions[body.path]
+        if len(region.loops) != len(body.region.loops):
+            raise ExportError(
+                "E0924",
+                f"holes or gaps of `{body.path}` are narrower than a cut of {fixed(2 * by)} mm",
+                "widen them, or give a smaller `--kerf`",
+            )
+        bodies.append(replace(body, region=region, box=region_bounds(region)))
+    box = union_bounds([drawing.box, *(body.box for body in bodies)])
+    return replace(drawing, bodies=tuple(bodies), regions=regions, box=box)

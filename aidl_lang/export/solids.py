@@ -1,0 +1,92 @@
+"""What the three-dimensional formats have in common: bodies in their planes, with their thickness."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.export import ExportError, Job
+from aidl_lang.geometry.drawing import Body, Stroke
+from aidl_lang.geometry.evaluate import LARGEST
+from aidl_lang.geometry.placement import Plane, planes, thickness_of
+
+THINNEST = 1e-6
+"""mm. A thickness below this is lost among the tolerances of those who read the file."""
+
+_REMEDIES = ("say how thick: `@thickness(3mm)` before it or what is around it", "or for all: `--thickness 3`")
+_NAMED = 5
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A body, its plane, and its thickness in mm; None if it stays flat."""
+
+    body: Body
+    plane: Plane
+    thickness: float | None
+
+
+def placed_bodies(job: Job) -> list[Placed]:
+    """The bodies in order of drawing. Raises ExportError for one that cannot be made a solid."""
+    stand = planes(job.model.root)
+    found = []
+    for body in job.drawing.bodies:
+        thickness = thickness_of(body, job.options.thickness)
+        _require_size(body, thickness)
+        _require_place(body.path, stand[body.path])
+        found.append(Placed(body, stand[body.path], thickness))
+    return found
+
+
+def placed_strokes(job: Job) -> list[tuple[Stroke, Plane]]:
+    """The strokes with the planes they lie in."""
+    stand = planes(job.model.root)
+    for stroke in job.drawing.strokes:
+        _require_place(stroke.path, stand[stroke.path])
+    return [(stroke, stand[stroke.path]) for stroke in job.drawing.strokes]
+
+
+def thick_bodies(job: Job) -> tuple[list[Placed], tuple[Diagnostic, ...]]:
+    """The bodies that have a thickness, and a warning that names the others."""
+    bodies = placed_bodies(job)
+    thick = [p for p in bodies if p.thickness is not None]
+    flat = [p.body.path for p in bodies if p.thickness is None]
+    if not bodies:
+        raise ExportError(
+            "E0917", "there is no body to write", "material is what the curves of a `solid` enclose"
+        )
+    if not flat:
+        return thick, ()
+    have = f"{_names(flat)} {'has' if len(flat) == 1 else 'have'} no thickness"
+    if not thick:
+        raise ExportError("E0917", have, *_REMEDIES)
+    left_out = "is left out" if len(flat) == 1 else "are left out"
+    return thick, (Diagnostic("W0725", f"{have} and {left_out}", hints=_REMEDIES),)
+
+
+def _require_size(body: Body, thickness: float | None) -> None:
+    if thickness is not None and not THINNEST <= thickness <= LARGEST:
+        raise ExportError(
+            "E0918",
+            f"`{body.path}` cannot be made a solid: it would be {thickness:g} mm thick",
+            f"a thickness is from {THINNEST:g} to {LARGEST:g} mm",
+        )
+
+
+def _require_place(path: str, plane: Plane) -> None:
+    if not np.abs(plane.origin).max() <= LARGEST:
+        raise ExportError(
+            "E0918",
+            f"`{path}` cannot be placed in space: it lies further out than {LARGEST:g} mm",
+            "look for an `@elevation` that was written in another unit, or multiplied once too often",
+        )
+
+
+def _names(paths: Sequence[str]) -> str:
+    named = [f"`{path}`" for path in paths[:_NAMED]]
+    if len(paths) > _NAMED:
+        named.append(f"{len(paths) - _NAMED} more")
+    return named[0] if len(named) == 1 else f"{', '.join(named[:-1])} and {named[-1]}"

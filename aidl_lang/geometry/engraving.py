@@ -1,0 +1,89 @@
+"""Which part a drawing is engraved on, when the parts are taken from one another."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from aidl_lang.geometry.boolean import section_of
+from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.drawing import Body, Stroke
+from aidl_lang.geometry.evaluate import NO_LENGTH, Bounds, bounds, part
+from aidl_lang.geometry.measures import length
+from aidl_lang.geometry.network import Network, union_bounds
+from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.sections import inside_mask
+
+
+def engraved(bodies: Sequence[Body], strokes: Sequence[Stroke]) -> tuple[dict[str, list[Stroke]], list[Stroke]]:
+    """The strokes of drawings by the path of their body, and what lies on no body.
+
+    A drawing inside a part stays with it. Any other is cut where parts end: what lies on several of them goes
+    to the one that has most of the stroke, of equal ones to that drawn last.
+    """
+    by_path = {body.path: body for body in bodies}
+    around = {owner(by_path, body.path.rpartition(".")[0]) for body in bodies}  # these have others in them
+    on: dict[str, list[Stroke]] = {}
+    off: list[Stroke] = []
+    for stroke in strokes:
+        if stroke.role != "drawing":
+            continue
+        holder = owner(by_path, stroke.path)
+        if holder is not None and holder not in around:
+            on.setdefault(holder, []).append(stroke)
+            continue
+        rest = stroke.pieces
+        for body in _by_cover(stroke, bodies):
+            inside, rest = divided(rest, body.region)
+            if inside:
+                on.setdefault(body.path, []).append(replace(stroke, pieces=inside))
+        if _length(rest) > NO_LENGTH:
+            off.append(replace(stroke, pieces=rest))
+    return on, off
+
+
+def owner(bodies: Mapping[str, Body], path: str) -> str | None:
+    """The nearest body at a path or above it."""
+    while path and path not in bodies:
+        path = path.rpartition(".")[0]
+    return path or None
+
+
+def _by_cover(stroke: Stroke, bodies: Sequence[Body]) -> list[Body]:
+    """The bodies under a stroke, first the one that has most of it."""
+    box = union_bounds([bounds(piece) for piece in stroke.pieces])
+    near = [body for body in reversed(bodies) if boxes_meet(box, body.box)]
+    if len(near) < 2:
+        return near
+    cover = {body.path: _length(divided(stroke.pieces, body.region)[0]) for body in near}
+    return sorted(near, key=lambda body: -cover[body.path])
+
+
+def divided(curves: Sequence[Piece], region: Region) -> tuple[tuple[Piece, ...], tuple[Piece, ...]]:
+    """What of curves lies in a region or on its edge, and what outside; uncut ones are as they were."""
+    outline = [p for loop in region.loops for p in loop.pieces]
+    network = Network([*outline, *curves])
+    own, others = network.uses[: len(outline)], network.uses[len(outline) :]
+    edges = sorted({edge for uses in others for edge, _ in uses})
+    mask = inside_mask(section_of(network, region, 0), [network.midpoint(edge) for edge in edges])
+    within = {edge for uses in own for edge, _ in uses} | {e for e, is_in in zip(edges, mask, strict=True) if is_in}
+    inside: list[Piece] = []
+    outside: list[Piece] = []
+    for curve, uses in zip(curves, others, strict=True):
+        if len({edge in within for edge, _ in uses}) == 1:
+            (inside if uses[0][0] in within else outside).append(curve)
+            continue
+        for number, forward in uses:
+            e = network.edges[number]
+            t0, t1, a, b = (e.t0, e.t1, e.start, e.end) if forward else (e.t1, e.t0, e.end, e.start)
+            piece = part(network.curves[e.curve], t0, t1, network.nodes[a], network.nodes[b])
+            (inside if number in within else outside).append(piece)
+    return tuple(inside), tuple(outside)
+
+
+def boxes_meet(a: Bounds, b: Bounds) -> bool:
+    return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
+
+
+def _length(pieces: Sequence[Piece]) -> float:
+    return sum(map(length, pieces))

@@ -1,0 +1,109 @@
+"""What lies near what: pairs of boxes, and sides of polylines beside a point, in windows of sorted tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.geometry.evaluate import Bounds
+
+_AT_ONCE = 1 << 20
+"""How many candidates are looked at in one step, which bounds the memory."""
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+
+
+def near_pairs(boxes: Sequence[Bounds], margin: float) -> Iterator[tuple[int, int]]:
+    """Pairs i < j whose boxes come closer than the margin, in the order of a sweep from left to right.
+
+    The sweep itself runs along the axis on which fewer boxes meet, so that a long row costs no more than a
+    long column.
+    """
+    if len(boxes) < 2:
+        return
+    b = np.array(boxes, dtype=np.float64)
+    order = np.argsort(b[:, 0], kind="stable")
+    b = b[order]
+    sweeps = [_sweep(b, axis, margin) for axis in (0, 1)]
+    along, stops = min(sweeps, key=lambda sweep: int((sweep[1] - np.arange(len(b))).sum()))
+    found = []
+    for one, other in _windows(np.arange(1, len(b) + 1), stops):
+        first, second = np.minimum(along[one], along[other]), np.maximum(along[one], along[other])
+        meets = (b[first, 2:] + margin >= b[second, :2]).all(axis=1) & (b[first, 1] - margin <= b[second, 3])
+        found.append((first[meets], second[meets]))
+    firsts, seconds = (np.concatenate([pair[k] for pair in found]) for k in (0, 1))
+    kept = np.lexsort((firsts, seconds))
+    one, other = order[firsts[kept]], order[seconds[kept]]
+    yield from zip(np.minimum(one, other).tolist(), np.maximum(one, other).tolist(), strict=True)
+
+
+def _sweep(b: Floats, axis: int, margin: float) -> tuple[Ints, Ints]:
+    """The boxes in the order of their beginnings on an axis; for each place the one up to which they meet."""
+    along = np.argsort(b[:, axis], kind="stable")
+    return along, np.searchsorted(b[along, axis], b[along, 2 + axis] + margin, side="right")
+
+
+def _windows(low: Ints, high: Ints) -> Iterator[tuple[Ints, Ints]]:
+    """Every number k with every place in `low[k]:high[k]`, a part of them at a time."""
+    sizes = np.maximum(0, high - low)
+    ends = np.cumsum(sizes)
+    begin = 0
+    while begin < len(sizes):
+        done = int(ends[begin - 1]) if begin else 0
+        stop = max(begin + 1, int(np.searchsorted(ends, done + _AT_ONCE, side="right")))
+        size = sizes[begin:stop]
+        number = np.repeat(np.arange(begin, stop), size)
+        within = np.arange(len(number)) - np.repeat(np.cumsum(size) - size, size)
+        yield number, low[number] + within
+        begin = stop
+
+
+class Sides:
+    """Straight sides (x0, y0, x1, y1 in a row), found by place: sorted by their left ends, in classes of like
+    width.
+    """
+
+    def __init__(self, sides: Floats) -> None:
+        self._start, self._way = sides[:, :2], sides[:, 2:] - sides[:, :2]
+        left, width = np.minimum(sides[:, 0], sides[:, 2]), np.abs(self._way[:, 0])
+        size = np.frexp(np.maximum(width, 1e-9))[1]
+        self._classes: list[tuple[Ints, Floats, float]] = []
+        for k in np.unique(size):
+            of_size = np.flatnonzero(size == k)
+            of_size = of_size[np.argsort(left[of_size], kind="stable")]
+            self._classes.append((of_size, left[of_size], float(2.0**k)))
+
+    def near(self, spots: Floats, reach: float) -> tuple[Ints, Ints, Floats]:
+        """All sides that pass a spot at most at the given distance: spot, side and distance."""
+        found = [(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0))]
+        for of_size, left, width in self._classes:
+            low = np.searchsorted(left, spots[:, 0] - width - reach)
+            high = np.searchsorted(left, spots[:, 0] + reach, side="right")
+            for spot, place in _windows(low, high):
+                side = of_size[place]
+                away = self._distance(spots[spot], side)
+                kept = away <= reach
+                found.append((spot[kept], side[kept], away[kept]))
+        spot, side, away = (np.concatenate([f[k] for f in found]) for k in range(3))
+        return spot, side, away
+
+    def nearest(self, spots: Floats, reach: float) -> Ints:
+        """The side nearest to each spot, the first of several; sought within a reach that grows."""
+        result = np.full(len(spots), -1, dtype=np.int64)
+        while len(left := np.flatnonzero(result < 0)):
+            spot, side, away = self.near(spots[left], reach)
+            order = np.lexsort((side, away, spot))
+            first = np.unique(spot[order], return_index=True)
+            result[left[first[0]]] = side[order][first[1]]
+            reach *= 1000
+        return result
+
+    def _distance(self, spots: Floats, side: Ints) -> Floats:
+        gap, way = spots - self._start[side], self._way[side]
+        square = np.maximum((way**2).sum(axis=1), 1e-300)
+        t = np.clip((gap * way).sum(axis=1) / square, 0, 1)
+        away: Floats = np.hypot(*(gap - t[:, None] * way).T)
+        return away

@@ -1,0 +1,202 @@
+"""The bodies of a drawing laid flat, apart from one another, on sheets to cut them from.
+
+Bodies are moved and turned by a quarter, never mirrored: their front stays up, and every curve is as exact as
+before. They are packed by their boxes. Those of different material or thickness are cut from different
+sheets.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from aidl_lang.geometry.curves import Piece
+from aidl_lang.geometry.drawing import Body, Drawing, Stroke
+from aidl_lang.geometry.engraving import boxes_meet, engraved, owner
+from aidl_lang.geometry.evaluate import Bounds, bounds, inward
+from aidl_lang.geometry.measures import region_bounds
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.region import Face, Loop, Region
+
+SPACING = 3.0
+"""Millimetres between parts, and between them and the edge of the sheet."""
+
+GRID = 1000
+"""Places are whole micrometres: sums of them are exact, and so is the comparison of what is left over."""
+SLACK = 1e-3
+"""Micrometres by which rounding may have enlarged a part."""
+FEW = 200
+"""Up to so many parts a slower packer is used, which fills the sheets better."""
+
+Size = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Sheets with their lower left corner in the origin, or none if parts are too large.
+
+    strays    what drawings have beside all bodies; it is on no sheet
+    oversize  paths of bodies that do not fit, with their sizes as they fit best
+    """
+
+    sheets: tuple[Drawing, ...]
+    strays: tuple[Stroke, ...] = ()
+    oversize: tuple[tuple[str, Size], ...] = ()
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A body with what is engraved on it, and the regions of the structures it was made of."""
+
+    body: Body
+    strokes: tuple[Stroke, ...]
+    regions: dict[str, Region]
+    box: Bounds
+
+    @property
+    def size(self) -> Size:
+        return self.box[2] - self.box[0], self.box[3] - self.box[1]
+
+
+@dataclass(frozen=True)
+class _Place:
+    """The lower left corner of a part on its sheet, mm, and whether it was turned by a quarter."""
+
+    part: _Part
+    x: float
+    y: float
+    turned: bool
+
+
+def laid_out(drawing: Drawing, sheet: Size, spacing: float = SPACING) -> Layout:
+    """All bodies on as few sheets as the packer finds, those of one stock together (sizes in mm)."""
+    on, off = engraved(drawing.bodies, drawing.strokes)
+    parts = _parts(drawing, on)
+    room = sheet[0] - 2 * spacing, sheet[1] - 2 * spacing
+    oversize = tuple(
+        (part.body.path, part.size)
+        for part in parts
+        if not (_fits(part.size, room) or _fits(part.size[::-1], room))
+    )
+    if oversize:
+        return Layout((), tuple(off), oversize)
+    stocks: dict[tuple[str, float], list[_Part]] = {}
+    for part in parts:
+        style = part.body.style
+        stocks.setdefault((style.material or "", style.thickness or 0.0), []).append(part)
+    return Layout(
+        tuple(
+            _drawn(drawing, sheet, places)
+            for _, group in sorted(stocks.items(), key=lambda item: item[0])
+            for places in _packed(group, sheet, spacing)
+        ),
+        tuple(off),
+    )
+
+
+def _fits(size: Size, room: Size) -> bool:
+    return _rounded(size[0]) <= _floor(room[0]) and _rounded(size[1]) <= _floor(room[1])
+
+
+def _rounded(length: float) -> int:
+    return math.ceil(length * GRID - SLACK)
+
+
+def _floor(length: float) -> int:
+    return math.floor(length * GRID + SLACK)
+
+
+def _parts(drawing: Drawing, on: dict[str, list[Stroke]]) -> list[_Part]:
+    bodies = {body.path: body for body in drawing.bodies}
+    below: dict[str, dict[str, Region]] = {path: {} for path in bodies}
+    shared: dict[str, Region] = {}  # holes of an assembly may cut several of its bodies
+    for path, region in drawing.regions.items():
+        above = owner(bodies, path)
+        (shared if above is None else below[above])[path] = region
+    parts = []
+    for body in drawing.bodies:
+        strokes = tuple(on.get(body.path, ()))
+        box = union_bounds([body.box, *(bounds(piece) for s in strokes for piece in s.pieces)])
+        regions = below[body.path]
+        regions |= {p: r for p, r in shared.items() if boxes_meet(region_bounds(r), body.box)}
+        parts.append(_Part(body, strokes, regions, box))
+    return parts
+
+
+def _packed(parts: Sequence[_Part], sheet: Size, spacing: float) -> list[list[_Place]]:
+    """The places on each sheet. Parts are turned only if that saves sheets."""
+    gap = _rounded(spacing)
+    room = _floor(sheet[0]) - gap, _floor(sheet[1]) - gap
+    sizes = [(_rounded(part.size[0]) + gap, _rounded(part.size[1]) + gap) for part in parts]
+    upright = all(w <= room[0] and h <= room[1] for w, h in sizes)
+    bins = _bins(sizes, room, turning=False) if upright else []
+    if len(bins) != 1:
+        turned = _bins(sizes, room, turning=True)
+        bins = turned if not upright or len(turned) < len(bins) else bins
+    return [[_place(parts[r.rid], r, gap) for r in sorted(found, key=lambda r: r.rid)] for found in bins]
+
+
+def _bins(sizes: Sequence[tuple[int, int]], room: tuple[int, int], *, turning: bool) -> list[Any]:
+    from rectpack import SORT_LSIDE, PackingBin, PackingMode, newPacker
+    from rectpack.maxrects import MaxRectsBl
+    from rectpack.skyline import SkylineBl
+
+    packer = newPacker(
+        mode=PackingMode.Offline,
+        bin_algo=PackingBin.BFF,
+        pack_algo=MaxRectsBl if len(sizes) <= FEW else SkylineBl,
+        sort_algo=SORT_LSIDE,
+        rotation=turning,
+    )
+    packer.add_bin(*room, count=math.inf)
+    for number, size in enumerate(sizes):
+        packer.add_rect(*size, rid=number)
+    packer.pack()
+    return list(packer)
+
+
+def _place(part: _Part, rectangle: Any, gap: int) -> _Place:
+    turned = (rectangle.width, rectangle.height) != (
+        _rounded(part.size[0]) + gap,
+        _rounded(part.size[1]) + gap,
+    )
+    return _Place(part, (rectangle.x + gap) / GRID, (rectangle.y + gap) / GRID, turned)
+
+
+def _drawn(drawing: Drawing, sheet: Size, places: Sequence[_Place]) -> Drawing:
+    """The drawing of one sheet. Seams and plans are not cut."""
+    bodies, strokes, regions = [], [], dict[str, Region]()
+    for place in places:
+        part = place.part
+        region = _moved_region(part.body.region, place)
+        bodies.append(replace(part.body, region=region, box=region_bounds(region)))
+        strokes += [replace(s, pieces=tuple(_moved(s.pieces, place))) for s in part.strokes]
+        for path, below in part.regions.items():
+            faces = regions.get(path, Region()).faces
+            regions[path] = Region(faces + _moved_region(below, place).faces)
+    box = (0.0, 0.0, *sheet)
+    return Drawing(tuple(bodies), regions, (), tuple(strokes), (), (), drawing.styles, box)
+
+
+def _moved_region(region: Region, place: _Place) -> Region:
+    return Region(
+        tuple(
+            Face(_moved_loop(face.outer, place), tuple(_moved_loop(hole, place) for hole in face.holes))
+            for face in region.faces
+        )
+    )
+
+
+def _moved_loop(loop: Loop, place: _Place) -> Loop:
+    return Loop(tuple(_moved(loop.pieces, place)), loop.reversed)
+
+
+def _moved(pieces: Sequence[Piece], place: _Place) -> Iterator[Piece]:
+    left, bottom, _, top = place.part.box
+    if place.turned:  # (x, y) becomes (-y, x)
+        origin, rotation = (left - place.y, top + place.x), -90.0
+    else:
+        origin, rotation = (left - place.x, bottom - place.y), 0.0
+    return (inward(piece, origin, rotation, mirrored=False) for piece in pieces)

@@ -1,0 +1,272 @@
+"""`aidl measure`: what it tells of a program, as text, as JSON and to Python."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import aidl_lang
+from aidl_lang.materials import densities, density, similar
+from tests.cli.conftest import Result
+
+Aidl = Callable[..., Result]
+
+BOX = """\
+@material("6 mm birch plywood") @thickness(6mm)
+assembly box {
+    solid floor {
+        board = rectangle(center: fixed((0, 0)), width: 100, height: 40)
+        hole drain { rim = circle(center: fixed((30, 0)), radius: 5) }
+        boss = circle(center: fixed((-50, 0)), radius: 4)
+        solid rib { bar = rectangle(center: fixed((0, 21)), width: 10, height: 4) }
+    }
+    solid lid { board = rectangle(center: fixed((0, 60)), width: 100, height: 20) }
+    @material("aluminum") @thickness(2mm)
+    solid pin { rod = circle(center: fixed((0, -25)), radius: 5) }
+    drawing mark { stroke = line(start: fixed((0, 0)), end: fixed((5, 5))) }
+}
+"""
+
+
+@pytest.fixture
+def box(folder: Path) -> str:
+    (folder / "box.aidl").write_text(BOX)
+    return "box.aidl"
+
+
+def test_text_of_a_single_body(aidl: Aidl, folder: Path) -> None:
+    (folder / "sign.aidl").write_text(
+        '@thickness(4mm) @material("MDF, 4 mm")\n'
+        "solid sign { edge = rectangle(center: origin, width: 40, height: 20) }\n"
+    )
+    assert aidl("measure", "sign.aidl") == Result(
+        0,
+        """\
+sign: a body
+  area       800 mm²
+  perimeter  120 mm
+  size       40 × 20 mm
+  box        (-20, -10) to (20, 10)
+  centroid   (0, 0)
+  outline    1 piece, 0 holes
+  moments    Ixx 26666.7, Iyy 106667, Ixy 0 mm⁴ about the centroid
+             106667 about the axis at 90°, 26666.7 across it, polar 133333 mm⁴
+  wall       20 mm, from (0, -10) to (0, 10)
+  gap        none
+  thickness  4 mm
+  material   MDF, 4 mm, 750 kg/m³
+  volume     3200 mm³
+  mass       2.4 g
+""",
+        "",
+    )
+
+
+def test_text_of_several_bodies(aidl: Aidl, box: str) -> None:
+    result = aidl("measure", box)
+    assert result.code == 0
+    assert "warning[W0705]" in result.err
+    lines = result.out.splitlines()
+    assert lines[0] == "box: 3 bodies"
+    assert "  wall       10 mm, from (0, 19)" not in result.out
+    table = lines[lines.index("") + 1 :]
+    assert table[0].split("  ")[0] == "body"
+    assert [row.split()[0] for row in table[1:4]] == ["box.floor", "box.lid", "box.pin"]
+    assert [" ".join(row.split()) for row in table[5:8]] == [
+        "box.floor box.pin touching",
+        "box.floor box.lid 27 mm apart",
+        "box.lid box.pin 70 mm apart",
+    ]
+    assert table[8] == "touches no other: `box.lid`"
+
+
+def test_json(aidl: Aidl, box: str) -> None:
+    document = json.loads(aidl("measure", box, "--json").out)
+    assert list(document) == ["units", "whole", "parts", "pairs", "all_pairs", "alone", "diagnostics"]
+    floor, lid, pin = document["parts"]
+    cap = 16 * math.pi / 2  # half of the boss stands out of the board
+    area = 100 * 40 - 25 * math.pi + cap + 10 * 3
+    assert floor["area"] == pytest.approx(area, rel=1e-11)
+    assert (floor["kind"], floor["bodies"], floor["pieces"], floor["holes"]) == ("body", 1, 1, 1)
+    assert floor["box"] == {"left": -54, "right": 50, "top": 23, "bottom": -20}
+    assert (floor["width"], floor["height"]) == (104, 43)
+    assert floor["volume"] == pytest.approx(6 * area)
+    assert floor["mass"] == pytest.approx(6 * area * 0.68e-3)
+    assert floor["wall"]["length"] == pytest.approx(8)  # the boss, from side to side
+    assert floor["gap"] == {
+        "length": 10,
+        "from": pytest.approx(floor["gap"]["from"]),
+        "to": pytest.approx(floor["gap"]["to"]),
+        "part": "box.floor",
+    }
+    assert lid["inertia"] == {
+        "xx": pytest.approx(100 * 20**3 / 12),
+        "yy": pytest.approx(20 * 100**3 / 12),
+        "xy": pytest.approx(0, abs=1e-6),
+        "polar": pytest.approx(100 * 20 * (100**2 + 20**2) / 12),
+        "principal": pytest.approx([20 * 100**3 / 12, 100 * 20**3 / 12]),
+        "angle": 90,
+    }
+    assert (pin["material"], pin["density"], pin["thickness"]) == ("aluminum", 2700, 2)
+    whole = document["whole"]
+    assert (whole["path"], whole["kind"], whole["bodies"]) == ("box", "bodies", 3)
+    assert whole["mass"] == pytest.approx(sum(p["mass"] for p in document["parts"]))
+    assert whole["area"] == pytest.approx(sum(p["area"] for p in document["parts"]))
+    assert whole["wall"]["part"] == "box.floor"
+    assert [pair["relation"] for pair in document["pairs"]] == ["touching", "apart", "apart"]
+    assert document["pairs"][1]["gap"] == 27
+    assert (document["all_pairs"], document["alone"]) == (True, ["box.lid"])
+    assert [d["code"] for d in document["diagnostics"]] == ["W0705"]
+
+
+def test_paths_name_structures_holes_and_outlines(aidl: Aidl, box: str) -> None:
+    paths = ("floor", "box.floor.drain", "floor.rib", "floor.boss", "LID")
+    parts = json.loads(aidl("measure", box, *paths, "--json").out)["parts"]
+    assert [(p["path"], p["kind"]) for p in parts] == [
+        ("box.floor", "body"),
+        ("box.floor.drain", "hole"),
+        ("box.floor.rib", "solid"),
+        ("box.floor.boss", "geometry"),
+        ("box.lid", "body"),
+    ]
+    assert [p["area"] for p in parts[1:4]] == pytest.approx([25 * math.pi, 40, 16 * math.pi])
+    assert [p["mass"] for p in parts[1:4]] == [None, None, None]
+
+
+def test_an_unknown_path(aidl: Aidl, folder: Path) -> None:
+    (folder / "pair.aidl").write_text(
+        "assembly pair {\n    solid left { c = circle(center: fixed((0, 0)), radius: 5) }\n"
+        "    solid right { c = circle(center: fixed((10, 0)), radius: 5) }\n"
+        "    drawing mark { stroke = line(start: fixed((0, 0)), end: fixed((5, 5))) }\n}\n"
+    )
+    assert aidl("measure", "pair.aidl", "rihgt") == Result(
+        2,
+        "",
+        "error[E0919]: there is no `rihgt` in the drawing\n"
+        "  = hint: did you mean `pair.right`?\n"
+        "  = hint: there is `pair.left`, `pair.right`\n",
+    )
+    assert aidl("measure", "pair.aidl", "mark").err == (
+        "error[E0919]: `mark` is a drawing that covers no area\n"
+        "  = hint: there is `pair.left`, `pair.right`\n"
+    )
+    assert aidl("measure", "pair.aidl", "mark.stroke").err == (
+        "error[E0919]: `mark.stroke` encloses no area: its curves do not close\n"
+        "  = hint: there is `pair.left`, `pair.right`\n"
+    )
+
+
+def test_unknown_materials(aidl: Aidl, folder: Path) -> None:
+    text = '@thickness(2mm) @material("{}")\nsolid s {{ c = square(center: origin, size: 10) }}\n'
+    (folder / "s.aidl").write_text(text.format("linoleum"))
+    result = aidl("measure", "s.aidl")
+    assert result.code == 0
+    assert result.err.startswith(
+        "note[N0731]: the density of `linoleum` is not known, so `s` has no mass\n --> s.aidl:1:1\n"
+    )
+    assert '  = hint: say it in kg/m³: `--density "linoleum=1200"`\n' in result.err
+    assert "mass" not in result.out
+    told = aidl("measure", "s.aidl", "--density", "Linoleum = 1200 kg/m3")
+    assert told.err == ""
+    assert "  mass       0.24 g\n" in told.out
+    (folder / "s.aidl").write_text(text.format("birch plywod"))
+    assert "note[N0731]" not in aidl("measure", "s.aidl").err  # birch
+    (folder / "s.aidl").write_text(text.format("alumnium"))
+    assert "did you mean `aluminium`" in aidl("measure", "s.aidl").err
+
+
+@pytest.mark.parametrize("wrong", ["oak", "oak=", "=700", "oak=-1", "oak=nan", "oak=inf", "oak=heavy"])
+def test_wrong_densities(aidl: Aidl, wrong: str) -> None:
+    result = aidl("measure", "good.aidl", "--density", wrong)
+    assert result.code == 2
+    assert 'expected NAME=KG/M3, as in "oak=720"' in result.err
+
+
+def test_a_wrong_program_ends_as_with_compile(aidl: Aidl) -> None:
+    for name in ("wrong.aidl", "unsolvable.aidl"):
+        result = aidl("measure", name)
+        assert (result.code, result.out) == (1, "")
+        assert "error[" in result.err
+    assert aidl("measure", "missing.aidl").code == 2
+
+
+def test_params_are_set(aidl: Aidl) -> None:
+    assert "  size       60 × 20 mm\n" in aidl("measure", "good.aidl", "-D", "width=60").out
+
+
+def test_a_program_of_strokes_alone(aidl: Aidl) -> None:
+    result = aidl("measure", "-", stdin="drawing d { l = line(start: fixed((0, 0)), end: fixed((5, 2))) }")
+    assert result.code == 0
+    assert result.out.startswith("d: 0 bodies\n  area       0 mm²\n")
+    assert "  size       5 × 2 mm\n" in result.out
+
+
+def test_forty_bodies(aidl: Aidl) -> None:
+    program = (
+        "assembly a { for i in 0..39 { @detached solid s[i] { c = circle(center: fixed((30 * i, 0)), "
+        "radius: 5 + i / 10) } } }"
+    )
+    lines = aidl("measure", "-", stdin=program).out.splitlines()
+    table = lines[lines.index("") + 1 :]
+    assert len(table) == 1 + 40 + 1 + 20 + 3
+    assert table[-3] == "and 57 more pairs, 16.3 mm apart or further"
+    assert table[-2] == "pairs that are far from each other are not listed"
+    assert table[-1].endswith(" and 34 more")
+
+
+def test_odd_names_do_not_reach_the_terminal(aidl: Aidl, folder: Path) -> None:
+    (folder / "s.aidl").write_text(
+        '@thickness(2mm) @material("oak\x1b[31m </svg>")\nsolid s { c = circle(center: origin, radius: 1) }\n'
+    )
+    result = aidl("measure", "s.aidl")
+    assert "\x1b" not in result.out + result.err
+
+
+def test_from_python() -> None:
+    model = aidl_lang.compile(BOX)
+    whole, pin = model.measure(), model.measure("pin")
+    assert (whole.path, whole.bodies) == ("box", 3)
+    assert pin.mass == pytest.approx(25 * math.pi * 2 * 2.7e-3)
+    assert model.measure("lid", densities={"birch plywood": 700}).mass == pytest.approx(100 * 20 * 6 * 0.7e-3)
+    with pytest.raises(KeyError):
+        model.measure("nothing")
+    with pytest.raises(ValueError, match="wrong"):
+        aidl_lang.compile("solid s { c = circel(radius: 1) }").measure()
+
+
+# --- Materials -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("6 mm birch plywood", 680),
+        ("Birch-Plywood", 680),
+        ("plywood, 4mm", 600),
+        ("Stainless Steel 304", 7930),
+        ("mild_steel", 7850),
+        ("Aluminum 6061-T6", 2700),
+        ("PLEXIGLASS", 1190),
+        ("polystyrene foam", 30),
+        ("pineapple", None),
+        ("", None),
+    ],
+)
+def test_the_longest_name_in_the_text_counts(text: str, expected: float | None) -> None:
+    assert density(text) == expected
+
+
+def test_own_densities_come_first() -> None:
+    assert density("Dry Oak", {"oak": 700}) == 700
+    assert density("ash", {"oak": 700}) == density("ash")
+
+
+def test_the_table_is_plausible() -> None:
+    assert len(densities()) > 100
+    assert all(name == name.casefold().strip() for name in densities())
+    assert all(10 < value < 20_000 for value in densities().values())
+    assert similar("alumnium sheet")[0] == "aluminium"

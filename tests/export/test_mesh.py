@@ -1,0 +1,223 @@
+"""STL and 3MF, read back by trimesh."""
+
+from __future__ import annotations
+
+import importlib.util
+import io
+import math
+
+import pytest
+import trimesh
+
+from aidl_lang import export as export_module
+from aidl_lang import pipeline
+from aidl_lang.export import Exported, ExportError, Job, Options, export
+from aidl_lang.geometry.curves import Circle
+from aidl_lang.geometry.drawing import draw
+from aidl_lang.render import render
+from aidl_lang.solved import SolvedModel
+from aidl_lang.source import SourceFile
+from tests.geometry.models import circle, model, polygon, rectangle, structure
+
+SUFFIXES = (".stl", ".3mf")
+
+
+def written(program: str, suffix: str, thickness: float | None = None) -> Exported:
+    compiled = pipeline.compile(SourceFile("part.aidl", program))
+    assert compiled.ok, compiled.diagnostics
+    return compiled.exported(suffix, Options(thickness=thickness))
+
+
+def of_model(m: SolvedModel, suffix: str, thickness: float | None = None) -> bytes:
+    return export(Job(m, draw(m)[0], options=Options(thickness=thickness)), suffix).data
+
+
+def bodies(data: bytes, suffix: str) -> dict[str, trimesh.Trimesh]:
+    """The bodies of a file by name."""
+    return dict(trimesh.load_scene(io.BytesIO(data), file_type=suffix[1:]).geometry)
+
+
+def only(data: bytes, suffix: str) -> trimesh.Trimesh:
+    (body,) = bodies(data, suffix).values()
+    return body
+
+
+RING = """
+@thickness(3mm)
+solid ring {
+    body = circle(center: fixed((0, 0)), radius: 20)
+    hole bore { rim = circle(center: fixed((0, 0)), radius: 8) }
+}
+"""
+STAND = """
+assembly stand {
+    @thickness(4mm) @color("tomato") @material("birch")
+    solid base { body = rectangle(center: fixed((30, 20)), width: 60, height: 40) }
+    @thickness(3mm) @orientation(front) @elevation(-1)
+    solid back at fixed((0, 40)) { body = rectangle(center: fixed((30, 24)), width: 60, height: 40) }
+    @thickness(3mm) @orientation(side)
+    solid end at fixed((57, 0)) { body = rectangle(center: fixed((20, 24)), width: 40, height: 40) }
+    @detached solid note { body = rectangle(center: fixed((90, 20)), width: 10, height: 10) }
+    drawing mark { stroke = line(fixed((0, 0)), fixed((10, 10))) }
+}
+"""
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_plate_with_a_hole(suffix: str) -> None:
+    """Chords of 0.004 mm at most: both circles lose less than that times their length."""
+    body = only(written(RING, suffix).data, suffix)
+    assert body.is_watertight
+    assert body.is_winding_consistent
+    assert body.euler_number == 0  # one hole
+    exact = 3 * math.pi * (20**2 - 8**2)
+    assert body.volume == pytest.approx(exact, abs=3 * 0.004 * 2 * math.pi * (20 + 8))
+    assert body.volume != pytest.approx(exact, rel=1e-6)
+    assert body.bounds.tolist() == [
+        pytest.approx((-20, -20, 0), abs=0.004),
+        pytest.approx((20, 20, 3), abs=0.004),
+    ]
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_every_vertex_lies_on_the_outline(suffix: str) -> None:
+    body = only(written(RING, suffix).data, suffix)
+    radii = [math.hypot(x, y) for x, y, _ in body.vertices]
+    assert all(min(abs(r - 20), abs(r - 8)) < 2e-6 for r in radii)
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_bodies_stay_apart_named_and_placed(suffix: str) -> None:
+    found = bodies(written(STAND, suffix).data, suffix)
+    assert {name: body.bounds.round(5).tolist() for name, body in found.items()} == {
+        "stand.base": [[0, 0, 0], [60, 40, 4]],
+        "stand.back": [[0, 39, 4], [60, 42, 44]],
+        "stand.end": [[57, 0, 4], [60, 40, 44]],
+    }
+    assert all(body.is_watertight for body in found.values())
+    volumes = [body.volume for body in found.values()]
+    assert volumes == pytest.approx([60 * 40 * 4, 60 * 40 * 3, 40 * 40 * 3], rel=1e-6)
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_what_is_left_out_is_named(suffix: str) -> None:
+    (note,) = written(STAND, suffix).notes
+    assert render(note) == (
+        "warning[W0725]: `stand.note` has no thickness and is left out\n"
+        "  = hint: say how thick: `@thickness(3mm)` before it or what is around it\n"
+        "  = hint: or for all: `--thickness 3`"
+    )
+    made = written(STAND, suffix, thickness=2)
+    assert made.notes == ()
+    assert bodies(made.data, suffix)["stand.note"].volume == pytest.approx(200, rel=1e-6)
+
+
+def test_many_that_are_left_out() -> None:
+    flat = [structure("solid", f"s[{k}]", circle("c", 9 * k, 0, 1)) for k in range(7)]
+    m = model(
+        structure("assembly", "a", *flat, structure("solid", "t", circle("c", -9, 0, 1), thickness=(2.0,)))
+    )
+    (note,) = export(Job(m, draw(m)[0]), ".stl").notes
+    assert (
+        note.message
+        == "`a.s[0]`, `a.s[1]`, `a.s[2]`, `a.s[3]`, `a.s[4]` and 2 more have no thickness and are left out"
+    )
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_nothing_has_a_thickness(suffix: str) -> None:
+    with pytest.raises(ExportError) as reason:
+        written(RING.replace("@thickness(3mm)", ""), suffix)
+    assert render(reason.value.diagnostic) == (
+        "error[E0917]: `ring` has no thickness\n"
+        "  = hint: say how thick: `@thickness(3mm)` before it or what is around it\n"
+        "  = hint: or for all: `--thickness 3`"
+    )
+
+
+def test_there_is_no_body() -> None:
+    with pytest.raises(ExportError) as reason:
+        written("drawing d { a = line(fixed((0, 0)), fixed((1, 0))) }", ".stl", thickness=3)
+    assert render(reason.value.diagnostic) == (
+        "error[E0917]: there is no body to write\n  = hint: material is what the curves of a `solid` enclose"
+    )
+
+
+def test_a_body_too_thin_for_triangles() -> None:
+    m = model(structure("solid", "s", polygon("p", (0, 0), (1e-5, 0), (1e-5, 2e-9), (0, 2e-9))))
+    drawing, _ = draw(m)
+    if drawing.bodies:
+        with pytest.raises(ExportError) as reason:
+            export(Job(m, drawing, options=Options(thickness=1)), ".stl")
+        assert reason.value.diagnostic.message == (
+            "`s` cannot be made a solid of triangles: it is too thin for them"
+        )
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_the_same_bytes_each_time(suffix: str) -> None:
+    assert written(STAND, suffix).data == written(STAND, suffix).data
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_odd_names(suffix: str) -> None:
+    name = "a<b>&\"' Größe"
+    two = [structure("solid", f"{name}{k}\n\x00", circle("c", 9 * k, 0, 1)) for k in range(2)]
+    found = bodies(of_model(model(structure("assembly", name, *two)), suffix, 1), suffix)
+    assert list(found) == [f"{name}.{name}{k}__" for k in range(2)]
+
+
+def test_a_binary_file_is_not_taken_for_text() -> None:
+    m = model(structure("solid", "solid", circle("c", 0, 0, 1)))
+    data = of_model(m, ".stl", 1)
+    assert data.startswith(b"AIDL solid\0")
+    assert len(data) == 84 + 50 * int.from_bytes(data[80:84], "little")
+
+
+def test_colours_and_materials() -> None:
+    import zipfile
+
+    made = zipfile.ZipFile(io.BytesIO(written(STAND, ".3mf").data)).read("3D/3dmodel.model").decode()
+    assert 'unit="millimeter"' in made
+    assert '<base name="birch" displaycolor="#FF6347FF"/>' in made
+    assert made.count("<item ") == 3
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_far_out_only_single_precision_is_lost(suffix: str) -> None:
+    """Both formats are read in single precision: steps of 1/128 mm at 100 m."""
+    far = 1e5
+    m = model(structure("solid", "s", rectangle("r", far, far, far + 0.5, far + 0.25)))
+    body = only(of_model(m, suffix, 1), suffix)
+    assert body.bounds[0].tolist() == pytest.approx((far, far, 0), abs=1 / 128)
+    assert body.bounds[1].tolist() == pytest.approx((far + 0.5, far + 0.25, 1), abs=1 / 128)
+
+
+def test_what_does_not_fit_into_3mf() -> None:
+    m = model(structure("solid", "s", rectangle("r", 0, 0, 2e9, 1e9)))
+    with pytest.raises(ExportError) as reason:
+        of_model(m, ".3mf", 1)
+    assert render(reason.value.diagnostic) == (
+        "error[E0918]: `s` does not fit into 3MF: it reaches further than 1e+09 mm\n"
+        "  = hint: look for a size or position that was written in another unit, or multiplied once too often"
+    )
+
+
+def test_a_plate_with_many_holes() -> None:
+    holes = [circle(f"c[{k}]", 10 * (k % 50), 10 * (k // 50), 3) for k in range(2500)]
+    m = model(structure("solid", "s", rectangle("r", -10, -10, 500, 500), structure("hole", "h", *holes)))
+    body = only(of_model(m, ".stl", 2), ".stl")
+    assert body.is_watertight
+    assert body.euler_number == 2 - 2 * 2500
+    assert isinstance(draw(m)[0].bodies[0].region.faces[0].holes[0].pieces[0], Circle)
+
+
+def test_a_package_that_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(export_module, "find_spec", lambda name: None)
+    with pytest.raises(ExportError) as reason:
+        written(RING, ".3mf")
+    assert render(reason.value.diagnostic) == (
+        "error[E0913]: `.3mf` needs a package that is not installed\n  = hint: pip install 'aidl-lang[3mf]'"
+    )
+    assert written(RING, ".stl").data == written(RING, ".stl").data
+    assert importlib.util.find_spec("lib3mf") is not None

@@ -1,0 +1,170 @@
+"""The picture of a comparison: its areas against booleans of shapely, its marks against what was done."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree
+
+import aidl_lang
+import pytest
+import shapely
+import shapely.affinity
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from svgelements import Arc, Path
+
+from aidl_lang.comparison import Comparison
+from aidl_lang.comparison.picture import overlay
+from aidl_lang.export.marks import Area, Curves, Frame, Text
+from aidl_lang.export.svg import to_svg
+from tests.documents import ROOT
+
+SVG = "{http://www.w3.org/2000/svg}"
+KINDS = ("both", "before", "after")
+STEPS = 512
+"""Chords of a round piece: a circle of radius 10 loses 0.008 mm² to them."""
+
+
+def comparison(before: str, after: str) -> Comparison:
+    return aidl_lang.diff(aidl_lang.compile(before), aidl_lang.compile(after))
+
+
+def groups(found: Comparison) -> dict[str, ElementTree.Element]:
+    svg = ElementTree.fromstring(to_svg(overlay(found)))
+    return {g.attrib["id"]: g for g in svg.iter(f"{SVG}g") if "id" in g.attrib}
+
+
+def covered(group: ElementTree.Element) -> shapely.Geometry:
+    """What the filled paths of a group cover, read by another reader."""
+    loops = [
+        shapely.Polygon(_points(Path(subpath)))
+        for path in group.iter(f"{SVG}path")
+        if path.attrib["fill"] != "none"
+        for subpath in Path(path.attrib["d"]).as_subpaths()
+    ]
+    area: shapely.Geometry = shapely.Polygon()
+    for loop in loops:
+        area = area.symmetric_difference(loop)
+    return area
+
+
+def _points(path: Path) -> list[tuple[float, float]]:
+    """SVG counts y downwards."""
+    found = []
+    for segment in path:
+        steps = STEPS if isinstance(segment, Arc) else 1
+        found += [(p.x, -p.y) for p in (segment.point(k / steps) for k in range(1, steps + 1)) if p is not None]
+    return found
+
+
+def disc(x: float, y: float, r: float) -> shapely.Geometry:
+    return shapely.Point(x, y).buffer(r, quad_segs=STEPS)
+
+
+TEXT = """
+assembly t {{
+    solid plate {{
+        body = rectangle(center: fixed(({x}, {y})), width: 40, height: 20)
+        hole eye {{ rim = circle(center: fixed(({x} + 4, {y})), radius: {r}) }}
+    }}
+    solid knob {{ rim = circle(center: fixed((18, 0)), radius: 9) }}
+}}
+"""
+
+
+def material(x: float, y: float, r: float) -> shapely.Geometry:
+    plate = shapely.box(x - 20, y - 10, x + 20, y + 10).difference(disc(x + 4, y, r))
+    return plate.union(disc(18, 0, 9))
+
+
+@settings(max_examples=15)
+@given(st.integers(-60, 60), st.integers(-25, 25), st.integers(2, 9))
+def test_areas_agree_with_shapely(x: int, y: int, r: int) -> None:
+    found = groups(comparison(TEXT.format(x=0, y=0, r=5), TEXT.format(x=x, y=y, r=r)))
+    before, after = material(0, 0, 5), material(x, y, r)
+    expected = (before & after, before - after, after - before)
+    for kind, area in zip(KINDS, expected, strict=True):
+        drawn = covered(found[kind])
+        assert drawn.symmetric_difference(area).area < 0.05, kind
+
+
+def test_arcs_stay_arcs() -> None:
+    """A disc moved by its radius: two arcs bound what is in both, and as many each of the crescents."""
+    text = "assembly t {{ solid s {{ c = circle(center: fixed(({x}, 0)), radius: 10) }} }}"
+    found = groups(comparison(text.format(x=0), text.format(x=10)))
+    for kind in KINDS:
+        (path,) = [p for p in found[kind].iter(f"{SVG}path") if p.attrib["fill"] != "none"]
+        assert path.attrib["d"].count("A") == 2
+        assert "L" not in path.attrib["d"]
+
+
+def test_nothing_changed_is_all_grey() -> None:
+    picture = {g.name: g for g in overlay(comparison(TEXT.format(x=0, y=0, r=5), TEXT.format(x=0, y=0, r=5))).groups}
+    assert (picture["before"].marks, picture["after"].marks, picture["moves"].marks) == ((), (), ())
+    assert [m.text for m in picture["legend"].marks if isinstance(m, Text)] == ["in both: 834.45 mm²"]
+
+
+def test_legend_tells_areas() -> None:
+    """A square of 20 moved by 5: 15 by 20 is in both, 5 by 20 in either."""
+    text = "assembly t {{ solid s {{ r = square(center: fixed(({x}, 0)), size: 20) }} }}"
+    legend = groups(comparison(text.format(x=0), text.format(x=5)))["legend"]
+    words = [t.text for t in legend.iter(f"{SVG}text") if t.get("aria-hidden") is None]
+    assert words == ["in both: 300 mm²", "only before: 100 mm²", "only after: 100 mm²"]
+
+
+def test_what_is_gone_is_hatched_and_dashed() -> None:
+    """Without colours too the two can be told apart. Hatches lie in what is gone."""
+    text = "assembly t {{ solid s {{ c = circle(center: fixed(({x}, 0)), radius: 10) }} }}"
+    picture = {g.name: g for g in overlay(comparison(text.format(x=0), text.format(x=10))).groups}
+    hatches = [m for m in picture["before"].marks if isinstance(m, Curves)]
+    assert len(hatches) == 1
+    crescent = (disc(0, 0, 10) - disc(10, 0, 10)).buffer(0.02)
+    lines = shapely.MultiLineString([(p.start, p.end) for p in hatches[0].pieces])  # type: ignore[union-attr]
+    assert crescent.contains(lines)
+    # Lines 1 step apart measure the area that they fill; the drawing is 30 wide.
+    assert lines.length * 0.014 * 30 == pytest.approx(crescent.area, rel=0.05)
+    assert [m.ink.dash is not None for m in picture["before-outlines"].marks if isinstance(m, Area) and m.ink] == [True]
+    assert [m.ink.dash for m in picture["after-outlines"].marks if isinstance(m, Area) and m.ink] == [None]
+    assert not any(isinstance(m, Curves) for m in picture["after"].marks)
+
+
+def test_arrows_lead_from_old_to_new() -> None:
+    text = "assembly t {{ solid s {{ r = square(center: fixed((0, 0)), size: 60) hole e {{ c = circle(center: fixed(({x}, 3)), radius: 2) }} }} }}"
+    moves = {g.name: g for g in overlay(comparison(text.format(x=-9), text.format(x=9))).groups}["moves"].marks
+    shaft, head = moves
+    assert isinstance(shaft, Curves)
+    assert isinstance(head, Area)
+    assert shaft.pieces[0].start == pytest.approx((-9, 3))  # type: ignore[union-attr]
+    assert head.face.outer.pieces[0].start == pytest.approx((9, 3))  # type: ignore[union-attr]
+
+
+def test_strokes_of_both_are_grey() -> None:
+    text = "drawing d {{ l = line(fixed((0, 0)), fixed((9, 0))) m = line(fixed((0, 5)), fixed(({x}, 5))) }}"
+    picture = {g.name: g for g in overlay(comparison(text.format(x=4), text.format(x=8))).groups}
+    inks = [m.ink.color for m in picture["after-outlines"].marks if isinstance(m, Curves)]
+    assert len(set(inks)) == 2
+    assert picture["legend"].marks == ()
+
+
+def test_plans_and_nothing_at_all() -> None:
+    plan = "assembly a {{ solid p {{ todo }} constrain p.width == {w} }}"
+    picture = {g.name: g for g in overlay(comparison(plan.format(w=10), plan.format(w=20))).groups}
+    assert [type(m) for m in picture["after-outlines"].marks] == [Frame]
+    empty = "assembly a { construction c = circle(center: fixed((0, 0)), radius: 1) }"
+    assert to_svg(overlay(comparison(empty, empty))).startswith("<?xml")
+
+
+@pytest.mark.parametrize(
+    ("name", "param", "value"),
+    [("telephone", "width", 200), ("gear_pair", "module", 2.5), ("finger_box", "depth", 100)],
+)
+def test_examples_cover_what_they_cover(name: str, param: str, value: float) -> None:
+    """What is in both and in one makes up that one, to the measure of the drawings themselves."""
+    path = ROOT / "examples" / f"{name}.aidl"
+    versions = [aidl_lang.compile(path), aidl_lang.compile(path, {param: value})]
+    found = groups(aidl_lang.diff(*versions))
+    both, *alone = (covered(found[kind]) for kind in KINDS)
+    for one, version in zip(alone, versions, strict=True):
+        drawn = ElementTree.fromstring(version.to_svg())
+        whole = shapely.union_all([covered(g) for g in drawn.iter(f"{SVG}g")])
+        assert both.union(one).symmetric_difference(whole).area < 2e-4 * whole.area
+        assert both.intersection(one).area < 1e-4 * whole.area

@@ -1,0 +1,372 @@
+"""STEP files, read back by Open CASCADE and measured against closed forms."""
+
+from __future__ import annotations
+
+import math
+import re
+import time
+from pathlib import Path
+
+import pytest
+
+from aidl_lang import pipeline
+from aidl_lang.export import ExportError, Job, Options, export
+from aidl_lang.export.brep import real, text
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse
+from aidl_lang.geometry.drawing import draw
+from aidl_lang.geometry.measures import area
+from aidl_lang.solved import SolvedModel
+from aidl_lang.source import SourceFile
+from tests.documents import ROOT
+from tests.export.step_reading import StepFile, read
+from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
+
+EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
+
+
+def written(program: str, thickness: float | None = None) -> tuple[bytes, list[str]]:
+    compiled = pipeline.compile(SourceFile("part.aidl", program))
+    assert compiled.ok, compiled.diagnostics
+    made = compiled.exported(".step", Options(thickness=thickness))
+    return made.data, [f"{note.code}: {note.message}" for note in made.notes]
+
+
+def of_model(m: SolvedModel, thickness: float | None = None) -> bytes:
+    return export(Job(m, draw(m)[0], options=Options(thickness=thickness)), ".step").data
+
+
+# --- One body --------------------------------------------------------------------------------------
+
+BITTEN = """
+@thickness(3mm)
+solid plate {
+    body = rectangle(center: fixed((0, 0)), width: 60, height: 40)
+    hole bore { rim = circle(center: fixed((0, 0)), radius: 8) }
+    hole notch { rim = circle(center: fixed((10, 0)), radius: 6) }
+}
+"""
+
+
+def lens(r: float, s: float, d: float) -> float:
+    """The area that two circles share (radii r and s, centres d apart)."""
+    a = (d * d + r * r - s * s) / (2 * d)
+    b = d - a
+    segment = r * r * math.acos(a / r) - a * math.sqrt(r * r - a * a)
+    return segment + s * s * math.acos(b / s) - b * math.sqrt(s * s - b * b)
+
+
+def test_a_hole_bitten_by_another_has_true_arcs(tmp_path: Path) -> None:
+    data, notes = written(BITTEN)
+    file = read(data, tmp_path)
+    (plate,) = file.parts
+    assert (file.name, plate.name, plate.count("SOLID"), notes) == ("plate", "plate", 1, [])
+    assert plate.is_valid
+    assert plate.is_closed
+    assert plate.surfaces == {"Plane": 2 + 4, "Cylinder": 2}
+    assert plate.curves == {"Line": 2 * 4 + 4 + 2, "Circle": 2 * 2}
+    top = 60 * 40 - math.pi * (8**2 + 6**2) + lens(8, 6, 10)
+    assert plate.volume == pytest.approx(3 * top, rel=1e-9)
+    # 6, 8, 10: each circle leaves the other where the two radii stand at right angles.
+    rims = 8 * (2 * math.pi - 2 * math.acos(8 / 10)) + 6 * (2 * math.pi - 2 * math.acos(6 / 10))
+    assert plate.area == pytest.approx(2 * top + 3 * (200 + rims), rel=1e-9)
+    assert plate.bounds == pytest.approx((-30, -20, 0, 30, 20, 3), abs=1e-9)
+
+
+def test_every_kind_of_curve_is_exact(tmp_path: Path) -> None:
+    """Walls over a closed ellipse, part of one, an arc run clockwise, and a Bézier curve."""
+    left = arc((0, 0), 5, 90, -90)  # clockwise: bulges to the right, and cuts in
+    bow = Bezier((0, -5), (-8, -12), (-22, -12), (-30, -5))
+    m = model(
+        structure(
+            "solid",
+            "s",
+            compound(
+                "body",
+                left,
+                bow,
+                Bezier((-30, -5), (-30, 0), (-30, 3), (-30, 5)),
+                Bezier((-30, 5), (-20, 5), (-10, 5), (0, 5)),
+            ),
+            structure("hole", "eye", primitive("rim", Ellipse((-20, 0), 1, 3, 0.3))),
+            structure("hole", "bite", primitive("rim", Ellipse((-30, 0), 2, 3, 0.0))),
+        )
+    )
+    drawing, _ = draw(m)
+    (part,) = read(of_model(m, 2.5), tmp_path).parts
+    assert part.is_valid
+    assert part.is_closed
+    assert part.surfaces["Cylinder"] == 1
+    assert part.surfaces["SurfaceOfExtrusion"] == 6  # bow, two rests of the left edge, top, eye, bite
+    assert part.curves["Ellipse"] == 4
+    assert part.curves["BSplineCurve"] == 8
+    assert part.volume == pytest.approx(2.5 * area(drawing.regions["s"]), rel=1e-9)
+
+
+def test_a_circle_closed_by_one_arc(tmp_path: Path) -> None:
+    whole = Arc((1, 2), 5, (1, 7), (1, 7), -2 * math.pi)
+    (part,) = read(of_model(model(structure("solid", "s", primitive("c", whole))), 2), tmp_path).parts
+    assert part.is_valid
+    assert part.volume == pytest.approx(50 * math.pi, rel=1e-9)
+
+
+def test_without_thickness_faces_are_plane_and_have_their_holes(tmp_path: Path) -> None:
+    data, _ = written(BITTEN.replace("@thickness(3mm)", ""))
+    (plate,) = read(data, tmp_path).parts
+    assert (plate.count("SOLID"), plate.surfaces) == (0, {"Plane": 1})
+    assert plate.curves == {"Line": 4, "Circle": 2}
+    assert plate.is_valid
+    assert plate.area == pytest.approx(60 * 40 - math.pi * (64 + 36) + lens(8, 6, 10), rel=1e-9)
+
+
+def test_a_body_of_two_pieces_is_one_part(tmp_path: Path) -> None:
+    m = model(structure("solid", "s", circle("a", 0, 0, 1), circle("b", 9, 0, 1)))
+    (part,) = read(of_model(m, 1), tmp_path).parts
+    assert part.count("SOLID") == 2
+    assert part.volume == pytest.approx(2 * math.pi, rel=1e-9)
+
+
+# --- Several ---------------------------------------------------------------------------------------
+
+SEVERAL = """
+assembly box {
+    @color("tomato") @thickness(2mm) @layer("cut") @material("birch")
+    solid base { body = rectangle(center: fixed((0, 0)), width: 10, height: 10) }
+    @detached @color("#102030")
+    solid lid { body = rectangle(center: fixed((20, 0)), width: 10, height: 10) }
+    @color("navy") @elevation(2)
+    drawing marks {
+        cross = line(fixed((-4, 0)), fixed((4, 0)))
+        ring = circle(center: fixed((0, 0)), radius: 3)
+        bow = arc(center: fixed((0, 0)), radius: 4, start_angle: 80, end_angle: 20, clockwise: true)
+    }
+}
+"""
+
+
+def test_an_assembly_keeps_its_bodies_apart_named_and_coloured(tmp_path: Path) -> None:
+    data, notes = written(SEVERAL)
+    file = read(data, tmp_path)
+    assert notes == []
+    assert file.name == "box"
+    assert [part.name for part in file.parts] == [
+        "box.base", "box.lid", "box.marks.cross", "box.marks.ring", "box.marks.bow",
+    ]  # fmt: skip
+    assert [part.color for part in file.parts] == [(255, 99, 71), (16, 32, 48), *[(0, 0, 128)] * 3]
+    assert [part.count("SOLID") for part in file.parts] == [1, 0, 0, 0, 0]
+    assert "PRESENTATION_LAYER_ASSIGNMENT('cut'" in data.decode()
+    assert "PRODUCT('box.base','box.base','birch'" in data.decode()
+
+
+def test_strokes_lie_in_their_plane(tmp_path: Path) -> None:
+    file = read(written(SEVERAL)[0], tmp_path)
+    cross, ring, bow = (file[f"box.marks.{name}"] for name in ("cross", "ring", "bow"))
+    assert (cross.curves, ring.curves, bow.curves) == ({"Line": 1}, {"Circle": 1}, {"Circle": 1})
+    assert cross.bounds == pytest.approx((-4, 0, 2, 4, 0, 2), abs=1e-9)
+    assert ring.bounds == pytest.approx((-3, -3, 2, 3, 3, 2), abs=1e-9)
+    narrow, wide = 4 * math.cos(math.radians(80)), 4 * math.cos(math.radians(20))
+    low, high = 4 * math.sin(math.radians(20)), 4 * math.sin(math.radians(80))
+    assert bow.bounds == pytest.approx((narrow, low, 2, wide, high, 2), abs=1e-9)
+
+
+def test_a_box_of_boards_stands_in_space(tmp_path: Path) -> None:
+    """By hand: a bottom of 100 × 60 × 3, a front and a back between two sides, all 3 thick and 40 high."""
+    program = """
+    @thickness(3mm)
+    assembly box {
+        solid bottom { board = rectangle(center: fixed((50, 30)), width: 100, height: 60) }
+        @orientation(front) @elevation(3mm) @detached
+        solid near at fixed((0, 0)) { board = rectangle(center: fixed((50, 23)), width: 94, height: 40) }
+        @orientation(front) @detached
+        solid far at fixed((0, 54)) { board = rectangle(center: fixed((50, 23)), width: 94, height: 40) }
+        @orientation(side) @detached
+        assembly ends at fixed((0, 0)) {
+            solid left { board = rectangle(center: fixed((30, 23)), width: 60, height: 40) }
+            @elevation(97mm)
+            solid right { board = rectangle(center: fixed((30, 23)), width: 60, height: 40) }
+        }
+    }
+    """
+    data, notes = written(program)
+    file = read(data, tmp_path)
+    assert notes == []
+    assert {part.name: tuple(round(v, 9) for v in part.bounds) for part in file.parts} == {
+        "box.bottom": (0, 0, 0, 100, 60, 3),
+        "box.near": (3, 3, 3, 97, 6, 43),
+        "box.far": (3, 54, 3, 97, 57, 43),
+        "box.ends.left": (0, 0, 3, 3, 60, 43),
+        "box.ends.right": (97, 0, 3, 100, 60, 43),
+    }
+    assert all(part.is_valid and part.is_closed and part.volume > 0 for part in file.parts)
+
+
+def test_seen_from_the_front_and_the_right_nothing_is_mirrored(tmp_path: Path) -> None:
+    """A stair on the left of the sketch: low x in front, and low y from the side."""
+    stair = """solid stair {
+        foot = rectangle(center: fixed((4.5, 1)), width: 9, height: 2)
+        post = rectangle(center: fixed((0.5, 3.5)), width: 1, height: 7)
+    }"""
+    for orientation, (across, depth) in {"front": (0, 1), "side": (1, 0)}.items():
+        data, _ = written(f"@orientation({orientation}) @thickness(4) {stair}")
+        (part,) = read(data, tmp_path).parts
+        low, high = part.bounds[:3], part.bounds[3:]
+        assert (low[across], high[across], low[2], high[2]) == pytest.approx((0, 9, 0, 7), abs=1e-9)
+        assert (low[depth], high[depth]) == pytest.approx((0, 4), abs=1e-9)
+        tall = [
+            edge
+            for edge in re.findall(r"CARTESIAN_POINT\('',\((.*?)\)\)", data.decode())
+            if edge.split(",")[2] == "7.0"
+        ]
+        assert {float(p.split(",")[across]) for p in tall} == {0.0, 1.0}
+
+
+def test_turned_and_mirrored_structures(tmp_path: Path) -> None:
+    program = """
+    @thickness(2mm)
+    assembly all {
+        assembly half at fixed((100, 0)) rotated 90deg {
+            solid foot { body = rectangle(center: fixed((10, 0)), width: 20, height: 4) }
+            @orientation(front) @detached
+            solid post at fixed((20, 0)) rotated 90deg {
+                body = rectangle(center: fixed((15, 2)), width: 30, height: 4)
+            }
+        }
+    }
+    """
+    data, notes = written(program)
+    file = read(data, tmp_path)
+    assert notes == ["W0726: `all.half.post` stands unturned in `all.half`, which is turned"]
+    assert file["all.half.foot"].bounds == pytest.approx((98, 0, 0, 102, 20, 2), abs=1e-9)
+    # Its origin is carried to (100, 20); its own turn stands it up in the plane of x and z.
+    assert file["all.half.post"].bounds == pytest.approx((96, 20, 0, 100, 22, 30), abs=1e-9)
+    assert file["all.half.post"].volume == pytest.approx(240, rel=1e-9)
+
+
+def test_a_mirrored_structure_of_another_orientation(tmp_path: Path) -> None:
+    program = """
+    @thickness(2mm)
+    assembly all {
+        @orientation(front) @detached
+        solid left at fixed((-10, 0)) {
+            body = polygon(fixed((0, 0)), fixed((9, 0)), fixed((0, 6)))
+        }
+        @detached right = mirror(left, about: y_axis)
+    }
+    """
+    file = read(written(program)[0], tmp_path)
+    right = file["all.right"]
+    assert right.bounds == pytest.approx((1, 0, 0, 10, 2, 6), abs=1e-9)
+    assert right.is_valid
+    assert right.volume == pytest.approx(54, rel=1e-9)
+
+
+def test_what_is_united_has_the_place_and_thickness_of_its_body() -> None:
+    program = """
+    @thickness(4mm)
+    solid knob {
+        base = circle(center: fixed((0, 0)), radius: 20)
+        @thickness(12mm) @elevation(4)
+        solid grip { body = rectangle(center: fixed((0, 0)), width: 60, height: 10) }
+        @orientation(side) hole bore { rim = circle(center: fixed((0, 12)), radius: 3) }
+        @thickness(4mm) solid rib { body = rectangle(center: fixed((0, 0)), width: 10, height: 60) }
+    }
+    """
+    assert written(program)[1] == [
+        "W0727: `@elevation` and `@thickness` of `knob.grip` counts for nothing: it is one body with `knob`",
+        "W0727: `@orientation` of `knob.bore` counts for nothing: it is one body with `knob`",
+    ]
+
+
+# --- The file itself -------------------------------------------------------------------------------
+
+
+def test_the_same_bytes_each_time_and_no_time() -> None:
+    first, second = written(SEVERAL)[0], written(SEVERAL)[0]
+    assert first == second
+    assert re.findall(rb"\d{4}-\d\d-\d\dT[\d:]+", first) == [b"1970-01-01T00:00:00"]
+
+
+def test_stp_is_the_same_format() -> None:
+    m = model(structure("solid", "s", circle("a", 0, 0, 1)))
+    job = Job(m, draw(m)[0])
+    assert export(job, ".stp") == export(job, ".step")
+
+
+def test_odd_names_come_back_as_they_are(tmp_path: Path) -> None:
+    name = "a'b\\c </svg> Größe 木 \U0001f600"
+    m = model(structure("assembly", name, structure("solid", name, circle("c", 0, 0, 1))))
+    data = of_model(m, 1)
+    assert data.isascii()
+    file = read(data, tmp_path)
+    assert (file.name, file.parts[0].name) == (name, f"{name}.{name}")
+
+
+def test_control_characters_and_layers_are_escaped() -> None:
+    m = model(structure("solid", "a\x00\nb", circle("c", 0, 0, 1), layer=("l'\x1b",)))
+    assert b"'a\\X2\\0000\\X0\\\\X2\\000A\\X0\\b'" in of_model(m)
+
+
+@pytest.mark.parametrize(
+    ("value", "digits"),
+    [
+        (0.0, "0.0"),
+        (-0.0, "0.0"),
+        (1.0, "1.0"),
+        (1e-7, "1.E-07"),
+        (1.5e300, "1.5E+300"),
+        (1 / 3, "0.3333333333333333"),
+    ],
+)
+def test_numbers_have_a_point_and_all_their_digits(value: float, digits: str) -> None:
+    assert real(value) == digits
+
+
+def test_texts() -> None:
+    assert text("it's") == "'it''s'"
+
+
+def test_an_empty_drawing_is_an_empty_assembly() -> None:
+    assert b"PRODUCT('nothing'" in of_model(model(structure("assembly", "nothing")))
+
+
+@pytest.mark.parametrize(
+    ("attribute", "thickness", "message"),
+    [
+        ("@thickness(1e-9)", None, "`s` cannot be made a solid: it would be 1e-09 mm thick"),
+        ("@thickness(1e30)", None, "`s` cannot be made a solid: it would be 1e+30 mm thick"),
+        ("", 1e-8, "`s` cannot be made a solid: it would be 1e-08 mm thick"),
+        ("@elevation(1e15m)", 3, "`s` cannot be placed in space: it lies further out than 1e+12 mm"),
+    ],
+)
+def test_what_cannot_be_made_solid(attribute: str, thickness: float | None, message: str) -> None:
+    with pytest.raises(ExportError) as reason:
+        written(f"{attribute} solid s {{ c = circle(center: origin, radius: 5) }}", thickness)
+    assert (reason.value.diagnostic.code, reason.value.diagnostic.message) == ("E0918", message)
+
+
+def test_ten_thousand_holes_take_seconds() -> None:
+    holes = [circle(f"c[{k}]", 10 * (k % 100), 10 * (k // 100), 3) for k in range(10_000)]
+    m = model(structure("solid", "s", rectangle("r", -10, -10, 1000, 1000), structure("hole", "h", *holes)))
+    drawing, _ = draw(m)
+    start = time.perf_counter()
+    data = export(Job(m, drawing, options=Options(thickness=3)), ".step").data
+    assert time.perf_counter() - start < 20
+    assert data.count(b"CYLINDRICAL_SURFACE(") == 10_000
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
+def test_examples(path: Path, tmp_path: Path) -> None:
+    compiled = pipeline.compile(SourceFile(path.name, path.read_text("utf-8")))
+    assert compiled.ok
+    assert compiled.drawing is not None
+    file: StepFile = read(compiled.export(".step", Options(thickness=3)), tmp_path)
+    assert compiled.drawing.bodies
+    for body in compiled.drawing.bodies:
+        part = file[body.path]
+        assert part.is_valid
+        assert part.is_closed
+        assert part.count("SOLID") == len(body.region.faces)
+        thickness = body.style.thickness or 3
+        assert part.volume == pytest.approx(thickness * area(body.region), rel=1e-9)
+    whole = [p for body in compiled.drawing.bodies for loop in body.region.loops for p in loop.pieces]
+    cylinders = sum(part.surfaces["Cylinder"] for part in file.parts)
+    assert cylinders == sum(isinstance(p, Arc | Circle) for p in whole)

@@ -1,0 +1,222 @@
+"""Pictures over several pages: all of it is there, 1:1, and what two pages share is the same."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from itertools import pairwise
+from xml.etree import ElementTree
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from svgelements import SVG, Path
+
+from aidl_lang.export import ExportError, Job, Options, export
+from aidl_lang.export.marks import Area, Curves, Dot, Group, Ink, Picture, Text
+from aidl_lang.export.tiles import tiled
+from aidl_lang.geometry.curves import Circle, Line
+from aidl_lang.geometry.drawing import draw
+from aidl_lang.geometry.evaluate import bounds, point
+from aidl_lang.geometry.region import Face, Loop
+from tests.geometry.models import circle, model, polygon, rectangle, structure
+
+INK = Ink("#000000", 0.1)
+A4 = (210.0, 297.0)
+
+
+def window(page: Picture, margin: float = 10) -> tuple[float, float, float, float]:
+    left, bottom, right, top = page.box
+    return left + margin, bottom + margin, right - margin, top - margin
+
+
+def names(page: Picture) -> list[str]:
+    return [group.name for group in page.groups]
+
+
+def label(page: Picture) -> str:
+    return [m.text for m in page.groups[-1].marks if isinstance(m, Text)][-1]
+
+
+def one(*marks, box) -> Picture:
+    return Picture(box, (Group("g", marks),))
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.floats(-1e3, 1e3),
+    st.floats(-1e3, 1e3),
+    st.floats(1, 1500),
+    st.floats(1, 1500),
+    st.sampled_from([A4, (297.0, 210.0), (148.0, 210.0)]),
+    st.floats(0, 30),
+)
+def test_every_point_is_on_a_page(x, y, w, h, page, overlap):
+    lines = (Line((x, y), (x + w, y + h)), Line((x, y + h), (x + w, y)))
+    round_one = Circle((x + w / 2, y + h / 2), min(w, h) / 2)
+    marks = (Curves(lines, INK), Curves((round_one,), INK))
+    found = tiled(one(*marks, box=(x, y, x + w, y + h)), page, overlap=overlap)
+    assert all((p.width, p.height) == pytest.approx(page) for p in found)
+    for number, piece in enumerate((*lines, round_one)):
+        for k in range(101):
+            px, py = point(piece, k / 100)
+            on = [
+                p
+                for p in found
+                for left, bottom, right, top in [window(p)]
+                if left - 1e-9 <= px <= right + 1e-9 and bottom - 1e-9 <= py <= top + 1e-9
+            ]
+            assert on
+            assert all(marks[number // 2] in group.marks for p in on for group in p.groups if group.name == "g")
+            assert all("g" in names(p) for p in on)
+
+
+def test_pages_come_in_reading_order_and_say_where_they_belong():
+    # Windows of 190 × 277 mm and 10 mm of overlap: 180 + 190 covers 370, 267 + 277 covers 544.
+    box = (0.0, 0.0, 370.0, 544.0)
+    face = Face(Loop(tuple(Line(p, q) for p, q in pairwise([(0, 0), (370, 0), (370, 544), (0, 544), (0, 0)]))))
+    found = tiled(one(Area(face, "#ff0000", INK), box=box), A4)
+    assert [label(p) for p in found] == [
+        "1/4: row 1, column 1",
+        "2/4: row 1, column 2",
+        "3/4: row 2, column 1",
+        "4/4: row 2, column 2",
+    ]
+    assert [window(p) for p in found] == [
+        pytest.approx((0, 267, 190, 544)),
+        pytest.approx((180, 267, 370, 544)),
+        pytest.approx((0, 0, 190, 277)),
+        pytest.approx((180, 0, 370, 277)),
+    ]
+
+
+def test_blank_pages_are_left_out_but_counted_in_rows_and_columns():
+    outline = Loop(tuple(Line(p, q) for p, q in pairwise([(0, 0), (900, 0), (900, 900), (0, 900), (0, 0)])))
+    hollow = one(Area(Face(outline), None, INK), box=(0.0, 0.0, 900.0, 900.0))
+    filled = one(Area(Face(outline), "#ff0000", INK), box=(0.0, 0.0, 900.0, 900.0))
+    # Five columns and four rows; nothing but the frame is drawn of the hollow one.
+    assert len(tiled(filled, A4)) == 20
+    labels = [label(p) for p in tiled(hollow, A4)]
+    assert len(labels) == 20 - 3 * 2
+    assert labels[6:8] == ["7/14: row 2, column 5", "8/14: row 3, column 1"]
+
+
+def test_a_hole_in_a_filled_area_is_blank():
+    outline = Loop(tuple(Line(p, q) for p, q in pairwise([(0, 0), (900, 0), (900, 900), (0, 900), (0, 0)])))
+    ring = Face(outline, (Loop((Circle((450, 450), 420),), reversed=True),))
+    labels = [label(p) for p in tiled(one(Area(ring, "#ff0000", None), box=(0.0, 0.0, 900.0, 900.0)), A4)]
+    assert not any("row 2, column 3" in text for text in labels)
+    assert any("row 1, column 3" in text for text in labels)
+
+
+def test_dots_and_texts_are_drawn_where_they_are():
+    box = (0.0, 0.0, 900.0, 277.0)
+    marks = Dot((5, 5), 1, "#000000"), Text((880, 100), "end", 3, "#000000")
+    found = tiled(one(*marks, box=box), A4)
+    assert [label(p) for p in found] == ["1/2: row 1, column 1", "2/2: row 1, column 5"]
+    assert [p.groups[0].marks for p in found] == [marks[:1], marks[1:]]
+
+
+def test_an_empty_picture_is_one_page():
+    (page,) = tiled(Picture((0.0, 0.0, 10.0, 10.0), ()), A4)
+    assert names(page) == ["page-marks"]
+
+
+def crosses(page: Picture) -> set[tuple[float, float]]:
+    found = set()
+    for mark in page.groups[-1].marks:
+        if isinstance(mark, Curves) and mark.role == "registration":
+            left, bottom, right, top = bounds(mark.pieces[0])
+            assert right - left == pytest.approx(6)
+            found.add((round((left + right) / 2, 6), round((bottom + top) / 2, 6)))
+    return found
+
+
+def test_neighbours_share_their_crosses():
+    outline = Loop(tuple(Line(p, q) for p, q in pairwise([(0, 0), (500, 0), (500, 500), (0, 500), (0, 0)])))
+    found = tiled(one(Area(Face(outline), "#ff0000", INK), box=(0.0, 0.0, 500.0, 500.0)), A4)
+    places = {label(p).split(": ")[1]: p for p in found}
+    assert len(places) == 6
+    for row in (1, 2):
+        for column in (1, 2, 3):
+            here = places[f"row {row}, column {column}"]
+            for beside in (f"row {row}, column {column + 1}", f"row {row + 1}, column {column}"):
+                if beside in places:
+                    assert len(crosses(here) & crosses(places[beside])) >= 2
+    every = set().union(*(crosses(p) for p in found))
+    # Each lies in the sight of two pages at least, 5 mm from the edge of one.
+    for x, y in every:
+        assert sum((x, y) in crosses(p) for p in found) >= 2
+
+
+def job(**options) -> Job:
+    plate = structure(
+        "solid",
+        "plate",
+        polygon("r", (0, 0), (400, 0), (400, 250), (0, 250)),
+        structure("hole", "bore", circle("c", 195, 120, 60)),
+    )
+    m = model(plate)
+    return Job(m, draw(m)[0], options=Options(tile=A4, **options))
+
+
+def test_svg_pages_are_true_to_scale_and_clipped():
+    made = export(job(cut=True), ".svg")
+    documents = [made.data, *made.further]
+    assert len(documents) == 3  # 400 mm take three columns of 190 with 10 mm of overlap, 250 mm one row
+    for data in documents:
+        root = ElementTree.fromstring(data)
+        assert (root.get("width"), root.get("height")) == ("210mm", "297mm")
+        assert [float(v) for v in root.attrib["viewBox"].split()][2:] == [210, 297]
+        svg = SVG.parse(io.BytesIO(data), ppi=25.4)
+        cut = next(p for p in svg.elements(lambda e: isinstance(e, Path) and e.values.get("class") == "cut"))
+        left, top, right, bottom = cut.bbox()
+        assert (right - left, bottom - top) == pytest.approx((400, 250))
+        scale = next(p for p in svg.elements(lambda e: isinstance(e, Path) and e.values.get("class") == "scale"))
+        left, _, right, _ = scale.bbox()
+        assert right - left == pytest.approx(50)
+        (clip,) = re.findall(rb'<clipPath id="([^"]+)">', data)
+        assert data.count(b'clip-path="url(#' + clip + b')"') == 1  # that of the plate, not that of the marks
+        rect = root.find(".//{*}clipPath/{*}rect")
+        assert (float(rect.attrib["width"]), float(rect.attrib["height"])) == (192, 279)
+
+
+def test_overlaps_show_the_same():
+    """The same millimetre lies at the same place of the drawing on both pages: their boxes differ by steps."""
+    pages = [ElementTree.fromstring(d) for d in (lambda e: [e.data, *e.further])(export(job(cut=True), ".svg"))]
+    boxes = [[float(v) for v in page.attrib["viewBox"].split()] for page in pages]
+    assert [b[0] - a[0] for a, b in pairwise(boxes)] == pytest.approx([180, 180])
+    paths = {page.find(".//{*}path[@class='cut']").attrib["d"] for page in pages}
+    assert len(paths) == 1
+
+
+def refusal(**options) -> tuple[str, str, tuple[str, ...]]:
+    tile = options.pop("tile", A4)
+    base = job(**options)
+    with pytest.raises(ExportError) as caught:
+        export(Job(base.model, base.drawing, options=Options(tile=tile, **options)), ".svg")
+    found = caught.value.diagnostic
+    return found.code, found.message, found.hints
+
+
+def test_pages_that_are_too_small():
+    assert refusal(tile=(99.0, 200.0)) == (
+        "E0924",
+        "a page of 99 × 200 mm is too small for tiles",
+        ("each side must have 100 mm at least",),
+    )
+    assert refusal(tile=(100.0, 200.0), overlap=41.0) == (
+        "E0924",
+        "an overlap of 41 mm is more than half of what a page of 100 × 200 mm shows",
+        ("give a smaller `--overlap` or a larger `--tile`",),
+    )
+
+
+def test_too_many_pages():
+    m = model(structure("solid", "field", rectangle("r", 0, 0, 1e7, 1e7)))
+    with pytest.raises(ExportError) as caught:
+        export(Job(m, draw(m)[0], options=Options(tile=A4)), ".svg")
+    columns, rows = math.ceil((1e7 - 10) / 180), math.ceil((1e7 - 10) / 267)
+    assert caught.value.diagnostic.code == "E0924"
+    assert caught.value.diagnostic.message == f"{columns * rows} pages are more than 500"

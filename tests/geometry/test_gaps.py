@@ -1,0 +1,158 @@
+"""Small gaps between the ends of curves: closed, exactly, and told."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from aidl_lang import pipeline
+from aidl_lang.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line
+from aidl_lang.geometry.evaluate import ends
+from aidl_lang.geometry.measures import area
+from aidl_lang.geometry.region import Region
+from aidl_lang.pipeline import Compiled
+from aidl_lang.source import SourceFile
+from aidl_lang.world import MemoryWorld
+
+WEDGE = """\
+solid wedge {
+    base  = line((0, 0), (40, 0))
+    side  = line(base.end, (40, 25))
+    slope = line(side.end, END)
+}
+"""
+
+
+def compiled(text: str) -> Compiled:
+    return pipeline.compile(SourceFile("x.aidl", text), MemoryWorld({}))
+
+
+def notes(result: Compiled) -> list[Diagnostic]:
+    return [d for d in result.diagnostics if d.code == "N0708"]
+
+
+def codes(text: str) -> list[str]:
+    return [d.code for d in compiled(text).diagnostics]
+
+
+def region(result: Compiled, path: str) -> Region:
+    assert result.drawing is not None
+    return result.drawing.regions[path]
+
+
+def assert_closed(found: Region) -> None:
+    for loop in found.loops:
+        for one, after in zip(loop.pieces, loop.pieces[1:] + loop.pieces[:1], strict=True):
+            assert loop.is_whole or ends(one)[1] == ends(after)[0]
+
+
+def test_the_note_names_both_ends_the_gap_and_the_place():
+    (note,) = notes(compiled(WEDGE.replace("END", "(0, 0.01)")))
+    assert note.message == (
+        "a gap of 0.01 mm between `slope.end` and `base.start` at (0, 0) was closed in solid `wedge`"
+    )
+    assert note.hints == ("to let them meet exactly: `constrain slope.end == base.start`",)
+    assert note.span is not None
+    assert note.span.text == "slope = line(side.end, (0, 0.01))"
+    assert [label.text for label in note.secondary] == ["to this end"]
+
+
+def test_the_fix_makes_the_ends_meet():
+    (note,) = notes(compiled(WEDGE.replace("END", "(0, 0.01)")))
+    assert note.span is not None
+    text, count = apply_fixes(note.span.source, [note])
+    assert count == 1
+    assert text.endswith("(0, 0.01))\n    constrain slope.end == base.start\n}\n")
+    assert "N0708" not in codes(text)
+
+
+def test_a_closed_outline_is_closed_to_the_last_digit():
+    found = region(compiled(WEDGE.replace("END", "(0.013, 0.01)")), "wedge")
+    assert_closed(found)
+    assert area(found) == pytest.approx(500, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("end", "expected"),
+    [
+        ("(0, 0.0199)", "N0708"),  # 0.0005 of 40 mm are 0.02 mm
+        ("(0, 0.0201)", "W0702"),
+        ("(0, 1e-5)", "N0708"),  # so near that they are one point of the arrangement
+        ("(0, 1e-7)", None),  # rounding
+        ("(0, 0)", None),
+    ],
+)
+def test_how_wide_a_gap_may_be(end: str, expected: str | None):
+    found = codes(WEDGE.replace("END", end))
+    assert found == ([expected] if expected else [])
+
+
+def test_in_large_drawings_five_hundredths_of_a_millimetre():
+    wide = WEDGE.replace("40", "4000")
+    assert codes(wide.replace("END", "(0, 0.0499)")) == ["N0708"]
+    assert codes(wide.replace("END", "(0, 0.0501)")) == ["W0702"]
+
+
+def test_curves_of_every_kind_stay_what_they_are():
+    result = compiled(
+        """
+        solid s {
+            base = line((0, 0), (40, 0))
+            cap  = arc(center: (20, 0), radius: 20.01, start_angle: 0.02deg, end_angle: 179.98deg)
+            hole h { leaf = bezier((10, 5), (20, 25), (30, 5), (10.01, 5.01)) }
+            hole k { bore = arc(center: (30, 5), radius: 2, start_angle: 0deg, end_angle: 359.9deg) }
+        }
+        """
+    )
+    assert [note.message.partition(" was")[0] for note in notes(result)] == [
+        "a gap of 0.0122 mm between `cap.start` and `base.end` at (40, 0)",
+        "a gap of 0.0122 mm between `cap.end` and `base.start` at (0, 0)",
+        "a gap of 0.01414 mm between `leaf.p3` and `leaf.p0` at (10, 5)",
+        "a gap of 0.003491 mm between `bore.end` and `bore.start` at (32, 5)",
+    ]
+    found = region(result, "s")
+    assert_closed(found)
+    line, arc = found.faces[0].outer.pieces
+    assert line == Line((0, 0), (40, 0))
+    assert isinstance(arc, Arc)
+    for end in (arc.start, arc.end):
+        assert math.dist(end, arc.center) == pytest.approx(arc.radius, abs=1e-12)
+    kinds = {type(piece) for loop in found.faces[0].holes for piece in loop.pieces}
+    assert kinds == {Bezier, Circle}
+
+
+def test_an_arc_that_meets_itself_is_to_be_a_circle():
+    (note,) = notes(
+        compiled("solid s { a = arc(center: (0, 0), radius: 2, start_angle: 0deg, end_angle: 359.99deg) }")
+    )
+    assert note.hints == ("to close it exactly, write a `circle` in place of `a`",)
+    assert note.fix is None
+
+
+def test_where_nothing_is_enclosed_all_stays_as_it_was():
+    text = "solid s { a = line((0, 0), (40, 0))\n b = line((40, 0.01), (40, 25)) }"
+    assert codes(text) == ["W0702"]
+
+
+def test_drawings_keep_their_gaps():
+    text = WEDGE.replace("END", "(0, 0.01)").replace("solid", "drawing")
+    result = compiled(text)
+    assert not result.diagnostics
+    assert result.drawing is not None
+    assert result.drawing.strokes[2].pieces[0] == Line((40, 25), (0, 0.01))
+
+
+def test_overshooting_ends_are_trimmed_without_a_word():
+    result = compiled(
+        """
+        solid s {
+            a = line((-0.01, 0), (40.01, 0))
+            b = line((40.01, -0.01), (19.99, 20.01))
+            c = line((20.005, 20.005), (-0.005, -0.005))
+        }
+        """
+    )
+    assert not notes(result)
+    assert area(region(result, "s")) == pytest.approx(400, abs=1e-2)

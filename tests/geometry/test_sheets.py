@@ -1,0 +1,255 @@
+"""Bodies laid flat on sheets: all of them, apart, inside, moved rigidly, each stock by itself."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import combinations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely.geometry import Polygon, box
+
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece
+from aidl_lang.geometry.drawing import Body, Drawing, draw
+from aidl_lang.geometry.evaluate import ends, point
+from aidl_lang.geometry.measures import area
+from aidl_lang.geometry.sheets import Layout, laid_out
+from aidl_lang.geometry.tessellate import face_polygons
+from aidl_lang.solved import SolvedStructure
+from tests.geometry.models import arc, circle, compound, model, polygon, primitive, rectangle, structure
+
+
+def drawing_of(*members: SolvedStructure) -> Drawing:
+    return draw(model(structure("assembly", "part", *members)))[0]
+
+
+def shape(body: Body) -> Polygon:
+    """Close to the body: its vertices lie on the outline."""
+    (face,) = body.region.faces
+    outer, *holes = face_polygons(face, 1e-3)
+    return Polygon(outer, holes)
+
+
+def numbers(pieces: list[Piece]) -> list[complex]:
+    """Points that tell where curves lie: ends and middles, centres of circles."""
+    spots = [
+        p
+        for piece in pieces
+        for p in ([piece.center] if isinstance(piece, Circle) else [*ends(piece), point(piece, 0.5)])
+    ]
+    return [complex(*p) for p in spots]
+
+
+def motion(before: list[complex], after: list[complex]) -> tuple[complex, complex]:
+    """The factor and the shift of z → factor z + shift, which is checked to be the motion of all points."""
+    spread = max(abs(z - before[0]) for z in before)
+    far = next(k for k, z in enumerate(before) if abs(z - before[0]) == spread)
+    factor = (after[far] - after[0]) / (before[far] - before[0]) if spread else 1
+    shift = after[0] - factor * before[0]
+    assert all(abs(factor * z + shift - w) < 1e-9 for z, w in zip(before, after, strict=True))
+    return factor, shift
+
+
+def outline(body: Body) -> list[Piece]:
+    return [piece for loop in body.region.loops for piece in loop.pieces]
+
+
+def check(drawing: Drawing, layout: Layout, sheet: tuple[float, float], spacing: float) -> None:
+    """Every body is there once, as it was, inside its sheet and apart from all others."""
+    assert sorted(b.path for d in layout.sheets for b in d.bodies) == sorted(b.path for b in drawing.bodies)
+    before = {body.path: body for body in drawing.bodies}
+    inside = box(spacing - 1e-6, spacing - 1e-6, sheet[0] - spacing + 1e-6, sheet[1] - spacing + 1e-6)
+    for laid in layout.sheets:
+        assert laid.box == (0, 0, *sheet)
+        shapes = [shape(body) for body in laid.bodies]
+        assert all(inside.covers(s) for s in shapes)
+        assert all(a.distance(b) >= spacing - 1e-6 for a, b in combinations(shapes, 2))
+        assert len({(b.style.material, b.style.thickness) for b in laid.bodies}) == 1
+        for body in laid.bodies:
+            old, new = outline(before[body.path]), outline(body)
+            assert list(map(type, old)) == list(map(type, new))
+            factor, _ = motion(numbers(old), numbers(new))
+            assert min(abs(factor - 1), abs(factor - 1j)) < 1e-9  # turned by a quarter or not; no mirror
+            assert area(body.region) == pytest.approx(area(before[body.path].region), rel=1e-12)
+
+
+@st.composite
+def parts(draw: st.DrawFn) -> SolvedStructure:
+    w, h = draw(st.floats(2, 60)), draw(st.floats(2, 60))
+    x, y = draw(st.floats(-500, 500)), draw(st.floats(-500, 500))
+    kind = draw(st.sampled_from(["rectangle", "triangle", "ell", "circle", "tongue"]))
+    geometry = {
+        "rectangle": lambda: rectangle("g", x, y, x + w, y + h),
+        "triangle": lambda: polygon("g", (x, y), (x + w, y), (x + w / 3, y + h)),
+        "ell": lambda: polygon(
+            "g", (x, y), (x + w, y), (x + w, y + h / 3), (x + w / 4, y + h / 3), (x + w / 4, y + h), (x, y + h)
+        ),
+        "circle": lambda: circle("g", x, y, w / 2),
+        "tongue": lambda: compound(
+            "g",
+            Line((x, y), (x + w, y)),
+            arc((x + w, y + h / 2), h / 2, -90, 90),
+            Line((x + w, y + h), (x, y + h)),
+            Line((x, y + h), (x, y)),
+        ),
+    }[kind]()
+    looks = {
+        key: (value,)
+        for key, value in (
+            ("material", draw(st.sampled_from([None, "birch", "steel"]))),
+            ("thickness", draw(st.sampled_from([None, 3.0]))),
+        )
+        if value
+    }
+    return structure("solid", "s", geometry, **looks)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(parts(), min_size=1, max_size=12), st.floats(0, 8), st.booleans())
+def test_any_parts_lie_apart_and_inside(members, spacing, tall):
+    drawing = drawing_of(*(replace(m, name=f"s{k}") for k, m in enumerate(members)))
+    sheet = (110.0, 150.0) if tall else (150.0, 110.0)
+    layout = laid_out(drawing, sheet, spacing)
+    assert layout == laid_out(drawing, sheet, spacing)
+    if layout.oversize:
+        sizes = {b.path: (b.box[2] - b.box[0], b.box[3] - b.box[1]) for b in drawing.bodies}
+        room = min(sheet) - 2 * spacing, max(sheet) - 2 * spacing
+        large = [p for p, (w, h) in sizes.items() if min(w, h) > room[0] or max(w, h) > room[1]]
+        assert [path for path, _ in layout.oversize] == large
+    else:
+        check(drawing, layout, sheet, spacing)
+
+
+def plate(name: str, w: float, h: float, x: float = 0, **looks) -> SolvedStructure:
+    return structure("solid", name, rectangle("r", x, 0, x + w, h), **looks)
+
+
+def test_equal_parts_fill_sheets_row_by_row():
+    drawing = drawing_of(*(plate(f"p{k}", 40, 20, 50 * k) for k in range(300)))
+    layout = laid_out(drawing, (600, 400), 3)
+    # Thirteen columns of 43 mm and seventeen rows of 23 mm go into 597 × 397 mm.
+    assert [len(d.bodies) for d in layout.sheets] == [221, 79]
+    check(drawing, layout, (600, 400), 3)
+
+
+def test_what_fits_exactly_fits():
+    assert len(laid_out(drawing_of(plate("a", 594, 394)), (600, 400), 3).sheets) == 1
+    assert len(laid_out(drawing_of(plate("a", 594 + 1e-9, 394)), (600, 400), 3).sheets) == 1
+    assert laid_out(drawing_of(plate("a", 594.01, 394)), (600, 400), 3).oversize == (
+        ("part.a", (594.01, 394)),
+    )
+
+
+def test_parts_are_turned_where_it_helps_and_not_otherwise():
+    def factors(layout: Layout, drawing: Drawing) -> list[complex]:
+        before = {body.path: numbers(outline(body)) for body in drawing.bodies}
+        return [
+            complex(round(f.real), round(f.imag))
+            for d in layout.sheets
+            for b in d.bodies
+            for f, _ in [motion(before[b.path], numbers(outline(b)))]
+        ]
+
+    long = drawing_of(plate("a", 90, 30))
+    assert factors(laid_out(long, (50, 100), 2), long) == [1j]
+    pair = drawing_of(plate("a", 90, 20), plate("b", 20, 90, 200))
+    assert factors(laid_out(pair, (130, 130), 5), pair) == [1, 1]
+    tight = laid_out(pair, (100, 60), 5)  # one above the other, both lying
+    assert len(tight.sheets) == 1
+    assert sorted(factors(tight, pair), key=str) == sorted([1, 1j], key=str)
+
+
+def test_stocks_are_apart_and_in_order():
+    drawing = drawing_of(
+        plate("a", 20, 20, 0, material=("steel",), thickness=(2.0,)),
+        plate("b", 20, 20, 30, material=("birch",), thickness=(6.0,)),
+        plate("c", 20, 20, 60),
+        plate("d", 20, 20, 90, material=("birch",), thickness=(3.0,)),
+        plate("e", 20, 20, 120, material=("steel",), thickness=(2.0,)),
+    )
+    layout = laid_out(drawing, (200, 200), 3)
+    assert [[b.path for b in d.bodies] for d in layout.sheets] == [
+        ["part.c"],
+        ["part.d"],
+        ["part.b"],
+        ["part.a", "part.e"],
+    ]
+
+
+def test_arcs_and_holes_come_along():
+    tongue = compound(
+        "g",
+        Line((0, 0), (80, 0)),
+        arc((80, 10), 10, -90, 90),
+        Line((80, 20), (0, 20)),
+        Line((0, 20), (0, 0)),
+    )
+    solid = structure("solid", "s", tongue, structure("hole", "bore", circle("c", 80, 10, 4)))
+    drawing = drawing_of(solid)
+    (laid,) = laid_out(drawing, (40, 200), 5).sheets
+    check(drawing, Layout((laid,)), (40, 200), 5)
+    (face,) = laid.bodies[0].region.faces
+    assert [p.radius for p in face.outer.pieces if isinstance(p, Arc)] == [10]
+    (bore,) = face.holes[0].pieces
+    # Turned by a quarter, (80, 10) of 90 × 20 lies 10 from the left and 80 from below.
+    assert isinstance(bore, Circle)
+    assert bore.radius == 4
+    assert bore.center == pytest.approx((15, 85), abs=1e-12)
+    # The region of the hole stays where the body has it: writers ask it for the layer of the edge.
+    (moved,) = laid.regions["part.s.bore"].loops[0].pieces
+    assert moved == bore
+
+
+def line(name: str, x0: float, y0: float, x1: float, y1: float) -> SolvedStructure:
+    return structure("drawing", name, primitive("l", Line((x0, y0), (x1, y1))))
+
+
+def test_a_drawing_inside_a_part_moves_with_it_whole():
+    held = structure("solid", "s", rectangle("r", 0, 0, 90, 20), line("mark", 10, 5, 100, 15))
+    drawing = drawing_of(held, plate("other", 30, 30, 95))
+    layout = laid_out(drawing, (40, 200), 5)
+    assert layout.strays == ()
+    (laid,) = (d for d in layout.sheets if any(b.path == "part.s" for b in d.bodies))
+    body = next(b for b in laid.bodies if b.path == "part.s")
+    (stroke,) = laid.strokes
+    moved = motion(numbers(outline(drawing.bodies[0])), numbers(outline(body)))
+    assert moved[0] == pytest.approx(1j)
+    along = motion(numbers(list(drawing.strokes[0].pieces)), numbers(list(stroke.pieces)))
+    assert along == pytest.approx(moved)
+    # It runs 10 mm over the edge, so the sheet keeps that much free.
+    assert max(z.imag for z in numbers(list(stroke.pieces))) <= 195
+
+
+def test_a_drawing_over_several_parts_is_cut_where_they_end():
+    a, b = plate("a", 40, 20), plate("b", 30, 20, 60)
+    drawing = drawing_of(a, b, line("across", -10, 5, 100, 5))
+    layout = laid_out(drawing, (100, 100), 5)
+    lengths = sorted(math.dist(*ends(p)) for d in layout.sheets for s in d.strokes for p in s.pieces)
+    assert lengths == pytest.approx([30, 40])
+    (stray,) = layout.strays
+    assert stray.geometry == "part.across.l"
+    off = sorted(tuple(sorted(x for x, _ in ends(p))) for p in stray.pieces)
+    assert off == [pytest.approx(r) for r in ((-10, 0), (40, 60), (90, 100))]
+
+
+def test_of_overlapping_parts_the_one_that_has_most_is_engraved():
+    # 30 mm of the line lie on a, all 50 on b; drawn first or last makes no difference.
+    a, b = plate("a", 30, 20), plate("b", 80, 20)
+    for members in ((a, b), (b, a)):
+        drawing = drawing_of(*members, line("l", 5, 5, 55, 5))
+        layout = laid_out(drawing, (200, 100), 5)
+        (laid,) = layout.sheets
+        (stroke,) = laid.strokes
+        (piece,) = stroke.pieces
+        wide = next(body for body in laid.bodies if body.path == "part.b")
+        assert math.dist(*ends(piece)) == pytest.approx(50)
+        assert ends(piece)[0][0] - wide.box[0] == pytest.approx(5)
+        assert layout.strays == ()
+
+
+def test_parts_that_overlap_are_each_complete():
+    a, b = plate("a", 40, 20), plate("b", 40, 20, 10)
+    (laid,) = laid_out(drawing_of(a, b), (100, 100), 3).sheets
+    assert [area(body.region) for body in laid.bodies] == pytest.approx([800, 800])

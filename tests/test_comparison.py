@@ -1,0 +1,457 @@
+"""What a comparison of two models finds, against what was done to them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import aidl_lang
+from aidl_lang.comparison import Comparison, GeometryChange, StructureChange, Version, compare
+from aidl_lang.comparison.changes import Fields
+from aidl_lang.comparison.move import Move
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.geometry.drawing import draw
+from aidl_lang.solved import SolvedStructure
+from tests.documents import ROOT
+from tests.geometry.models import circle, model, polygon, structure
+
+EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
+PARAMS: dict[str, dict[str, str | float]] = {
+    "telephone": {"width": 200},
+    "motor_bracket": {"motor": "nema23"},
+    "finger_box": {"length": 150},
+    "key": {"pitch": 4},
+    "lighthouse": {"stripes": 4},
+    "phone_stand": {"lean": 60},
+    "ruler": {"length": 150},
+}
+
+
+def difference(before: str, after: str) -> Comparison:
+    models = [aidl_lang.compile(text) for text in (before, after)]
+    assert [d.message for m in models for d in m.diagnostics if d.is_error] == []
+    return aidl_lang.diff(*models)
+
+
+def of(comparison: Comparison, path: str) -> StructureChange:
+    """The only entry for a path."""
+    (found,) = [s for s in comparison.structures if s.path == path]
+    return found
+
+
+def paths(comparison: Comparison) -> list[str]:
+    return [s.path for s in comparison.structures]
+
+
+def near(fields: Fields) -> dict[str, object]:
+    """Fields to compare with numbers worked out by hand."""
+    return {name: tuple(_near(value) for value in pair) for name, pair in fields.items()}
+
+
+def _near(value: object) -> object:
+    if isinstance(value, tuple):
+        return tuple(map(_near, value))
+    return pytest.approx(value, abs=1e-8) if isinstance(value, float) else value
+
+
+PLATE = "solid plate {{ edge = rectangle(center: fixed({at}), width: {width}, height: 20) {more} }}"
+
+
+def plate(at: str = "(0, 0)", width: float = 40, more: str = "") -> str:
+    return PLATE.format(at=at, width=width, more=more)
+
+
+# --- Kinds of change -------------------------------------------------------------------------------
+
+
+def test_nothing_changed() -> None:
+    found = difference(plate(), plate())
+    assert found.is_equal
+    assert str(found) == "no difference"
+    assert found.to_dict()["equal"] is True
+
+
+def test_how_it_is_written_is_no_difference() -> None:
+    corners = "polygon([(-20, -10), (20, -10), (20, 10), (-20, 10)])"
+    frame = "assembly a {{ solid s at ({x}, 0) {{ r = rectangle(center: fixed(({y}, 0)), width: 40, height: 20) }} }}"
+    assert difference(frame.format(x=0, y=0), frame.format(x=5, y=-5)).is_equal
+    assert not difference(plate(), f"solid plate {{ edge = {corners} }}").is_equal
+
+
+def test_what_moved_as_a_whole_is_told_once() -> None:
+    hole = "hole eye {{ rim = circle(center: fixed(({}, {})), radius: 2) }}"
+    found = difference(plate(more=hole.format(3, 4)), plate("(7, -2)", more=hole.format(10, 2)))
+    assert paths(found) == ["plate"]
+    assert found.structures[0].move == Move(7.0, -2.0)
+    assert (found.structures[0].sizes, found.structures[0].geometry) == ({}, ())
+
+
+def test_turned() -> None:
+    arm = "assembly a {{ solid base {{ foot = square(center: fixed((0, -50)), size: 9) }} solid arm rotated {angle}deg {{ bar = rectangle(center: fixed((20, 0)), width: 40, height: 6) hole pin {{ rim = circle(center: fixed((35, 0)), radius: 2) }} }} }}"
+    found = difference(arm.format(angle=10), arm.format(angle=55))
+    move = of(found, "a.arm").move
+    assert move is not None
+    assert (move.turn, move.mirrored) == (pytest.approx(45), False)
+    assert move.fixed_point == pytest.approx((0, 0), abs=1e-9)
+    assert paths(found) == ["a", "a.arm"]
+
+
+def test_turned_about_its_own_middle() -> None:
+    box = "solid s {{ r = rectangle(center: fixed((30, 10)), width: 20, height: 8, angle: fixed({angle}deg)) }}"
+    move = difference(box.format(angle=0), box.format(angle=-90)).structures[0].move
+    assert move is not None
+    assert move.turn == pytest.approx(-90)
+    assert move.fixed_point == pytest.approx((30, 10))
+
+
+def test_an_ellipse_turns_by_its_axis() -> None:
+    text = "solid s {{ e = ellipse(center: fixed((5, 0)), rx: 8, ry: 3, angle: fixed({angle}deg)) }}"
+    (change,) = difference(text.format(angle=10), text.format(angle=170)).structures
+    assert change.move is not None
+    assert change.move.turn == pytest.approx(-20)  # the shorter way: an ellipse turned by 180° is the same
+
+
+def test_mirrored() -> None:
+    text = "solid s {{ p = polygon([{}, {}, {}, {}]) }}"
+    first = text.format("(0, 0)", "(30, 0)", "(30, 10)", "(0, 25)")
+    last = text.format("(40, 0)", "(10, 0)", "(10, 10)", "(40, 25)")  # about x = 20
+    move = difference(first, last).structures[0].move
+    assert move == Move(40.0, 0.0, 0.0, mirrored=True)
+
+
+def test_grown() -> None:
+    found = of(difference(plate(), plate(width=50)), "plate")
+    assert near(found.sizes) == {"width": (40, 50), "area": (800, 1000), "perimeter": (120, 140)}
+    assert found.move is None
+    (edge,) = found.geometry
+    assert (edge.name, near(edge.fields)) == ("edge", {"width": (40, 50)})
+
+
+def test_grown_and_moved() -> None:
+    found = of(difference(plate(), plate("(5, 0)", width=50)), "plate")
+    assert found.move == Move(5.0, 0.0)
+    assert set(found.sizes) == {"width", "area", "perimeter"}  # the centroid went along
+    assert near(found.geometry[0].fields) == {"width": (40, 50)}
+
+
+def test_centroid_of_a_body_whose_hole_moved() -> None:
+    hole = "hole eye {{ rim = circle(center: fixed(({x}, 0)), radius: 2) }}"
+    found = difference(plate(more=hole.format(x=-10)), plate(more=hole.format(x=10)))
+    # (800·0 - 4π·x) / (800 - 4π)
+    x = 40 * math.pi / (800 - 4 * math.pi)
+    assert near(of(found, "plate").sizes) == {"centroid": ((x, 0), (-x, 0))}
+    assert of(found, "plate.eye").move == Move(20.0, 0.0)
+
+
+def test_appeared_and_vanished() -> None:
+    cord = "solid cord { c = circle(center: fixed((0, 90)), radius: 3) }"
+    label = "solid label { r = square(center: fixed((0, -90)), size: 4) }"
+    found = difference(f"assembly t {{ {plate()} {label} }}", f"assembly t {{ {plate()} {cord} }}")
+    assert (of(found, "t.cord").sort, of(found, "t.label").sort) == ("appeared", "vanished")
+    assert near(of(found, "t.cord").sizes) == {
+        "width": (None, 6),
+        "height": (None, 6),
+        "area": (None, 9 * math.pi),
+        "perimeter": (None, 6 * math.pi),
+        "centroid": (None, (0, 90)),
+    }
+    assert near(of(found, "t.label").sizes)["area"] == (16, None)
+
+
+@pytest.mark.parametrize("x", [0, 12])
+def test_renamed(x: float) -> None:
+    part = "solid {name} {{ c = circle(center: fixed(({x}, 90)), radius: 3) }}"
+    texts = [part.format(name="old", x=0), part.format(name="new", x=x)]
+    found = difference(*(f"assembly t {{ {plate()} {text} }}" for text in texts))
+    change = of(found, "t.new")
+    assert (change.sort, change.was) == ("changed", "t.old")
+    assert change.move == (Move(12.0, 0.0) if x else None)
+    assert "t.old" not in paths(found)
+
+
+def test_moved_to_another_place_in_the_tree() -> None:
+    pin = "solid pin { c = circle(center: fixed((0, 90)), radius: 3) }"
+    other = "assembly tools { solid saw { r = square(center: fixed((0, -90)), size: 4) } %s }"
+    found = difference(f"assembly t {{ {pin} {other % ''} }}", f"assembly t {{ {other % pin} }}")
+    assert [(s.path, s.was) for s in found.structures] == [("t.tools.pin", "t.pin")]
+    assert (found.freed, found.held, found.contacts) == ((), (), ())
+
+
+def test_another_shape_is_not_a_new_name() -> None:
+    part = "solid {name} {{ c = circle(center: fixed((0, 90)), radius: {r}) }}"
+    texts = [part.format(name="old", r=3), part.format(name="new", r=3.1)]
+    found = difference(*(f"assembly t {{ {plate()} {text} }}" for text in texts))
+    assert (of(found, "t.new").sort, of(found, "t.old").sort) == ("appeared", "vanished")
+
+
+def test_renamed_geometry() -> None:
+    text = "solid s {{ {a} = circle(center: fixed((0, 0)), radius: 3) {b} = circle(center: fixed((9, 0)), radius: 3) }}"
+    (change,) = difference(text.format(a="p", b="q"), text.format(a="p", b="z")).structures
+    assert change.geometry == (GeometryChange("z", "circle", was="q"),)
+    assert change.sizes == {}
+
+
+def test_params_and_attributes() -> None:
+    before = '@material("steel") @thickness(3mm) @detached solid s { param w = 40 in 10..90 edge = rectangle(width: 20, height: 20) assert w > 0 }'
+    after = before.replace("steel", "brass").replace("3mm", "4mm").replace("@detached", '@layer("cut")')
+    change = of(difference(before, after.replace("40", "50")), "s")
+    assert change.params == {"w": (40.0, 50.0)}
+    assert change.settings == {
+        "@material": ("steel", "brass"),
+        "@thickness": (3.0, 4.0),
+        "@layer": (None, "cut"),
+        "@detached": (True, None),
+    }
+    assert (change.sizes, change.move, change.geometry) == ({}, None, ())
+
+
+def test_another_kind() -> None:
+    inner = "{kind} inner {{ c = circle(center: fixed((0, 0)), radius: 2) }}"
+    found = difference(plate(more=inner.format(kind="hole")), plate(more=inner.format(kind="solid")))
+    assert of(found, "plate.inner").settings == {"kind": ("hole", "solid")}
+    assert near(of(found, "plate").sizes)["area"] == (800 - 4 * math.pi, 800)
+
+
+def test_fillets() -> None:
+    found = of(difference(plate(more="fillet(edge, 2)"), plate(more="fillet(edge, 3)")), "plate")
+    assert found.settings == {"fillet of edge": (2.0, 3.0)}
+    assert near(found.sizes)["area"] == (800 - 4 * (4 - math.pi), 800 - 9 * (4 - math.pi))
+    assert found.geometry == ()
+
+
+def test_construction() -> None:
+    loop = "{word} c = circle(center: fixed((30, 0)), radius: 5)"
+    found = of(difference(plate(more=loop.format(word="")), plate(more=loop.format(word="construction"))), "plate")
+    assert [g.fields for g in found.geometry] == [{"construction": (False, True)}]
+    assert near(found.sizes)["area"] == (800 + 25 * math.pi, 800)
+
+
+def test_a_corner_of_a_polygon() -> None:
+    text = "solid s {{ p = polygon([(0, 0), ({x}, 0), (10, 10), (0, 10)]) }}"
+    (change,) = difference(text.format(x=10), text.format(x=14)).structures
+    assert [near(g.fields) for g in change.geometry] == [{"corner[1]": ((10, 0), (14, 0))}]
+    assert near(change.sizes)["area"] == (100, 120)
+
+
+def test_a_line_and_an_arc() -> None:
+    text = "drawing d {{ l = line(fixed((0, 0)), fixed(({x}, 4))) a = arc(center: fixed((9, 9)), radius: 2, start_angle: 0deg, end_angle: fixed({end}deg)) }}"
+    (change,) = difference(text.format(x=3, end=90), text.format(x=4, end=180)).structures
+    line, arc = change.geometry
+    assert near(line.fields)["end"] == ((3, 4), (4, 4))
+    assert near(line.fields)["length"] == (5, math.sqrt(32))
+    assert near(arc.fields) == {"end": ((9, 11), (7, 9)), "sweep": (90, 180)}
+
+
+def test_another_type() -> None:
+    shape = "solid s {{ body = {} }}"
+    first, last = "square(center: fixed((0, 0)), size: 6)", "circle(center: fixed((0, 0)), radius: 3)"
+    (change,) = difference(shape.format(first), shape.format(last)).structures
+    assert change.geometry[0].fields == {"type": ("square", "circle")}
+    assert near(change.sizes)["area"] == (36, 9 * math.pi)
+
+
+def test_letters_have_an_outline_alone() -> None:
+    text = 'drawing d {{ t = text("{}", height: 5) }}'
+    (change,) = difference(text.format("on"), text.format("no")).structures
+    (letters,) = change.geometry
+    assert (letters.is_outline_changed, letters.fields, letters.move) == (True, {}, None)
+
+
+def test_contacts() -> None:
+    text = "assembly t {{ {plate} solid lid {{ r = rectangle(center: fixed((0, {y})), width: 10, height: 4) }} }}"
+    touching, apart, over = (text.format(plate=plate(), y=y) for y in (12, 14, 11))
+    (change,) = difference(touching, apart).contacts
+    assert (change.a, change.b) == ("t.plate", "t.lid")
+    assert change.before is not None
+    assert change.after is not None
+    assert (change.before.relation, change.after.relation) == ("touching", "apart")
+    assert change.after.gap == pytest.approx(2)
+    (change,) = difference(apart, over).contacts
+    assert change.after is not None
+    assert (change.after.relation, change.after.area) == ("overlapping", pytest.approx(10))
+
+
+def test_freedom() -> None:
+    text = "solid s {{ c = circle(center: {}, radius: 3) }}"
+    found = difference(text.format("fixed((0, 0))"), text.format("(0, 0)"))
+    assert found.degrees == (0, 2)
+    assert (found.freed, found.held) == (("s.c.center.x", "s.c.center.y"), ())
+    assert found.structures == ()
+    assert not found.is_equal
+
+
+def test_status() -> None:
+    text = "solid s {{ c = circle(center: fixed((0, 0)), radius: 3) constrain c.radius == 3 {} }}"
+    models = [aidl_lang.compile(text.format(more)) for more in ("", "constrain c.radius == 4")]
+    found = aidl_lang.diff(*models)
+    assert found.status[0] == "solved" != found.status[1]
+    assert not found.is_equal
+
+
+def test_a_wrong_program_cannot_be_compared() -> None:
+    with pytest.raises(ValueError, match="the program is wrong"):
+        aidl_lang.diff(aidl_lang.compile(plate()), aidl_lang.compile("solid {"))
+
+
+def test_plans_have_boxes() -> None:
+    text = "assembly a {{ solid s {{ c = circle(center: fixed((0, -9)), radius: 1) }} solid plan {{ todo }} constrain plan.left == {x} constrain plan.bottom == 0 constrain plan.width == {w} constrain plan.height == 5 }}"
+    moved = difference(text.format(x=0, w=10), text.format(x=4, w=10))
+    assert _same_move(of(moved, "a.plan").move, Move(4.0, 0.0))
+    assert near(of(difference(text.format(x=0, w=10), text.format(x=0, w=12)), "a.plan").sizes) == {"width": (10, 12)}
+
+
+def test_a_second_root_puts_the_first_into_an_assembly() -> None:
+    found = difference(plate(), f"{plate()} @detached solid lid {{ c = circle(center: fixed((0, 0)), radius: 1) }}")
+    assert [(s.path, s.sort) for s in found.structures] == [("text.lid", "appeared")]
+
+
+# --- Telling little --------------------------------------------------------------------------------
+
+ARM = """
+assembly a {{
+    solid base {{ foot = square(center: fixed((0, -50)), size: 9) }}
+    assembly arm at ({x}, 0) {{
+        solid bar {{ r = rectangle(center: fixed((0, 0)), width: 40, height: 6) }}
+        solid knob {{ c = circle(center: fixed((15, {y})), radius: {r}) }}
+        solid cap {{ c = circle(center: fixed((-15, 9)), radius: 2) }}
+    }}
+}}
+"""
+
+
+def test_a_parent_speaks_for_what_went_along() -> None:
+    found = difference(ARM.format(x=0, y=9, r=2), ARM.format(x=6, y=9, r=2))
+    assert paths(found) == ["a.arm"]
+    assert of(found, "a.arm").move == Move(6.0, 0.0)
+
+
+def test_what_grew_on_the_way_is_told_besides() -> None:
+    found = difference(ARM.format(x=0, y=9, r=2), ARM.format(x=6, y=9, r=3))
+    assert of(found, "a.arm").move == Move(6.0, 0.0)
+    assert of(found, "a.arm.knob").move is None
+    assert near(of(found, "a.arm.knob").geometry[0].fields) == {"radius": (2, 3)}
+    assert "a.arm.bar" not in paths(found)
+
+
+def test_what_did_not_go_along_is_told() -> None:
+    found = difference(ARM.format(x=0, y=9, r=2), ARM.format(x=6, y=20, r=2))
+    assert of(found, "a.arm").move == Move(6.0, 0.0)
+    assert of(found, "a.arm.knob").move == Move(6.0, 11.0)
+    still = ARM.replace("fixed((15", "fixed((9")
+    assert of(difference(ARM.format(x=0, y=9, r=2), still.format(x=6, y=9, r=2)), "a.arm.knob").move == Move()
+
+
+def test_no_majority_no_motion() -> None:
+    text = "assembly a {{ assembly b {{ solid c {{ k = circle(center: fixed(({x}, 0)), radius: 1) }} solid d {{ k = circle(center: fixed((9, 0)), radius: 1) }} }} solid e {{ k = circle(center: fixed((0, 40)), radius: 1) }} }}"
+    found = difference(text.format(x=0), text.format(x=3))
+    assert [(s.path, s.move) for s in found.structures if s.move] == [("a.b.c", Move(3.0, 0.0))]
+
+
+def test_rounding_is_no_difference() -> None:
+    assert difference(plate(), plate("(0.00001, 0)", 40.00001)).is_equal  # 1e-6 of 40 mm is 4e-5 mm
+    assert not difference(plate(), plate("(0.0001, 0)")).is_equal
+
+
+# --- Every example ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_every_example_equals_itself(path: Path) -> None:
+    assert aidl_lang.diff(aidl_lang.compile(path), aidl_lang.compile(path)).is_equal
+
+
+@pytest.mark.parametrize("name", PARAMS)
+def test_the_other_way_round(name: str) -> None:
+    path = ROOT / "examples" / f"{name}.aidl"
+    a, b = aidl_lang.compile(path), aidl_lang.compile(path, PARAMS[name])
+    assert a.ok
+    assert b.ok
+    there, back = aidl_lang.diff(a, b), aidl_lang.diff(b, a)
+    assert not there.is_equal
+    assert {(c.a, c.b, c.before, c.after) for c in there.contacts} == {
+        (c.a, c.b, c.after, c.before) for c in back.contacts
+    }
+    mirrored = {s.path: s for s in map(_reversed, back.structures)}
+    assert mirrored.keys() == set(paths(there))
+    for s in there.structures:
+        other = mirrored[s.path]
+        assert (other.sort, other.was) == (s.sort, s.was)
+        assert _same_move(other.move, s.move)
+        assert near(s.sizes) == other.sizes
+        assert near(s.params) == other.params
+        assert near(s.settings) == other.settings
+        assert [(g.name, g.sort) for g in sorted(other.geometry, key=lambda g: g.name)] == [
+            (g.name, g.sort) for g in sorted(s.geometry, key=lambda g: g.name)
+        ]
+
+
+def _reversed(s: StructureChange) -> StructureChange:
+    sorts = {"changed": "changed", "appeared": "vanished", "vanished": "appeared"}
+
+    def turned(fields: Fields) -> Fields:
+        return {name: (b, a) for name, (a, b) in fields.items()}
+
+    return replace(
+        s,
+        path=s.was or s.path,
+        was=s.path if s.was else None,
+        sort=sorts[s.sort],
+        move=_inverse(s.move),
+        sizes=turned(s.sizes),
+        params=turned(s.params),
+        settings=turned(s.settings),
+        geometry=tuple(replace(g, sort=sorts[g.sort]) for g in s.geometry),
+    )
+
+
+def _inverse(move: Move | None) -> Move | None:
+    if move is None:
+        return None
+    back = Move(turn=move.turn if move.mirrored else -move.turn, mirrored=move.mirrored)
+    x, y = back((move.dx, move.dy))
+    return replace(back, dx=-x, dy=-y)
+
+
+def _same_move(a: Move | None, b: Move | None) -> bool:
+    if a is None or b is None:
+        return a is b
+    return all(math.dist(a(p), b(p)) < 1e-6 for p in ((0.0, 0.0), (100.0, 0.0), (0.0, 100.0)))
+
+
+# --- Random motions --------------------------------------------------------------------------------
+
+NUMBERS = st.floats(-100, 100, allow_nan=False)
+MOVES = st.builds(Move, NUMBERS, NUMBERS, st.floats(-179, 180), st.booleans())
+L_SHAPE = [(0.0, 0.0), (40.0, 0.0), (40.0, 10.0), (10.0, 10.0), (10.0, 30.0), (0.0, 30.0)]
+
+
+def _version(moves: list[Move]) -> Version:
+    def part(i: int, move: Move) -> SolvedStructure:
+        corners = [move((x + 60 * i, y)) for x, y in L_SHAPE]
+        x, y = move((60.0 * i + 20, 5.0))
+        hole = structure("hole", "eye", circle("rim", x, y, 3))
+        return structure("solid", f"part[{i}]", polygon("edge", *corners), hole)
+
+    anchor = structure("solid", "anchor", circle("c", 7, -500, 5))
+    solved = model(structure("assembly", "all", anchor, *(part(i, move) for i, move in enumerate(moves))))
+    return Version(solved, draw(solved)[0])
+
+
+@given(st.lists(MOVES, min_size=1, max_size=3))
+def test_random_motions_are_found(moves: list[Move]) -> None:
+    found = compare(_version([Move()] * len(moves)), _version(moves))
+    told = {s.path: s for s in found.structures}
+    around = told.pop("all").move if "all" in told else None
+    for i, move in enumerate(moves):
+        corners: list[Vec] = [(x + 60 * i, y) for x, y in L_SHAPE]
+        change = told.pop(f"all.part[{i}]", None)
+        seen = (around or Move()) if change is None else change.move
+        assert seen is not None
+        assert change is None or not (change.sizes or change.geometry)
+        assert all(math.dist(seen(p), move(p)) < 4e-6 * found.size for p in corners)
+    assert told.keys() <= {"all.anchor"}
