@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format reference bench bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test lint format reference bench bench-regions bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -34,6 +34,9 @@ reference: $(READY) ## write docs/reference, docs/guide.md and llms.txt anew fro
 
 bench: $(READY) ## measure the command and the stages
 	$(BIN)/python benchmarks/run.py
+
+bench-regions: $(READY) ## measure regions beside other libraries
+	$(BIN)/python benchmarks/regions.py
 
 bench-solver: $(READY) ## measure the solver against its peers
 	$(BIN)/python benchmarks/solver/run.py

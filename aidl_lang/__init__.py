@@ -186,7 +186,7 @@ def compile(
 def diff(before: Model, after: Model) -> Comparison:
     """What moved, turned, grew, appeared and vanished between two models.
 
-    `str` of it is a text for a reader, `to_dict` the same as data. Raises ValueError when one of the programs is wrong.
+    `str` of it is a text for a reader, `to_dict` the same as data. Raises ValueError when a program is wrong.
     """
     from aidl_lang.comparison import compare
 

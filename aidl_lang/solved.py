@@ -214,6 +214,11 @@ class Dimension:
     name: str | None = None
     group: object = None
 
+    @property
+    def kind(self) -> str:
+        """`horizontal`, `vertical`, `aligned`, `radius`, `diameter` or `angle`."""
+        raise NotImplementedError
+
 
 @dataclass(frozen=True)
 class Length(Dimension):
@@ -232,7 +237,7 @@ class Length(Dimension):
 class Roundness(Dimension):
     """The diameter of a circle, or the radius of an arc."""
 
-    curve: Circle | Arc = Circle((0.0, 0.0), 0.0)
+    curve: Circle | Arc = field(default_factory=lambda: Circle((0.0, 0.0), 0.0))
 
     @property
     def kind(self) -> str:
@@ -241,8 +246,8 @@ class Roundness(Dimension):
 
 @dataclass(frozen=True)
 class Opening(Dimension):
-    """An angle at `corner`, counter-clockwise from the direction `first` by `value` degrees. The arms are there
-    from and to these distances from the corner.
+    """An angle at `corner`, counter-clockwise from the direction `first` by `value` degrees. The arms are
+    there from and to these distances from the corner.
     """
 
     corner: Vec = (0.0, 0.0)

@@ -184,7 +184,7 @@ class _Surveyor:
         thickness, material = body.style.thickness, body.style.material
         volume = None if thickness is None else part.area * thickness
         known = None if material is None else density(material, self.own_densities)
-        if material is not None and known is None:
+        if material is not None and known is None and volume is not None:
             self._unknown.setdefault(material, part.path)
         mass = None if volume is None or known is None else volume * known * 1e-6  # kg/m³ is 1e-6 g/mm³
         return replace(

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import aidl_lang
 from aidl_lang.comparison import Comparison, GeometryChange, StructureChange, Version, compare
-from aidl_lang.comparison.changes import Fields
+from aidl_lang.comparison.changes import Fields, Sort
 from aidl_lang.comparison.move import Move
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.drawing import draw
@@ -78,7 +78,7 @@ def test_nothing_changed() -> None:
 
 def test_how_it_is_written_is_no_difference() -> None:
     corners = "polygon([(-20, -10), (20, -10), (20, 10), (-20, 10)])"
-    frame = "assembly a {{ solid s at ({x}, 0) {{ r = rectangle(center: fixed(({y}, 0)), width: 40, height: 20) }} }}"
+    frame = "assembly a {{ solid s at ({x}, 0) {{ r = square(center: fixed(({y}, 0)), size: 40) }} }}"
     assert difference(frame.format(x=0, y=0), frame.format(x=5, y=-5)).is_equal
     assert not difference(plate(), f"solid plate {{ edge = {corners} }}").is_equal
 
@@ -92,17 +92,27 @@ def test_what_moved_as_a_whole_is_told_once() -> None:
 
 
 def test_turned() -> None:
-    arm = "assembly a {{ solid base {{ foot = square(center: fixed((0, -50)), size: 9) }} solid arm rotated {angle}deg {{ bar = rectangle(center: fixed((20, 0)), width: 40, height: 6) hole pin {{ rim = circle(center: fixed((35, 0)), radius: 2) }} }} }}"
+    arm = """
+    assembly a {{
+        solid base {{ foot = square(center: fixed((0, -50)), size: 9) }}
+        solid arm rotated {angle}deg {{
+            bar = rectangle(center: fixed((20, 0)), width: 40, height: 6)
+            hole pin {{ rim = circle(center: fixed((35, 0)), radius: 2) }}
+        }}
+    }}"""
     found = difference(arm.format(angle=10), arm.format(angle=55))
     move = of(found, "a.arm").move
     assert move is not None
-    assert (move.turn, move.mirrored) == (pytest.approx(45), False)
+    assert move.turn == pytest.approx(45)
+    assert not move.mirrored
     assert move.fixed_point == pytest.approx((0, 0), abs=1e-9)
     assert paths(found) == ["a", "a.arm"]
 
 
 def test_turned_about_its_own_middle() -> None:
-    box = "solid s {{ r = rectangle(center: fixed((30, 10)), width: 20, height: 8, angle: fixed({angle}deg)) }}"
+    box = (
+        "solid s {{ r = rectangle(center: fixed((30, 10)), width: 20, height: 8, angle: fixed({angle}deg)) }}"
+    )
     move = difference(box.format(angle=0), box.format(angle=-90)).structures[0].move
     assert move is not None
     assert move.turn == pytest.approx(-90)
@@ -174,6 +184,15 @@ def test_renamed(x: float) -> None:
     assert "t.old" not in paths(found)
 
 
+def test_of_several_that_it_could_have_been_it_is_the_nearest() -> None:
+    part = "solid {name} {{ c = circle(center: fixed(({x}, 90)), radius: 3) }}"
+    before = part.format(name="p", x=0) + part.format(name="q", x=50)
+    after = part.format(name="r", x=48) + part.format(name="s", x=1)
+    found = difference(f"assembly t {{ {plate()} {before} }}", f"assembly t {{ {plate()} {after} }}")
+    assert (of(found, "t.r").was, of(found, "t.r").move) == ("t.q", Move(-2.0, 0.0))
+    assert (of(found, "t.s").was, of(found, "t.s").move) == ("t.p", Move(1.0, 0.0))
+
+
 def test_moved_to_another_place_in_the_tree() -> None:
     pin = "solid pin { c = circle(center: fixed((0, 90)), radius: 3) }"
     other = "assembly tools { solid saw { r = square(center: fixed((0, -90)), size: 4) } %s }"
@@ -190,14 +209,19 @@ def test_another_shape_is_not_a_new_name() -> None:
 
 
 def test_renamed_geometry() -> None:
-    text = "solid s {{ {a} = circle(center: fixed((0, 0)), radius: 3) {b} = circle(center: fixed((9, 0)), radius: 3) }}"
+    text = (
+        "solid s {{ {a} = circle(center: origin, radius: 3) {b} = circle(center: fixed((9, 0)), radius: 3) }}"
+    )
     (change,) = difference(text.format(a="p", b="q"), text.format(a="p", b="z")).structures
     assert change.geometry == (GeometryChange("z", "circle", was="q"),)
     assert change.sizes == {}
 
 
 def test_params_and_attributes() -> None:
-    before = '@material("steel") @thickness(3mm) @detached solid s { param w = 40 in 10..90 edge = rectangle(width: 20, height: 20) assert w > 0 }'
+    before = (
+        '@material("steel") @thickness(3mm) @detached '
+        "solid s { param w = 40 in 10..90 edge = square(size: 20) assert w > 0 }"
+    )
     after = before.replace("steel", "brass").replace("3mm", "4mm").replace("@detached", '@layer("cut")')
     change = of(difference(before, after.replace("40", "50")), "s")
     assert change.params == {"w": (40.0, 50.0)}
@@ -226,7 +250,9 @@ def test_fillets() -> None:
 
 def test_construction() -> None:
     loop = "{word} c = circle(center: fixed((30, 0)), radius: 5)"
-    found = of(difference(plate(more=loop.format(word="")), plate(more=loop.format(word="construction"))), "plate")
+    found = of(
+        difference(plate(more=loop.format(word="")), plate(more=loop.format(word="construction"))), "plate"
+    )
     assert [g.fields for g in found.geometry] == [{"construction": (False, True)}]
     assert near(found.sizes)["area"] == (800 + 25 * math.pi, 800)
 
@@ -239,7 +265,11 @@ def test_a_corner_of_a_polygon() -> None:
 
 
 def test_a_line_and_an_arc() -> None:
-    text = "drawing d {{ l = line(fixed((0, 0)), fixed(({x}, 4))) a = arc(center: fixed((9, 9)), radius: 2, start_angle: 0deg, end_angle: fixed({end}deg)) }}"
+    text = """
+    drawing d {{
+        l = line(fixed((0, 0)), fixed(({x}, 4)))
+        a = arc(center: fixed((9, 9)), radius: 2, start_angle: 0deg, end_angle: fixed({end}deg))
+    }}"""
     (change,) = difference(text.format(x=3, end=90), text.format(x=4, end=180)).structures
     line, arc = change.geometry
     assert near(line.fields)["end"] == ((3, 4), (4, 4))
@@ -263,8 +293,8 @@ def test_letters_have_an_outline_alone() -> None:
 
 
 def test_contacts() -> None:
-    text = "assembly t {{ {plate} solid lid {{ r = rectangle(center: fixed((0, {y})), width: 10, height: 4) }} }}"
-    touching, apart, over = (text.format(plate=plate(), y=y) for y in (12, 14, 11))
+    lid = "solid lid {{ r = rectangle(center: fixed((0, {y})), width: 10, height: 4) }}"
+    touching, apart, over = (f"assembly t {{ {plate()} {lid.format(y=y)} }}" for y in (12, 14, 11))
     (change,) = difference(touching, apart).contacts
     assert (change.a, change.b) == ("t.plate", "t.lid")
     assert change.before is not None
@@ -273,7 +303,8 @@ def test_contacts() -> None:
     assert change.after.gap == pytest.approx(2)
     (change,) = difference(apart, over).contacts
     assert change.after is not None
-    assert (change.after.relation, change.after.area) == ("overlapping", pytest.approx(10))
+    assert change.after.relation == "overlapping"
+    assert change.after.area == pytest.approx(10)
 
 
 def test_freedom() -> None:
@@ -299,14 +330,23 @@ def test_a_wrong_program_cannot_be_compared() -> None:
 
 
 def test_plans_have_boxes() -> None:
-    text = "assembly a {{ solid s {{ c = circle(center: fixed((0, -9)), radius: 1) }} solid plan {{ todo }} constrain plan.left == {x} constrain plan.bottom == 0 constrain plan.width == {w} constrain plan.height == 5 }}"
+    text = """
+    assembly a {{
+        solid s {{ c = circle(center: fixed((0, -9)), radius: 1) }}
+        solid plan {{ todo }}
+        constrain {{ plan.left == {x}; plan.bottom == 0; plan.width == {w}; plan.height == 5 }}
+    }}"""
     moved = difference(text.format(x=0, w=10), text.format(x=4, w=10))
     assert _same_move(of(moved, "a.plan").move, Move(4.0, 0.0))
-    assert near(of(difference(text.format(x=0, w=10), text.format(x=0, w=12)), "a.plan").sizes) == {"width": (10, 12)}
+    assert near(of(difference(text.format(x=0, w=10), text.format(x=0, w=12)), "a.plan").sizes) == {
+        "width": (10, 12)
+    }
 
 
 def test_a_second_root_puts_the_first_into_an_assembly() -> None:
-    found = difference(plate(), f"{plate()} @detached solid lid {{ c = circle(center: fixed((0, 0)), radius: 1) }}")
+    found = difference(
+        plate(), f"{plate()} @detached solid lid {{ c = circle(center: fixed((0, 0)), radius: 1) }}"
+    )
     assert [(s.path, s.sort) for s in found.structures] == [("text.lid", "appeared")]
 
 
@@ -347,7 +387,14 @@ def test_what_did_not_go_along_is_told() -> None:
 
 
 def test_no_majority_no_motion() -> None:
-    text = "assembly a {{ assembly b {{ solid c {{ k = circle(center: fixed(({x}, 0)), radius: 1) }} solid d {{ k = circle(center: fixed((9, 0)), radius: 1) }} }} solid e {{ k = circle(center: fixed((0, 40)), radius: 1) }} }}"
+    text = """
+    assembly a {{
+        assembly b {{
+            solid c {{ k = circle(center: fixed(({x}, 0)), radius: 1) }}
+            solid d {{ k = circle(center: fixed((9, 0)), radius: 1) }}
+        }}
+        solid e {{ k = circle(center: fixed((0, 40)), radius: 1) }}
+    }}"""
     found = difference(text.format(x=0), text.format(x=3))
     assert [(s.path, s.move) for s in found.structures if s.move] == [("a.b.c", Move(3.0, 0.0))]
 
@@ -391,7 +438,7 @@ def test_the_other_way_round(name: str) -> None:
 
 
 def _reversed(s: StructureChange) -> StructureChange:
-    sorts = {"changed": "changed", "appeared": "vanished", "vanished": "appeared"}
+    sorts: dict[Sort, Sort] = {"changed": "changed", "appeared": "vanished", "vanished": "appeared"}
 
     def turned(fields: Fields) -> Fields:
         return {name: (b, a) for name, (a, b) in fields.items()}

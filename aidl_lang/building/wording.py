@@ -67,7 +67,7 @@ class Wording:
         return symbol.node if symbol and len(readers) == 1 and isinstance(symbol.node, ast.Param) else None
 
     def value(self, node: ast.Expression) -> Value | None:
-        """What a part of the statement is, as the structure that holds it sees it; None if that takes too long."""
+        """What a part of the statement is where it stands; None if that takes too long."""
         it = self.it
         it.deadline = time.monotonic() + it.limits.seconds
         try:

@@ -69,12 +69,16 @@ def _suffix(name: str, arguments: argparse.Namespace) -> str:
     if name != files.STANDARD and Path(name).resolve() in programs:
         raise UseError("E0908", f"`{name}` is the program itself and is not overwritten")
     own = "" if name == files.STANDARD else Path(name).suffix.lower()
-    said = f".{arguments.format.lower().lstrip('.')}" if arguments.format else ".svg" * (name == files.STANDARD)
+    said = (
+        f".{arguments.format.lower().lstrip('.')}" if arguments.format else ".svg" * (name == files.STANDARD)
+    )
     for suffix in (own, said):
         if suffix in PICTURES:
             return suffix
     asked = (said or own).lstrip(".")
-    message = f"differences cannot be drawn as `{asked}`" if asked else f"the name `{name}` does not tell a format"
+    message = (
+        f"differences cannot be drawn as `{asked}`" if asked else f"the name `{name}` does not tell a format"
+    )
     raise UseError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in PICTURES))}")
 
 

@@ -30,7 +30,7 @@ class Version:
 
 @dataclass(frozen=True)
 class GeometryChange:
-    """A named geometry. `fields` are those that differ if it did not move as a whole (`is_outline_changed`)."""
+    """A named geometry. `is_outline_changed` if it did not move as a whole; `fields` then differ."""
 
     name: str
     type: str

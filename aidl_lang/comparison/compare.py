@@ -49,7 +49,7 @@ def compare(before: Version, after: Version) -> Comparison:
 
 def _extent(version: Version) -> float:
     box = version.model.root.box
-    return max(version.drawing.size, *(() if box is None else (box.width, box.height)))
+    return max([version.drawing.size, *([] if box is None else [box.width, box.height])])
 
 
 def _renamed(path: str, names: Mapping[str, str]) -> str:
@@ -65,7 +65,9 @@ def _contact_changes(
 ) -> Iterator[ContactChange]:
     """Bodies of both versions that lie to each other in another way."""
     bodies = {names.get(b.path, "") for b in before.drawing.bodies} & {b.path for b in after.drawing.bodies}
-    first = {frozenset((names[c.a], names[c.b])): c for c in before.drawing.pairs if {c.a, c.b} <= names.keys()}
+    first = {
+        frozenset((names[c.a], names[c.b])): c for c in before.drawing.pairs if {c.a, c.b} <= names.keys()
+    }
     last = {frozenset((c.a, c.b)): c for c in after.drawing.pairs}
     for pair in dict.fromkeys([*last, *first]):
         a, b = first.get(pair), last.get(pair)
@@ -129,7 +131,7 @@ class _Walk:
         return next((move for move in self._candidates(pair) if pair.follows(move)), None)
 
     def _candidates(self, pair: StructurePair) -> list[Move]:
-        """The most frequent motions of single things, turns also by themselves: a circle shows only a shift."""
+        """The most frequent motions of single things; turns get a place, for circles show only shifts."""
         votes: dict[tuple[int, ...], list[Move]] = {}
         for move in (leaf.pose.shift() for leaf in pair.leaves()):
             if move is not None and np.isfinite([move.dx, move.dy, move.turn]).all():
@@ -146,7 +148,9 @@ class _Walk:
         first = fields.sizes(a, self.before.drawing.regions.get(a.path))
         last = fields.sizes(b, self.after.drawing.regions.get(b.path))
         if is_turned:  # the box of a turned thing is another one
-            first, last = ({n: v for n, v in f.items() if n not in ("width", "height")} for f in (first, last))
+            first, last = (
+                {n: v for n, v in f.items() if n not in ("width", "height")} for f in (first, last)
+            )
         return fields.changed(first, last, move, self.tolerance)
 
     def _sizes_alone(self, s: SolvedStructure, side: int) -> Fields:

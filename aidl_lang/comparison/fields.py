@@ -8,7 +8,7 @@ from typing import TypeGuard
 
 from aidl_lang.comparison.changes import Value
 from aidl_lang.comparison.move import STILL, Move
-from aidl_lang.geometry.curves import Arc, Vec
+from aidl_lang.geometry.curves import Arc, Line, Vec
 from aidl_lang.geometry.measures import measure
 from aidl_lang.geometry.region import Region
 from aidl_lang.solved import Scalar, SolvedGeometry, SolvedStructure
@@ -23,7 +23,8 @@ def changed(a: Values, b: Values, move: Move = STILL, tolerance: float = 0.0) ->
     return {
         name: (a.get(name), b.get(name))
         for name in dict.fromkeys([*b, *a])
-        if not _went(a.get(name), b.get(name), move, tolerance) and not is_same(a.get(name), b.get(name), name)
+        if not _went(a.get(name), b.get(name), move, tolerance)
+        and not is_same(a.get(name), b.get(name), name)
     }
 
 
@@ -87,7 +88,7 @@ def of_geometry(a: SolvedGeometry, b: SolvedGeometry, move: Move, tolerance: flo
     if found or not b.parts:
         return found
     corners = dict(_corners(a)), dict(_corners(b))
-    return changed(*corners, move, tolerance) | changed(*(dict(_radii(g)) for g in (a, b)))
+    return changed(*corners, move, tolerance) | changed(dict(_radii(a)), dict(_radii(b)))
 
 
 def _values(g: SolvedGeometry) -> dict[str, Value]:
@@ -97,9 +98,9 @@ def _values(g: SolvedGeometry) -> dict[str, Value]:
             found |= {f"{name}[{i}]": p for i, p in enumerate(value) if isinstance(p, tuple)}
         else:
             found[name] = value  # type: ignore[assignment]
-    if g.type == "line":
-        (x0, y0), (x1, y1) = g.values["start"], g.values["end"]  # type: ignore[misc]
-        found |= {"length": math.hypot(x1 - x0, y1 - y0), "angle": math.degrees(math.atan2(y1 - y0, x1 - x0))}
+    if isinstance(g.curve, Line):
+        x, y = (q - p for p, q in zip(g.curve.start, g.curve.end, strict=True))
+        found |= {"length": math.hypot(x, y), "angle": math.degrees(math.atan2(y, x))}
     if isinstance(g.curve, Arc):
         found["sweep"] = math.degrees(abs(g.curve.sweep))
     return found

@@ -16,7 +16,7 @@ from aidl_lang.comparison.move import STILL, Move, Pose, pose_of
 from aidl_lang.solved import SolvedGeometry, SolvedStructure
 
 _T = TypeVar("_T", SolvedGeometry, SolvedStructure)
-_MOST = 16
+_MOST = 8
 """Structures of one form that are tried for a new name."""
 
 
@@ -156,14 +156,13 @@ def _find_renamed(root: StructurePair, tolerance: float) -> None:
     gone = [s for node in nodes for s in node.gone]
     new = [s for node in nodes for s in node.new]
     holder = {s.path: node for node in nodes for s in node.new}
-    found = {}
 
     def pose(a: SolvedStructure, b: SolvedStructure, tolerance: float) -> Pose:
-        found[b.path] = pair = _by_name(a, b, tolerance)
+        pair = _by_name(a, b, tolerance)
         return Pose(tolerance, congruent=False) if pair.is_altered else pair.pose
 
     for a, b, _ in _congruent(gone, new, _form, pose, tolerance):
-        pair = found[b.path]
+        pair = _by_name(a, b, tolerance)
         pair.was = a.path
         holder[b.path].structures.append(pair)
     left = {s.path for s in gone}, {s.path for s in new}
@@ -202,12 +201,14 @@ def _nearest(
     y: _T, candidates: Sequence[_T], pose: Callable[[_T, _T, float], Pose], tolerance: float
 ) -> tuple[_T, _T, Pose] | None:
     """The first few of a form are looked at: many that were renamed together come in their old order."""
-    found = []
+    found: list[tuple[float, float, int, _T, Pose]] = []
     for x in candidates[:_MOST]:
         p = pose(x, y, tolerance)
         move = p.move() if p.points.size else None
         if move is not None:
-            found.append((abs(move.turn) + 360 * move.mirrored, math.hypot(move.dx, move.dy), len(found), x, p))
+            found.append(
+                (abs(move.turn) + 360 * move.mirrored, math.hypot(move.dx, move.dy), len(found), x, p)
+            )
         if move == STILL:
             break
     if not found:
@@ -218,7 +219,11 @@ def _nearest(
 
 def _form(s: SolvedStructure) -> object:
     """What two structures have in common that differ in name and place alone."""
-    return s.kind, tuple((g.name, g.type) for g in s.geometry), tuple((c.name, _form(c)) for c in s.structures)
+    return (
+        s.kind,
+        tuple((g.name, g.type) for g in s.geometry),
+        tuple((c.name, _form(c)) for c in s.structures),
+    )
 
 
 def _form_of_geometry(g: SolvedGeometry) -> object:

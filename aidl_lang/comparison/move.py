@@ -37,7 +37,8 @@ class Move:
     def all(self, points: Points) -> Points:
         """The images of many points, shape (n, 2)."""
         if not (self.turn or self.mirrored):
-            return points + (self.dx, self.dy)
+            shifted: Points = points + np.array((self.dx, self.dy))
+            return shifted
         c, s = math.cos(math.radians(self.turn)), math.sin(math.radians(self.turn))
         x = -points[:, 0] if self.mirrored else points[:, 0]
         y = points[:, 1]
@@ -100,7 +101,7 @@ class Pose:
         return bool(np.all(np.abs(move.all(self.centers[0]) - self.centers[1]) <= self.tolerance))
 
     def move(self, expected: Move = STILL) -> Move | None:
-        """The motion that takes all there; None if there is none. `expected` if that does, then the simplest."""
+        """The motion that takes all there, if there is one: `expected` if it does, else the simplest."""
         if not self.congruent:
             return None
         return next((m for m in self._candidates(expected) if self.fits(m)), None)
@@ -177,13 +178,17 @@ def _gather(
     if any(not abs(r - s) <= tolerance for r, s in radii):
         return False
     places += zip(first, last, strict=True)
-    if isinstance(a.curve, Ellipse) and isinstance(b.curve, Ellipse) and abs(a.curve.rx - a.curve.ry) > tolerance:
+    if (
+        isinstance(a.curve, Ellipse)
+        and isinstance(b.curve, Ellipse)
+        and abs(a.curve.rx - a.curve.ry) > tolerance
+    ):
         axes.append((math.degrees(a.curve.angle), math.degrees(b.curve.angle)))
     return all(_gather(p, q, tolerance, places, axes) for p, q in zip(a.parts, b.parts, strict=True))
 
 
 def _places(g: SolvedGeometry) -> list[Vec]:
-    """Points that tell where a primitive is and how it is turned; of an arc its middle says which way it goes."""
+    """Points that say where a primitive is and how it is turned; the middle of an arc its way."""
     match g.curve:
         case Line(start, end):
             return [start, end]
@@ -195,7 +200,7 @@ def _places(g: SolvedGeometry) -> list[Vec]:
             return [p0, p1, p2, p3]
         case _:
             at = g.values.get("at")
-            return [at] if isinstance(at, tuple) and len(at) == 2 and isinstance(at[0], float) else []  # type: ignore[list-item]
+            return [] if at is None else [at]  # type: ignore[list-item]
 
 
 def _radii(g: SolvedGeometry) -> tuple[float, ...]:

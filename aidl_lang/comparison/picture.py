@@ -1,7 +1,7 @@
 """Two versions drawn over each other: what is in both, in one of them only, and what went where.
 
-Grey is in both. What is gone is orange, hatched, with dashed outlines; what is new is blue, with solid ones: the
-two can be told apart without colours.
+Grey is in both. What is gone is orange, hatched, with dashed outlines; what is new is blue, with solid ones:
+the two can be told apart without colours.
 """
 
 from __future__ import annotations
@@ -144,12 +144,16 @@ def _coincide(a: Sequence[Piece], b: Sequence[Piece], tolerance: float) -> bool:
 
 
 def _arrows(changes: Iterable[StructureChange], before: Version, size: float) -> Iterator[Mark]:
-    """From where the middle of a thing was to where it is: the centroid of a region, else the middle of the box."""
+    """From where the middle of a thing was to where it is: the centroid of its region, else of its box."""
     ways = []
     for change in changes:
         region = before.drawing.regions.get(change.was or change.path)
         at = measure(region).centroid if region else change.middle
-        if change.move is not None and at is not None and math.dist(at, to := change.move(at)) > SHORTEST * size:
+        if (
+            change.move is not None
+            and at is not None
+            and math.dist(at, to := change.move(at)) > SHORTEST * size
+        ):
             ways.append((at, to))
     if len(ways) <= MOST_ARROWS:
         for at, to in ways:

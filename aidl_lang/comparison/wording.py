@@ -34,6 +34,7 @@ _ROUNDING, _NOTHING, _HARDLY = 1e-7, 1e-9, 1e-6
 """What is shown as 0: of a point relative to its larger coordinate, of any number, of a shift relative to the
 drawing.
 """
+_MAIN_SIZES = ("width", "height", "area")
 _MEMBER = re.compile(r"(.*)\[(-?\d+)\]")
 
 
@@ -136,8 +137,10 @@ def _dimensions(sizes: Fields, side: int) -> str:
 
 
 def _sizes(sizes: Fields) -> str:
+    """Width, height and area; perimeter and centroid only where they alone differ."""
     words = []
-    for name, (a, b) in sizes.items():
+    main = {name: pair for name, pair in sizes.items() if name in _MAIN_SIZES}
+    for name, (a, b) in (main or sizes).items():
         if isinstance(a, float) and isinstance(b, float):
             sign, by = "+" if b > a else "−", abs(b - a)
             more = f" ({sign}{_number(by)})" if name in ("width", "height") else ""
@@ -153,7 +156,7 @@ def _verdict(sizes: Fields) -> str:
     signs = {
         b > a
         for name, (a, b) in sizes.items()
-        if name in ("width", "height", "area") and isinstance(a, float) and isinstance(b, float)
+        if name in _MAIN_SIZES and isinstance(a, float) and isinstance(b, float)
     }
     return "grew" if signs == {True} else "shrank" if signs == {False} else "changed"
 

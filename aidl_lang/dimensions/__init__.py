@@ -52,7 +52,9 @@ def dimensions(model: SolvedModel, drawing: Drawing) -> list[tuple[Dimension, ..
     stated = _grouped([*overall(drawing), *model.sizes], tolerance)
     # A diameter tells width and height of what is round.
     rounds = [g[0].curve for g in stated if isinstance(g[0], Roundness) and isinstance(g[0].curve, Circle)]
-    stated = [g for g in stated if g[0].origin != "overall" or not any(_spans(c, g[0], tolerance) for c in rounds)]
+    stated = [
+        g for g in stated if g[0].origin != "overall" or not any(_spans(c, g[0], tolerance) for c in rounds)
+    ]
     everything = [d for g in stated for d in g]
     everything += [d for g in stated for d in pattern_pitches(g, tolerance)]
     return sorted(_grouped(everything, tolerance), key=lambda g: not _is_overall(g[0], drawing))

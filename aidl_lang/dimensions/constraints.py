@@ -14,12 +14,20 @@ from dataclasses import dataclass, replace
 from aidl_lang import ast
 from aidl_lang.boxes import Box, spelled_out
 from aidl_lang.building.wording import Wording
-from aidl_lang.dimensions.features import angle_of, dot, extreme, foot, length_along, length_between, length_of_line
+from aidl_lang.dimensions.features import (
+    angle_of,
+    dot,
+    extreme,
+    foot,
+    length_along,
+    length_between,
+    length_of_line,
+)
 from aidl_lang.dimensions.fields import Sized, level_angle, round_dimension
 from aidl_lang.expression import ZERO, Evaluator, Expression, constant
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.model import Constraint, Geometry, Model, Structure, convert, convert_angle
-from aidl_lang.solved import Dimension, Length, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.solved import Dimension, Length, Roundness, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.values import Array, ListVal, Num, PointVal, Value, members
 
 _AXIS = {"left": 0, "right": 0, "center_x": 0, "x": 0, "bottom": 1, "top": 1, "center_y": 1, "y": 1}
@@ -92,7 +100,7 @@ class _Statement:
 
     def dimensions(self) -> Iterator[Dimension]:
         for k, (found, value) in enumerate(self._read()):
-            if abs(found.value - abs(value.value)) <= _SLACK * max(1.0, abs(value.value)):
+            if _agrees(found, abs(value.value)):
                 yield replace(
                     found,
                     origin="constraint",
@@ -107,8 +115,9 @@ class _Statement:
             case ast.Comparison(operands=(left, right), operators=("==",)):
                 for node, other in ((left, right), (right, left)):
                     value = self._constant(other)
-                    if isinstance(value, Num):
-                        yield from ((d, value) for d in self._measured(node, value))
+                    measured = list(self._measured(node, value)) if isinstance(value, Num) else []
+                    if isinstance(value, Num) and measured:
+                        yield from ((d, value) for d in measured)
                         return
                 yield from self._offset(left, right)
             case ast.Call() as call:
@@ -157,11 +166,12 @@ class _Statement:
             along = self._way(int(name.startswith("vertical")))
             return length_between([p], [q], along) if p and q else None
         line_a, line_b = self._line(a), self._line(b)
-        p = line_b and _middle(line_b) if line_a else self._point(a)
         line = line_a or line_b
-        if line_a is not None and line_b is None:
-            p = self._point(b)
-        q = foot(p, line) if line is not None and p is not None else self._point(b)
+        if line is None:
+            p, q = self._point(a), self._point(b)
+        else:
+            p = self._point(b if line_a else a) if not (line_a and line_b) else _middle(line_b or line)
+            q = foot(p, line) if p is not None else None
         return length_of_line(p, q) if p is not None and q is not None else None
 
     def _angle(self, given: Sequence[ast.Expression], value: float) -> Iterator[Dimension]:
@@ -180,9 +190,7 @@ class _Statement:
         solved = self.scene.geometry.get(thing.path) if isinstance(thing, Geometry) else None
         curve = solved.curve if solved is not None else None
         if isinstance(curve, Circle | Arc) and name in ("radius", "diameter"):
-            found: Dimension = round_dimension(curve)
-            # The value may be stated for the other of the two.
-            yield replace(found, value=value) if math.isclose(found.value, value, rel_tol=_SLACK) else found
+            yield round_dimension(curve)
         elif isinstance(curve, Line) and name == "length":
             line = length_of_line(curve.start, curve.end)
             yield from [line] if line else []
@@ -226,15 +234,19 @@ class _Statement:
         self, node: ast.Expression, sign: int
     ) -> Iterator[tuple[int, ast.Expression, Num | PointVal | None]]:
         """The signed terms of a sum, with their values where these are constant."""
-        value = self._constant(node)
         match node:
-            case _ if value is not None:
-                yield sign, node, value
             case ast.Binary(operator="+" | "-" as operator, left=left, right=right):
                 yield from self._terms(left, sign)
                 yield from self._terms(right, sign if operator == "+" else -sign)
             case _:
-                yield sign, node, None
+                yield sign, node, None if self._is_place(node) else self._constant(node)
+
+    def _is_place(self, node: ast.Expression) -> bool:
+        """Whether a term is a point or coordinate of something, which may well be fixed."""
+        if not isinstance(node, ast.Member):
+            return False
+        is_of_thing = isinstance(self.wording.value(node.value), Geometry | Structure | Box)
+        return (is_of_thing and node.name.text not in _SIZES) or self._is_place(node.value)
 
     def _coordinate(self, node: ast.Expression) -> tuple[int, tuple[Vec, ...]] | None:
         """A place along an axis of the holder: the axis, and points that are there."""
@@ -259,7 +271,10 @@ class _Statement:
                 return ()
             # Rather the tip of a thing than its middle, where there is nothing to be seen.
             tips = [*extreme(curves, (-v, u)), *extreme(curves, (v, -u))] if curves else []
-            return (*(q for q in tips if abs(dot((q[0] - p[0], q[1] - p[1]), (u, v))) < 1e-9 * math.hypot(*p)), p)
+            return (
+                *(q for q in tips if abs(dot((q[0] - p[0], q[1] - p[1]), (u, v))) < 1e-9 * math.hypot(*p)),
+                p,
+            )
         return extreme(curves, (u, v) if side in ("right", "top") else (-u, -v)) if curves else ()
 
     # --- Values ------------------------------------------------------------------------------------
@@ -304,9 +319,7 @@ class _Statement:
         """The direction of an axis of the holder in coordinates of the root."""
         here, root = self.constraint.holder, self.scene.root
         unit = (constant(1.0), ZERO) if axis == 0 else (ZERO, constant(1.0))
-        (x0, y0), (x1, y1) = (
-            map(self.scene.evaluate, convert(*p, here, root)) for p in ((ZERO, ZERO), unit)
-        )
+        (x0, y0), (x1, y1) = (map(self.scene.evaluate, convert(*p, here, root)) for p in ((ZERO, ZERO), unit))
         return x1 - x0, y1 - y0
 
     def _callee(self, call: ast.Call) -> str:
@@ -315,6 +328,14 @@ class _Statement:
     def _positional(self, call: ast.Call) -> list[ast.Expression]:
         receiver = [call.receiver] if call.receiver is not None else []
         return [*receiver, *(a.value for a in call.arguments if a.name is None)]
+
+
+def _agrees(found: Dimension, value: float) -> bool:
+    """Whether a dimension is what was stated; of what is round either the radius or the diameter."""
+    sizes = [found.value]
+    if isinstance(found, Roundness):
+        sizes = [found.curve.radius, 2 * found.curve.radius]
+    return any(abs(size - value) <= _SLACK * max(1.0, value) for size in sizes)
 
 
 def _middle(line: Line) -> Vec:

@@ -68,8 +68,14 @@ def length_between(start: Sequence[Vec], end: Sequence[Vec], u: Vec) -> Length:
 
 
 def length_of_line(a: Vec, b: Vec) -> Length | None:
+    u = unit(a, b)
+    return length_between([a], [b], u) if u is not None else None
+
+
+def unit(a: Vec, b: Vec) -> Vec | None:
+    """The direction from one point to another."""
     reach = math.dist(a, b)
-    return length_between([a], [b], ((b[0] - a[0]) / reach, (b[1] - a[1]) / reach)) if reach else None
+    return ((b[0] - a[0]) / reach, (b[1] - a[1]) / reach) if reach else None
 
 
 def foot(p: Vec, line: Line) -> Vec:
@@ -81,7 +87,7 @@ def foot(p: Vec, line: Line) -> Vec:
 
 
 def angle_of(a: Line, b: Line, degrees: float) -> Opening | None:
-    """The angle between two lines that is as large as stated, between the arms that are drawn if there are."""
+    """The angle between two lines that is as large as stated, rather between arms that are drawn."""
     corner = meeting(a, b)
     if corner is None:
         return None

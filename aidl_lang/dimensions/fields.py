@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 
 from aidl_lang import expression as ex
 from aidl_lang.building.scopes import Scope
-from aidl_lang.dimensions.features import angle_of, direction, dot, length_along, length_of_line
-from aidl_lang.expression import Evaluator, Expression, Unknown
+from aidl_lang.dimensions.features import angle_of, direction, dot, length_along, length_of_line, unit
+from aidl_lang.expression import Evaluator, Expression
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece
 from aidl_lang.geometry.evaluate import point
 from aidl_lang.model import Geometry, Model, Structure, convert_angle
@@ -24,6 +24,7 @@ from aidl_lang.values import ListVal, Num
 _UPRIGHT = frozenset({"height", "tall", "y"})
 _TURNED = 1e-6
 _SLACK = 1e-7
+_PARALLEL = 1 - 1e-9
 
 
 def field_sizes(
@@ -48,17 +49,25 @@ def original(geometry: Geometry) -> Geometry:
     return geometry
 
 
-def origin_of(value: Num) -> str | None:
-    """Whether a size is exact (`param`) or written as a number (`size`); None if it follows from others."""
+def origin_of(value: Num, holder: Geometry | None = None) -> str | None:
+    """Whether a size is exact (`param`) or written as a number (`size`), maybe as the argument of a
+    template; None if it follows from others.
+    """
     if value.expression.is_constant:
         return "param"
-    payload = value.expression.payload
-    return "size" if isinstance(payload, Unknown) and payload.kept else None
+    kept = all(
+        u.kept and (holder is None or u.holder is holder or isinstance(u.holder, Structure))
+        for u in ex.unknowns([value.expression])
+    )
+    return "size" if kept else None
 
 
 @dataclass(frozen=True)
 class Sized:
-    """A geometry as it was built (or what it is a copy of) and as it came out; `turned`: degrees by which its structure is turned."""
+    """A geometry as it was built (or what it is a copy of) and as it came out.
+
+    turned  degrees by which its structure is turned
+    """
 
     built: Geometry
     solved: SolvedGeometry
@@ -69,7 +78,7 @@ class Sized:
     def dimensions(self) -> Iterator[Dimension]:
         found = False
         for name, value in self._numbers():
-            origin = origin_of(value)
+            origin = origin_of(value, self.built)
             if origin is not None:
                 for dimension in self.field(name, self.evaluate(value.expression), value):
                     found = True
@@ -136,7 +145,9 @@ class Sized:
     def _straight(self, name: str, word: str, value: float) -> Length | None:
         """The edge that the name speaks of, else the way the shape reaches as far, else any edge as long."""
         curves = self._curves()
-        lines = [(g.name, g.curve) for g in self.solved.walk() if isinstance(g.curve, Line) and not g.construction]
+        lines = [
+            (g.name, g.curve) for g in self.solved.walk() if isinstance(g.curve, Line) and not g.construction
+        ]
         fitting = [(n, c) for n, c in lines if _same(math.dist(c.start, c.end), value)]
         for part, line in fitting:
             if part == name.rpartition("_")[0] or len(lines) == 1:
@@ -146,9 +157,8 @@ class Sized:
         upright = word in _UPRIGHT
         ways = [direction(angle + 90 * (k + upright)) for k in (0, 1)]
         for _, line in lines[:8]:
-            reach = math.dist(line.start, line.end)
-            along = ((line.end[0] - line.start[0]) / reach, (line.end[1] - line.start[1]) / reach) if reach else ways[0]
-            ways += [w for w in (along, (-along[1], along[0])) if all(abs(dot(w, v)) < 1 - 1e-9 for v in ways)]
+            u = unit(line.start, line.end) or ways[0]
+            ways += [w for w in (u, (-u[1], u[0])) if all(abs(dot(w, v)) < _PARALLEL for v in ways)]
         for way in ways:
             if curves and _same((reach_along := length_along(curves, way)).value, value):
                 return reach_along
@@ -164,9 +174,8 @@ class Sized:
         way = direction(value + self.turned)
         edges = [line] if isinstance(line, Line) else [c for c in self._curves() if isinstance(c, Line)]
         for edge in edges:
-            reach = math.dist(edge.start, edge.end)
-            u = ((edge.end[0] - edge.start[0]) / reach, (edge.end[1] - edge.start[1]) / reach) if reach else (0, 0)
-            if abs(dot(u, way)) > 1 - 1e-9:
+            u = unit(edge.start, edge.end)
+            if u is not None and abs(dot(u, way)) > _PARALLEL:
                 yield from level_angle(edge, self.turned)
                 return
 

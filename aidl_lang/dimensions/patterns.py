@@ -12,7 +12,7 @@ from aidl_lang.solved import Dimension, Length, Roundness
 
 
 def pattern_pitches(group: Sequence[Dimension], tolerance: float) -> Iterator[Dimension]:
-    """The dimensions that place the members of a group of equal circles to each other, if they are in order."""
+    """What places the members of a group of equal circles to each other, if they are in order."""
     centers = [d.curve.center for d in group if isinstance(d, Roundness) and isinstance(d.curve, Circle)]
     if len(centers) < 2:
         return
@@ -37,9 +37,7 @@ def _levels(values: Sequence[float], tolerance: float) -> list[float]:
     return found
 
 
-def _steps(
-    centers: Sequence[Vec], levels: Sequence[float], axis: int, tolerance: float
-) -> Iterator[Length]:
+def _steps(centers: Sequence[Vec], levels: Sequence[float], axis: int, tolerance: float) -> Iterator[Length]:
     for a, b in pairwise(levels):
         start, end = (tuple(c for c in centers if abs(c[axis] - level) <= tolerance) for level in (a, b))
         found = length_between(start, end, (X_AXIS, Y_AXIS)[axis])
@@ -65,4 +63,8 @@ def _ring(centers: Sequence[Vec], tolerance: float) -> Circle | None:
     b, c = bx * bx + by * by, cx * cx + cy * cy
     x, y = ax + (cy * b - by * c) / twice, ay + (bx * c - cx * b) / twice
     radius = math.dist((x, y), (ax, ay))
-    return Circle((x, y), radius) if all(abs(math.dist((x, y), p) - radius) <= tolerance for p in centers) else None
+    return (
+        Circle((x, y), radius)
+        if all(abs(math.dist((x, y), p) - radius) <= tolerance for p in centers)
+        else None
+    )

@@ -1,5 +1,5 @@
-"""How one dimension looks at a given place, in proportions of ISO 129-1: extension lines, a dimension line with
-arrowheads, and the value above it, to be read from below or from the right.
+"""How one dimension looks at a given place, in the manner of ISO 129-1: extension lines, a dimension line
+with arrowheads, and the value above it, to be read from below or from the right.
 """
 
 from __future__ import annotations
@@ -7,6 +7,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
 from typing import TypeAlias
 
 from aidl_lang.export import palette
@@ -23,15 +25,15 @@ Segment: TypeAlias = tuple[Vec, Vec]
 HEIGHT, CAPITAL = 3.5, 0.73
 """Height of digits on paper in mm, and relative to the size of the font."""
 HEAD, HEAD_WIDTH, GAP, BEYOND, RAISED, LINE = 3.0, 1.0, 1.0, 2.0, 1.3, 0.18
-"""An arrowhead, the gaps before and the ends of extension lines, text above its line, line width: mm on paper."""
+"""Arrowheads, gaps before and ends of extension lines, values above their line, line width: mm on paper."""
 DIGIT = 0.64
 """Width of a digit relative to the size of the font."""
 
 
 @dataclass(frozen=True)
 class Placed:
-    """A dimension at its place: lines with arrowheads (tip and direction), what leads to them, the value, and
-    crosses (centre and length of arms) at places that are not on an outline. `ring`: a circle through centres.
+    """A dimension at its place: lines with arrowheads (tip and direction), what leads to them, the value,
+    crosses (centre and length of arms) at places that are not on an outline, a circle through centres.
     """
 
     lines: tuple[Segment, ...]
@@ -51,25 +53,28 @@ class Block:
     angle: float
     sides: Bounds
 
-    @property
+    @cached_property
     def axes(self) -> tuple[Vec, Vec]:
         c, s = math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))
         return (c, s), (-s, c)
 
-    @property
+    @cached_property
     def corners(self) -> tuple[Vec, ...]:
         (c, s), _ = self.axes
         left, bottom, right, top = self.sides
         at = ((left, bottom), (right, bottom), (right, top), (left, top))
         return tuple((self.at[0] + c * x - s * y, self.at[1] + s * x + c * y) for x, y in at)
 
-    @property
+    @cached_property
     def box(self) -> Bounds:
         xs, ys = zip(*self.corners, strict=True)
         return min(xs), min(ys), max(xs), max(ys)
 
     def overlaps(self, other: Block) -> bool:
         """Two rectangles are apart where a side of one has the other beyond it."""
+        a, b = self.box, other.box
+        if a[0] >= b[2] or b[0] >= a[2] or a[1] >= b[3] or b[1] >= a[3]:
+            return False
         for axis in (*self.axes, *other.axes):
             (low, high), (first, last) = (_range(block.corners, axis) for block in (self, other))
             if high <= first or last <= low:
@@ -139,13 +144,15 @@ class Pen:
     def box_of(self, placed: Placed) -> Bounds:
         segments = [*placed.lines, *placed.extensions]
         boxes = [(min(a[0], b[0]), min(a[1], b[1]), max(a[0], b[0]), max(a[1], b[1])) for a, b in segments]
-        return union_bounds([self.block(placed.text).box, *(self.head_block(h).box for h in placed.heads), *boxes])
+        return union_bounds(
+            [self.block(placed.text).box, *(self.head_block(h).box for h in placed.heads), *boxes]
+        )
 
     # --- Kinds -------------------------------------------------------------------------------------
 
     def straight(self, of: Length, words: str, level: float, after: bool) -> Placed:
-        """A length with its line at `level` across its direction. A value without room between the ends stands
-        after the second, or before the first.
+        """A length with its line at `level` across its direction. A value without room between the ends
+        stands after the second, or before the first.
         """
         mm, (u, v) = self.mm, of.along
         n = -v, u
@@ -175,12 +182,14 @@ class Pen:
             across = min((_dot(p, n) for p in points), key=lambda c: abs(c - level))
             side = math.copysign(1.0, level - across)
             if abs(level - across) > 1.5 * GAP * mm:
-                extensions.append((at(along, across + side * GAP * mm), at(along, level + side * BEYOND * mm)))
+                extensions.append(
+                    (at(along, across + side * GAP * mm), at(along, level + side * BEYOND * mm))
+                )
         line = at(first, level), at(last, level)
         heads = (at(low, level), ways[0]), (at(high, level), ways[1])
         return Placed((line,), tuple(extensions), heads, text)
 
-    def leader(self, tip: Vec, way: Vec, reach: float, to_right: bool, outward: bool, words: str) -> Placed:
+    def leader(self, tip: Vec, way: Vec, reach: float, to_right: bool, words: str) -> Placed:
         """A leader from the outline of something round along `way`, with the value on its shoulder."""
         mm, width = self.mm, self.width(words)
         elbow = tip[0] + reach * way[0], tip[1] + reach * way[1]
@@ -234,7 +243,7 @@ def words_of(of: Dimension, count: int = 1) -> str:
 
 def arc_segments(arc: Arc) -> list[Segment]:
     spots = [point(arc, k / 12) for k in range(13)]
-    return list(zip(spots, spots[1:], strict=False))
+    return list(pairwise(spots))
 
 
 def _dot(p: Vec, q: Vec) -> float:

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.export.dimension_marks import Block, Pen, Placed, Segment, arc_segments
-from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import ends, points
 from aidl_lang.geometry.curves import Line, Piece, Vec
+from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.evaluate import Bounds, ends, points
 
 Segments = NDArray[np.float64]
 """Shape (n, 4): x and y of both ends."""
@@ -21,14 +21,16 @@ CLEAR = 1.8
 ROOM = 5.5
 """Between a dimension line and another that runs beside it, mm on paper; half of it to an outline."""
 
-_FINE, _COARSE, _MANY = 24, 8, 4000
+_FINE, _COARSE, _MANY = 24, 8, 800
 
 
 class Sheet:
     """Outlines as short segments; values and arrowheads as boxes; lines of dimensions placed so far."""
 
     def __init__(self, drawing: Drawing, pen: Pen) -> None:
-        bodies = {b.path: _chords([p for loop in b.region.loops for p in loop.pieces]) for b in drawing.bodies}
+        bodies = {
+            b.path: _chords([p for loop in b.region.loops for p in loop.pieces]) for b in drawing.bodies
+        }
         strokes = _chords([p for s in drawing.strokes for p in s.pieces])
         self.pen, self.box = pen, drawing.box
         self.edges = np.concatenate((np.empty((0, 4)), *bodies.values()))
@@ -50,9 +52,7 @@ class Sheet:
         self.lines, self.extensions = _array(self._lines), _array(self._extensions)
 
     def is_free(self, placed: Placed) -> bool:
-        """Whether values, arrowheads and dimension lines keep clear of the values of others, and the other way
-        round.
-        """
+        """Whether its value keeps clear of others' values, arrowheads and lines, and theirs of its own."""
         text = self.pen.block(placed.text)
         heads = list(map(self.pen.head_block, placed.heads))
         if any(text.overlaps(other) for other in (*self.texts, *self.heads, *heads)):
@@ -92,17 +92,25 @@ class Sheet:
 
     def is_drawn(self, p: Vec) -> bool:
         """Whether an outline runs through a point."""
-        if not len(self.outlines):
+        reach = 1.2 * self.pen.mm
+        near = _within(self.outlines, (p[0] - reach, p[1] - reach, p[0] + reach, p[1] + reach))
+        if not len(near):
             return False
-        a, d = self.outlines[:, :2], self.outlines[:, 2:] - self.outlines[:, :2]
+        a, d = near[:, :2], near[:, 2:] - near[:, :2]
         square = np.maximum((d * d).sum(axis=1), 1e-300)
         t = np.clip(((np.array(p) - a) * d).sum(axis=1) / square, 0, 1)
         away = a + t[:, None] * d - np.array(p)
-        return bool((away * away).sum(axis=1).min() < (1.2 * self.pen.mm) ** 2)
+        return bool((away * away).sum(axis=1).min() < reach * reach)
+
+    def seen(self, points: tuple[Vec, ...]) -> tuple[Vec, ...]:
+        """Those that lie on an outline, or such places between them: the end of an edge may be hidden."""
+        (x0, y0), (x1, y1) = points[0], points[-1]
+        between = tuple((x0 + k / 12 * (x1 - x0), y0 + k / 12 * (y1 - y0)) for k in range(1, 12))
+        return next(filter(None, (tuple(filter(self.is_drawn, spots)) for spots in (points, between))), ())
 
     @staticmethod
     def _crossed(lines: Segments, others: Segments) -> int:
-        return sum(int(np.count_nonzero(_cross(line, others))) for line in lines) if len(others) else 0
+        return sum(_cross(line, others) for line in lines) if len(others) else 0
 
 
 def _inside(spots: NDArray[np.float64], edges: Segments) -> NDArray[np.bool_]:
@@ -118,11 +126,16 @@ def _inside(spots: NDArray[np.float64], edges: Segments) -> NDArray[np.bool_]:
 
 def _uncovered(outline: Segments, cover: Segments) -> Segments:
     """The segments that what is drawn later does not hide."""
-    return outline[~_inside((outline[:, :2] + outline[:, 2:]) / 2, cover)]
+    middles = (outline[:, :2] + outline[:, 2:]) / 2
+    ends = cover.reshape(-1, 2)
+    near = np.all((middles > ends.min(axis=0)) & (middles < ends.max(axis=0)), axis=1)
+    near[near] = _inside(middles[near], cover)
+    return outline[~near]
 
 
 def crossings(segments: Segments, block: Block) -> int:
     """How many segments meet a rectangle."""
+    segments = _within(segments, block.box)
     if not len(segments):
         return 0
     turn, box = np.array(block.axes).T, block.sides
@@ -136,7 +149,7 @@ def crossings(segments: Segments, block: Block) -> int:
     within = (start > np.array(box[:2])) & (start < np.array(box[2:]))
     enter = np.where(still, np.where(within, -np.inf, np.inf), np.minimum(low, high)).max(axis=1)
     leave = np.where(still, np.where(within, np.inf, -np.inf), np.maximum(low, high)).min(axis=1)
-    return int(np.count_nonzero((np.maximum(enter, 0) < np.minimum(leave, 1))))
+    return int(np.count_nonzero(np.maximum(enter, 0) < np.minimum(leave, 1)))
 
 
 def broken(segment: Segment, blocks: Iterable[Block]) -> list[Segment]:
@@ -165,8 +178,20 @@ def _around(segment: Segment, block: Block) -> list[Segment]:
     return [part for part, keep in ((((x0, y0), first), low > 0), ((last, (x1, y1)), high < 1)) if keep]
 
 
-def _cross(line: NDArray[np.float64], others: Segments) -> NDArray[np.bool_]:
-    """Which others a segment truly crosses, not merely touches."""
+def _within(segments: Segments, box: Bounds) -> Segments:
+    """Those whose own boxes meet a box: all others are out of the question."""
+    if not len(segments):
+        return segments
+    x0, y0, x1, y1 = segments.T
+    beyond = (np.maximum(x0, x1) < box[0]) | (np.minimum(x0, x1) > box[2])
+    beyond |= (np.maximum(y0, y1) < box[1]) | (np.minimum(y0, y1) > box[3])
+    return segments[~beyond]
+
+
+def _cross(line: NDArray[np.float64], others: Segments) -> int:
+    """How many others a segment truly crosses, not merely touches."""
+    x, y = sorted(line[::2].tolist()), sorted(line[1::2].tolist())
+    others = _within(others, (x[0], y[0], x[1], y[1]))
     p, r = line[:2], line[2:] - line[:2]
     q, s = others[:, :2], others[:, 2:] - others[:, :2]
     cross = r[0] * s[:, 1] - r[1] * s[:, 0]
@@ -175,8 +200,8 @@ def _cross(line: NDArray[np.float64], others: Segments) -> NDArray[np.bool_]:
         t = (offset[:, 0] * s[:, 1] - offset[:, 1] * s[:, 0]) / cross
         k = (offset[:, 0] * r[1] - offset[:, 1] * r[0]) / cross
     slack = 1e-6
-    found: NDArray[np.bool_] = (t > slack) & (t < 1 - slack) & (k > -slack) & (k < 1 + slack) & (cross != 0)
-    return found
+    found = (t > slack) & (t < 1 - slack) & (k > -slack) & (k < 1 + slack) & (cross != 0)
+    return int(np.count_nonzero(found))
 
 
 def _chords(pieces: Sequence[Piece]) -> Segments:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from aidl_lang.dimensions import dimensions
 from aidl_lang.dimensions.features import X_AXIS, Y_AXIS
 from aidl_lang.export import palette
-from aidl_lang.export.dimension_marks import CAPITAL, HEIGHT, Pen, Placed, words_of
+from aidl_lang.export.dimension_marks import HEIGHT, Pen, Placed, words_of
 from aidl_lang.export.dimension_sheet import Sheet, broken
 from aidl_lang.export.marks import Group, Text
 from aidl_lang.geometry.curves import Arc, Circle, Vec
@@ -38,8 +38,8 @@ _TURNS = tuple(a + b for a in (0, 90, 180, 270) for b in (45, 60, 30, 75, 15))
 
 
 def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Bounds, tuple[Group, ...]]:
-    """A group of marks for each dimension, as large as can be read when the whole is seen, and the box that holds
-    what `box` does and them.
+    """A group of marks for each dimension, as large as can be read when the whole is seen, and the box that
+    holds what `box` does and them.
     """
     wanted = _visible(dimensions(model, drawing), Sheet(drawing, Pen(0.005 * drawing.size)))
     size = max(box[2] - box[0], box[3] - box[1])
@@ -60,7 +60,7 @@ def _visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tupl
     centers = {d.curve.center for group in wanted for d in group if isinstance(d, Roundness)}
 
     def ends_at_something(points: tuple[Vec, ...]) -> bool:
-        return any(p in centers or sheet.is_drawn(p) or sheet.is_material(p) for p in points)
+        return bool(sheet.seen(points)) or any(p in centers or sheet.is_material(p) for p in points)
 
     return [
         group
@@ -113,13 +113,15 @@ class _Layout:
         lines = tuple(part for e in placed.extensions for part in broken(e, others))
         attributes = {
             "class": "dimension",
-            "data-kind": first.kind,  # type: ignore[attr-defined]
+            "data-kind": first.kind,
             "data-value": f"{first.value:.12g}",
             "data-origin": first.origin,
         }
         attributes |= {"data-of": first.of} if first.of else {}
         attributes |= {"data-param": first.name} if first.name else {}
-        return Group(f"dimension-{number}", tuple(self.pen.marks(replace(placed, extensions=lines))), attributes)
+        return Group(
+            f"dimension-{number}", tuple(self.pen.marks(replace(placed, extensions=lines))), attributes
+        )
 
     def _remark(self, left: int, box: Bounds) -> Text:
         words = f"{left} more dimension{'s' if left > 1 else ''} not shown"
@@ -144,20 +146,13 @@ class _Layout:
 
     def _length(self, of: Length, words: str) -> Placed | None:
         """Measured from what is seen where there is something; a cross marks an end that is not."""
-        start, end = self._seen(of.start), self._seen(of.end)
+        start, end = self.sheet.seen(of.start), self.sheet.seen(of.end)
         of = replace(of, start=start or of.start, end=end or of.end)
         is_straight = of.along in (X_AXIS, Y_AXIS)
         placed = self._in_row(of, words) if is_straight else self._best(self._beside(of, words))
         unseen = [points[0] for points, seen in ((of.start, start), (of.end, end)) if not seen]
         crosses = tuple((p, CROSS * self.pen.mm) for p in unseen)
         return replace(placed, crosses=crosses) if placed is not None else None
-
-    def _seen(self, points: tuple[Vec, ...]) -> tuple[Vec, ...]:
-        """Those that lie on an outline, or such places between them: the end of an edge may be hidden."""
-        (x0, y0), (x1, y1) = points[0], points[-1]
-        between = tuple((x0 + k / 12 * (x1 - x0), y0 + k / 12 * (y1 - y0)) for k in range(1, 12))
-        on_outline = (tuple(filter(self.sheet.is_drawn, spots)) for spots in (points, between))
-        return next(filter(None, on_outline), ())
 
     def _best(self, candidates: Iterator[tuple[float, Placed]]) -> Placed | None:
         """The candidate that costs least, of those that keep clear of all values."""
@@ -220,6 +215,8 @@ class _Layout:
     def _near(self, of: Length, words: str) -> Iterator[tuple[float, Placed]]:
         """In the free space right beside what is measured, within the drawing."""
         mm, axis = self.pen.mm, int(of.along == X_AXIS)
+        if of.value > 0.999 * (self.box[3 - axis] - self.box[1 - axis]):
+            return  # what spans the whole stands outside
         bounds = (self.box[axis], self.box[axis + 2]) if axis else (-self.box[2], -self.box[0])
         across = [p[1] if axis else -p[0] for p in (*of.start, *of.end)]
         for side, edge in ((-1, min(across)), (1, max(across))):
@@ -263,8 +260,13 @@ class _Layout:
                         if not outward and (reach > 12 or reach * mm > 0.9 * r):
                             continue
                         out = way if outward else (-way[0], -way[1])
-                        placed = self.pen.leader(tip, out, reach * mm, out[0] >= 0, outward, words)
-                        cost = reach / 8 + 0.1 * (rank % 7 if isinstance(curve, Arc) else rank % 5) + hidden + 0.6 * (not outward)
+                        placed = self.pen.leader(tip, out, reach * mm, out[0] >= 0, words)
+                        cost = (
+                            reach / 8
+                            + 0.1 * (rank % 7 if isinstance(curve, Arc) else rank % 5)
+                            + hidden
+                            + 0.6 * (not outward)
+                        )
                         yield cost, placed
 
 

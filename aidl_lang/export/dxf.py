@@ -66,10 +66,19 @@ def _written(document: Any, job: Job) -> Exported:
                 entity.set_xdata(application, [(1000, text) for text in _split(path)])
     if found:
         _set_view(document, job.drawing)
+    _order_classes(document)
     text = io.StringIO()
     document.write(text)
     notes = layers.notes if found else [_empty_note(job.drawing)]
     return Exported(text.getvalue().encode(), notes=tuple(notes))
+
+
+def _order_classes(document: Any) -> None:
+    """The library goes through a set when it registers classes, in another order in each process."""
+    document.classes.add_required_classes(document.dxfversion)
+    classes = document.classes.classes
+    for key in sorted(classes):
+        classes.move_to_end(key)
 
 
 def _set_view(document: Any, drawing: Drawing) -> None:

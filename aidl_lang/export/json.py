@@ -97,6 +97,7 @@ def to_dict(
         ],
         "changed": [{"path": c.path, "written": c.written, "solved": c.solved} for c in model.changed],
         "tolerance": tolerance,
+        "bodies": [body.path for body in drawing.bodies],
         "regions": {
             path: _region(drawing.regions[path], m, tolerance) for path, m in drawing.measures.items()
         },

@@ -97,8 +97,8 @@ Mark: TypeAlias = Area | Curves | Text | Dot | Frame
 
 @dataclass(frozen=True)
 class Group:
-    """Marks that belong together. `name` is unique in a picture; `attributes` tell programs what it is; nothing
-    of it is seen outside of `clip`.
+    """Marks that belong together, seen only within `clip`. `name` is unique in a picture; `attributes` tell
+    programs what it is.
     """
 
     name: str

@@ -63,15 +63,23 @@ def _mesh(placed: Placed) -> Mesh:
     center = np.array(((left + right) / 2, (bottom + top) / 2))
     tolerance = max(FINEST, FINENESS * max(right - left, top - bottom))
     polygons = [polygon - center for polygon in region_polygons(body.region, tolerance)]
-    solid = manifold3d.CrossSection(polygons, manifold3d.FillRule.Positive).extrude(thickness)
-    if solid.is_empty():
+    made = _extruded(polygons, thickness)
+    if made is None:
         raise ExportError(
             "E0918",
-            f"`{body.path}` cannot be made a solid of triangles: it is too thin for them",
+            f"`{body.path}` cannot be made a solid of triangles: it is too large or too thin for them",
             "look for a size that was written in another unit, or shrank to nothing",
         )
-    made = solid.to_mesh64()
     motion = placed.plane.placed(thickness)
     flat = np.asarray(made.vert_properties)[:, :3] + (*center, 0.0)
     points = flat @ motion[:, :3].T + motion[:, 3]
     return Mesh(body, points, np.asarray(made.tri_verts, dtype=np.int64))
+
+
+def _extruded(polygons: list[NDArray[np.float64]], thickness: float) -> manifold3d.Mesh64 | None:
+    """What stands on the polygons; None where Manifold's numbers do not reach."""
+    try:
+        solid = manifold3d.CrossSection(polygons, manifold3d.FillRule.Positive).extrude(thickness)
+    except RuntimeError:
+        return None
+    return None if solid.is_empty() else solid.to_mesh64()

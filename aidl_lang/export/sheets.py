@@ -45,10 +45,13 @@ def _on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[D
     bodies = job.drawing.bodies
     if not bodies:
         raise ExportError(
-            "E0924", "there is no part to lay on a sheet", "only a `solid` is cut; a `drawing` is engraved on it"
+            "E0924",
+            "there is no part to lay on a sheet",
+            "only a `solid` is cut; a `drawing` is engraved on it",
         )
     if len(bodies) > MOST_PARTS:
-        raise ExportError("E0924", f"{len(bodies)} parts are more than the {MOST_PARTS} that sheets are made for")
+        message = f"{len(bodies)} parts are more than the {MOST_PARTS} that are laid on sheets"
+        raise ExportError("E0924", message, "draw them in several programs")
     layout = laid_out(job.drawing, sheet, spacing)
     if layout.oversize:
         raise _oversize(layout.oversize, sheet, spacing)
@@ -89,7 +92,7 @@ def _widened(job: Job, by: float) -> Drawing:
     """The drawing with all material grown by half the width of the cut, and holes shrunk by as much."""
     drawing = job.drawing
     holes = {s.path for s in job.model.root.walk() if s.kind == "hole"}
-    grown = {p: -by for p in holes} | {body.path: by for body in drawing.bodies}
+    grown = dict.fromkeys(holes, -by) | {body.path: by for body in drawing.bodies}
     regions = {p: offset(r, grown.get(p, 0.0)) for p, r in drawing.regions.items()}
     bodies = []
     for body in drawing.bodies:

@@ -25,7 +25,8 @@ def _binary(mesh: Mesh) -> bytes:
     records["normal"], records["corners"] = _normals(mesh), mesh.corners
     # A reader takes a file that begins with `solid` for text.
     header = f"AIDL {mesh.body.path}".encode("ascii", "replace")[:_HEADER].ljust(_HEADER, b"\0")
-    return header + np.uint32(len(records)).astype("<u4").tobytes() + records.tobytes()
+    count: bytes = np.array(len(records), "<u4").tobytes()
+    return header + count + records.tobytes()
 
 
 def _text(made: Sequence[Mesh]) -> bytes:
@@ -44,7 +45,8 @@ def _normals(mesh: Mesh) -> NDArray[np.float64]:
     a, b, c = mesh.corners.swapaxes(0, 1)
     normals = np.cross(b - a, c - a)
     sizes = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.divide(normals, sizes, out=np.zeros_like(normals), where=sizes > 0)
+    found: NDArray[np.float64] = np.divide(normals, sizes, out=np.zeros_like(normals), where=sizes > 0)
+    return found
 
 
 def _numbers(point: NDArray[np.float64]) -> str:

@@ -28,7 +28,8 @@ def to_svg(picture: Picture) -> str:
         viewBox=f"{fixed(left)} {fixed(-top)} {width} {height}",
         debug=False,
     )
-    clips = {clip: f"clip-{k}" for k, clip in enumerate(dict.fromkeys(g.clip for g in picture.groups)) if clip}
+    boxes = dict.fromkeys(group.clip for group in picture.groups if group.clip is not None)
+    clips = {box: f"clip-{k}" for k, box in enumerate(boxes, 1)}
     for clip, name in clips.items():
         path = svgwrite.masking.ClipPath(id=name, debug=False)
         path.add(_rectangle(clip, svgwrite))

@@ -95,13 +95,11 @@ def tiled(picture: Picture, page: Size, margin: float = MARGIN, overlap: float =
         ]
         if groups or across.count * down.count == 1:
             found.append((sight, groups, f"row {row + 1}, column {column + 1}"))
-    return [
-        Picture(
-            _grown(sight, margin),
-            (*groups, Group("page-marks", tuple(_page_marks(sight, crosses, overlap, f"{k}/{len(found)}: {place}")))),
-        )
-        for k, (sight, groups, place) in enumerate(found, 1)
-    ]
+    made = []
+    for k, (sight, groups, place) in enumerate(found, 1):
+        marks = _page_marks(sight, crosses, overlap, f"{k}/{len(found)}: {place}")
+        made.append(Picture(_grown(sight, margin), (*groups, Group("page-marks", tuple(marks)))))
+    return made
 
 
 def _check(page: Size, window: Size, overlap: float) -> None:
@@ -150,8 +148,9 @@ class _Shape:
         air = 0.0
         match mark:
             case Area():
-                self._filled = face_polygons(mark.face, DEVIATION) if mark.fill else []
-                self._lines = [np.concatenate((p, p[:1])) for p in face_polygons(mark.face, DEVIATION)]
+                polygons = face_polygons(mark.face, DEVIATION)
+                self._lines = [np.concatenate((p, p[:1])) for p in polygons]
+                self._filled = polygons if mark.fill else []
                 air = mark.ink.width / 2 if mark.ink else 0.0
             case Curves():
                 self._lines = [piece_points(piece, DEVIATION) for piece in mark.pieces]
@@ -163,7 +162,7 @@ class _Shape:
                 self._lines = [_outline(mark.box)]
                 self._filled = self._lines
             case Dot(at, radius):
-                self._lines = [np.array([at])]
+                self._lines = [np.array([at, at])]
                 air = radius
         self._air = air + DEVIATION
         spots = np.concatenate(self._lines)
@@ -183,8 +182,6 @@ class _Shape:
 def _reaches(line: Polygon, low: Polygon, high: Polygon) -> bool:
     """Whether a polyline has points in a box: each side is cut to the box along both axes."""
     start, way = line[:-1], np.diff(line, axis=0)
-    if len(line) == 1:
-        start, way = line, np.zeros((1, 2))
     level = way == 0
     with np.errstate(divide="ignore", invalid="ignore"):
         first, second = (low - start) / way, (high - start) / way

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from aidl_lang.geometry.boolean import section_of
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Body, Stroke
@@ -15,7 +17,9 @@ from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import inside_mask
 
 
-def engraved(bodies: Sequence[Body], strokes: Sequence[Stroke]) -> tuple[dict[str, list[Stroke]], list[Stroke]]:
+def engraved(
+    bodies: Sequence[Body], strokes: Sequence[Stroke]
+) -> tuple[dict[str, list[Stroke]], list[Stroke]]:
     """The strokes of drawings by the path of their body, and what lies on no body.
 
     A drawing inside a part stays with it. Any other is cut where parts end: what lies on several of them goes
@@ -34,6 +38,8 @@ def engraved(bodies: Sequence[Body], strokes: Sequence[Stroke]) -> tuple[dict[st
             continue
         rest = stroke.pieces
         for body in _by_cover(stroke, bodies):
+            if not rest:
+                break
             inside, rest = divided(rest, body.region)
             if inside:
                 on.setdefault(body.path, []).append(replace(stroke, pieces=inside))
@@ -56,7 +62,7 @@ def _by_cover(stroke: Stroke, bodies: Sequence[Body]) -> list[Body]:
     if len(near) < 2:
         return near
     cover = {body.path: _length(divided(stroke.pieces, body.region)[0]) for body in near}
-    return sorted(near, key=lambda body: -cover[body.path])
+    return sorted(near, key=lambda body: -round(cover[body.path], 6))
 
 
 def divided(curves: Sequence[Piece], region: Region) -> tuple[tuple[Piece, ...], tuple[Piece, ...]]:
@@ -66,7 +72,7 @@ def divided(curves: Sequence[Piece], region: Region) -> tuple[tuple[Piece, ...],
     own, others = network.uses[: len(outline)], network.uses[len(outline) :]
     edges = sorted({edge for uses in others for edge, _ in uses})
     mask = inside_mask(section_of(network, region, 0), [network.midpoint(edge) for edge in edges])
-    within = {edge for uses in own for edge, _ in uses} | {e for e, is_in in zip(edges, mask, strict=True) if is_in}
+    within = {edge for uses in own for edge, _ in uses} | {edges[k] for k in np.flatnonzero(mask)}
     inside: list[Piece] = []
     outside: list[Piece] = []
     for curve, uses in zip(curves, others, strict=True):

@@ -10,9 +10,18 @@ import math
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import derivative, is_closed, locate, point, points
+from aidl_lang.geometry.evaluate import (
+    derivative,
+    ends,
+    is_closed,
+    locate,
+    point,
+    points,
+    second_derivative,
+)
 
 _SAMPLES = {Line: 1, Arc: 32, Circle: 48, Ellipse: 64, Bezier: 32}
 Crossing = tuple[float, float, Vec]
@@ -97,10 +106,51 @@ def circle_circle(a: Arc | Circle, b: Arc | Circle, tolerance: float) -> list[Ve
 
 
 def _sampled(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
-    """Crossings of the two polylines, polished by Newton; then near misses where the tangents agree."""
+    """Crossings and touches, from those of the two polylines and from where these come nearest."""
+    if _lie_on_each_other(a, b, tolerance):
+        return []
     na, nb = _SAMPLES.get(type(a), 48), _SAMPLES.get(type(b), 48)
-    ta, tb = np.linspace(0, 1, na + 1), np.linspace(0, 1, nb + 1)
-    p, q = points(a, ta), points(b, tb)
+    p, q = points(a, np.linspace(0, 1, na + 1)), points(b, np.linspace(0, 1, nb + 1))
+    found: list[Crossing] = []
+    for t, s in _crossed(p, q):
+        crossing = _newton(a, b, t / na, s / nb, tolerance)
+        if crossing:
+            found.append(_touch_beside(a, b, crossing, tolerance) or crossing)
+    for i, j in _nearest_samples(p, q):
+        touch = _touch(a, b, i / na, j / nb, tolerance)
+        if touch:
+            found.append(touch)
+    kept: list[Crossing] = []
+    for crossing in sorted(found):
+        if all(math.dist(crossing[2], other[2]) > tolerance for other in kept):
+            kept.append(crossing)
+    return kept
+
+
+def _lie_on_each_other(a: Piece, b: Piece, tolerance: float) -> bool:
+    """Whether the curves share a stretch: between two ends that lie on both, all else does."""
+    if is_closed(a):
+        a, b = b, a
+    marks = [0.0, 1.0]
+    if not is_closed(a):
+        spots = list(ends(a)) if is_closed(b) else [*ends(a), *ends(b)]
+        on_both = [
+            t for p in spots if (t := locate(a, p, tolerance)) is not None and _on(b, point(a, t), tolerance)
+        ]
+        marks = sorted(on_both)
+    return any(
+        math.dist(point(a, t0), point(a, t1)) > tolerance or t1 - t0 > 0.5
+        for t0, t1 in pairwise(marks)
+        if all(_on(b, point(a, t0 + (t1 - t0) * k / 8), tolerance) for k in range(1, 8))
+    )
+
+
+def _on(curve: Piece, p: Vec, tolerance: float) -> bool:
+    return locate(curve, p, tolerance) is not None
+
+
+def _crossed(p: NDArray[np.float64], q: NDArray[np.float64]) -> list[tuple[float, float]]:
+    """Where two polylines cross, counted in their sides."""
     dp, dq = np.diff(p, axis=0)[:, None, :], np.diff(q, axis=0)[None, :, :]
     gap = q[None, :-1, :] - p[:-1, None, :]
     cross = dp[..., 0] * dq[..., 1] - dp[..., 1] * dq[..., 0]
@@ -109,13 +159,56 @@ def _sampled(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
         s = (gap[..., 0] * dp[..., 1] - gap[..., 1] * dp[..., 0]) / cross
         # The curves bulge beyond their chords: look a little past each segment.
         hit = (t >= -0.2) & (t <= 1.2) & (s >= -0.2) & (s <= 1.2)
-    found: list[Crossing] = []
-    for i, j in np.argwhere(hit):
-        start = (float((i + t[i, j]) / na), float((j + s[i, j]) / nb))
-        crossing = _newton(a, b, *start, tolerance)
-        if crossing and all(math.dist(crossing[2], other[2]) > tolerance for other in found):
-            found.append(crossing)
-    return sorted(found)
+    return [(float(i + t[i, j]), float(j + s[i, j])) for i, j in np.argwhere(hit)]
+
+
+def _nearest_samples(p: NDArray[np.float64], q: NDArray[np.float64]) -> list[tuple[int, int]]:
+    """Pairs of samples that are nearer than those beside them, and no further apart than samples are."""
+    away = np.hypot(*np.moveaxis(p[:, None, :] - q[None, :, :], -1, 0))
+    padded = np.pad(away, 1, constant_values=np.inf)
+    n, m = away.shape
+    beside = [padded[i : i + n, j : j + m] for i in range(3) for j in range(3)]
+    step = max(np.hypot(*np.diff(x, axis=0).T).max() for x in (p, q))
+    return [(int(i), int(j)) for i, j in np.argwhere((away <= np.min(beside, axis=0)) & (away <= step))]
+
+
+def _touch_beside(a: Piece, b: Piece, crossing: Crossing, tolerance: float) -> Crossing | None:
+    """The touch that a crossing belongs to, if the curves run so close from one to the other that they are
+    one there.
+    """
+    t, s, _ = crossing
+    (ax, ay), (bx, by) = derivative(a, t), derivative(b, s)
+    if abs(ax * by - ay * bx) > 0.1 * math.hypot(ax, ay) * math.hypot(bx, by):
+        return None
+    touch = _touch(a, b, t, s, tolerance)
+    if touch is None:
+        return None
+    way = math.remainder(touch[0] - t, 1.0) if is_closed(a) else touch[0] - t
+    return touch if _on(b, point(a, t + way / 2), tolerance) else None
+
+
+def _touch(a: Piece, b: Piece, t: float, s: float, tolerance: float) -> Crossing | None:
+    """Where the curves are parallel and within the tolerance: Newton on (b - a)·a' = 0 and a' x b' = 0."""
+    for _ in range(30):
+        t, s = _within(a, t), _within(b, s)
+        (x, y), (u, v) = point(a, t), point(b, s)
+        ex, ey = u - x, v - y
+        (ax, ay), (bx, by) = derivative(a, t), derivative(b, s)
+        (cx, cy), (dx, dy) = second_derivative(a, t), second_derivative(b, s)
+        f, g = ex * ax + ey * ay, ax * by - ay * bx
+        ft, fs = ex * cx + ey * cy - ax * ax - ay * ay, bx * ax + by * ay
+        gt, gs = cx * by - cy * bx, ax * dy - ay * dx
+        determinant = ft * gs - fs * gt
+        if not determinant:
+            break
+        dt, ds = (fs * g - gs * f) / determinant, (gt * f - ft * g) / determinant
+        t, s = t + max(-0.1, min(0.1, dt)), s + max(-0.1, min(0.1, ds))
+        if abs(dt) + abs(ds) < 1e-14:
+            break
+    t, s = _within(a, t), _within(b, s)
+    p, (ax, ay), (bx, by) = point(a, t), derivative(a, t), derivative(b, s)
+    parallel = abs(ax * by - ay * bx) <= 1e-6 * math.hypot(ax, ay) * math.hypot(bx, by)
+    return (t, s, p) if parallel and math.dist(p, point(b, s)) <= tolerance else None
 
 
 def _newton(a: Piece, b: Piece, t: float, s: float, tolerance: float) -> Crossing | None:

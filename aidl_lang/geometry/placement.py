@@ -132,9 +132,10 @@ def _united(root: SolvedStructure, drawing: Drawing) -> Iterator[Diagnostic]:
             body = s
         elif body is not None and body.kind == "solid" and (words := _other(s, body, drawing)):
             said = " and ".join(f"`@{word}`" for word in words)
+            counts = "counts" if len(words) == 1 else "count"
             yield Diagnostic(
                 "W0727",
-                f"{said} of `{s.path}` counts for nothing: it is one body with `{body.path}`",
+                f"{said} of `{s.path}` {counts} for nothing: it is one body with `{body.path}`",
                 s.span,
                 "cuts it" if s.kind == "hole" else "united with it",
                 hints=(

@@ -31,6 +31,8 @@ FEW = 200
 """Up to so many parts a slower packer is used, which fills the sheets better."""
 
 Size = tuple[float, float]
+Cell = tuple[int, int]
+"""Width and height in micrometres."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,10 @@ class _Part:
     def size(self) -> Size:
         return self.box[2] - self.box[0], self.box[3] - self.box[1]
 
+    def cell(self, gap: int) -> Cell:
+        """What it takes of a sheet, with the gap on one side of it each way."""
+        return max(1, _ceil(self.size[0])) + gap, max(1, _ceil(self.size[1])) + gap
+
 
 @dataclass(frozen=True)
 class _Place:
@@ -74,11 +80,13 @@ def laid_out(drawing: Drawing, sheet: Size, spacing: float = SPACING) -> Layout:
     """All bodies on as few sheets as the packer finds, those of one stock together (sizes in mm)."""
     on, off = engraved(drawing.bodies, drawing.strokes)
     parts = _parts(drawing, on)
-    room = sheet[0] - 2 * spacing, sheet[1] - 2 * spacing
+    gap = _ceil(spacing)
+    room = _floor(sheet[0]) - gap, _floor(sheet[1]) - gap
     oversize = tuple(
         (part.body.path, part.size)
         for part in parts
-        if not (_fits(part.size, room) or _fits(part.size[::-1], room))
+        for cell in [part.cell(gap)]
+        if not (_fits(cell, room) or _fits(cell[::-1], room))
     )
     if oversize:
         return Layout((), tuple(off), oversize)
@@ -90,17 +98,17 @@ def laid_out(drawing: Drawing, sheet: Size, spacing: float = SPACING) -> Layout:
         tuple(
             _drawn(drawing, sheet, places)
             for _, group in sorted(stocks.items(), key=lambda item: item[0])
-            for places in _packed(group, sheet, spacing)
+            for places in _packed(group, room, gap)
         ),
         tuple(off),
     )
 
 
-def _fits(size: Size, room: Size) -> bool:
-    return _rounded(size[0]) <= _floor(room[0]) and _rounded(size[1]) <= _floor(room[1])
+def _fits(cell: Cell, room: Cell) -> bool:
+    return cell[0] <= room[0] and cell[1] <= room[1]
 
 
-def _rounded(length: float) -> int:
+def _ceil(length: float) -> int:
     return math.ceil(length * GRID - SLACK)
 
 
@@ -125,20 +133,18 @@ def _parts(drawing: Drawing, on: dict[str, list[Stroke]]) -> list[_Part]:
     return parts
 
 
-def _packed(parts: Sequence[_Part], sheet: Size, spacing: float) -> list[list[_Place]]:
+def _packed(parts: Sequence[_Part], room: Cell, gap: int) -> list[list[_Place]]:
     """The places on each sheet. Parts are turned only if that saves sheets."""
-    gap = _rounded(spacing)
-    room = _floor(sheet[0]) - gap, _floor(sheet[1]) - gap
-    sizes = [(_rounded(part.size[0]) + gap, _rounded(part.size[1]) + gap) for part in parts]
-    upright = all(w <= room[0] and h <= room[1] for w, h in sizes)
-    bins = _bins(sizes, room, turning=False) if upright else []
+    cells = [part.cell(gap) for part in parts]
+    upright = all(_fits(cell, room) for cell in cells)
+    bins = _bins(cells, room, turning=False) if upright else []
     if len(bins) != 1:
-        turned = _bins(sizes, room, turning=True)
+        turned = _bins(cells, room, turning=True)
         bins = turned if not upright or len(turned) < len(bins) else bins
     return [[_place(parts[r.rid], r, gap) for r in sorted(found, key=lambda r: r.rid)] for found in bins]
 
 
-def _bins(sizes: Sequence[tuple[int, int]], room: tuple[int, int], *, turning: bool) -> list[Any]:
+def _bins(cells: Sequence[Cell], room: Cell, *, turning: bool) -> list[Any]:
     from rectpack import SORT_LSIDE, PackingBin, PackingMode, newPacker
     from rectpack.maxrects import MaxRectsBl
     from rectpack.skyline import SkylineBl
@@ -146,23 +152,20 @@ def _bins(sizes: Sequence[tuple[int, int]], room: tuple[int, int], *, turning: b
     packer = newPacker(
         mode=PackingMode.Offline,
         bin_algo=PackingBin.BFF,
-        pack_algo=MaxRectsBl if len(sizes) <= FEW else SkylineBl,
+        pack_algo=MaxRectsBl if len(cells) <= FEW else SkylineBl,
         sort_algo=SORT_LSIDE,
         rotation=turning,
     )
     packer.add_bin(*room, count=math.inf)
-    for number, size in enumerate(sizes):
-        packer.add_rect(*size, rid=number)
+    for number, cell in enumerate(cells):
+        packer.add_rect(*cell, rid=number)
     packer.pack()
     return list(packer)
 
 
-def _place(part: _Part, rectangle: Any, gap: int) -> _Place:
-    turned = (rectangle.width, rectangle.height) != (
-        _rounded(part.size[0]) + gap,
-        _rounded(part.size[1]) + gap,
-    )
-    return _Place(part, (rectangle.x + gap) / GRID, (rectangle.y + gap) / GRID, turned)
+def _place(part: _Part, cell: Any, gap: int) -> _Place:
+    turned = (cell.width, cell.height) != part.cell(gap)
+    return _Place(part, (cell.x + gap) / GRID, (cell.y + gap) / GRID, turned)
 
 
 def _drawn(drawing: Drawing, sheet: Size, places: Sequence[_Place]) -> Drawing:

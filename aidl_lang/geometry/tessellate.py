@@ -24,6 +24,8 @@ Polygon = NDArray[np.float64]
 
 COARSEST = TAU / 16
 """Largest angle of a chord, so that a hole much smaller than the tolerance is still round."""
+SLACK = 1e-9
+"""Of a count of chords, so that rounding does not choose how many there are."""
 _FINER, _ROUNDS = 16, 4
 
 
@@ -86,7 +88,7 @@ def _chords(piece: Piece, tolerance: float) -> int:
         corners = (piece.p0, piece.p1, piece.p2, piece.p3)
         sides = [(q[0] - p[0], q[1] - p[1]) for p, q in pairwise(corners)]
         bend = 6 * max(math.dist(a, b) for a, b in pairwise(sides))
-        return max(3, math.ceil(math.sqrt(bend / (8 * tolerance))))
+        return max(3, math.ceil(math.sqrt(bend / (8 * tolerance)) - SLACK))
     radius = piece.radius if isinstance(piece, Arc | Circle) else max(piece.rx, piece.ry)
     step = min(COARSEST, 4 * math.asin(math.sqrt(min(1.0, tolerance / (2 * radius)))))
-    return max(2, math.ceil(abs(round_range(piece)[1]) / step))
+    return max(2, math.ceil(abs(round_range(piece)[1]) / step - SLACK))

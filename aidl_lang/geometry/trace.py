@@ -140,7 +140,7 @@ def _sides(network: Network, polygons: list[NDArray[np.float64]]) -> Sides:
     changed = (owner >= 0) & (owner_after >= 0) & (owner != owner_after)
     unsure = np.flatnonzero((owner == UNKNOWN) | (owner_after == UNKNOWN) | changed)
     if len(unsure):
-        network.blur(vertices[unsure])
+        network.blur(vertices[np.union1d(unsure, after[unsure])])
         edges[unsure] = network.nearest_edges((vertices[unsure] + vertices[after[unsure]]) / 2)
     begins = (edges[after] != edges)[before] | (owner == NODE) | (edges == STRAIGHT)
     rows = np.flatnonzero(begins)

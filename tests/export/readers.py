@@ -1,18 +1,17 @@
 """What independent readers find in exported files, in one form: loops of curves by the name of their body.
 
-Curves are taken as the reader of a format evaluates them (svgelements, ezdxf, pdfium, OpenCascade, trimesh); of
-the package under test nothing is used here.
+Curves are taken as the reader of a format evaluates them (svgelements, ezdxf, pdfium, OpenCascade, trimesh);
+of the package under test nothing is used here.
 """
 
 from __future__ import annotations
 
 import io
 import math
-import tempfile
+import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -112,12 +111,15 @@ def read_svg(data: bytes) -> dict[str, Body]:
     """Filled paths by the path of their structure; in mm as the physical size of the document has it."""
     import svgelements
 
-    # The reader takes the physical size for pixels of a 96th of an inch; y counts downwards.
-    document = svgelements.SVG.parse(io.StringIO(data.decode()), ppi=96)
+    # To the reader a millimetre is 0.0393701 inches: with so many pixels an inch it is one pixel.
+    document = svgelements.SVG.parse(io.StringIO(data.decode()), ppi=1 / 0.0393701)
     bodies: dict[str, Body] = defaultdict(Body)
     for group in document.select(lambda e: isinstance(e, svgelements.Group) and "data-path" in e.values):
         for path in group.select(lambda e: isinstance(e, svgelements.Path)):
-            if path.values.get("class") in ("seam", "open", "hole", "engrave") or path.values["fill"] == "none":
+            if (
+                path.values.get("class") in ("seam", "open", "hole", "engrave")
+                or path.values["fill"] == "none"
+            ):
                 continue
             body = bodies[group.values["data-path"]]
             body.faces += 1
@@ -128,11 +130,15 @@ def read_svg(data: bytes) -> dict[str, Body]:
     return dict(bodies)
 
 
-def _of_svg(segment: Any) -> Curve:
-    scale = 25.4 / 96
+def svg_origin(data: bytes) -> tuple[float, float]:
+    """Where the corner of the document, from which the reader counts, has the origin of the drawing."""
+    left, top, *_ = (float(x) for x in re.search(rb'viewBox="([^"]*)"', data)[1].split())  # type: ignore[index]
+    return -left, top
 
+
+def _of_svg(segment: Any) -> Curve:
     def curve(t: Points) -> Points:
-        return np.array([(scale * p.x, -scale * p.y) for p in (segment.point(float(k)) for k in t)])
+        return np.array([(p.x, -p.y) for p in (segment.point(float(k)) for k in t)])
 
     return curve
 
@@ -155,7 +161,9 @@ def read_dxf(data: bytes) -> dict[str, Body]:
         kind = entity.dxftype()
         if kind == "LWPOLYLINE" and entity.closed:
             bodies[path].loops.append(Loop(_chained([_of_dxf(e) for e in entity.virtual_entities()])[0]))
-        elif kind == "CIRCLE" or (kind == "ELLIPSE" and math.isclose(entity.construction_tool().param_span, math.tau)):
+        elif kind == "CIRCLE" or (
+            kind == "ELLIPSE" and math.isclose(entity.construction_tool().param_span, math.tau)
+        ):
             bodies[path].loops.append(Loop([_of_dxf(entity)]))
         else:
             chains[path].append(_of_dxf(entity))
@@ -174,7 +182,9 @@ def _of_dxf(entity: Any) -> Curve:
             if kind == "ARC":
                 span = math.radians((dxf.end_angle - dxf.start_angle) % 360)
             x, y, r = dxf.center.x, dxf.center.y, dxf.radius
-            return lambda t: np.stack((x + r * np.cos(first + span * t), y + r * np.sin(first + span * t)), axis=1)
+            return lambda t: np.stack(
+                (x + r * np.cos(first + span * t), y + r * np.sin(first + span * t)), axis=1
+            )
         case "ELLIPSE":
             begin, span = dxf.start_param, entity.construction_tool().param_span
             return lambda t: np.array([(p.x, p.y) for p in entity.vertices(begin + span * t)])
@@ -203,3 +213,64 @@ def _chained(curves: Iterable[Curve]) -> list[list[Curve]]:
                 break
         chains.append(chain)
     return chains
+
+
+# --- PDF -----------------------------------------------------------------------------------------
+
+
+def read_pdf(data: bytes) -> list[Body]:
+    """One body for each filled path of the first page, in order of drawing; mm, y upwards."""
+    import pypdfium2.raw as pdfium
+    from pypdfium2 import PdfDocument
+
+    document = PdfDocument(data)
+    found = []
+    for item in document[0].get_objects():
+        if item.type != pdfium.FPDF_PAGEOBJ_PATH:
+            continue
+        mode, stroke = pdfium.c_int(), pdfium.c_int()  # type: ignore[attr-defined]
+        pdfium.FPDFPath_GetDrawMode(item.raw, mode, stroke)
+        if mode.value != pdfium.FPDF_FILLMODE_NONE:
+            found.append(Body(_of_pdf(item.raw, item.get_matrix()), faces=1))
+    document.close()
+    return found
+
+
+def _of_pdf(path: Any, matrix: Any) -> list[Loop]:
+    import ctypes
+
+    import pypdfium2.raw as pdfium
+
+    loops: list[Loop] = []
+    at, pending = (0.0, 0.0), []
+    for k in range(pdfium.FPDFPath_CountSegments(path)):
+        segment = pdfium.FPDFPath_GetPathSegment(path, k)
+        x, y = ctypes.c_float(), ctypes.c_float()
+        pdfium.FPDFPathSegment_GetPoint(segment, x, y)
+        u, v = matrix.on_point(x.value, y.value)
+        p = u * 25.4 / 72, v * 25.4 / 72
+        kind = pdfium.FPDFPathSegment_GetType(segment)
+        if kind == pdfium.FPDF_SEGMENT_MOVETO:
+            loops.append(Loop([]))
+            start = at = p
+        elif kind == pdfium.FPDF_SEGMENT_LINETO:
+            loops[-1].curves.append(_straight(at, p))
+            at = p
+        else:
+            pending.append(p)
+            if len(pending) == 3:
+                loops[-1].curves.append(_cubic(at, *pending))
+                at, pending = p, []
+        if pdfium.FPDFPathSegment_GetClose(segment) and math.dist(at, start) > 1e-9:
+            loops[-1].curves.append(_straight(at, start))
+    return loops
+
+
+def _cubic(*points: Any) -> Curve:
+    control = np.array(points)
+
+    def curve(t: Points) -> Points:
+        s = 1 - t
+        return np.stack((s**3, 3 * s * s * t, 3 * s * t * t, t**3), axis=1) @ control
+
+    return curve

@@ -17,7 +17,7 @@ from aidl_lang.geometry.drawing import draw
 from aidl_lang.render import render
 from aidl_lang.solved import SolvedModel
 from aidl_lang.source import SourceFile
-from tests.geometry.models import circle, model, polygon, rectangle, structure
+from tests.geometry.models import circle, model, rectangle, structure
 
 SUFFIXES = (".stl", ".3mf")
 
@@ -143,15 +143,14 @@ def test_there_is_no_body() -> None:
     )
 
 
-def test_a_body_too_thin_for_triangles() -> None:
-    m = model(structure("solid", "s", polygon("p", (0, 0), (1e-5, 0), (1e-5, 2e-9), (0, 2e-9))))
-    drawing, _ = draw(m)
-    if drawing.bodies:
-        with pytest.raises(ExportError) as reason:
-            export(Job(m, drawing, options=Options(thickness=1)), ".stl")
-        assert reason.value.diagnostic.message == (
-            "`s` cannot be made a solid of triangles: it is too thin for them"
-        )
+def test_a_body_too_large_for_triangles() -> None:
+    m = model(structure("solid", "s", rectangle("r", 0, 0, 3e11, 2e11)))
+    with pytest.raises(ExportError) as reason:
+        of_model(m, ".stl", 1)
+    assert render(reason.value.diagnostic) == (
+        "error[E0918]: `s` cannot be made a solid of triangles: it is too large or too thin for them\n"
+        "  = hint: look for a size that was written in another unit, or shrank to nothing"
+    )
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
-import aidl_lang
+import numpy as np
 import pytest
 import shapely
-import shapely.affinity
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from svgelements import Arc, Path
+from svgelements import Close, Line, Move, Path
 
+import aidl_lang
 from aidl_lang.comparison import Comparison
 from aidl_lang.comparison.picture import overlay
 from aidl_lang.export.marks import Area, Curves, Frame, Text
@@ -20,7 +20,7 @@ from tests.documents import ROOT
 
 SVG = "{http://www.w3.org/2000/svg}"
 KINDS = ("both", "before", "after")
-STEPS = 512
+STEPS = 256
 """Chords of a round piece: a circle of radius 10 loses 0.008 mm² to them."""
 
 
@@ -49,10 +49,11 @@ def covered(group: ElementTree.Element) -> shapely.Geometry:
 
 def _points(path: Path) -> list[tuple[float, float]]:
     """SVG counts y downwards."""
-    found = []
+    found: list[tuple[float, float]] = []
     for segment in path:
-        steps = STEPS if isinstance(segment, Arc) else 1
-        found += [(p.x, -p.y) for p in (segment.point(k / steps) for k in range(1, steps + 1)) if p is not None]
+        if not isinstance(segment, Move):
+            steps = 1 if isinstance(segment, Line | Close) else STEPS
+            found += [(x, -y) for x, y in segment.npoint(np.arange(1, steps + 1) / steps)]
     return found
 
 
@@ -76,7 +77,7 @@ def material(x: float, y: float, r: float) -> shapely.Geometry:
     return plate.union(disc(18, 0, 9))
 
 
-@settings(max_examples=15)
+@settings(max_examples=15, deadline=None)
 @given(st.integers(-60, 60), st.integers(-25, 25), st.integers(2, 9))
 def test_areas_agree_with_shapely(x: int, y: int, r: int) -> None:
     found = groups(comparison(TEXT.format(x=0, y=0, r=5), TEXT.format(x=x, y=y, r=r)))
@@ -84,7 +85,7 @@ def test_areas_agree_with_shapely(x: int, y: int, r: int) -> None:
     expected = (before & after, before - after, after - before)
     for kind, area in zip(KINDS, expected, strict=True):
         drawn = covered(found[kind])
-        assert drawn.symmetric_difference(area).area < 0.05, kind
+        assert drawn.symmetric_difference(area).area < 0.1, kind
 
 
 def test_arcs_stay_arcs() -> None:
@@ -98,9 +99,12 @@ def test_arcs_stay_arcs() -> None:
 
 
 def test_nothing_changed_is_all_grey() -> None:
-    picture = {g.name: g for g in overlay(comparison(TEXT.format(x=0, y=0, r=5), TEXT.format(x=0, y=0, r=5))).groups}
+    """800 - 25π, and of the knob what is beyond x = 20: 81 acos(2/9) - 2 √77."""
+    picture = {
+        g.name: g for g in overlay(comparison(TEXT.format(x=0, y=0, r=5), TEXT.format(x=0, y=0, r=5))).groups
+    }
     assert (picture["before"].marks, picture["after"].marks, picture["moves"].marks) == ((), (), ())
-    assert [m.text for m in picture["legend"].marks if isinstance(m, Text)] == ["in both: 834.45 mm²"]
+    assert [m.text for m in picture["legend"].marks if isinstance(m, Text)] == ["in both: 812.99 mm²"]
 
 
 def test_legend_tells_areas() -> None:
@@ -122,14 +126,24 @@ def test_what_is_gone_is_hatched_and_dashed() -> None:
     assert crescent.contains(lines)
     # Lines 1 step apart measure the area that they fill; the drawing is 30 wide.
     assert lines.length * 0.014 * 30 == pytest.approx(crescent.area, rel=0.05)
-    assert [m.ink.dash is not None for m in picture["before-outlines"].marks if isinstance(m, Area) and m.ink] == [True]
+    assert [
+        m.ink.dash is not None for m in picture["before-outlines"].marks if isinstance(m, Area) and m.ink
+    ] == [True]
     assert [m.ink.dash for m in picture["after-outlines"].marks if isinstance(m, Area) and m.ink] == [None]
     assert not any(isinstance(m, Curves) for m in picture["after"].marks)
 
 
 def test_arrows_lead_from_old_to_new() -> None:
-    text = "assembly t {{ solid s {{ r = square(center: fixed((0, 0)), size: 60) hole e {{ c = circle(center: fixed(({x}, 3)), radius: 2) }} }} }}"
-    moves = {g.name: g for g in overlay(comparison(text.format(x=-9), text.format(x=9))).groups}["moves"].marks
+    text = """
+    assembly t {{
+        solid s {{
+            r = square(center: fixed((0, 0)), size: 60)
+            hole e {{ c = circle(center: fixed(({x}, 3)), radius: 2) }}
+        }}
+    }}"""
+    moves = {g.name: g for g in overlay(comparison(text.format(x=-9), text.format(x=9))).groups}[
+        "moves"
+    ].marks
     shaft, head = moves
     assert isinstance(shaft, Curves)
     assert isinstance(head, Area)
@@ -155,9 +169,9 @@ def test_plans_and_nothing_at_all() -> None:
 
 @pytest.mark.parametrize(
     ("name", "param", "value"),
-    [("telephone", "width", 200), ("gear_pair", "module", 2.5), ("finger_box", "depth", 100)],
+    [("telephone", "width", 200), ("motor_bracket", "motor", "nema23"), ("finger_box", "depth", 100)],
 )
-def test_examples_cover_what_they_cover(name: str, param: str, value: float) -> None:
+def test_examples_cover_what_they_cover(name: str, param: str, value: str | float) -> None:
     """What is in both and in one makes up that one, to the measure of the drawings themselves."""
     path = ROOT / "examples" / f"{name}.aidl"
     versions = [aidl_lang.compile(path), aidl_lang.compile(path, {param: value})]

@@ -271,7 +271,7 @@ def test_what_is_united_has_the_place_and_thickness_of_its_body() -> None:
     }
     """
     assert written(program)[1] == [
-        "W0727: `@elevation` and `@thickness` of `knob.grip` counts for nothing: it is one body with `knob`",
+        "W0727: `@elevation` and `@thickness` of `knob.grip` count for nothing: it is one body with `knob`",
         "W0727: `@orientation` of `knob.bore` counts for nothing: it is one body with `knob`",
     ]
 
@@ -370,3 +370,20 @@ def test_examples(path: Path, tmp_path: Path) -> None:
     whole = [p for body in compiled.drawing.bodies for loop in body.region.loops for p in loop.pieces]
     cylinders = sum(part.surfaces["Cylinder"] for part in file.parts)
     assert cylinders == sum(isinstance(p, Arc | Circle) for p in whole)
+
+
+def test_an_orientation_holds_for_what_is_inside() -> None:
+    program = """
+    assembly a {
+        @orientation(front) @detached
+        assembly b {
+            solid c { r = circle(center: origin, radius: 3) }
+            @orientation(top) @detached solid d { r = circle(center: fixed((20, 0)), radius: 3) }
+        }
+        @detached solid e { r = circle(center: fixed((40, 0)), radius: 3) }
+    }
+    """
+    compiled = pipeline.compile(SourceFile("part.aidl", program))
+    assert compiled.model is not None
+    found = {s.path: s.orientation for s in compiled.model.root.walk()}
+    assert found == {"a": "top", "a.b": "front", "a.b.c": "front", "a.b.d": "top", "a.e": "top"}

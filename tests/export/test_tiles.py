@@ -16,7 +16,7 @@ from svgelements import SVG, Path
 from aidl_lang.export import ExportError, Job, Options, export
 from aidl_lang.export.marks import Area, Curves, Dot, Group, Ink, Picture, Text
 from aidl_lang.export.tiles import tiled
-from aidl_lang.geometry.curves import Circle, Line
+from aidl_lang.geometry.curves import Circle, Line, Vec
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.evaluate import bounds, point
 from aidl_lang.geometry.region import Face, Loop
@@ -37,6 +37,11 @@ def names(page: Picture) -> list[str]:
 
 def label(page: Picture) -> str:
     return [m.text for m in page.groups[-1].marks if isinstance(m, Text)][-1]
+
+
+def frame(w: float, h: float) -> Loop:
+    corners: list[Vec] = [(0, 0), (w, 0), (w, h), (0, h), (0, 0)]
+    return Loop(tuple(Line(p, q) for p, q in pairwise(corners)))
 
 
 def one(*marks, box) -> Picture:
@@ -68,15 +73,13 @@ def test_every_point_is_on_a_page(x, y, w, h, page, overlap):
                 if left - 1e-9 <= px <= right + 1e-9 and bottom - 1e-9 <= py <= top + 1e-9
             ]
             assert on
-            assert all(marks[number // 2] in group.marks for p in on for group in p.groups if group.name == "g")
-            assert all("g" in names(p) for p in on)
+            assert all(names(p)[0] == "g" and marks[number // 2] in p.groups[0].marks for p in on)
 
 
 def test_pages_come_in_reading_order_and_say_where_they_belong():
     # Windows of 190 × 277 mm and 10 mm of overlap: 180 + 190 covers 370, 267 + 277 covers 544.
     box = (0.0, 0.0, 370.0, 544.0)
-    face = Face(Loop(tuple(Line(p, q) for p, q in pairwise([(0, 0), (370, 0), (370, 544), (0, 544), (0, 0)]))))
-    found = tiled(one(Area(face, "#ff0000", INK), box=box), A4)
+    found = tiled(one(Area(Face(frame(370, 544)), "#ff0000", INK), box=box), A4)
     assert [label(p) for p in found] == [
         "1/4: row 1, column 1",
         "2/4: row 1, column 2",
@@ -92,7 +95,7 @@ def test_pages_come_in_reading_order_and_say_where_they_belong():
 
 
 def test_blank_pages_are_left_out_but_counted_in_rows_and_columns():
-    outline = Loop(tuple(Line(p, q) for p, q in pairwise([(0, 0), (900, 0), (900, 900), (0, 900), (0, 0)])))
+    outline = frame(900, 900)
     hollow = one(Area(Face(outline), None, INK), box=(0.0, 0.0, 900.0, 900.0))
     filled = one(Area(Face(outline), "#ff0000", INK), box=(0.0, 0.0, 900.0, 900.0))
     # Five columns and four rows; nothing but the frame is drawn of the hollow one.
@@ -103,8 +106,7 @@ def test_blank_pages_are_left_out_but_counted_in_rows_and_columns():
 
 
 def test_a_hole_in_a_filled_area_is_blank():
-    outline = Loop(tuple(Line(p, q) for p, q in pairwise([(0, 0), (900, 0), (900, 900), (0, 900), (0, 0)])))
-    ring = Face(outline, (Loop((Circle((450, 450), 420),), reversed=True),))
+    ring = Face(frame(900, 900), (Loop((Circle((450, 450), 420),), reversed=True),))
     labels = [label(p) for p in tiled(one(Area(ring, "#ff0000", None), box=(0.0, 0.0, 900.0, 900.0)), A4)]
     assert not any("row 2, column 3" in text for text in labels)
     assert any("row 1, column 3" in text for text in labels)
@@ -134,8 +136,7 @@ def crosses(page: Picture) -> set[tuple[float, float]]:
 
 
 def test_neighbours_share_their_crosses():
-    outline = Loop(tuple(Line(p, q) for p, q in pairwise([(0, 0), (500, 0), (500, 500), (0, 500), (0, 0)])))
-    found = tiled(one(Area(Face(outline), "#ff0000", INK), box=(0.0, 0.0, 500.0, 500.0)), A4)
+    found = tiled(one(Area(Face(frame(500, 500)), "#ff0000", INK), box=(0.0, 0.0, 500.0, 500.0)), A4)
     places = {label(p).split(": ")[1]: p for p in found}
     assert len(places) == 6
     for row in (1, 2):
@@ -161,6 +162,11 @@ def job(**options) -> Job:
     return Job(m, draw(m)[0], options=Options(tile=A4, **options))
 
 
+def of_class(svg: SVG, role: str) -> Path:
+    (path,) = svg.elements(lambda e: isinstance(e, Path) and e.values.get("class") == role)
+    return path
+
+
 def test_svg_pages_are_true_to_scale_and_clipped():
     made = export(job(cut=True), ".svg")
     documents = [made.data, *made.further]
@@ -170,11 +176,9 @@ def test_svg_pages_are_true_to_scale_and_clipped():
         assert (root.get("width"), root.get("height")) == ("210mm", "297mm")
         assert [float(v) for v in root.attrib["viewBox"].split()][2:] == [210, 297]
         svg = SVG.parse(io.BytesIO(data), ppi=25.4)
-        cut = next(p for p in svg.elements(lambda e: isinstance(e, Path) and e.values.get("class") == "cut"))
-        left, top, right, bottom = cut.bbox()
+        left, top, right, bottom = of_class(svg, "cut").bbox()
         assert (right - left, bottom - top) == pytest.approx((400, 250))
-        scale = next(p for p in svg.elements(lambda e: isinstance(e, Path) and e.values.get("class") == "scale"))
-        left, _, right, _ = scale.bbox()
+        left, _, right, _ = of_class(svg, "scale").bbox()
         assert right - left == pytest.approx(50)
         (clip,) = re.findall(rb'<clipPath id="([^"]+)">', data)
         assert data.count(b'clip-path="url(#' + clip + b')"') == 1  # that of the plate, not that of the marks
@@ -183,8 +187,9 @@ def test_svg_pages_are_true_to_scale_and_clipped():
 
 
 def test_overlaps_show_the_same():
-    """The same millimetre lies at the same place of the drawing on both pages: their boxes differ by steps."""
-    pages = [ElementTree.fromstring(d) for d in (lambda e: [e.data, *e.further])(export(job(cut=True), ".svg"))]
+    """The same curves, seen through windows that lie a step of 180 mm apart."""
+    made = export(job(cut=True), ".svg")
+    pages = [ElementTree.fromstring(data) for data in (made.data, *made.further)]
     boxes = [[float(v) for v in page.attrib["viewBox"].split()] for page in pages]
     assert [b[0] - a[0] for a, b in pairwise(boxes)] == pytest.approx([180, 180])
     paths = {page.find(".//{*}path[@class='cut']").attrib["d"] for page in pages}

@@ -84,7 +84,13 @@ def parts(draw: st.DrawFn) -> SolvedStructure:
         "rectangle": lambda: rectangle("g", x, y, x + w, y + h),
         "triangle": lambda: polygon("g", (x, y), (x + w, y), (x + w / 3, y + h)),
         "ell": lambda: polygon(
-            "g", (x, y), (x + w, y), (x + w, y + h / 3), (x + w / 4, y + h / 3), (x + w / 4, y + h), (x, y + h)
+            "g",
+            (x, y),
+            (x + w, y),
+            (x + w, y + h / 3),
+            (x + w / 4, y + h / 3),
+            (x + w / 4, y + h),
+            (x, y + h),
         ),
         "circle": lambda: circle("g", x, y, w / 2),
         "tongue": lambda: compound(
