@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.cli import files
 from aidl_lang.cli.options import add_params, add_pixels
-from aidl_lang.cli.report import UseError, say, show
+from aidl_lang.cli.report import UseError, exit_code, say, show
 from aidl_lang.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
@@ -46,8 +46,8 @@ def run(arguments: argparse.Namespace) -> int:
     if on_standard + arguments.json > 1:
         raise UseError("E0914", "2 files do not fit on standard output", "name a file with -o")
     comparison = _comparison(arguments)
-    if comparison is None:
-        return 1
+    if isinstance(comparison, int):
+        return comparison
     _draw(comparison, outputs, arguments.pixels)
     if arguments.json:
         import json
@@ -82,8 +82,8 @@ def _suffix(name: str, arguments: argparse.Namespace) -> str:
     raise UseError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in PICTURES))}")
 
 
-def _comparison(arguments: argparse.Namespace) -> Comparison | None:
-    """None if a side is wrong; then it has been said why."""
+def _comparison(arguments: argparse.Namespace) -> Comparison | int:
+    """The exit code if a side is wrong; then it has been said why."""
     from aidl_lang.comparison import Version, compare
 
     names = arguments.before, arguments.after or arguments.before
@@ -94,7 +94,7 @@ def _comparison(arguments: argparse.Namespace) -> Comparison | None:
             "name a second program, or say what differs, as in `--to width=200`",
         )
     sources = {name: files.read(name) for name in dict.fromkeys(names)}
-    versions = []
+    versions, code = [], 0
     for name, own in zip(names, (arguments.params_before, arguments.params_after), strict=True):
         compiled = _compiled(name, sources[name], dict(arguments.params) | dict(own))
         may_be_used = compiled.ok or arguments.best_effort
@@ -102,7 +102,8 @@ def _comparison(arguments: argparse.Namespace) -> Comparison | None:
             versions.append(Version(compiled.model, compiled.drawing))
         else:
             show([*compiled.diagnostics, _refusal(name, compiled)], quiet=True)
-    return compare(*versions) if len(versions) == 2 else None
+            code = max(code, exit_code(compiled.diagnostics), 1)
+    return code or compare(*versions)
 
 
 def _compiled(name: str, source: SourceFile, params: Mapping[str, str]) -> Compiled:
@@ -113,7 +114,7 @@ def _compiled(name: str, source: SourceFile, params: Mapping[str, str]) -> Compi
 
 def _refusal(name: str, compiled: Compiled) -> Diagnostic:
     if compiled.drawing is None:
-        return Diagnostic("E0922", f"`{name}` cannot be compared: it is wrong")
+        return Diagnostic("E0922", f"`{name}` cannot be compared: it does not compile")
     what = "its constraints do not solve" if compiled.status != "solved" else "an assertion in it fails"
     return Diagnostic(
         "E0922", f"`{name}` cannot be compared: {what}", hints=("`--best-effort` compares it as it is",)

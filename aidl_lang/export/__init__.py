@@ -142,6 +142,29 @@ def _svg(job: Job) -> Exported:
     return _files([Exported(to_svg(page).encode()) for page in pages(job)])
 
 
+def _png(job: Job) -> Exported:
+    from aidl_lang.export.font import character_notes
+    from aidl_lang.export.picture import pages
+    from aidl_lang.export.png import to_png
+
+    drawn = pages(job)
+    data, *further = (to_png(page, job.options.pixels) for page in drawn)
+    return Exported(data, tuple(further), character_notes(drawn))
+
+
+def _pdf(job: Job) -> Exported:
+    return _pdf_of_all([job])
+
+
+def _pdf_of_all(jobs: Sequence[Job]) -> Exported:
+    from aidl_lang.export.font import character_notes
+    from aidl_lang.export.pdf import to_pdf
+    from aidl_lang.export.picture import pages
+
+    drawn = [page for job in jobs for page in pages(job)]
+    return Exported(to_pdf(drawn, jobs[0].model.root.path), notes=character_notes(drawn))
+
+
 def _json(job: Job) -> Exported:
     from aidl_lang.export.json import to_json
 
@@ -174,6 +197,8 @@ def _3mf(job: Job) -> Exported:
 
 FORMATS: dict[str, Format] = {
     ".svg": Format(_svg, cuts=True, tiles=True),
+    ".pdf": Format(_pdf, cuts=True, tiles=True, write_all=_pdf_of_all),
+    ".png": Format(_png, cuts=True, tiles=True),
     ".json": Format(_json),
     ".step": Format(_step),
     ".stp": Format(_step),
@@ -194,4 +219,20 @@ def _svg_picture(picture: Picture, options: Options) -> bytes:
     return to_svg(picture).encode()
 
 
-PICTURES: dict[str, Callable[[Picture, Options], bytes]] = {".svg": _svg_picture}
+def _png_picture(picture: Picture, options: Options) -> bytes:
+    from aidl_lang.export.png import to_png
+
+    return to_png(picture, options.pixels)
+
+
+def _pdf_picture(picture: Picture, options: Options) -> bytes:
+    from aidl_lang.export.pdf import to_pdf
+
+    return to_pdf([picture], "AIDL")
+
+
+PICTURES: dict[str, Callable[[Picture, Options], bytes]] = {
+    ".svg": _svg_picture,
+    ".png": _png_picture,
+    ".pdf": _pdf_picture,
+}

@@ -16,7 +16,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from aidl_lang.diagnostics import Diagnostic
-from aidl_lang.export import Exported, Job
+from aidl_lang.export import Exported, Job, palette
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.dxf_layers import Layers
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
@@ -59,7 +59,8 @@ def _written(document: Any, job: Job) -> Exported:
     for outline in found:
         attributes: dict[str, Any] = {"layer": layers.name(outline.layer)}
         if outline.color is not None:
-            attributes["true_color"] = _rgb(outline.color)
+            red, green, blue = palette.rgb(outline.color)
+            attributes["true_color"] = red << 16 | green << 8 | blue
         names = [(BODY, outline.path)] + ([(HOLE, outline.hole)] if outline.hole else [])
         for entity in entities.add(outline, attributes):
             for application, path in names:
@@ -88,14 +89,6 @@ def _set_view(document: Any, drawing: Drawing) -> None:
     space.dxf.extmin, space.dxf.extmax = (left, bottom, 0.0), (right, top, 0.0)
     space.dxf.limmin, space.dxf.limmax = (left, bottom), (right, top)
     document.set_modelspace_vport(1.1 * drawing.size, ((left + right) / 2, (bottom + top) / 2))
-
-
-def _rgb(color: str) -> int:
-    """A CSS colour as DXF has it."""
-    from PIL import ImageColor
-
-    red, green, blue = ImageColor.getrgb(color)[:3]
-    return red << 16 | green << 8 | blue
 
 
 def _split(path: str) -> list[str]:

@@ -30,3 +30,11 @@ FREE = "#b45309"
 def body_fill(index: int) -> str:
     """The colour of the body that is drawn as number `index`."""
     return FILLS[index % len(FILLS)]
+
+
+def rgb(color: str) -> tuple[int, int, int]:
+    """Red, green and blue of a CSS colour, from 0 to 255."""
+    from PIL import ImageColor
+
+    red, green, blue = ImageColor.getrgb(color)[:3]
+    return red, green, blue

@@ -17,14 +17,14 @@ FONT = "DejaVu Sans, Verdana, Arial, sans-serif"
 _NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def to_svg(picture: Picture) -> str:
-    """The picture as an SVG document."""
+def to_svg(picture: Picture, pixels: tuple[int, int] | None = None) -> str:
+    """The picture as an SVG document in its true size, or so many pixels wide and high."""
     import svgwrite  # takes longer to import than most drawings to draw
 
     left, _, _, top = picture.box
     width, height = fixed(picture.width), fixed(picture.height)
     document = svgwrite.Drawing(
-        size=(f"{width}mm", f"{height}mm"),
+        size=pixels or (f"{width}mm", f"{height}mm"),
         viewBox=f"{fixed(left)} {fixed(-top)} {width} {height}",
         debug=False,
     )

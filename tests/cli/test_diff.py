@@ -145,7 +145,7 @@ def test_a_wrong_side(aidl: Aidl) -> None:
     result = aidl("diff", "good.aidl", "wrong.aidl")
     assert (result.code, result.out) == (1, "")
     assert "error[E0201]: there is no `wdth` here" in result.err
-    assert result.err.endswith("error[E0922]: `wrong.aidl` cannot be compared: it is wrong\n")
+    assert result.err.endswith("error[E0922]: `wrong.aidl` cannot be compared: it does not compile\n")
     both = aidl("diff", "wrong.aidl", "unsolvable.aidl")
     assert both.code == 1
     assert both.err.count("E0922") == 2
@@ -185,7 +185,7 @@ def test_what_is_refused(aidl: Aidl) -> None:
     assert "E0914" in aidl(*pair, "-o", "-", "--json").err
     assert "E0901" in aidl("diff", "good.aidl", "missing.aidl").err
     assert aidl("diff", "good.aidl", "--to", "wide").code == 2
-    assert aidl("diff", "good.aidl", "--to", "wide=3").code == 1
+    assert aidl("diff", "good.aidl", "--to", "wide=3").code == 2
 
 
 def test_texts_cannot_disturb_a_terminal(aidl: Aidl, folder: Path) -> None:

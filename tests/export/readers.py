@@ -79,7 +79,7 @@ class Body:
 
     @property
     def box(self) -> tuple[float, float, float, float]:
-        points = np.concatenate([loop.polygon(4096) for loop in self.loops])
+        points = np.concatenate([loop.polygon(1024) for loop in self.loops])
         (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
         return left, bottom, right, top
 
@@ -137,10 +137,7 @@ def svg_origin(data: bytes) -> tuple[float, float]:
 
 
 def _of_svg(segment: Any) -> Curve:
-    def curve(t: Points) -> Points:
-        return np.array([(p.x, -p.y) for p in (segment.point(float(k)) for k in t)])
-
-    return curve
+    return lambda t: segment.npoint(t) * (1, -1)
 
 
 # --- DXF -----------------------------------------------------------------------------------------

@@ -1,0 +1,36 @@
+"""The font that texts in pictures are drawn with, where the file carries its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.export.marks import Picture, Text
+from aidl_lang.lettering import unknown_characters
+from aidl_lang.resources import resource
+
+FAMILY = "DejaVu Sans AIDL"
+_NAMED = 8
+
+
+def font_file() -> str:
+    return str(resource("aidl_lang/fonts/DejaVuSansAIDL.ttf"))
+
+
+def character_notes(pages: Iterable[Picture]) -> tuple[Diagnostic, ...]:
+    """A warning about characters of the texts that the font does not have."""
+    texts = (
+        mark.text for page in pages for group in page.groups for mark in group.marks if isinstance(mark, Text)
+    )
+    missing = unknown_characters("".join(dict.fromkeys("".join(texts))))
+    if not missing:
+        return ()
+    shown = ", ".join(f"`{c}`" if c.isprintable() else f"U+{ord(c):04X}" for c in missing[:_NAMED])
+    more = f" and {len(missing) - _NAMED} more" if len(missing) > _NAMED else ""
+    return (
+        Diagnostic(
+            "W0733",
+            f"the font has no {shown}{more}; texts in the picture show a box in their place",
+            hints=("an SVG is shown with the fonts of the reader's system",),
+        ),
+    )

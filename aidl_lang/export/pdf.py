@@ -1,0 +1,200 @@
+"""PDF: pictures at 1:1, one on each page, as vectors with the font embedded.
+
+PDF has no arcs: those of circles and ellipses become cubic Bézier curves, each over at most a sixteenth of a
+turn, which depart from a circle of radius r by less than 1e-7 r.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import singledispatchmethod
+from typing import Any
+
+from aidl_lang.export import ExportError, palette
+from aidl_lang.export.font import FAMILY, font_file
+from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
+from aidl_lang.export.numbers import size_text
+from aidl_lang.geometry.curves import Bezier, Circle, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import TAU, Bounds, derivative, ends, point, round_range
+from aidl_lang.geometry.region import Loop
+from aidl_lang.version import __version__
+
+POINTS_PER_MM = 72 / 25.4
+LONGEST = 14_400 / POINTS_PER_MM
+"""Sides of pages end here (PDF 32000-1, annex C)."""
+_STEP = TAU / 16
+_FILLED_AND_STROKED = 2
+_WHITE = "#ffffff"
+
+
+def to_pdf(pages: Sequence[Picture], title: str) -> bytes:
+    """The pictures as a document. Raises ExportError (E0921) for one that is larger than a page may be."""
+    from reportlab.pdfbase import pdfmetrics
+    from reportlab.pdfbase.ttfonts import TTFont
+    from reportlab.pdfgen.canvas import Canvas
+
+    for page in pages:
+        if max(page.width, page.height) > LONGEST:
+            raise ExportError(
+                "E0921",
+                f"the picture measures {size_text((page.width, page.height))}, and a page of a PDF ends at "
+                f"{LONGEST:.0f} mm",
+                "print it over several pages: `--tile a4`",
+            )
+    pdfmetrics.registerFont(TTFont(FAMILY, font_file()))
+    data = io.BytesIO()
+    # invariant: no dates and no random numbers
+    canvas = Canvas(data, invariant=1)
+    canvas.setTitle(title)
+    canvas.setCreator(f"AIDL {__version__}")
+    for page in pages:
+        canvas.setPageSize((page.width * POINTS_PER_MM, page.height * POINTS_PER_MM))
+        canvas.scale(POINTS_PER_MM, POINTS_PER_MM)
+        canvas.translate(-page.box[0], -page.box[1])
+        pen = _Pen(canvas)
+        for group in page.groups:
+            pen.group(group)
+        canvas.showPage()
+    canvas.save()
+    return data.getvalue()
+
+
+class _Pen:
+    """Draws marks on a page whose unit is a millimetre."""
+
+    def __init__(self, canvas: Any) -> None:
+        self._canvas = canvas
+
+    def group(self, group: Group) -> None:
+        with self._state():
+            if group.clip is not None:
+                self._canvas.clipPath(self._frame_path(group.clip), stroke=0, fill=0)
+            for mark in group.marks:
+                with self._state():
+                    self._draw(mark)
+
+    @contextmanager
+    def _state(self) -> Iterator[None]:
+        self._canvas.saveState()
+        yield
+        self._canvas.restoreState()
+
+    @singledispatchmethod
+    def _draw(self, mark: Mark) -> None:
+        raise TypeError(mark)
+
+    @_draw.register
+    def _(self, mark: Area) -> None:
+        path = self._canvas.beginPath()
+        for loop in mark.face.loops:
+            _add_loop(path, loop)
+        if mark.fill is not None:
+            self._fill(mark.fill)
+        if mark.ink is not None:
+            self._ink(mark.ink)
+        self._canvas.drawPath(path, fill=mark.fill is not None, stroke=mark.ink is not None, fillMode=0)
+
+    @_draw.register
+    def _(self, mark: Curves) -> None:
+        path = self._canvas.beginPath()
+        _add_pieces(path, mark.pieces)
+        self._ink(mark.ink)
+        self._canvas.drawPath(path)
+
+    @_draw.register
+    def _(self, mark: Text) -> None:
+        canvas = self._canvas
+        canvas.translate(*mark.at)
+        canvas.rotate(mark.angle)
+        width = canvas.stringWidth(mark.text, FAMILY, mark.size)
+        left = -{"start": 0.0, "middle": 0.5, "end": 1.0}[mark.anchor] * width
+        if mark.halo:
+            with self._state():
+                self._text(mark, left, _WHITE, Ink(_WHITE, 0.22 * mark.size, is_round=True))
+        # The font has one weight: a line of its own colour around it makes it bold.
+        self._text(mark, left, mark.color, Ink(mark.color, 0.04 * mark.size) if mark.bold else None)
+
+    @_draw.register
+    def _(self, mark: Dot) -> None:
+        self._fill(mark.color)
+        self._ink(Ink(_WHITE, 0.3 * mark.radius))
+        path = self._canvas.beginPath()
+        _add_pieces(path, [Circle(mark.at, mark.radius)])
+        self._canvas.drawPath(path, fill=1)
+
+    @_draw.register
+    def _(self, mark: Frame) -> None:
+        dash = (mark.dash, 0.7 * mark.dash) if mark.dash else None
+        self._ink(Ink(mark.color, mark.width, dash))
+        self._canvas.drawPath(self._frame_path(mark.box))
+
+    def _frame_path(self, box: Bounds) -> Any:
+        path = self._canvas.beginPath()
+        path.rect(box[0], box[1], box[2] - box[0], box[3] - box[1])
+        return path
+
+    def _text(self, mark: Text, left: float, fill: str, ink: Ink | None) -> None:
+        text = self._canvas.beginText(left, 0)
+        text.setFont(FAMILY, mark.size)
+        self._fill(fill)
+        if ink is not None:
+            self._ink(ink)
+            text.setTextRenderMode(_FILLED_AND_STROKED)
+        text.textOut(mark.text)
+        self._canvas.drawText(text)
+
+    def _fill(self, color: str) -> None:
+        self._canvas.setFillColorRGB(*(c / 255 for c in palette.rgb(color)))
+
+    def _ink(self, ink: Ink) -> None:
+        canvas = self._canvas
+        canvas.setStrokeColorRGB(*(c / 255 for c in palette.rgb(ink.color)))
+        canvas.setLineWidth(ink.width)
+        canvas.setLineCap(int(ink.is_round))
+        canvas.setLineJoin(int(ink.is_round))
+        if ink.opacity != 1:
+            canvas.setStrokeAlpha(ink.opacity)
+        if ink.dash is not None:
+            canvas.setDash(list(ink.dash))
+
+
+def _add_loop(path: Any, loop: Loop) -> None:
+    _add_pieces(path, loop.pieces)
+    path.close()
+
+
+def _add_pieces(path: Any, pieces: Iterable[Piece]) -> None:
+    """Curves one after the other, moving only where one does not start at the end of the one before."""
+    at: Vec | None = None
+    for piece in pieces:
+        start, end = ends(piece)
+        if start != at:
+            path.moveTo(*start)
+        if isinstance(piece, Line):
+            path.lineTo(*end)
+        else:
+            for cubic in _cubics(piece):
+                path.curveTo(*(c for p in cubic[1:] for c in p))
+        at = end
+
+
+def _cubics(piece: Piece) -> Iterator[tuple[Vec, Vec, Vec, Vec]]:
+    """A curve by the control points of cubic Bézier curves."""
+    if isinstance(piece, Bezier):
+        yield piece.p0, piece.p1, piece.p2, piece.p3
+        return
+    assert not isinstance(piece, Line)
+    sweep = round_range(piece)[1]
+    count = max(1, math.ceil(abs(sweep) / _STEP - 1e-9))
+    # The handles that meet the arc in its middle (Farin, Curves and Surfaces, ch. 4): 4/3 tan(a/4) times the
+    # derivative by the angle, which is that by the parameter over the sweep.
+    reach = 4 / 3 * math.tan(sweep / count / 4) / sweep
+    for k in range(count):
+        t0, t1 = k / count, (k + 1) / count
+        (x0, y0), (x1, y1) = point(piece, t0), point(piece, t1)
+        (u0, v0), (u1, v1) = derivative(piece, t0), derivative(piece, t1)
+        handles = (x0 + reach * u0, y0 + reach * v0), (x1 - reach * u1, y1 - reach * v1)
+        yield (x0, y0), *handles, (x1, y1)

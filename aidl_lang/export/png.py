@@ -1,0 +1,49 @@
+"""PNG: the SVG of a picture as pixels on white, with the font that comes along and no other."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+
+from aidl_lang.export.font import FAMILY, font_file
+from aidl_lang.export.marks import Picture
+from aidl_lang.export.svg import to_svg
+
+SLIMMEST = 1 / 100
+"""A picture that is longer than that gets more white along its sides."""
+MM_PER_INCH = 25.4
+_DENSITIES = (0.1, 1e6)
+"""Dots per inch that a PNG can state."""
+
+
+def to_png(picture: Picture, pixels: int) -> bytes:
+    """The picture with so many pixels along its larger side, and its resolution stated."""
+    import resvg_py
+    from PIL import Image
+
+    picture = _widened(picture)
+    per_mm = pixels / max(picture.width, picture.height)
+    width, height = round(picture.width * per_mm), round(picture.height * per_mm)
+    drawn = resvg_py.svg_to_bytes(
+        svg_string=to_svg(picture, (width, height)),
+        background="#ffffff",
+        skip_system_fonts=True,
+        font_files=[font_file()],
+        font_family=FAMILY,
+        sans_serif_family=FAMILY,
+        width=width,
+        height=height,
+    )
+    density = per_mm * MM_PER_INCH
+    stated = {"dpi": (density, density)} if _DENSITIES[0] < density < _DENSITIES[1] else {}
+    data = io.BytesIO()
+    with Image.open(io.BytesIO(bytes(drawn))) as image:
+        image.convert("RGB").save(data, "PNG", **stated)
+    return data.getvalue()
+
+
+def _widened(picture: Picture) -> Picture:
+    left, bottom, right, top = picture.box
+    least = SLIMMEST * max(picture.width, picture.height)
+    x, y = max(0.0, least - picture.width) / 2, max(0.0, least - picture.height) / 2
+    return replace(picture, box=(left - x, bottom - y, right + x, top + y))
