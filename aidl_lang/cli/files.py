@@ -50,6 +50,13 @@ def require_directory(name: str) -> None:
 def write(name: str, data: bytes) -> None:
     """Replace a file by its new content in one step; `-` is standard output."""
     if name == STANDARD:
+        if sys.stdout.isatty() and b"\0" in data:
+            raise UseError(
+                "E0920",
+                "a terminal cannot show this format",
+                "name a file with -o",
+                "`aidl show` draws in the terminal",
+            )
         sys.stdout.flush()
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()

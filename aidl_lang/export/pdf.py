@@ -42,7 +42,7 @@ def to_pdf(pages: Sequence[Picture], title: str) -> bytes:
                 "E0921",
                 f"the picture measures {size_text((page.width, page.height))}, and a page of a PDF ends at "
                 f"{LONGEST:.0f} mm",
-                "print it over several pages: `--tile a4`",
+                "print it over several pages: `--tile a0`",
             )
     pdfmetrics.registerFont(TTFont(FAMILY, font_file()))
     data = io.BytesIO()

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
+from shapely.geometry import shape
+from shapely.ops import unary_union
 
 from aidl_lang import Model, compile
+from aidl_lang.export import Options
 from tests.documents import ROOT
 from tests.export import readers
 
@@ -60,3 +66,37 @@ def test_dxf(name: str):
     assert set(found) - drawings == set(told)
     for path in told:
         agree(found[path], told[path], (0.0, 0.0), 1e-8)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_pdf(name: str):
+    """The reader has single precision, and paths without names: in order of drawing."""
+    found, told = readers.read_pdf(example(name).export(".pdf")), bodies_of(name)
+    told_faces = [face for region in told.values() for face in region["faces"]]
+    assert [len(body.loops) for body in found] == [1 + len(face["holes"]) for face in told_faces]
+    total = sum(region["area"] for region in told.values())
+    assert sum(body.area for body in found) == pytest.approx(total, rel=2e-6)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_png(name: str):
+    """The pixels that differ from the paper, where no body lies over another."""
+    model, told = example(name), bodies_of(name)
+    with Image.open(io.BytesIO(model.export(".png", Options(pixels=2000)))) as image:
+        pixels, density = np.asarray(image.convert("L")), image.info["dpi"][0] / 25.4
+    assert max(pixels.shape) == 2000
+    bodies = [shape(region["geometry"]) for region in told.values()]
+    strokes = any(s.kind == "drawing" for s in model.solved.root.walk())
+    covered = unary_union(bodies)
+    ink = 0.0025 * max(pixels.shape) / density
+    seen = (pixels < 250).sum() / density**2
+    if not strokes:
+        assert seen == pytest.approx(covered.buffer(ink / 2).area, rel=0.01)
+    else:
+        assert seen > 0.99 * covered.area
+
+
+def test_nothing_of_the_examples_is_lost():
+    """What has bodies in the JSON is what the tests above have looked at."""
+    assert len(EXAMPLES) >= 13
+    assert all(bodies_of(name) for name in EXAMPLES)
