@@ -12,14 +12,27 @@ import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
 
-from aidl_lang.cli import check, compile, diff, doc, explain, fmt, guide, measure, new, params, watch
-from aidl_lang.cli.report import UseError, show
+from aidl_lang.cli import (
+    check,
+    compile,
+    diff,
+    doc,
+    explain,
+    fmt,
+    guide,
+    measure,
+    new,
+    params,
+    report,
+    show,
+    watch,
+)
 from aidl_lang.version import __version__
 
 INTERRUPTED = 130
 BROKEN_PIPE = 141
 
-_VERBS = (compile, check, measure, diff, fmt, params, doc, guide, explain, watch, new)
+_VERBS = (compile, check, show, measure, diff, fmt, params, doc, guide, explain, watch, new)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -31,8 +44,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments = _parser().parse_args(argv)
         code: int = arguments.run(arguments)
         sys.stdout.flush()
-    except UseError as reason:
-        show([reason.diagnostic])
+    except report.UseError as reason:
+        report.show([reason.diagnostic])
         return 2
     except KeyboardInterrupt:
         return INTERRUPTED

@@ -28,6 +28,24 @@ def add_pixels(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_look(parser: argparse.ArgumentParser) -> None:
+    """The options that say what is seen in a picture."""
+    parser.add_argument(
+        "--show",
+        type=_layers,
+        default=frozenset(),
+        metavar="LAYERS",
+        help="draw these over the picture, separated by commas: names, points, bbox, constraints, dof, plan",
+    )
+    parser.add_argument("--dimension", action="store_true", help="draw dimensions of what is sized")
+    parser.add_argument(
+        "--cut", action="store_true", help="the outlines alone, as hairlines: what a cutter follows"
+    )
+    parser.add_argument(
+        "--best-effort", action="store_true", help="draw how far the solver came even if it did not solve"
+    )
+
+
 def add_drawing(parser: argparse.ArgumentParser) -> None:
     """The options that say what to draw and where to put it."""
     parser.add_argument(
@@ -41,17 +59,7 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--format", metavar="SUFFIX", help="format of outputs whose name does not tell it")
     add_params(parser)
-    parser.add_argument(
-        "--show",
-        type=_layers,
-        default=frozenset(),
-        metavar="LAYERS",
-        help="draw these over the picture, separated by commas: names, points, bbox, constraints, dof, plan",
-    )
-    parser.add_argument("--dimension", action="store_true", help="draw dimensions of what is sized")
-    parser.add_argument(
-        "--cut", action="store_true", help="the outlines alone, as hairlines: what a cutter follows"
-    )
+    add_look(parser)
     add_pixels(parser)
     parser.add_argument(
         "--thickness",
@@ -60,9 +68,6 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
         help="thickness of parts without `@thickness`, for STEP, STL and 3MF",
     )
     _add_cutting(parser)
-    parser.add_argument(
-        "--best-effort", action="store_true", help="draw how far the solver came even if it did not solve"
-    )
 
 
 def _add_cutting(parser: argparse.ArgumentParser) -> None:

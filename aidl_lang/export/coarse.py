@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import replace
 
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Ink, Mark, Picture, Text
@@ -13,13 +13,61 @@ _SHORTEST_DASH = 2.0
 
 
 def framed(picture: Picture, proportion: float) -> Picture:
-    """The picture with so much more white around it that its width is `proportion` times its height."""
+    """The picture with white around it, so that it is `proportion` times as wide as high."""
     left, bottom, right, top = picture.box
     x = max(0.0, picture.height * proportion - picture.width) / 2
     y = max(0.0, picture.width / proportion - picture.height) / 2
     return replace(picture, box=(left - x, bottom - y, right + x, top + y))
 
 
-def coarse(picture: Picture, pixel: float, *, in_colour: bool = True) -> Picture:
-    """The picture with all lines at least a `pixel` (mm) wide."""
-    return _with(picture, lambda mark: _thick(mark if in_colour else _plain(mark), pixel))
+def coarse(picture: Picture, pixel: float) -> Picture:
+    """The picture with no line thinner than a `pixel`, mm."""
+    return _redrawn(picture, lambda mark: _thickened(mark, pixel))
+
+
+def outlined(picture: Picture) -> Picture:
+    """The picture in black and white: outlines hide what is below them, and seams are left out."""
+    return _redrawn(picture, _plain)
+
+
+def separated(picture: Picture) -> tuple[Picture, tuple[Text, ...]]:
+    """The picture without its texts, and they."""
+    texts = tuple(mark for group in picture.groups for mark in group.marks if isinstance(mark, Text))
+    return _redrawn(picture, lambda mark: None if isinstance(mark, Text) else mark), texts
+
+
+def _redrawn(picture: Picture, change: Callable[[Mark], Mark | None]) -> Picture:
+    groups = (
+        replace(group, marks=tuple(new for mark in group.marks if (new := change(mark)) is not None))
+        for group in picture.groups
+    )
+    return replace(picture, groups=tuple(groups))
+
+
+def _thickened(mark: Mark, pixel: float) -> Mark:
+    match mark:
+        case Area(ink=Ink() as ink) | Curves(ink=ink):
+            dash = ink.dash if ink.dash and min(ink.dash) > _SHORTEST_DASH * pixel else None
+            return replace(mark, ink=replace(ink, width=max(ink.width, pixel), dash=dash))
+        case Frame():
+            return replace(mark, width=max(mark.width, pixel))
+        case Dot():
+            return replace(mark, radius=max(mark.radius, pixel))
+    return mark
+
+
+def _plain(mark: Mark) -> Mark | None:
+    match mark:
+        case Area(ink=None):
+            return replace(mark, fill=_BLACK)
+        case Area(ink=Ink() as ink):
+            return replace(mark, fill=mark.fill and _WHITE, ink=_solid(ink))
+        case Curves(role="seam"):
+            return None
+        case Curves():
+            return replace(mark, ink=_solid(mark.ink))
+    return replace(mark, color=_BLACK)
+
+
+def _solid(ink: Ink) -> Ink:
+    return replace(ink, color=_BLACK, opacity=1.0)

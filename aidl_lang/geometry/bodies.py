@@ -11,7 +11,7 @@ draws itself is one more, and its holes cut them all. Where this leaves a choice
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
@@ -28,6 +28,9 @@ from aidl_lang.geometry.sections import (
     union,
 )
 from aidl_lang.solved import SolvedGeometry, SolvedStructure
+
+_FEW_HOLES, _FEW_VERTICES = 8, 200
+"""Below which a hole is compared with the whole material."""
 
 
 @dataclass(frozen=True)
@@ -180,7 +183,7 @@ class Bodies:
         if islands:
             kept = self._still_open(solid, kept, after, islands)
         for m in children:
-            kept += self._still_open(solid, m.voids, after, [c for c in children if c is not m])
+            kept += self._still_open(solid, m.voids, after, children)
         if after.is_empty():
             return []
         self.sections[solid.path] = after
@@ -204,9 +207,11 @@ class Bodies:
     def _voids(self, holder: SolvedStructure, material: Section, cuts: Iterable[Cut]) -> list[Void]:
         """What each hole removes from the material; tells of those that remove nothing."""
         voids = []
+        cuts = list(cuts)
+        near = _around(material, [hole.section for cut in cuts for hole in cut.holes])
         for cut in cuts:
             for hole in cut.holes:
-                removed = intersection(material, hole.section)
+                removed = intersection(next(near), hole.section)
                 if not is_nothing(removed):
                     voids.append(Void(hole.hole, removed))
                 elif all(is_nothing(intersection(m.section, hole.section)) for m in cut.islands):
@@ -216,14 +221,34 @@ class Bodies:
     def _still_open(
         self, holder: SolvedStructure, voids: Sequence[Void], material: Section, others: list[Mass]
     ) -> list[Void]:
-        """The voids that the material does not fill again; tells of those that it does."""
+        """The voids that the material does not fill again; tells of those that it does.
+
+        What a void was cut from does not cover it, so it may be among the others.
+        """
         if not voids or is_nothing(intersection(material, union([v.section for v in voids]))):
             return list(voids)
         kept = []
         for void in voids:
             if covers(material, void.section):
-                filler = next((m.structure for m in others if covers(m.section, void.section)), None)
+                near = (m for m in others if boxes_meet(m.section, void.section))
+                filler = next((m.structure for m in near if covers(m.section, void.section)), None)
                 self.findings.append(FilledHole(void.hole, holder, filler))
             else:
                 kept.append(void)
         return kept
+
+
+def _around(material: Section, holes: Sequence[Section]) -> Iterator[Section]:
+    """For each hole the material near it: with it, the hole has the same in common as with all.
+
+    All holes together have in common with the material what they have one by one, in small components.
+    """
+    if len(holes) < _FEW_HOLES or material.num_vert() < _FEW_VERTICES:
+        yield from (material for _ in holes)
+        return
+    parts = intersection(material, union(holes)).decompose()
+    beside: list[list[Section]] = [[] for _ in holes]
+    for i, j in near_pairs([s.bounds() for s in (*parts, *holes)], 0.0):
+        if i < len(parts) <= j:
+            beside[j - len(parts)].append(parts[i])
+    yield from map(union, beside)

@@ -18,10 +18,10 @@ def clipped(curves: Sequence[Piece], region: Region) -> list[Piece]:
     network = Network([*pieces, *curves])
     section = section_of(network, region, 0)
     found: list[Piece] = []
-    for number in range(len(pieces), len(network.curves)):
-        for edge, forward in network.uses[number]:
-            if inside_mask(section, [network.midpoint(edge)])[0]:
-                e = network.edges[edge]
-                t0, t1, a, b = (e.t0, e.t1, e.start, e.end) if forward else (e.t1, e.t0, e.end, e.start)
-                found.append(part(network.curves[e.curve], t0, t1, network.nodes[a], network.nodes[b]))
+    uses = [use for of_curve in network.uses[len(pieces) :] for use in of_curve]
+    within = inside_mask(section, [network.midpoint(edge) for edge, _ in uses])
+    for edge, forward in (use for use, is_inside in zip(uses, within, strict=True) if is_inside):
+        e = network.edges[edge]
+        t0, t1, a, b = (e.t0, e.t1, e.start, e.end) if forward else (e.t1, e.t0, e.end, e.start)
+        found.append(part(network.curves[e.curve], t0, t1, network.nodes[a], network.nodes[b]))
     return found

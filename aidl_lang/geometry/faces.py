@@ -227,11 +227,9 @@ def _close_with_outlines(
     if is_nothing(added):
         return set()
     boundary = trace(network, added).edges
-    used = {
-        e
-        for e, _ in uses
-        if e in bounding and (e in boundary or inside_mask(added, [network.midpoint(e)])[0])
-    }
+    edges = [e for e in dict.fromkeys(e for e, _ in uses) if e in bounding]
+    within = inside_mask(added, [network.midpoint(e) for e in edges])
+    used = {e for e, is_inside in zip(edges, within, strict=True) if is_inside or e in boundary}
     names = tuple(g for g, number in rest if _touches(network, number, used))
     if names:
         result.faces.append(OwnFace(names, added))

@@ -76,17 +76,21 @@ class Sides:
             of_size = of_size[np.argsort(left[of_size], kind="stable")]
             self._classes.append((of_size, left[of_size], float(2.0**k)))
 
+    def beside(self, x: Floats, reach: float) -> Iterator[tuple[Ints, Ints]]:
+        """Places on the first axis, each with every side that may come within reach of it there, in parts."""
+        for of_size, left, width in self._classes:
+            low = np.searchsorted(left, x - width - reach)
+            high = np.searchsorted(left, x + reach, side="right")
+            for place, window in _windows(low, high):
+                yield place, of_size[window]
+
     def near(self, spots: Floats, reach: float) -> tuple[Ints, Ints, Floats]:
         """All sides that pass a spot at most at the given distance: spot, side and distance."""
         found = [(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0))]
-        for of_size, left, width in self._classes:
-            low = np.searchsorted(left, spots[:, 0] - width - reach)
-            high = np.searchsorted(left, spots[:, 0] + reach, side="right")
-            for spot, place in _windows(low, high):
-                side = of_size[place]
-                away = self._distance(spots[spot], side)
-                kept = away <= reach
-                found.append((spot[kept], side[kept], away[kept]))
+        for spot, side in self.beside(spots[:, 0], reach):
+            away = self._distance(spots[spot], side)
+            kept = away <= reach
+            found.append((spot[kept], side[kept], away[kept]))
         spot, side, away = (np.concatenate([f[k] for f in found]) for k in range(3))
         return spot, side, away
 
@@ -107,3 +111,20 @@ class Sides:
         t = np.clip((gap * way).sum(axis=1) / square, 0, 1)
         away: Floats = np.hypot(*(gap - t[:, None] * way).T)
         return away
+
+
+def inside(polygons: Sequence[Floats], spots: Floats) -> NDArray[np.bool_]:
+    """Which points lie inside an odd number of polygons, by the crossings of rays to the right."""
+    crossings = np.zeros(len(spots), dtype=np.int64)
+    if polygons and len(spots):
+        start = np.concatenate(polygons)
+        end = np.concatenate([np.concatenate((p[1:], p[:1])) for p in polygons])
+        # A ray along x meets the sides whose span in y has it: they are found by that axis.
+        across = Sides(np.concatenate((start[:, ::-1], end[:, ::-1]), axis=1))
+        for spot, side in across.beside(spots[:, 1], 0.0):
+            (ax, ay), (bx, by), (px, py) = start[side].T, end[side].T, spots[spot].T
+            straddle = (ay > py) != (by > py)
+            x = ax + (py - ay) / np.where(straddle, by - ay, 1.0) * (bx - ax)
+            crossings += np.bincount(spot[straddle & (x > px)], minlength=len(spots))
+    odd: NDArray[np.bool_] = crossings % 2 == 1
+    return odd

@@ -18,14 +18,13 @@ def visible_seams(
     network: Network, mass: Mass, traced: Mapping[str, Traced]
 ) -> Iterator[tuple[str, tuple[Piece, ...]]]:
     """By path of the united structure, its edges inside the body, each drawn once."""
-    drawn = set(traced[mass.structure.path].edges)
+    outline = traced[mass.structure.path].edges
+    candidates = sorted({edge for path in mass.inner for edge in traced[path].edges} - outline)
+    mask = inside_mask(mass.section, [network.midpoint(edge) for edge in candidates])
+    left = {edge for edge, within in zip(candidates, mask, strict=True) if within}
     for path in mass.inner:
-        candidates = sorted(traced[path].edges - drawn)
-        if not candidates:
-            continue
-        inside = inside_mask(mass.section, [network.midpoint(edge) for edge in candidates])
-        edges = [edge for edge, within in zip(candidates, inside, strict=True) if within]
-        drawn.update(edges)
+        edges = sorted(traced[path].edges & left)
+        left.difference_update(edges)
         if edges:
             yield path, tuple(_merged(network, edges))
 

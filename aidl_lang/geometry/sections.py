@@ -11,6 +11,7 @@ from typing import Any, Literal, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE
 
 Polygon = NDArray[np.float64]
@@ -25,6 +26,7 @@ class Section(Protocol):
     def bounds(self) -> tuple[float, float, float, float]: ...
     def is_empty(self) -> bool: ...
     def num_contour(self) -> int: ...
+    def num_vert(self) -> int: ...
     def decompose(self) -> list[Self]: ...
     def to_polygons(self) -> list[Polygon]: ...
     def __sub__(self, other: Self) -> Self: ...
@@ -101,19 +103,9 @@ def covers(cover: Section, section: Section) -> bool:
 
 def inside_mask(section: Section, spots: Sequence[Polygon]) -> NDArray[np.bool_]:
     """Which points in grid units lie inside."""
-    p = np.array(spots).reshape(-1, 2)
-    inside = np.zeros(len(p), dtype=np.bool_)
-    for polygon in section.to_polygons():
-        inside ^= in_polygon(polygon, p)
-    return inside
+    return inside(section.to_polygons(), np.array(spots, dtype=np.float64).reshape(-1, 2))
 
 
 def in_polygon(polygon: Polygon, spots: Polygon) -> NDArray[np.bool_]:
-    """Which points lie inside a polygon, by the crossings of rays to the right (even-odd)."""
-    p = spots[:, None, :]
-    a, b = polygon[None], np.concatenate((polygon[1:], polygon[:1]))[None]
-    straddle = (a[..., 1] > p[..., 1]) != (b[..., 1] > p[..., 1])
-    rise = np.where(straddle, b[..., 1] - a[..., 1], 1.0)
-    x = a[..., 0] + (p[..., 1] - a[..., 1]) / rise * (b[..., 0] - a[..., 0])
-    odd: NDArray[np.bool_] = np.count_nonzero(straddle & (x > p[..., 0]), axis=1) % 2 == 1
-    return odd
+    """Which points lie inside a polygon (even-odd)."""
+    return inside([polygon], spots)

@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, bounds, ends, is_closed, nearest, part, point, points
 from aidl_lang.geometry.measures import length, loop_area
+from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import NODE, UNKNOWN, Edge, Network, union_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import Section, in_polygon
+from aidl_lang.geometry.sections import Section
 
 T = TypeVar("T")
 STRAIGHT = -3
@@ -114,7 +115,7 @@ def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
         seekers = np.flatnonzero(within & (holder < 0))
         if len(seekers):
             polygon = np.concatenate([points(piece, ts)[:-1] for piece in outer.pieces])
-            holder[seekers[in_polygon(polygon, spots[seekers])]] = number
+            holder[seekers[inside([polygon], spots[seekers])]] = number
     return [int(k) for k in holder]
 
 

@@ -11,8 +11,8 @@ _CHUNK = 4096
 
 
 def kitty(png: bytes, columns: int, rows: int) -> str:
-    """The picture over so many cells, in chunks. Terminals answer unless told not to (`q=2`), and the shell would
-    take the answer for typing.
+    """The picture over so many cells, in chunks. A terminal answers unless told not to (`q=2`), and the shell
+    would take the answer for typing.
     """
     text = standard_b64encode(png).decode()
     chunks = [text[k : k + _CHUNK] for k in range(0, len(text), _CHUNK)]

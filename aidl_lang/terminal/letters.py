@@ -44,10 +44,12 @@ def written(grid: Grid, labels: Iterable[Label], *, only_ascii: bool = False) ->
     taken: set[tuple[int, int]] = set()
     for label in labels:
         characters = _characters(label.text, only_ascii)
-        start = round(label.column - {"start": 0.0, "middle": 0.5, "end": 1.0}[label.anchor] * len(characters))
+        start = round(
+            label.column - {"start": 0.0, "middle": 0.5, "end": 1.0}[label.anchor] * len(characters)
+        )
         row = int(label.row)
         needed = {(row, column) for column in range(start - 1, start + len(characters) + 1)}
-        is_inside = 0 <= row < len(rows) and 0 <= start and start + len(characters) <= len(rows[row])
+        is_inside = 0 <= row < len(rows) and start >= 0 and start + len(characters) <= len(rows[row])
         if not is_inside or taken & needed:
             continue
         taken |= needed
@@ -72,7 +74,7 @@ def _characters(text: str, only_ascii: bool) -> list[str]:
 
 
 def text(grid: Grid, *, true_colour: bool = True) -> str:
-    """The grid as lines. Colours are switched off at the end of each, so that nothing runs into the margin."""
+    """The grid as lines. Colours end with each, so that none runs into the margin."""
     return "".join(f"{_line(row, true_colour)}\n" for row in grid)
 
 

@@ -7,7 +7,7 @@ import sys
 from dataclasses import dataclass
 
 CELL = (8, 16)
-"""Pixels of a cell where the terminal does not tell: rather small, so that nothing gets larger than the screen."""
+"""Pixels of a cell where the terminal does not tell: rather few, so that nothing outgrows the screen."""
 _PLAUSIBLE = (1.4, 3.0)
 """Height of a cell relative to its width; terminals that do not know tell anything."""
 

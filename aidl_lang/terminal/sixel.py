@@ -28,9 +28,7 @@ def sixel(png: bytes) -> str:
         f"#{k};2;" + ";".join(str(round(part * 100 / 255)) for part in palette[3 * k : 3 * k + 3])
         for k in used
     )
-    bands = "-".join(
-        "$".join(_layers(pixels[top : top + _ROWS])) for top in range(0, height, _ROWS)
-    )
+    bands = "-".join("$".join(_layers(pixels[top : top + _ROWS])) for top in range(0, height, _ROWS))
     return f'\x1bP0;1;0q"1;1;{width};{height}{colours}{bands}\x1b\\'
 
 

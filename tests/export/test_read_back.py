@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 from PIL import Image
 from shapely.geometry import shape
 from shapely.ops import unary_union
@@ -94,6 +95,36 @@ def test_png(name: str):
         assert seen == pytest.approx(covered.buffer(ink / 2).area, rel=0.01)
     else:
         assert seen > 0.99 * covered.area
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".3mf"])
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_meshes(name: str, suffix: str):
+    """Chords stay within a ten-thousandth of the size of a body, or a micrometre."""
+    data, told = example(name).export(suffix, Options(thickness=3)), bodies_of(name)
+    found = trimesh.load_scene(io.BytesIO(data), file_type=suffix[1:]).geometry
+    assert len(found) == len(told)
+    for path, mesh in zip(told, found.values(), strict=True):
+        region, box = told[path], told[path]["bb"]
+        sides = np.array([[box["left"], box["bottom"]], [box["right"], box["top"]]])
+        slack = max(1e-3, 1e-4 * np.ptp(sides, axis=0).max())
+        thickness = thickness_of(example(name), path)
+        assert mesh.is_watertight
+        assert mesh.volume == pytest.approx(
+            region["area"] * thickness, abs=thickness * slack * region["perimeter"]
+        )
+        assert mesh.bounds[:, :2] == pytest.approx(sides, abs=slack + 1e-4)
+        assert mesh.bounds[:, 2] == pytest.approx([0, thickness], abs=1e-5)
+        # A handle for each hole: an outline and its holes make a face.
+        holes = sum(len(face["holes"]) for face in region["faces"])
+        assert mesh.euler_number == 2 * len(region["faces"]) - 2 * holes
+
+
+def thickness_of(model: Model, path: str) -> float:
+    """What `@thickness` says of a structure or of the nearest around it, else the 3 mm asked for."""
+    around = [s for s in model.solved.root.walk() if f"{path}.".startswith(f"{s.path}.")]
+    said = [s.attributes["thickness"][0] for s in around if "thickness" in s.attributes]
+    return float(said[-1]) if said else 3.0
 
 
 def test_nothing_of_the_examples_is_lost():
