@@ -20,6 +20,7 @@ import sys
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -100,7 +101,7 @@ def ours(plate: Plate) -> Callable[[], Result]:
 
 
 def manifold(plate: Plate) -> Callable[[], Result]:
-    import manifold3d as m
+    m: Any = import_module("manifold3d")
 
     polygons = plate.polygons()
 

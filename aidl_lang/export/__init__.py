@@ -112,13 +112,23 @@ def export(job: Job, suffix: str) -> Exported:
     _refuse(suffix, "--sheet", options.sheet is not None and not wanted.cuts)
     _refuse(suffix, "--kerf", options.kerf > 0 and not wanted.cuts)
     _refuse(suffix, "--tile", options.tile is not None and not wanted.tiles)
-    if options.sheet is None and not options.kerf:
-        return wanted.write(job)
-    from aidl_lang.export.sheets import prepared
+    jobs, notes = [job], _emptiness(job) if suffix != ".json" else ()
+    if options.sheet is not None or options.kerf:
+        from aidl_lang.export.sheets import prepared
 
-    jobs, notes = prepared(job)
+        jobs, notes = prepared(job)
     made = _files(list(map(wanted.write, jobs))) if wanted.write_all is None else wanted.write_all(jobs)
     return replace(made, notes=(*notes, *made.notes))
+
+
+def _emptiness(job: Job) -> tuple[Diagnostic, ...]:
+    """A warning about a drawing without anything to be seen."""
+    drawing = job.drawing
+    plans = [f"`{plan.path}`" for plan in drawing.plans[:3]]
+    if drawing.bodies or drawing.strokes or (plans and "plan" in job.options.show):
+        return ()
+    hints = (f"draw the parts of {', '.join(plans)}", "`--show plan` shows their boxes") if plans else ()
+    return (Diagnostic("W0721", "nothing is drawn, so what is written is empty", hints=hints),)
 
 
 def _refuse(suffix: str, option: str, is_refused: bool) -> None:
@@ -200,8 +210,8 @@ FORMATS: dict[str, Format] = {
     ".pdf": Format(_pdf, cuts=True, tiles=True, write_all=_pdf_of_all),
     ".png": Format(_png, cuts=True, tiles=True),
     ".json": Format(_json),
-    ".step": Format(_step),
-    ".stp": Format(_step),
+    ".step": Format(_step, "OCP", "step"),
+    ".stp": Format(_step, "OCP", "step"),
     ".stl": Format(_stl),
     ".3mf": Format(_3mf, "lib3mf", "3mf"),
     ".dxf": Format(_dxf, cuts=True),

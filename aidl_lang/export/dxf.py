@@ -15,7 +15,6 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.export import Exported, Job, palette
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.dxf_layers import Layers
@@ -70,8 +69,7 @@ def _written(document: Any, job: Job) -> Exported:
     _order_classes(document)
     text = io.StringIO()
     document.write(text)
-    notes = layers.notes if found else [_empty_note(job.drawing)]
-    return Exported(text.getvalue().encode(), notes=tuple(notes))
+    return Exported(text.getvalue().encode(), notes=tuple(layers.notes))
 
 
 def _order_classes(document: Any) -> None:
@@ -95,12 +93,6 @@ def _split(path: str) -> list[str]:
     """A path in texts of the length that XDATA allows."""
     count = TEXT_BYTES if path.isascii() else TEXT_BYTES // 4
     return [path[k : k + count] for k in range(0, len(path), count)]
-
-
-def _empty_note(drawing: Drawing) -> Diagnostic:
-    plans = [f"`{plan.path}`" for plan in drawing.plans[:3]]
-    hints = (f"draw the parts of {', '.join(plans)}",) if plans else ()
-    return Diagnostic("W0721", "nothing is drawn, so the DXF is empty", hints=hints)
 
 
 class _Entities:

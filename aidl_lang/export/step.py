@@ -1,186 +1,290 @@
-"""STEP (AP214): solids of those bodies that have a thickness, plane faces of the others, and the strokes.
+"""STEP (AP214), written by Open CASCADE: solids of those bodies that have a thickness, plane faces of the others,
+and the strokes.
 
-Every body is a product of its own in an assembly named after the root. The file is written here because a
-drawing has so few kinds of solids: what Open CASCADE writes of a plate with n edges takes it a time that
-grows with n² (six minutes for ten thousand holes), and it is a large thing to install.
+Every body is a product of its own in an assembly named after the root.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import io
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import count
 
+import OCP.Standard
+from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.collections import HArray1_StepRepr_RepresentationItem
+from OCP.IFSelect import IFSelect_ReturnStatus
+from OCP.Interface import Interface_Static
+from OCP.Message import Message
+from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
+from OCP.StdFail import StdFail_NotDone
+from OCP.StepBasic import StepBasic_Product
+from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
+from OCP.STEPConstruct import STEPConstruct, STEPConstruct_RenderingProperties, STEPConstruct_Styles
+from OCP.StepData import StepData_StepModel
+from OCP.StepRepr import StepRepr_NextAssemblyUsageOccurrence
+from OCP.StepVisual import StepVisual_MechanicalDesignGeometricPresentationRepresentation
+from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
+from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+from OCP.XSControl import XSControl_WorkSession
 from PIL import ImageColor
 
-from aidl_lang.export import Exported, Job
-from aidl_lang.export.brep import Entities, Shapes, listed, real, text
+from aidl_lang.export import Exported, ExportError, Job
+from aidl_lang.export.shapes import Shapes, together
 from aidl_lang.export.solids import placed_bodies, placed_strokes
 from aidl_lang.geometry.drawing import Style
 from aidl_lang.geometry.placement import placement_notes
+from aidl_lang.geometry.region import Face
 from aidl_lang.version import __version__
 
-_SCHEMA = "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }"
 _NO_TIME = "1970-01-01T00:00:00"
 """Readers want a time; the same drawing is to be the same file at any."""
 _ACCURACY = 1e-9
 """How well ends meet, relative to the size of the drawing."""
+_MILLIMETRE = 1e-3
+_SETTINGS = {
+    "write.step.schema": "AP214IS",
+    "write.step.unit": "MM",
+    "write.surfacecurve.mode": "Off",
+    "write.precision.mode": "User",
+}
+_CHECKED = 500
+"""Faces with more edges are not checked: the time for it grows with their square."""
+_REFUSALS = (
+    *(c for c in vars(OCP.Standard).values() if isinstance(c, type) and issubclass(c, Exception)),
+    StdFail_NotDone,
+    RuntimeError,
+)
+"""What Open CASCADE raises; the classes have no base of their own."""
 
 
 @dataclass(frozen=True)
 class _Part:
-    """A product: its name, what represents it, and how it looks."""
+    """A product: its name, its solids, faces or edges, and how it looks."""
 
     name: str
-    items: Sequence[str]
-    kind: str
+    shapes: list[TopoDS_Shape]
     style: Style
-
-
-@dataclass(frozen=True)
-class _Product:
-    """The entities of a product that others refer to."""
-
-    definition: str
-    shape: str
-    axes: str
+    is_stroke: bool = False
 
 
 def to_step(job: Job) -> Exported:
     """The STEP file. Raises ExportError (E0918) for a body that cannot be placed or made solid."""
-    entities = Entities()
-    parts = [*_bodies(job, entities), *_strokes(job, entities)]
-    file = _File(entities, max(1e-7, _ACCURACY * job.drawing.size))
-    root = job.model.root.path
-    if [part.name for part in parts] == [root]:
-        file.product(parts[0])
-    else:
-        file.assembly(root, parts)
-    file.looks(parts)
-    header = (
-        f"FILE_DESCRIPTION(({text('drawing')}),'2;1');\n"
-        f"FILE_NAME({text(root)},'{_NO_TIME}',(''),(''),{text(f'AIDL {__version__}')},'AIDL','');\n"
-        f"FILE_SCHEMA(('{_SCHEMA}'));\n"
-    )
-    data = "\n".join(entities.lines)
-    content = f"ISO-10303-21;\nHEADER;\n{header}ENDSEC;\nDATA;\n{data}\nENDSEC;\nEND-ISO-10303-21;\n"
-    return Exported(content.encode("ascii"), notes=tuple(placement_notes(job.model.root, job.drawing)))
+    tolerance = max(1e-7, _ACCURACY * job.drawing.size)
+    parts = [*_bodies(job, tolerance), *_strokes(job, tolerance)]
+    with _settings(tolerance):
+        data = _File(job.model.root.path, parts).data()
+    return Exported(data, notes=tuple(placement_notes(job.model.root, job.drawing)))
 
 
-def _bodies(job: Job, entities: Entities) -> list[_Part]:
-    parts = []
+def _bodies(job: Job, tolerance: float) -> Iterator[_Part]:
     for placed in placed_bodies(job):
         body = placed.body
-        if placed.thickness is None:
-            items = [Shapes(entities, placed.plane).sheet(body.region.faces, body.path)]
-            kind = "MANIFOLD_SURFACE_SHAPE_REPRESENTATION"
-        else:
-            shapes = Shapes(entities, placed.plane, placed.thickness)
-            items = [shapes.solid(face, body.path) for face in body.region.faces]
-            kind = "ADVANCED_BREP_SHAPE_REPRESENTATION"
-        parts.append(_Part(body.path, items, kind, body.style))
-    return parts
+        with _refusals(body.path):
+            shapes = Shapes(placed.plane, tolerance, placed.thickness or 0.0)
+            make = shapes.face if placed.thickness is None else shapes.solid
+            made = [make(face) for face in body.region.faces]
+            if not all(map(_is_valid, made, body.region.faces)):
+                raise StdFail_NotDone("not valid")
+        yield _Part(body.path, made, body.style)
 
 
-def _strokes(job: Job, entities: Entities) -> list[_Part]:
-    kind = "GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION"
-    return [
-        _Part(
-            stroke.geometry,
-            [Shapes(entities, plane).curves(stroke.pieces, stroke.geometry)],
-            kind,
-            stroke.style,
-        )
-        for stroke, plane in placed_strokes(job)
-    ]
+def _strokes(job: Job, tolerance: float) -> Iterator[_Part]:
+    for stroke, plane in placed_strokes(job):
+        with _refusals(stroke.geometry):
+            made = Shapes(plane, tolerance).curves(stroke.pieces)
+        yield _Part(stroke.geometry, made, stroke.style, is_stroke=True)
+
+
+def _is_valid(shape: TopoDS_Shape, face: Face) -> bool:
+    edges = sum(len(loop.pieces) for loop in face.loops)
+    return edges > _CHECKED or bool(BRepCheck_Analyzer(shape).IsValid())
+
+
+@contextmanager
+def _refusals(path: str) -> Iterator[None]:
+    """What Open CASCADE cannot make of a body is said of that body."""
+    try:
+        yield
+    except _REFUSALS as reason:
+        raise ExportError(
+            "E0918",
+            f"`{path}` cannot be written as STEP: Open CASCADE makes no valid shape of it",
+            "look for a size that was written in another unit, or an outline that touches itself",
+        ) from reason
+
+
+@contextmanager
+def _settings(tolerance: float) -> Iterator[None]:
+    """The settings of Open CASCADE are of the whole process, and so are its messages, which are dropped; in
+    the end both are as before.
+    """
+    STEPCAFControl_Controller.Init_s()
+    wanted = _SETTINGS | {"write.precision.val": repr(tolerance)}
+    before = {name: Interface_Static.CVal_s(name) for name in wanted}
+    messenger = Message.DefaultMessenger_s()
+    printers = list(messenger.Printers())
+    try:
+        for name, value in wanted.items():
+            Interface_Static.SetCVal_s(name, value)
+        for printer in printers:
+            messenger.RemovePrinter(printer)
+        yield
+    finally:
+        for name, value in before.items():
+            Interface_Static.SetCVal_s(name, value)
+        for printer in printers:
+            messenger.AddPrinter(printer)
 
 
 class _File:
-    """Products, their assembly, and their looks (ISO 10303-41, -43, -44 and -46)."""
+    """An XDE document of the parts, and the file that Open CASCADE writes of it.
 
-    def __init__(self, entities: Entities, accuracy: float) -> None:
-        self.add = add = entities.add
-        self.origin = entities.point((0.0, 0.0, 0.0))
-        self.up, self.right = entities.direction((0.0, 0.0, 1.0)), entities.direction((1.0, 0.0, 0.0))
-        self.application = add("APPLICATION_CONTEXT('core data for automotive mechanical design processes')")
-        standard = "'international standard','automotive_design',2000"
-        add(f"APPLICATION_PROTOCOL_DEFINITION({standard},{self.application})")
-        self.products = add(f"PRODUCT_CONTEXT('',{self.application},'mechanical')")
-        self.definitions = add(f"PRODUCT_DEFINITION_CONTEXT('part definition',{self.application},'design')")
-        length = add("( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.METRE.) )")
-        angle = add("( NAMED_UNIT(*) PLANE_ANGLE_UNIT() SI_UNIT($,.RADIAN.) )")
-        solid_angle = add("( NAMED_UNIT(*) SI_UNIT($,.STERADIAN.) SOLID_ANGLE_UNIT() )")
-        uncertainty = add(
-            f"UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE({real(accuracy)}),{length},"
-            "'distance_accuracy_value','confusion accuracy')"
-        )
-        self.space = add(
-            "( GEOMETRIC_REPRESENTATION_CONTEXT(3) "
-            f"GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT(({uncertainty})) "
-            f"GLOBAL_UNIT_ASSIGNED_CONTEXT(({length},{angle},{solid_angle})) "
-            "REPRESENTATION_CONTEXT('','3D') )"
-        )
+    A text stands in it as its number, since Open CASCADE writes what is not ASCII as it is and breaks long
+    texts anywhere; `data` puts the texts in.
+    """
 
-    def product(self, part: _Part, *places: str) -> _Product:
-        """A product with its representation; `places` are axes beside its own."""
-        add, name = self.add, text(part.name)
-        product = add(f"PRODUCT({name},{name},{text(part.style.material or '')},({self.products}))")
-        add(f"PRODUCT_RELATED_PRODUCT_CATEGORY('part',$,({product}))")
-        formation = add(f"PRODUCT_DEFINITION_FORMATION('','',{product})")
-        definition = add(f"PRODUCT_DEFINITION('design','',{formation},{self.definitions})")
-        shape = add(f"PRODUCT_DEFINITION_SHAPE('','',{definition})")
-        axes = self._axes()
-        representation = add(f"{part.kind}({name},{listed((axes, *places, *part.items))},{self.space})")
-        add(f"SHAPE_DEFINITION_REPRESENTATION({shape},{representation})")
-        return _Product(definition, representation, axes)
-
-    def assembly(self, name: str, parts: Sequence[_Part]) -> None:
-        add = self.add
-        places = [self._axes() for _ in parts]
-        whole = self.product(_Part(name, (), "SHAPE_REPRESENTATION", Style()), *places)
-        for number, (part, place) in enumerate(zip(parts, places, strict=True), 1):
-            made = self.product(part)
-            move = add(f"ITEM_DEFINED_TRANSFORMATION('','',{made.axes},{place})")
-            relation = add(
-                f"( REPRESENTATION_RELATIONSHIP('','',{made.shape},{whole.shape}) "
-                f"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION({move}) "
-                "SHAPE_REPRESENTATION_RELATIONSHIP() )"
-            )
-            use = add(
-                f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{number}',{text(part.name)},'',"
-                f"{whole.definition},{made.definition},$)"
-            )
-            placement = add(f"PRODUCT_DEFINITION_SHAPE('Placement','Placement of an item',{use})")
-            add(f"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION({relation},{placement})")
-
-    def _axes(self) -> str:
-        return self.add(f"AXIS2_PLACEMENT_3D('',{self.origin},{self.up},{self.right})")
-
-    def looks(self, parts: Sequence[_Part]) -> None:
-        """Colours and layers."""
-        add = self.add
-        styled = [
-            add(f"STYLED_ITEM('color',({self._style(part)}),{item})")
-            for part in parts
-            if part.style.color is not None
-            for item in part.items
-        ]
-        if styled:
-            add(f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',{listed(styled)},{self.space})")
-        for layer in dict.fromkeys(part.style.layer for part in parts if part.style.layer is not None):
-            items = [item for part in parts if part.style.layer == layer for item in part.items]
-            add(f"PRESENTATION_LAYER_ASSIGNMENT({text(layer)},'',{listed(items)})")
-
-    def _style(self, part: _Part) -> str:
-        add = self.add
-        assert part.style.color is not None
-        red, green, blue = (real(value / 255) for value in ImageColor.getrgb(part.style.color)[:3])
-        color = add(f"COLOUR_RGB('',{red},{green},{blue})")
-        if part.kind.startswith("GEOMETRICALLY"):
-            font = add("DRAUGHTING_PRE_DEFINED_CURVE_FONT('continuous')")
-            style = add(f"CURVE_STYLE('',{font},POSITIVE_LENGTH_MEASURE(0.1),{color})")
+    def __init__(self, root: str, parts: Sequence[_Part]) -> None:
+        self._numbers: dict[str, int] = {}
+        self._name = root
+        self._parts = parts
+        self._document = TDocStd_Document(TCollection_ExtendedString("MDTV-XCAF"))
+        XCAFDoc_DocumentTool.SetLengthUnit_s(self._document, _MILLIMETRE)
+        main = self._document.Main()
+        self._shapes = XCAFDoc_DocumentTool.ShapeTool_s(main)
+        self._layers = XCAFDoc_DocumentTool.LayerTool_s(main)
+        if [part.name for part in parts] == [root]:
+            self._root = self._product(parts[0])
         else:
-            paint = add(f"FILL_AREA_STYLE_COLOUR('',{color})")
-            fill = add(f"FILL_AREA_STYLE('',({paint}))")
-            side = add(f"SURFACE_SIDE_STYLE('',({add(f'SURFACE_STYLE_FILL_AREA({fill})')}))")
-            style = add(f"SURFACE_STYLE_USAGE(.BOTH.,{side})")
-        return add(f"PRESENTATION_STYLE_ASSIGNMENT(({style}))")
+            self._root = self._assembly()
+
+    def data(self) -> bytes:
+        """The content of the file."""
+        with _refusals(self._name):
+            out = io.BytesIO()
+            if self._transferred().WriteStream(out) != IFSelect_ReturnStatus.IFSelect_RetDone:
+                raise StdFail_NotDone("not written")
+        texts = [_text(text) for text in self._numbers]
+        return re.sub(rb"'~(\d+)~'", lambda found: texts[int(found[1])], out.getvalue())
+
+    def _transferred(self) -> STEPCAFControl_Writer:
+        """The writer with the entities of the document.
+
+        A controller of its own does without the repair of shapes that Open CASCADE begins with otherwise: there
+        is nothing to repair, and it takes a time that grows with the square of the edges of a face.
+        """
+        writer = STEPCAFControl_Writer()
+        writer.SetColorMode(False)
+        controller = STEPCAFControl_Controller()
+        actor = controller.ActorWrite()
+        actor.SetStdMode(False)
+        if XCAFDoc_ShapeTool.IsAssembly_s(self._root):
+            actor.RegisterAssembly(XCAFDoc_ShapeTool.GetShape_s(self._root))
+        session = writer.ChangeWriter().WS()
+        session.TransferWriter().SetController(controller)
+        if not writer.Transfer(self._document):
+            raise StdFail_NotDone("not transferred")
+        model = session.Model()
+        self._head(model)
+        self._describe(model)
+        self._paint(session, model)
+        return writer
+
+    def _head(self, model: StepData_StepModel) -> None:
+        header = APIHeaderSection_MakeHeader(model)
+        header.SetName(self._ascii(self._name))
+        header.SetTimeStamp(_ascii(_NO_TIME))
+        header.SetAuthorValue(1, _ascii(""))
+        header.SetOrganizationValue(1, _ascii(""))
+        header.SetOriginatingSystem(_ascii(f"AIDL {__version__}"))
+        header.SetAuthorisation(_ascii(""))
+
+    def _describe(self, model: StepData_StepModel) -> None:
+        """Put materials into the descriptions of the products, and number the uses of products, which Open
+        CASCADE does for the whole process. (Of its own for materials the unit of density is g³ cm².)
+        """
+        materials = {self._numbered(part.name): part.style.material for part in self._parts}
+        uses = count(1)
+        for number in range(1, model.NbEntities() + 1):
+            entity = model.Value(number)
+            if isinstance(entity, StepBasic_Product):
+                entity.SetDescription(self._ascii(materials.get(entity.Name().ToCString()) or ""))
+            elif isinstance(entity, StepRepr_NextAssemblyUsageOccurrence):
+                entity.SetId(_ascii(str(next(uses))))
+
+    def _paint(self, session: XSControl_WorkSession, model: StepData_StepModel) -> None:
+        """Colours in the order of the parts; Open CASCADE lists its own by their addresses in memory."""
+        for part in self._parts:
+            styles = STEPConstruct_Styles(session)
+            found = [STEPConstruct.FindEntity_s(styles.FinderProcess(), shape) for shape in part.shapes]
+            if None in found:
+                raise StdFail_NotDone("not transferred")
+            if part.style.color is None or not found:
+                continue
+            color = STEPConstruct_Styles.EncodeColor_s(_color(part.style.color))
+            colors = (None, color) if part.is_stroke else (color, None)
+            items = HArray1_StepRepr_RepresentationItem(1, len(found))
+            for number, item in enumerate(found, 1):
+                look = styles.MakeColorPSA(item, *colors, STEPConstruct_RenderingProperties())
+                items.SetValue(number, styles.AddStyle(item, look, None))
+            looks = StepVisual_MechanicalDesignGeometricPresentationRepresentation()
+            looks.Init(_ascii(""), items, styles.FindContext(part.shapes[0]))
+            model.AddWithRefs(looks)
+
+    def _assembly(self) -> TDF_Label:
+        whole = self._shapes.NewShape()
+        self._call(whole, self._name)
+        for part in self._parts:
+            use = self._shapes.AddComponent(whole, self._product(part), TopLoc_Location())
+            self._call(use, part.name)
+        self._shapes.UpdateAssemblies()
+        return whole
+
+    def _product(self, part: _Part) -> TDF_Label:
+        label = self._shapes.AddShape(together(part.shapes), False)
+        self._call(label, part.name)
+        if part.style.layer is not None:
+            self._layers.SetLayer(label, self._wide(part.style.layer))
+        return label
+
+    def _call(self, label: TDF_Label, name: str) -> None:
+        TDataStd_Name.Set_s(label, self._wide(name))
+
+    def _wide(self, text: str) -> TCollection_ExtendedString:
+        return TCollection_ExtendedString(self._numbered(text))
+
+    def _ascii(self, text: str) -> TCollection_HAsciiString:
+        return _ascii(self._numbered(text))
+
+    def _numbered(self, text: str) -> str:
+        return f"~{self._numbers.setdefault(text, len(self._numbers))}~"
+
+
+def _color(css: str) -> Quantity_Color:
+    rgb = (value / 255 for value in ImageColor.getrgb(css)[:3])
+    return Quantity_Color(*rgb, Quantity_TypeOfColor.Quantity_TOC_sRGB)
+
+
+def _ascii(text: str) -> TCollection_HAsciiString:
+    return TCollection_HAsciiString(text)
+
+
+def _text(value: str) -> bytes:
+    """A string of STEP, with what is not printable ASCII as code points (ISO 10303-21, 6.4.3)."""
+    return f"'{''.join(map(_encoded, value))}'".encode("ascii")
+
+
+def _encoded(character: str) -> str:
+    code = ord(character)
+    if 32 <= code < 127:
+        return character * 2 if character in "'\\" else character
+    return f"\\X2\\{code:04X}\\X0\\" if code < 0x10000 else f"\\X4\\{code:08X}\\X0\\"

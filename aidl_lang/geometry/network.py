@@ -62,6 +62,10 @@ class Edge:
     inner: Ints
 
 
+class TooCoarse(Exception):  # noqa: N818 (not an error of ours: what is under way begins again)
+    """A result has vertices that no curve owns, and finer chords would help."""
+
+
 class Weld:
     """Points by number; one within the tolerance of another is the same point."""
 
@@ -91,7 +95,7 @@ class Network:
     """Nodes and edges of a set of curves. `uses[i]` lists the edges of curve i in its own direction.
 
     A result may have vertices that no curve owns: chords crossed where their curves do not. `blurred` has the
-    numbers of these curves; `exactly` then cuts them finer.
+    numbers of these curves; work done by `exactly` is then begun again with these curves cut finer.
     """
 
     def __init__(self, curves: Sequence[Piece]) -> None:
@@ -104,6 +108,7 @@ class Network:
         self.middle = (left + right) / 2, (bottom + top) / 2
         self.scale = 2.0 ** math.floor(math.log2(16 / self.size))
         self.blurred: set[int] = set()
+        self.may_refine = False
         self._weld, self._middles = Weld(self.tolerance), Weld(self.tolerance)
         self.nodes = self._weld.points
         self.node = self._weld.number
@@ -222,14 +227,11 @@ class Network:
         grids = np.split(self.to_grid(spots), np.cumsum(count - 1)[:-1])
         yield from zip((k for k, *_ in rounds), grids, strict=True)
 
-    def refine(self) -> bool:
-        """Cut the curves finer whose chords crossed; False if that cannot be."""
-        finer, self.blurred = self.blurred - self._fine, set()
-        if not finer:
-            return False
-        self._fine |= finer
+    def refine(self) -> None:
+        """Cut the curves finer whose chords crossed."""
+        self._fine |= self.blurred
+        self.blurred = set()
         self._draw_polylines()
-        return True
 
     def _index(self) -> None:
         """A sorted table of all grid points with the edge they lie inside of (-1 for nodes)."""
@@ -294,6 +296,8 @@ class Network:
         _, near, _ = sides.near(vertices, 4 * GRID)
         found = {*numbers[near].tolist(), *self.nearest_edges(vertices).tolist()}
         self.blurred |= {self.edges[k].curve for k in found}
+        if self.may_refine and self.blurred - self._fine:
+            raise TooCoarse
 
     def _all_sides(self) -> tuple[Ints, Sides]:
         """All sides of polylines, and the numbers of their edges."""
@@ -314,9 +318,14 @@ class Network:
 
 def exactly(network: Network, work: Callable[[], T]) -> T:
     """What is made of a network, once more with finer chords where curves came too close for them."""
+    network.may_refine = True
     while True:
-        result = work()
-        if not network.refine():
+        try:
+            result = work()
+        except TooCoarse:
+            network.refine()
+        else:
+            network.may_refine = False
             return result
 
 

@@ -80,8 +80,10 @@ def _inner_loop(finding: InnerLoop) -> Diagnostic:
 
 def _fresh(structure: SolvedStructure, name: str) -> str:
     """A name for a hole around a geometry that its structure does not use yet."""
-    taken = {g.name for g in structure.geometry} | {c.name for c in structure.structures}
     base = re.sub(r"\W.*", "", name) + "_hole"
+    if structure.span and base not in _words(structure.span.source.text):
+        return base
+    taken = {g.name for g in structure.geometry} | {c.name for c in structure.structures}
     return next(n for n in (base, *(f"{base}{k}" for k in range(2, 99))) if n not in taken)
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import TAU, bounds, ends, is_closed, nearest, part, point, points
+from aidl_lang.geometry.evaluate import TAU, bounds, ends, is_closed, locate, nearest, part, point, points
 from aidl_lang.geometry.measures import length, loop_area
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import NODE, UNKNOWN, Edge, Network, union_bounds
@@ -143,10 +143,33 @@ def _sides(network: Network, polygons: list[NDArray[np.float64]]) -> Sides:
     if len(unsure):
         network.blur(vertices[np.union1d(unsure, after[unsure])])
         edges[unsure] = network.nearest_edges((vertices[unsure] + vertices[after[unsure]]) / 2)
+    for k in np.flatnonzero(owner == UNKNOWN):
+        node = _touched_node(network, int(edges[before[k]]), int(edges[k]), network.position(vertices[k]))
+        if node is not None:
+            owner[k], place[k] = NODE, node
     begins = (edges[after] != edges)[before] | (owner == NODE) | (edges == STRAIGHT)
     rows = np.flatnonzero(begins)
     starts = [part.tolist() for part in np.split(rows, np.searchsorted(rows, bounds[1:-1]))]
     return Sides(vertices, bounds, owner, place, edges, starts)
+
+
+def _touched_node(network: Network, a: int, b: int, p: Vec) -> int | None:
+    """The node at which two edges touch, if from a point between them to there they are one.
+
+    Near a touch chords cross however fine they are, and an outline changes from one edge to the other too soon.
+    """
+    if a == b or STRAIGHT in (a, b):
+        return None
+    one, other = network.edges[a], network.edges[b]
+    shared = {one.start, one.end} & {other.start, other.end}
+    if not shared or one.start == one.end or other.start == other.end:
+        return None
+    node = min(shared, key=lambda n: math.dist(network.nodes[n], p))
+    curve, across, reach = network.curves[one.curve], network.curves[other.curve], 4 * network.tolerance
+    t, there = nearest(curve, p), one.t0 if node == one.start else one.t1
+    spots = (point(curve, t + (there - t) * k / 4) for k in range(4))
+    is_one = all(locate(across, spot, reach) is not None for spot in spots)
+    return node if is_one and math.dist(point(curve, t), p) <= reach else None
 
 
 def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[tuple[float, Loop]]:

@@ -364,7 +364,7 @@ def test_an_empty_drawing_says_so():
     document, notes = written(model(structure("assembly", "a", *plans)))
     assert len(document.modelspace()) == 0
     (note,) = notes
-    assert (note.code, note.message) == ("W0721", "nothing is drawn, so the DXF is empty")
+    assert (note.code, note.message) == ("W0721", "nothing is drawn, so what is written is empty")
     document, (note,) = written(model(structure("drawing", "d")))
     assert note.hints == ()
 
