@@ -112,7 +112,7 @@ def export(job: Job, suffix: str) -> Exported:
     _refuse(suffix, "--sheet", options.sheet is not None and not wanted.cuts)
     _refuse(suffix, "--kerf", options.kerf > 0 and not wanted.cuts)
     _refuse(suffix, "--tile", options.tile is not None and not wanted.tiles)
-    jobs, notes = [job], _emptiness(job) if suffix != ".json" else ()
+    jobs, notes = [job], [] if suffix == ".json" else _emptiness(job)
     if options.sheet is not None or options.kerf:
         from aidl_lang.export.sheets import prepared
 
@@ -121,14 +121,14 @@ def export(job: Job, suffix: str) -> Exported:
     return replace(made, notes=(*notes, *made.notes))
 
 
-def _emptiness(job: Job) -> tuple[Diagnostic, ...]:
+def _emptiness(job: Job) -> list[Diagnostic]:
     """A warning about a drawing without anything to be seen."""
     drawing = job.drawing
     plans = [f"`{plan.path}`" for plan in drawing.plans[:3]]
     if drawing.bodies or drawing.strokes or (plans and "plan" in job.options.show):
-        return ()
+        return []
     hints = (f"draw the parts of {', '.join(plans)}", "`--show plan` shows their boxes") if plans else ()
-    return (Diagnostic("W0721", "nothing is drawn, so what is written is empty", hints=hints),)
+    return [Diagnostic("W0721", "nothing is drawn, so what is written is empty", hints=hints)]
 
 
 def _refuse(suffix: str, option: str, is_refused: bool) -> None:

@@ -58,15 +58,16 @@ def _thickened(mark: Mark, pixel: float) -> Mark:
 
 def _plain(mark: Mark) -> Mark | None:
     match mark:
-        case Area(ink=None):
-            return replace(mark, fill=_BLACK)
-        case Area(ink=Ink() as ink):
+        case Area(ink=ink):
+            if ink is None:
+                return replace(mark, fill=_BLACK)
             return replace(mark, fill=mark.fill and _WHITE, ink=_solid(ink))
         case Curves(role="seam"):
             return None
-        case Curves():
-            return replace(mark, ink=_solid(mark.ink))
-    return replace(mark, color=_BLACK)
+        case Curves(ink=ink):
+            return replace(mark, ink=_solid(ink))
+        case Text() | Dot() | Frame():
+            return replace(mark, color=_BLACK)
 
 
 def _solid(ink: Ink) -> Ink:

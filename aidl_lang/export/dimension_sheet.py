@@ -130,7 +130,8 @@ def _uncovered(outline: Segments, cover: Segments) -> Segments:
     ends = cover.reshape(-1, 2)
     near = np.all((middles > ends.min(axis=0)) & (middles < ends.max(axis=0)), axis=1)
     near[near] = _inside(middles[near], cover)
-    return outline[~near]
+    uncovered: Segments = outline[~near]
+    return uncovered
 
 
 def crossings(segments: Segments, block: Block) -> int:
@@ -185,7 +186,8 @@ def _within(segments: Segments, box: Bounds) -> Segments:
     x0, y0, x1, y1 = segments.T
     beyond = (np.maximum(x0, x1) < box[0]) | (np.minimum(x0, x1) > box[2])
     beyond |= (np.maximum(y0, y1) < box[1]) | (np.minimum(y0, y1) > box[3])
-    return segments[~beyond]
+    within: Segments = segments[~beyond]
+    return within
 
 
 def _cross(line: NDArray[np.float64], others: Segments) -> int:

@@ -109,7 +109,7 @@ def _listed(begin: Ints, count: Ints) -> Iterator[tuple[Ints, Ints]]:
 
 def _come_near(a: Floats, b: Floats, reach: float) -> NDArray[np.bool_]:
     apart = np.maximum(a[:, :2] - b[:, 2:], b[:, :2] - a[:, 2:])
-    near: NDArray[np.bool_] = (apart <= reach).all(axis=1)
+    near: NDArray[np.bool_] = np.all(apart <= reach, axis=1)
     return near
 
 
@@ -203,4 +203,5 @@ def _share(o: Skeleton, k: Ints, toward: Floats) -> Floats:
     """How far along a round element a direction lies, counter-clockwise, 0..1."""
     angle = np.arctan2(toward[:, 1], toward[:, 0]) - o.middle[k]
     away = (angle + math.pi) % (2 * math.pi) - math.pi
-    return np.clip((away / np.where(o.half[k] > 0, o.half[k], 1.0) + 1) / 2, 0.0, 1.0)
+    share: Floats = np.clip((away / np.where(o.half[k] > 0, o.half[k], 1.0) + 1) / 2, 0.0, 1.0)
+    return share

@@ -156,7 +156,7 @@ def _sides(network: Network, polygons: list[NDArray[np.float64]]) -> Sides:
 def _touched_node(network: Network, a: int, b: int, p: Vec) -> int | None:
     """The node at which two edges touch, if from a point between them to there they are one.
 
-    Near a touch chords cross however fine they are, and an outline changes from one edge to the other too soon.
+    Near a touch chords cross however fine they are, and an outline changes from edge to edge too soon.
     """
     if a == b or STRAIGHT in (a, b):
         return None

@@ -52,8 +52,8 @@ _STROKES: tuple[tuple[str, tuple[tuple[float, ...], ...]], ...] = (
     ("T", ((0, 0.5, 4, 0.5), (2, 0.5, 2, 8))),
     ("#", ((0, 2.5, 4, 2.5), (0, 5.5, 4, 5.5), (1.2, 0, 1.2, 8), (2.8, 0, 2.8, 8))),
 )
-"""Where the strokes of a character run in a cell that is 4 wide and 8 high, y downwards: x, y to x, y. A character
-stands for several places of its strokes, as it is the only one of its kind.
+"""Where the strokes of a character run in a cell that is 4 wide and 8 high, y downwards: x, y to x, y. A
+character stands for several places of its strokes, as it is the only one of its kind.
 """
 _SOFT = 0.8
 """Standard deviation of the pen, and of the blur that what is compared has."""

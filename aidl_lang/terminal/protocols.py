@@ -1,8 +1,8 @@
 """What a terminal can show, told by its environment.
 
 A terminal that is taken for another fills the screen with garbage, so a protocol is chosen only where a
-terminal names itself and nothing speaks against it. Variables are inherited: in a multiplexer, or in a terminal
-that was started from another one, those of the outer terminal are still there.
+terminal names itself and nothing speaks against it. Variables are inherited: in a multiplexer, or in a
+terminal that was started from another one, those of the outer terminal are still there.
 """
 
 from __future__ import annotations

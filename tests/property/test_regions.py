@@ -14,7 +14,7 @@ import manifold3d
 import numpy as np
 import pytest
 import shapely
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -267,6 +267,9 @@ def test_areas_add_up(one: list[Shape], other: list[Shape]):
 
 @settings(profile, max_examples=EXAMPLES // 2)
 @given(mixed, mixed)
+@example([leaf(0.5, 1, 1, 1, 0)], [leaf(0.5, 1, 2.5, 1, 0)])  # parts of one Bézier curve, run both ways
+@example([ellipse(-3, 4, 3, 2.5, 270)], [disc(-2, 4, 3.5)])  # a touch with all but the same curvature
+@example([ellipse(2, 0, 3.5, 2, 30)], [sector(-2, -1.5, 3, 30, 120), ellipse(2, 0, 3.5, 2, 30)])
 def test_areas_add_up_with_ellipses_and_bezier_curves(one: list[Shape], other: list[Shape]):
     check_laws(one, other)
 
