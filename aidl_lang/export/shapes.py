@@ -1,7 +1,7 @@
 """Shapes of Open CASCADE from exact outlines: solids, plane faces and curves.
 
-Where two pieces of an outline meet they share one vertex, so that solids are watertight by construction. Lines
-become planes and arcs cylinders, all else linear extrusions; nothing is approximated.
+Where two pieces of an outline meet they share one vertex, so that solids are watertight by construction.
+Lines become planes and arcs cylinders, all else linear extrusions; nothing is approximated.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""STEP (AP214), written by Open CASCADE: solids of those bodies that have a thickness, plane faces of the others,
-and the strokes.
+"""STEP (AP214), written by Open CASCADE: solids of those bodies that have a thickness, plane faces of the
+others, and the strokes.
 
 Every body is a product of its own in an assembly named after the root.
 """
@@ -58,7 +58,7 @@ _SETTINGS = {
     "write.precision.mode": "User",
 }
 _CHECKED = 500
-"""Faces with more edges are not checked: the time for it grows with their square."""
+"""Faces with more edges are not checked: a thousand take 4 s, and the time grows with their square."""
 _REFUSALS = (
     *(c for c in vars(OCP.Standard).values() if isinstance(c, type) and issubclass(c, Exception)),
     StdFail_NotDone,
@@ -119,7 +119,7 @@ def _refusals(path: str) -> Iterator[None]:
         raise ExportError(
             "E0918",
             f"`{path}` cannot be written as STEP: Open CASCADE makes no valid shape of it",
-            "look for a size that was written in another unit, or an outline that touches itself",
+            "look for outlines that touch in a point, or a size that was written in another unit",
         ) from reason
 
 
@@ -179,8 +179,8 @@ class _File:
     def _transferred(self) -> STEPCAFControl_Writer:
         """The writer with the entities of the document.
 
-        A controller of its own does without the repair of shapes that Open CASCADE begins with otherwise: there
-        is nothing to repair, and it takes a time that grows with the square of the edges of a face.
+        A controller of its own does without the repair of shapes that Open CASCADE begins with otherwise:
+        there is nothing to repair, and it takes a time that grows with the square of the edges of a face.
         """
         writer = STEPCAFControl_Writer()
         writer.SetColorMode(False)
@@ -201,30 +201,34 @@ class _File:
 
     def _head(self, model: StepData_StepModel) -> None:
         header = APIHeaderSection_MakeHeader(model)
-        header.SetName(self._ascii(self._name))
+        header.SetName(_ascii(self._number(self._name)))
         header.SetTimeStamp(_ascii(_NO_TIME))
+        header.SetOriginatingSystem(_ascii(f"AIDL {__version__}"))
         header.SetAuthorValue(1, _ascii(""))
         header.SetOrganizationValue(1, _ascii(""))
-        header.SetOriginatingSystem(_ascii(f"AIDL {__version__}"))
         header.SetAuthorisation(_ascii(""))
 
     def _describe(self, model: StepData_StepModel) -> None:
         """Put materials into the descriptions of the products, and number the uses of products, which Open
         CASCADE does for the whole process. (Of its own for materials the unit of density is g³ cm².)
         """
-        materials = {self._numbered(part.name): part.style.material for part in self._parts}
+        materials = {
+            self._number(part.name): self._number(part.style.material)
+            for part in self._parts
+            if part.style.material is not None
+        }
         uses = count(1)
         for number in range(1, model.NbEntities() + 1):
             entity = model.Value(number)
             if isinstance(entity, StepBasic_Product):
-                entity.SetDescription(self._ascii(materials.get(entity.Name().ToCString()) or ""))
+                entity.SetDescription(_ascii(materials.get(entity.Name().ToCString(), "")))
             elif isinstance(entity, StepRepr_NextAssemblyUsageOccurrence):
                 entity.SetId(_ascii(str(next(uses))))
 
     def _paint(self, session: XSControl_WorkSession, model: StepData_StepModel) -> None:
-        """Colours in the order of the parts; Open CASCADE lists its own by their addresses in memory."""
+        """Put in colours in the order of the parts; Open CASCADE would go by addresses in memory."""
+        styles = STEPConstruct_Styles(session)
         for part in self._parts:
-            styles = STEPConstruct_Styles(session)
             found = [STEPConstruct.FindEntity_s(styles.FinderProcess(), shape) for shape in part.shapes]
             if None in found:
                 raise StdFail_NotDone("not transferred")
@@ -260,12 +264,10 @@ class _File:
         TDataStd_Name.Set_s(label, self._wide(name))
 
     def _wide(self, text: str) -> TCollection_ExtendedString:
-        return TCollection_ExtendedString(self._numbered(text))
+        return TCollection_ExtendedString(self._number(text))
 
-    def _ascii(self, text: str) -> TCollection_HAsciiString:
-        return _ascii(self._numbered(text))
-
-    def _numbered(self, text: str) -> str:
+    def _number(self, text: str) -> str:
+        """What stands for a text."""
         return f"~{self._numbers.setdefault(text, len(self._numbers))}~"
 
 

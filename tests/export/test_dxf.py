@@ -112,7 +112,7 @@ def test_arcs_come_back_from_their_bulges(turn: float, way: int):
         document_of(structure("drawing", "d", compound("x", bow, Line(bow.end, bow.start)))), "LWPOLYLINE"
     )
     arcs = [e for e in entity.virtual_entities() if e.dxftype() == "ARC"]
-    assert len(arcs) == (1 if turn <= 181 else 2)
+    assert len(arcs) == (1 if turn <= 315 else 2)
     assert sum(map(_sweep, arcs)) == pytest.approx(turn, rel=1e-9)
     size = min(50, 25 * math.radians(turn))
     # What the ends of a flat arc tell of its centre is worth less, by its radius over its chord.

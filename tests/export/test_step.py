@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import math
+import os
 import re
+import subprocess
+import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from OCP.Interface import Interface_Static
+from OCP.Message import Message, Message_PrinterOStream
 
 from aidl_lang import pipeline
 from aidl_lang.export import ExportError, Job, Options, export
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.measures import area
+from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.render import render
 from aidl_lang.solved import SolvedModel
 from aidl_lang.source import SourceFile
 from tests.documents import ROOT
@@ -284,6 +292,44 @@ def test_the_same_bytes_each_time_and_no_time() -> None:
     assert re.findall(rb"\d{4}-\d\d-\d\dT[\d:]+", first) == [b"1970-01-01T00:00:00"]
 
 
+def test_another_process_writes_the_same_and_says_nothing(tmp_path: Path) -> None:
+    (tmp_path / "box.aidl").write_text(SEVERAL)
+    command = [sys.executable, "-m", "aidl_lang", "compile", "box.aidl", "-o", "-", "--format", "step"]
+    for seed in ("1", "2"):
+        environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}
+        ran = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, check=True)
+        assert ran.stdout == written(SEVERAL)[0]
+        assert b"STEP" not in ran.stderr
+        assert b"Transfer" not in ran.stderr
+
+
+def test_settings_of_the_process_are_as_before() -> None:
+    written(SEVERAL)
+    settings = {"write.step.schema": "AP203", "write.step.unit": "INCH", "write.surfacecurve.mode": "On"}
+    for name, value in settings.items():
+        assert Interface_Static.SetCVal_s(name, value)
+    before = {name: Interface_Static.CVal_s(name) for name in settings}
+    printer = Message_PrinterOStream()
+    Message.DefaultMessenger_s().AddPrinter(printer)
+    data = written(BITTEN)[0]
+    assert {name: Interface_Static.CVal_s(name) for name in settings} == before
+    assert Message.DefaultMessenger_s().RemovePrinter(printer)
+    Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
+    Interface_Static.SetCVal_s("write.step.unit", "MM")
+    assert data == written(BITTEN)[0]
+    assert b"FILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }'));" in data
+    assert b"SI_UNIT(.MILLI.,.METRE.)" in data
+
+
+def test_the_extra_is_named_where_it_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("aidl_lang.export.find_spec", lambda name: None)
+    with pytest.raises(ExportError) as reason:
+        written(BITTEN)
+    assert render(reason.value.diagnostic) == (
+        "error[E0913]: `.step` needs a package that is not installed\n  = hint: pip install 'aidl-lang[step]'"
+    )
+
+
 def test_stp_is_the_same_format() -> None:
     m = model(structure("solid", "s", circle("a", 0, 0, 1)))
     job = Job(m, draw(m)[0])
@@ -291,7 +337,7 @@ def test_stp_is_the_same_format() -> None:
 
 
 def test_odd_names_come_back_as_they_are(tmp_path: Path) -> None:
-    name = "a'b\\c </svg> Größe 木 \U0001f600"
+    name = "a'b\\c </svg> Größe 木 \U0001f600 \\X2\\0041\\X0\\ ~0~ " + 30 * "many'words_"
     m = model(structure("assembly", name, structure("solid", name, circle("c", 0, 0, 1))))
     data = of_model(m, 1)
     assert data.isascii()
@@ -321,6 +367,25 @@ def test_what_cannot_be_made_solid(attribute: str, thickness: float | None, mess
     with pytest.raises(ExportError) as reason:
         written(f"{attribute} solid s {{ c = circle(center: origin, radius: 5) }}", thickness)
     assert (reason.value.diagnostic.code, reason.value.diagnostic.message) == ("E0918", message)
+
+
+def test_holes_that_touch_are_no_shape_of_open_cascade() -> None:
+    holes = structure("hole", "h", circle("a", 10, 10, 3), circle("b", 16, 10, 3))
+    with pytest.raises(ExportError) as reason:
+        of_model(model(structure("solid", "s", rectangle("r", 0, 0, 40, 20), holes)), 3)
+    assert render(reason.value.diagnostic) == (
+        "error[E0918]: `s` cannot be written as STEP: Open CASCADE makes no valid shape of it\n"
+        "  = hint: look for outlines that touch in a point, or a size that was written in another unit"
+    )
+
+
+def test_what_open_cascade_raises_is_said_of_the_body() -> None:
+    nothing = Face(Loop((Line((0, 0), (0, 0)),)))
+    m = model(structure("solid", "s", circle("c", 0, 0, 1)))
+    drawing, _ = draw(m)
+    drawing = replace(drawing, bodies=(replace(drawing.bodies[0], region=Region((nothing,))),))
+    with pytest.raises(ExportError, match="`s` cannot be written as STEP"):
+        export(Job(m, drawing), ".step")
 
 
 def test_ten_thousand_holes_take_seconds() -> None:
