@@ -25,7 +25,7 @@ from aidl_lang.geometry.evaluate import TAU, ends, point, round_range
 BODY, HOLE = "AIDL", "AIDL_HOLE"
 MILLIMETRES, METRIC = 4, 1
 LONGEST = 1.75 * math.pi
-"""Largest sweep of an arc in a polyline. The nearer the ends of a longer one, the less is left of its radius."""
+"""Largest sweep of an arc in a polyline. The nearer its ends, the less they tell of its radius."""
 THINNEST = 1e-6
 """Smallest ratio of the axes that DXF takes for an ellipse; it moves no point by more."""
 DIGITS = 13

@@ -6,6 +6,7 @@ by `FINEST` if that is more. Manifold extrudes, so a mesh is closed and does not
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import manifold3d
@@ -17,11 +18,15 @@ from aidl_lang.export import ExportError, Job
 from aidl_lang.export.solids import Placed, thick_bodies
 from aidl_lang.geometry.drawing import Body
 from aidl_lang.geometry.placement import placement_notes
-from aidl_lang.geometry.tessellate import region_polygons
+from aidl_lang.geometry.tessellate import face_polygons
 
 FINENESS = 1e-4
 FINEST = 0.001
 """mm"""
+_MANY = 2000
+"""Outlines of a face, above which holes are cut out of it one by one."""
+_FEW = 20
+"""Holes in a triangle then."""
 
 
 @dataclass(frozen=True)
@@ -62,8 +67,8 @@ def _mesh(placed: Placed) -> Mesh:
     # About its own centre, so that no digits are lost far out.
     center = np.array(((left + right) / 2, (bottom + top) / 2))
     tolerance = max(FINEST, FINENESS * max(right - left, top - bottom))
-    polygons = [polygon - center for polygon in region_polygons(body.region, tolerance)]
-    made = _extruded(polygons, thickness)
+    faces = [[p - center for p in face_polygons(face, tolerance)] for face in body.region.faces]
+    made = _extruded(faces, thickness)
     if made is None:
         raise ExportError(
             "E0918",
@@ -76,10 +81,32 @@ def _mesh(placed: Placed) -> Mesh:
     return Mesh(body, points, np.asarray(made.tri_verts, dtype=np.int64))
 
 
-def _extruded(polygons: list[NDArray[np.float64]], thickness: float) -> manifold3d.Mesh64 | None:
-    """What stands on the polygons; None where Manifold's numbers do not reach."""
+def _extruded(faces: list[list[NDArray[np.float64]]], thickness: float) -> manifold3d.Mesh64 | None:
+    """What stands on faces, each given by its outline and its holes; None where Manifold's numbers do not
+    reach.
+    """
     try:
-        solid = manifold3d.CrossSection(polygons, manifold3d.FillRule.Positive).extrude(thickness)
+        if max(map(len, faces)) > _MANY:
+            solid = manifold3d.Manifold.compose([_drilled(*face, thickness=thickness) for face in faces])
+        else:
+            solid = _upright([polygon for face in faces for polygon in face], thickness)
     except RuntimeError:
         return None
     return None if solid.is_empty() else solid.to_mesh64()
+
+
+def _drilled(
+    outline: NDArray[np.float64], *holes: NDArray[np.float64], thickness: float
+) -> manifold3d.Manifold:
+    """What stands on a face, by cutting the holes out of many small triangles. Triangles over the whole face
+    need a bridge from each hole to the outline, and to find them takes a time that grows with their square.
+    """
+    solid = _upright([outline], thickness)
+    if not holes:
+        return solid
+    drills = _upright([hole[::-1] for hole in holes], 3 * thickness).translate((0.0, 0.0, -thickness))
+    return solid.refine(1 + math.isqrt(len(holes) // (_FEW * len(outline)))) - drills
+
+
+def _upright(polygons: list[NDArray[np.float64]], thickness: float) -> manifold3d.Manifold:
+    return manifold3d.CrossSection(polygons, manifold3d.FillRule.Positive).extrude(thickness)

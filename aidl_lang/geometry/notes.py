@@ -19,6 +19,9 @@ from aidl_lang.geometry.network import Network
 from aidl_lang.solved import Scalar, SolvedGeometry, SolvedStructure
 from aidl_lang.source import Span
 
+UNNOTICED = 1e-3
+"""A gap in mm that nobody who makes the parts will see: flanks of gears are a little less than touching."""
+
 GUIDE = "to guide other geometry only, write `construction` before it"
 
 
@@ -279,7 +282,7 @@ def detached_notes(root: SolvedStructure, paths: Sequence[str], pairs: Iterable[
     held: set[str] = set()
     nearest: dict[str, tuple[float, str]] = {}
     for pair in pairs:
-        if pair.relation != "apart":
+        if pair.relation != "apart" or (pair.gap or 0.0) <= UNNOTICED:
             held |= {pair.a, pair.b}
             continue
         for one, other in ((pair.a, pair.b), (pair.b, pair.a)):

@@ -208,6 +208,9 @@ def test_a_plate_with_many_holes() -> None:
     body = only(of_model(m, ".stl", 2), ".stl")
     assert body.is_watertight
     assert body.euler_number == 2 - 2 * 2500
+    chord = 1e-4 * 510  # so far at most from the rims
+    low, high = (2 * (510**2 - 2500 * math.pi * r**2) for r in (3 + chord, 3 - chord))
+    assert low < body.volume < high
     assert isinstance(draw(m)[0].bodies[0].region.faces[0].holes[0].pieces[0], Circle)
 
 

@@ -412,6 +412,11 @@ def test_examples(path: Path, tmp_path: Path) -> None:
         assert part.count("SOLID") == len(body.region.faces)
         thickness = body.style.thickness or 3
         assert part.volume == pytest.approx(thickness * area(body.region), rel=1e-9)
+        left, bottom, right, top = body.box
+        assert part.bounds == pytest.approx((left, bottom, 0, right, top, thickness), abs=1e-5)
+        # A top, a bottom, and a side for each piece of the outline.
+        pieces = sum(len(loop.pieces) for loop in body.region.loops)
+        assert part.count("FACE") == 2 * len(body.region.faces) + pieces
     whole = [p for body in compiled.drawing.bodies for loop in body.region.loops for p in loop.pieces]
     cylinders = sum(part.surfaces["Cylinder"] for part in file.parts)
     assert cylinders == sum(isinstance(p, Arc | Circle) for p in whole)

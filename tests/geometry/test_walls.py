@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -294,11 +295,20 @@ def _crossings(corners: list[Vec]) -> Iterator[tuple[int, int]]:
 
 
 def _is_plump(shape: Polygon) -> bool:
-    """Whether corners keep away from edges, so that no choice hangs on rounding."""
+    """Whether corners keep away from edges, and from the ways across that end elsewhere, so that no choice
+    hangs on rounding.
+    """
     corners = list(shape.exterior.coords)[:-1]
     edges = [LineString(pair) for pair in itertools.pairwise(shape.exterior.coords)]
     distances = [Point(c).distance(e) for c in corners for e in edges if c not in e.coords]
-    return min([*distances, *(e.length for e in edges)]) > 0.01
+    if min([*distances, *(e.length for e in edges)]) <= 0.01:
+        return False
+    feet = [(c, e.interpolate(e.project(Point(c))).coords[0]) for c in corners for e in edges]
+    ways = [LineString(way) for way in {*feet, *itertools.combinations(corners, 2)} if way[0] != way[1]]
+    points = np.array([Point(c) for c in corners])
+    apart = shapely.distance(np.array(ways)[:, None], points)
+    ends = shapely.distance(np.array([w.boundary for w in ways])[:, None], points) < 1e-9
+    return bool((ends | (apart > 0.01)).all())
 
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
@@ -384,8 +394,8 @@ def _looks(p: list[Array], k: int, way: Array) -> bool:
 
 def _is_clear(shape: Polygon, a: Array, b: Array, kind: int) -> bool:
     chord = LineString([a + 1e-6 * (b - a), b - 1e-6 * (b - a)])
-    if shape.boundary.intersection(chord).length > 1e-6:
-        return False
+    if chord.intersection(shape.boundary.buffer(1e-7)).length > 1e-3:
+        return False  # along an edge
     return bool(shape.buffer(1e-9).covers(chord) if kind == 1 else not shape.buffer(-1e-9).intersects(chord))
 
 

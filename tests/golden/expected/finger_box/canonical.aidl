@@ -9,6 +9,8 @@ assembly finger_box {
     let apart = 5mm
 
     // Where three sheets meet, the corner belongs to the wall: all its edges begin with a tab.
+    @thickness(thickness)
+    @material("birch plywood")
     solid wall() {
         sheet = finger_panel(
             center: origin,
@@ -19,6 +21,8 @@ assembly finger_box {
             kerf: kerf
         )
     }
+    @thickness(thickness)
+    @material("birch plywood")
     solid end() {
         sheet = finger_panel(
             center: origin,
@@ -34,6 +38,8 @@ assembly finger_box {
     }
 
     @detached
+    @thickness(thickness)
+    @material("birch plywood")
     solid bottom {
         sheet = finger_panel(
             center: origin,

@@ -15,6 +15,8 @@ assembly phone_stand {
     fn forth(d: length) = polar(d, 90deg - lean)
     let heel = (0mm, 2 * wall + thickness + 2mm)
 
+    @thickness(thickness)
+    @material("birch plywood")
     solid side() {
         let toe = heel + forth(phone)
         let lip = toe + climb(10mm)
@@ -49,6 +51,8 @@ assembly phone_stand {
         }
     }
 
+    @thickness(thickness)
+    @material("birch plywood")
     solid bar() {
         body = rectangle(center: origin, width: span, height: tab + 12)
         tabs = rectangle(center: origin, width: span + 2 * thickness, height: tab)
