@@ -6,10 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.curves import Vec
+from aidl_lang.geometry.distance import region_distance
 from aidl_lang.geometry.drawing import Body, Drawing
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.measures import measure
@@ -20,6 +22,9 @@ from aidl_lang.materials import density, similar
 from aidl_lang.names import find, nearest
 from aidl_lang.outcome import region_alone
 from aidl_lang.solved import SolvedModel
+
+ALL_PAIRS = 100
+"""Bodies up to which every two of them are compared."""
 
 
 @dataclass(frozen=True)
@@ -103,15 +108,25 @@ def survey(
     if not paths:
         parts = [surveyor.body(b) for b in drawing.bodies]
     names = [b.path for b in drawing.bodies]
-    held = {path for pair in drawing.pairs if pair.relation != "apart" for path in (pair.a, pair.b)}
+    pairs = (*drawing.pairs, *(_far_pairs(drawing) if len(names) <= ALL_PAIRS else ()))
+    held = {path for pair in pairs if pair.relation != "apart" for path in (pair.a, pair.b)}
     return Survey(
         whole,
         tuple(parts),
-        tuple(sorted(drawing.pairs, key=_nearness)),
+        tuple(sorted(pairs, key=_nearness)),
         tuple(path for path in names if path not in held) if len(names) > 1 else (),
-        len(drawing.pairs) < len(names) * (len(names) - 1) // 2,
+        len(pairs) < len(names) * (len(names) - 1) // 2,
         tuple(surveyor.notes()),
     )
+
+
+def _far_pairs(drawing: Drawing) -> Iterator[Contact]:
+    """The pairs of bodies that the drawing leaves out, since their boxes are far from each other."""
+    compared = {(pair.a, pair.b) for pair in drawing.pairs}
+    for one, other in combinations(drawing.bodies, 2):
+        if (one.path, other.path) not in compared:
+            closest = region_distance(one.region, other.region)
+            yield Contact(one.path, other.path, "apart", gap=closest[0] if closest else None)
 
 
 def measured(

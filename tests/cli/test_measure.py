@@ -84,6 +84,21 @@ def test_text_of_several_bodies(aidl: Aidl, box: str) -> None:
     assert table[8] == "touches no other: `box.lid`"
 
 
+def test_far_bodies_are_compared_too(aidl: Aidl, folder: Path) -> None:
+    """More discs than the drawing compares pair by pair, 30 mm apart, of a radius of 10."""
+    (folder / "row.aidl").write_text(
+        "assembly row { for i in 0..29 { @detached solid d[i] "
+        "{ c = circle(center: fixed((30 * i, 0)), radius: 10) } } }"
+    )
+    document = json.loads(aidl("measure", "row.aidl", "--json").out)
+    assert document["all_pairs"]
+    gaps = {(p["a"], p["b"]): p["gap"] for p in document["pairs"]}
+    assert len(gaps) == 30 * 29 / 2
+    for (a, b), gap in gaps.items():
+        one, other = (int(path.removeprefix("row.d[").removesuffix("]")) for path in (a, b))
+        assert gap == pytest.approx(30 * abs(one - other) - 20)
+
+
 def test_json(aidl: Aidl, box: str) -> None:
     document = json.loads(aidl("measure", box, "--json").out)
     assert list(document) == ["units", "whole", "parts", "pairs", "all_pairs", "alone", "diagnostics"]
@@ -212,10 +227,11 @@ def test_forty_bodies(aidl: Aidl) -> None:
     )
     lines = aidl("measure", "-", stdin=program).out.splitlines()
     table = lines[lines.index("") + 1 :]
-    assert len(table) == 1 + 40 + 1 + 20 + 3
-    assert table[-3] == "and 57 more pairs, 16.3 mm apart or further"
-    assert table[-2] == "pairs that are far from each other are not listed"
+    assert len(table) == 1 + 40 + 1 + 20 + 2
+    assert table[-2] == "and 760 more pairs, 16.3 mm apart or further"
     assert table[-1].endswith(" and 34 more")
+    many = aidl("measure", "-", stdin=program.replace("0..39", "0..100")).out.splitlines()
+    assert many[-2] == "pairs that are far from each other are not listed"
 
 
 def test_odd_names_do_not_reach_the_terminal(aidl: Aidl, folder: Path) -> None:
