@@ -44,9 +44,10 @@ bench-solver: $(READY) ## measure the solver against its peers
 bench-peers: $(READY) ## install those peers, into benchmarks/solver/.peers
 	$(BIN)/python benchmarks/solver/install_peers.py
 
-accept: $(READY) ## take the present results as the new goldens, the README's picture among them
+accept: $(READY) ## take the present results as the new goldens, the README's pictures among them
 	AIDL_ACCEPT=1 $(BIN)/python -m pytest $(wildcard tests/golden tests/spec)
 	$(BIN)/aidl compile examples/telephone.aidl -o docs/images/telephone.svg --quiet
+	$(BIN)/aidl compile examples/motor_bracket.aidl -o docs/images/motor_bracket.svg --dimension --quiet
 
 examples: $(READY) ## draw every example into build/examples
 	@mkdir -p build/examples

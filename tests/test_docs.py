@@ -8,6 +8,7 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.diagnostics import Severity
+from aidl_lang.export import Options
 from aidl_lang.parser import parse
 from aidl_lang.render import render
 from aidl_lang.source import SourceFile
@@ -46,10 +47,14 @@ def test_example(path: Path) -> None:
     assert [d.message for d in compiled.diagnostics if d.severity is not Severity.NOTE] == []
 
 
-def test_the_picture_of_the_readme_is_the_telephone() -> None:
-    path = ROOT / "examples" / "telephone.aidl"
+@pytest.mark.parametrize(
+    ("name", "options"), [("telephone", Options()), ("motor_bracket", Options(dimension=True))]
+)
+def test_the_pictures_of_the_readme_are_the_examples(name: str, options: Options) -> None:
+    path = ROOT / "examples" / f"{name}.aidl"
     compiled = pipeline.compile(SourceFile(path.name, path.read_text(encoding="utf-8")))
-    assert compiled.export(".svg") == (ROOT / "docs" / "images" / "telephone.svg").read_bytes()
+    committed = ROOT / "docs" / "images" / f"{name}.svg"
+    assert compiled.export(".svg", options) == committed.read_bytes(), "run `make accept`"
 
 
 def test_blocks_have_known_notes() -> None:
