@@ -38,11 +38,13 @@ class Shapes:
         self._motion = gp_Trsf()
         self._motion.SetValues(*plane.placed(thickness).flatten().tolist())
         self._growth = gp_Vec(0.0, 0.0, thickness).Transformed(self._motion)
+        self._vertices: dict[Vec, TopoDS_Vertex] = {}
 
     def solid(self, face: Face) -> TopoDS_Shape:
         return BRepPrimAPI_MakePrism(self.face(face), self._growth).Shape()
 
     def face(self, face: Face) -> TopoDS_Face:
+        self._vertices.clear()
         made = TopoDS_Face()
         plane = Geom_Plane(gp_Ax3(gp_Pnt(), _UP).Transformed(self._motion))
         self._build.MakeFace(made, plane, self._tolerance)
@@ -52,12 +54,12 @@ class Shapes:
 
     def curves(self, pieces: Iterable[Piece]) -> list[TopoDS_Edge]:
         """An edge for each piece."""
+        self._vertices.clear()
         return [self._edge(piece, *self._ends(piece)) for piece in map(_upright, pieces)]
 
     def _ends(self, piece: Piece) -> tuple[TopoDS_Vertex, TopoDS_Vertex]:
         start, end = ends(piece)
-        first = self._vertex(start)
-        return first, first if start == end else self._vertex(end)
+        return self._vertex(start), self._vertex(end)
 
     def _wire(self, loop: Loop) -> TopoDS_Shape:
         made = TopoDS_Wire()
@@ -70,9 +72,11 @@ class Shapes:
         return made.Reversed() if loop.reversed else made
 
     def _vertex(self, p: Vec) -> TopoDS_Vertex:
-        made = TopoDS_Vertex()
-        self._build.MakeVertex(made, _point(p).Transformed(self._motion), self._tolerance)
-        return made
+        """One for each place: outlines that touch share it."""
+        if p not in self._vertices:
+            made = self._vertices[p] = TopoDS_Vertex()
+            self._build.MakeVertex(made, _point(p).Transformed(self._motion), self._tolerance)
+        return self._vertices[p]
 
     def _edge(self, piece: Piece, start: TopoDS_Vertex, end: TopoDS_Vertex) -> TopoDS_Shape:
         """Along its curve; a clockwise arc runs against a counter-clockwise circle."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import count
@@ -42,6 +42,7 @@ from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.shapes import Shapes, together
 from aidl_lang.export.solids import placed_bodies, placed_strokes
 from aidl_lang.geometry.drawing import Style
+from aidl_lang.geometry.joints import jointed
 from aidl_lang.geometry.placement import placement_notes
 from aidl_lang.geometry.region import Face
 from aidl_lang.version import __version__
@@ -92,9 +93,7 @@ def _bodies(job: Job, tolerance: float) -> Iterator[_Part]:
         with _refusals(body.path):
             shapes = Shapes(placed.plane, tolerance, placed.thickness or 0.0)
             make = shapes.face if placed.thickness is None else shapes.solid
-            made = [make(face) for face in body.region.faces]
-            if not all(map(_is_valid, made, body.region.faces)):
-                raise StdFail_NotDone("not valid")
+            made = [_valid(make, face) for face in body.region.faces]
         yield _Part(body.path, made, body.style)
 
 
@@ -105,9 +104,15 @@ def _strokes(job: Job, tolerance: float) -> Iterator[_Part]:
         yield _Part(stroke.geometry, made, stroke.style, is_stroke=True)
 
 
-def _is_valid(shape: TopoDS_Shape, face: Face) -> bool:
-    edges = sum(len(loop.pieces) for loop in face.loops)
-    return edges > _CHECKED or bool(BRepCheck_Analyzer(shape).IsValid())
+def _valid(make: Callable[[Face], TopoDS_Shape], face: Face) -> TopoDS_Shape:
+    """The shape of a face; where outlines touch, they get a vertex in common."""
+    made = make(face)
+    if sum(len(loop.pieces) for loop in face.loops) > _CHECKED or BRepCheck_Analyzer(made).IsValid():
+        return made
+    made = make(jointed(face))
+    if not BRepCheck_Analyzer(made).IsValid():
+        raise StdFail_NotDone("not valid")
+    return made
 
 
 @contextmanager
@@ -119,7 +124,7 @@ def _refusals(path: str) -> Iterator[None]:
         raise ExportError(
             "E0918",
             f"`{path}` cannot be written as STEP: Open CASCADE makes no valid shape of it",
-            "look for outlines that touch in a point, or a size that was written in another unit",
+            "look for a size that was written in another unit, or sides that almost coincide",
         ) from reason
 
 

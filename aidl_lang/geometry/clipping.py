@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from aidl_lang.geometry.boolean import section_of
 from aidl_lang.geometry.curves import Piece
-from aidl_lang.geometry.evaluate import part
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import inside_mask
@@ -17,11 +16,6 @@ def clipped(curves: Sequence[Piece], region: Region) -> list[Piece]:
     pieces = [p for loop in region.loops for p in loop.pieces]
     network = Network([*pieces, *curves])
     section = section_of(network, region, 0)
-    found: list[Piece] = []
     uses = [use for of_curve in network.uses[len(pieces) :] for use in of_curve]
     within = inside_mask(section, [network.midpoint(edge) for edge, _ in uses])
-    for edge, forward in (use for use, is_inside in zip(uses, within, strict=True) if is_inside):
-        e = network.edges[edge]
-        t0, t1, a, b = (e.t0, e.t1, e.start, e.end) if forward else (e.t1, e.t0, e.end, e.start)
-        found.append(part(network.curves[e.curve], t0, t1, network.nodes[a], network.nodes[b]))
-    return found
+    return [network.piece(use) for use, is_inside in zip(uses, within, strict=True) if is_inside]

@@ -10,7 +10,7 @@ import numpy as np
 from aidl_lang.geometry.boolean import section_of
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Body, Stroke
-from aidl_lang.geometry.evaluate import NO_LENGTH, Bounds, bounds, part
+from aidl_lang.geometry.evaluate import NO_LENGTH, Bounds, bounds
 from aidl_lang.geometry.measures import length
 from aidl_lang.geometry.network import Network, union_bounds
 from aidl_lang.geometry.region import Region
@@ -79,11 +79,8 @@ def divided(curves: Sequence[Piece], region: Region) -> tuple[tuple[Piece, ...],
         if len({edge in within for edge, _ in uses}) == 1:
             (inside if uses[0][0] in within else outside).append(curve)
             continue
-        for number, forward in uses:
-            e = network.edges[number]
-            t0, t1, a, b = (e.t0, e.t1, e.start, e.end) if forward else (e.t1, e.t0, e.end, e.start)
-            piece = part(network.curves[e.curve], t0, t1, network.nodes[a], network.nodes[b])
-            (inside if number in within else outside).append(piece)
+        for use in uses:
+            (inside if use[0] in within else outside).append(network.piece(use))
     return tuple(inside), tuple(outside)
 
 

@@ -26,6 +26,7 @@ from aidl_lang.geometry.evaluate import (
     ends,
     is_closed,
     locate,
+    part,
     point,
     points,
     round_range,
@@ -258,6 +259,13 @@ class Network:
             rows.append(self.node_grid[node : node + 1])
             rows.append(edge.inner if forward else edge.inner[::-1])
         return np.concatenate(rows).astype(np.float64) * GRID
+
+    def piece(self, use: Use) -> Piece:
+        """The part of its curve that runs along an edge, in the direction of the use."""
+        edge = self.edges[use[0]]
+        ways = (edge.t0, edge.t1, edge.start, edge.end), (edge.t1, edge.t0, edge.end, edge.start)
+        t0, t1, start, end = ways[0] if use[1] else ways[1]
+        return part(self.curves[edge.curve], t0, t1, self.nodes[start], self.nodes[end])
 
     def midpoint(self, number: int) -> NDArray[np.float64]:
         """A point about halfway along an edge, in grid units."""

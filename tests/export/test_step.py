@@ -22,7 +22,7 @@ from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.measures import area
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.render import render
-from aidl_lang.solved import SolvedModel
+from aidl_lang.solved import SolvedGeometry, SolvedModel
 from aidl_lang.source import SourceFile
 from tests.documents import ROOT
 from tests.export.step_reading import StepFile, read
@@ -369,14 +369,31 @@ def test_what_cannot_be_made_solid(attribute: str, thickness: float | None, mess
     assert (reason.value.diagnostic.code, reason.value.diagnostic.message) == ("E0918", message)
 
 
-def test_holes_that_touch_are_no_shape_of_open_cascade() -> None:
-    holes = structure("hole", "h", circle("a", 10, 10, 3), circle("b", 16, 10, 3))
-    with pytest.raises(ExportError) as reason:
-        of_model(model(structure("solid", "s", rectangle("r", 0, 0, 40, 20), holes)), 3)
-    assert render(reason.value.diagnostic) == (
-        "error[E0918]: `s` cannot be written as STEP: Open CASCADE makes no valid shape of it\n"
-        "  = hint: look for outlines that touch in a point, or a size that was written in another unit"
+@pytest.mark.parametrize(
+    ("holes", "circles"),
+    [
+        ([circle("a", 10, 10, 3), circle("b", 16, 10, 3)], 2),  # each other
+        ([circle("a", 10, 5, 5)], 1),  # the edge
+        ([circle("a", 10, 10, 3), circle("b", 16, 10, 3), circle("c", 13, 10 + 3 * 3**0.5, 3)], 3),
+    ],
+)
+@pytest.mark.parametrize("thickness", [3, None])
+def test_outlines_that_touch(
+    tmp_path: Path, holes: list[SolvedGeometry], circles: int, thickness: float | None
+) -> None:
+    """They get a vertex in common there, without which Open CASCADE calls the shape invalid."""
+    plate = structure(
+        "solid", "s", rectangle("r", 0, 0, 40, 20), *(structure("hole", g.name, g) for g in holes)
     )
+    (part,) = read(of_model(model(plate), thickness), tmp_path).parts
+    assert part.is_valid
+    radius = holes[0].values["radius"]
+    exact = 800 - circles * math.pi * radius**2
+    if thickness is None:
+        assert part.area == pytest.approx(exact, rel=1e-9)
+    else:
+        assert part.is_closed
+        assert part.volume == pytest.approx(thickness * exact, rel=1e-9)
 
 
 def test_what_open_cascade_raises_is_said_of_the_body() -> None:
