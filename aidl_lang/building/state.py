@@ -46,7 +46,7 @@ class Env:
 class Limits:
     """Bounds on what a program may build; exceeding one is a diagnostic."""
 
-    entities: int = 50_000
+    entities: int = 30_000
     turns: int = 200_000
     depth: int = 60
     constraints: int = 50_000

@@ -75,7 +75,7 @@ def test_params_and_dimensions(aidl: Aidl):
     assert "200" not in narrow.out
 
 
-@pytest.mark.parametrize("width", ["1", "2", "1000"])
+@pytest.mark.parametrize("width", ["1", "2", "300"])
 @pytest.mark.parametrize("protocol", ["blocks", "braille", "ascii", "sixel"])
 @pytest.mark.parametrize("size", ["width: 1e6, height: 1", "width: 1, height: 1e6"])
 def test_extreme_proportions(aidl: Aidl, folder: Path, width: str, protocol: str, size: str):

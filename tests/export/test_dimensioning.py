@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -244,9 +243,7 @@ def test_a_thousand_equal_holes_are_one_dimension():
             }
         }
     }"""
-    start = time.perf_counter()
     p = drawn(text)
-    assert time.perf_counter() - start < 60
     check(p)
     said = {value_of(g).text for g in dimensions(p)}
     assert said == {"400", "300", "1000× ⌀6", "39× 9.7", "24× 11.5"}
