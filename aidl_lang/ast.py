@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TypeAlias
 
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile, Span
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+@record(eq=False, repr=False, kw_only=True)
 class Node:
     span: Span = field(repr=False)
 
@@ -24,7 +25,7 @@ class Node:
         return f"{type(self).__name__}({', '.join(shown)})"
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Identifier(Node):
     """A name at the place where it is written (a definition, a member, an argument's name)."""
 
@@ -34,7 +35,7 @@ class Identifier(Node):
 # --- Expressions ---------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Number(Node):
     """`value` is the number as written, without its unit applied; `text` its digits, for the printer."""
 
@@ -43,22 +44,22 @@ class Number(Node):
     text: str
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class String(Node):
     value: str
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Boolean(Node):
     value: bool
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Name(Node):
     text: str
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Member(Node):
     """`value.name`"""
 
@@ -66,7 +67,7 @@ class Member(Node):
     name: Identifier
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Index(Node):
     """`value[index]`"""
 
@@ -74,13 +75,13 @@ class Index(Node):
     index: Expression
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Argument(Node):
     name: Identifier | None
     value: Expression
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Call(Node):
     """`callee(…)`, or `receiver.callee(…)`, which is the same call with the receiver as first argument."""
 
@@ -89,7 +90,7 @@ class Call(Node):
     arguments: tuple[Argument, ...]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Point(Node):
     """`(x, y)`"""
 
@@ -97,14 +98,14 @@ class Point(Node):
     y: Expression
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class List(Node):
     """`[a, b, …]`; with two numbers where a point is expected it is a point."""
 
     items: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Comprehension(Node):
     """`[element for variable in iterable if condition]`"""
 
@@ -114,7 +115,7 @@ class Comprehension(Node):
     condition: Expression | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Unary(Node):
     """`operator` is `-`, `+` or `not`."""
 
@@ -122,7 +123,7 @@ class Unary(Node):
     operand: Expression
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Binary(Node):
     """`operator` is one of `+ - * / % ^ and or`."""
 
@@ -131,7 +132,7 @@ class Binary(Node):
     right: Expression
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Comparison(Node):
     """A chain `a <= b < c`: one operand more than operators (`== != <= >= < >`)."""
 
@@ -139,7 +140,7 @@ class Comparison(Node):
     operators: tuple[str, ...]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Membership(Node):
     """`value in range`"""
 
@@ -147,7 +148,7 @@ class Membership(Node):
     container: Expression
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Range(Node):
     """`start..end` (both ends) or `start..<end` (without the last); what is run through may have a `step`."""
 
@@ -157,7 +158,7 @@ class Range(Node):
     step: Expression | None = None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Conditional(Node):
     """`if test then a else b`, also written `a if test else b`."""
 
@@ -189,7 +190,7 @@ Expression: TypeAlias = (
 # --- Statements ----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Parameter(Node):
     """A parameter of a template, shape, constraint or function: `name: type = default`."""
 
@@ -198,7 +199,7 @@ class Parameter(Node):
     default: Expression | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Placement(Node):
     """`at POINT` and `rotated ANGLE`, each at most once."""
 
@@ -206,7 +207,7 @@ class Placement(Node):
     rotated: Expression | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Attribute(Node):
     """`@name(arguments)`"""
 
@@ -214,14 +215,14 @@ class Attribute(Node):
     arguments: tuple[Argument, ...]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Block(Node):
     """`{ statements }`"""
 
     statements: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Structure(Node):
     """`KIND NAME[index] { … }`; with `parameters` (even an empty list) it is a template.
 
@@ -239,7 +240,7 @@ class Structure(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Param(Node):
     """`param name = value in domain step step`"""
 
@@ -250,21 +251,21 @@ class Param(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Var(Node):
     name: Identifier
     value: Expression
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Let(Node):
     name: Identifier
     value: Expression
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Assign(Node):
     """`name[index] = value at … rotated …`, or `construction name = value`."""
 
@@ -277,14 +278,14 @@ class Assign(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class ExpressionStatement(Node):
     """A bare expression: a constraint without its keyword, or an operation such as `rotate(r, 30deg)`."""
 
     value: Expression
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Constrain(Node):
     """`constrain EXPR` (one item, no block) or `constrain { … }`.
 
@@ -295,7 +296,7 @@ class Constrain(Node):
     braces: bool
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Equation(Node):
     """`left = right` inside `constrain`, which means `==`."""
 
@@ -303,26 +304,26 @@ class Equation(Node):
     right: Expression
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Prefer(Node):
     value: Expression
     weight: Expression | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Assert(Node):
     test: Expression
     message: Expression | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class For(Node):
     variables: tuple[Identifier, ...]
     iterable: Expression
     body: Block
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class If(Node):
     """`otherwise` is a Block; `else if` is a block that holds one If."""
 
@@ -331,7 +332,7 @@ class If(Node):
     otherwise: Block | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Import(Node):
     """`import "path"`, `import "path" as alias`, `import a, b from "path"` (`names`)."""
 
@@ -340,7 +341,7 @@ class Import(Node):
     names: tuple[Identifier, ...]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class FunctionDefinition(Node):
     """`fn name(parameters) = value`"""
 
@@ -350,7 +351,7 @@ class FunctionDefinition(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class ShapeDefinition(Node):
     """`shape name(parameters) { … }`"""
 
@@ -360,7 +361,7 @@ class ShapeDefinition(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class ConstraintDefinition(Node):
     """`constraint name(parameters) { … }`; the items of the body are those of `constrain`."""
 
@@ -370,7 +371,7 @@ class ConstraintDefinition(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Alias(Node):
     """`alias name = target`"""
 
@@ -379,7 +380,7 @@ class Alias(Node):
     doc: str | None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Todo(Node):
     """`todo`: this body is to be filled in later, and its author knows."""
 
@@ -408,7 +409,7 @@ Statement: TypeAlias = (
 Callable: TypeAlias = FunctionDefinition | ShapeDefinition | ConstraintDefinition | Structure
 
 
-@dataclass(frozen=True)
+@record()
 class Comment:
     """A comment with its delimiters, kept for the printer."""
 
@@ -416,7 +417,7 @@ class Comment:
     text: str
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record(eq=False, repr=False)
 class Module(Node):
     """A whole file. `comments` are all comments in text order, `///` ones included."""
 
@@ -427,12 +428,15 @@ class Module(Node):
 
 def children(node: Node) -> Iterator[Node]:
     """The nodes directly below one, in text order of their fields."""
-    for f in dataclasses.fields(node):
-        value = getattr(node, f.name)
+    names: tuple[str, ...] = node.__match_args__  # every field but the span
+    for name in names:
+        value = getattr(node, name)
         if isinstance(value, Node):
             yield value
-        elif isinstance(value, tuple):
-            yield from (item for item in value if isinstance(item, Node))
+        elif type(value) is tuple:
+            for item in value:
+                if isinstance(item, Node):
+                    yield item
 
 
 def walk(node: Node) -> Iterator[Node]:

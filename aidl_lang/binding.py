@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
+from typing import TypeAlias
 
 from aidl_lang.names import fold
 from aidl_lang.synonyms import COORDINATES, PAIRS, PARAMETERS
@@ -29,15 +31,32 @@ from aidl_lang.types import (
 )
 from aidl_lang.units import LENGTH
 
+Outcomes: TypeAlias = Sequence[Binding | Mismatch]
 
-def outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> list[Binding | Mismatch]:
-    """What comes of each candidate; arguments are read in other words only if none takes them as written.
-    What the author defines comes before the definitions of that name that every program has.
+
+def outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> Outcomes:
+    """The candidates that fit, perhaps beside some that do not, or else why none does. Arguments are read in
+    other words only if none takes them as written. What the author defines comes before the definitions of
+    that name that every program has.
     """
+    if all(candidate.standard for candidate in candidates):
+        return _of_standard(tuple(candidates), tuple(given))
+    return _outcomes(candidates, given)
+
+
+@lru_cache(maxsize=8192)
+def _of_standard(candidates: tuple[Signature, ...], given: tuple[Given, ...]) -> Outcomes:
+    """What comes of definitions that every program has is the same in every program."""
+    return tuple(_outcomes(candidates, given))
+
+
+def _outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> Outcomes:
+    words = {fold(g.name) for g in given if g.name is not None}
+    positional = sum(g.name is None for g in given)
     own = [candidate for candidate in candidates if not candidate.standard]
     choices = [own, candidates] if 0 < len(own) < len(candidates) else [candidates]
     for among in choices:
-        plain = [bind(candidate, given) for candidate in among]
+        plain = [bind(c, given) for c in among if c.may_take(positional, words)]
         if any(isinstance(outcome, Binding) for outcome in plain):
             return plain
     for among in choices:

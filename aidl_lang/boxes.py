@@ -7,7 +7,6 @@ meets the box of one of its descendants there leaves that descendant out (paper,
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
@@ -16,6 +15,7 @@ from aidl_lang.expression import Expression, Unknown
 from aidl_lang.lettering import box_around
 from aidl_lang.model import Geometry, Measurement, Recipe, Structure, chain, convert
 from aidl_lang.primitives import clockwise, defining, direction, number, on_text, sweep, view, xy
+from aidl_lang.records import record
 from aidl_lang.values import Array, ListVal, Num, PointVal, Value, length, members, point
 
 SIDES = ("left", "right", "top", "bottom")
@@ -40,7 +40,7 @@ FIELDS = (
 Source = Geometry | Structure | PointVal
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Box:
     """The common box of its sources, as `here` sees them."""
 
@@ -122,6 +122,8 @@ def source_unknowns(source: object, here: Structure) -> Iterator[Unknown]:
 
 def spelled_out(*roots: Expression) -> tuple[Expression, ...]:
     """The expressions of one comparison with every side of a box replaced by what it is there."""
+    if not any(root.is_open for root in roots):
+        return roots
     order = list(ex.nodes(roots))
     sides = [n.payload for n in order if isinstance(n.payload, _Side)]
     if not sides:
@@ -243,7 +245,7 @@ def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iter
         ):
             grown = out.expression
     if grown is None:
-        yield Expression("measure", (), math.nan, Measurement(side, (outline,), here))
+        yield ex.measure(Measurement(side, (outline,), here))
         return
     for source in recipe.sources:
         for extreme in _extremes(source, here, side, frozenset()):

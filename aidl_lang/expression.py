@@ -62,16 +62,24 @@ class Lazy(Protocol):
 
 
 class Expression:
-    """One node. `payload` is an `Unknown`, a `Lazy`, or a measurement for the ops that need one."""
+    """One node. `payload` is an `Unknown`, a `Lazy`, or a measurement for the ops that need one; `is_open`
+    tells that a lazy or a measurement is in it, so that no graph is searched for what few have.
+    """
 
-    __slots__ = ("args", "op", "payload", "value")
+    __slots__ = ("args", "is_open", "op", "payload", "value")
 
     def __init__(
-        self, op: str, args: tuple[Expression, ...] = (), value: float = 0.0, payload: object = None
+        self,
+        op: str,
+        args: tuple[Expression, ...],
+        value: float,
+        is_open: bool = False,
+        payload: object = None,
     ) -> None:
         self.op = op
         self.args = args
         self.value = value
+        self.is_open = is_open
         self.payload = payload
 
     @property
@@ -92,11 +100,16 @@ ONE = constant(1.0)
 
 
 def unknown(source: Unknown) -> Expression:
-    return Expression("unknown", (), source.guess, source)
+    return Expression("unknown", (), source.guess, payload=source)
 
 
 def lazy(source: Lazy) -> Expression:
-    return Expression("lazy", (), source.value, source)
+    return Expression("lazy", (), source.value, is_open=True, payload=source)
+
+
+def measure(source: object) -> Expression:
+    """What only the finished drawing can tell; it has no value before."""
+    return Expression("measure", (), math.nan, is_open=True, payload=source)
 
 
 def _safe(function: Callable[..., float]) -> Callable[..., float]:
@@ -160,36 +173,61 @@ EVALUATE: dict[str, Callable[..., float]] = {
 
 def apply(op: str, *args: Expression) -> Expression:
     """A node, folded where all arguments are constants or where it changes nothing."""
+    if (folded := _FOLDED.get(op)) is not None:
+        return folded(*args)
     value = EVALUATE[op](*[a.value for a in args])
-    if all(a.op == "constant" for a in args):
+    varying = [a for a in args if a.op != "constant"]
+    if not varying:
         return Expression("constant", (), value)
-    if op in ("add", "sub") and args[1].op == "constant" and args[1].value == 0.0:
-        return args[0]
-    if op == "add" and args[0].op == "constant" and args[0].value == 0.0:
-        return args[1]
-    if op == "mul":
-        for factor, other in (args, args[::-1]):
-            if factor.op == "constant" and factor.value in (0.0, 1.0):
-                return other if factor.value else ZERO
-    if op == "div" and args[1].op == "constant" and args[1].value == 1.0:
-        return args[0]
-    return Expression(op, args, value)
+    return Expression(op, args, value, True in [a.is_open for a in varying])
 
 
 def add(a: Expression, b: Expression) -> Expression:
-    return apply("add", a, b)
+    if b.op == "constant":
+        if a.op == "constant":
+            return Expression("constant", (), a.value + b.value)
+        if b.value == 0.0:
+            return a
+    elif a.op == "constant" and a.value == 0.0:
+        return b
+    return Expression("add", (a, b), a.value + b.value, a.is_open or b.is_open)
 
 
 def sub(a: Expression, b: Expression) -> Expression:
-    return apply("sub", a, b)
+    if b.op == "constant":
+        if a.op == "constant":
+            return Expression("constant", (), a.value - b.value)
+        if b.value == 0.0:
+            return a
+    return Expression("sub", (a, b), a.value - b.value, a.is_open or b.is_open)
 
 
 def mul(a: Expression, b: Expression) -> Expression:
-    return apply("mul", a, b)
+    if a.op == "constant":
+        if b.op == "constant":
+            return Expression("constant", (), a.value * b.value)
+        factor, other = a.value, b
+    else:
+        factor, other = (b.value, a) if b.op == "constant" else (math.nan, a)
+    if factor == 1.0:
+        return other
+    if factor == 0.0:
+        return ZERO
+    return Expression("mul", (a, b), a.value * b.value, a.is_open or b.is_open)
 
 
 def div(a: Expression, b: Expression) -> Expression:
-    return apply("div", a, b)
+    value = EVALUATE["div"](a.value, b.value)
+    if b.op == "constant":
+        if a.op == "constant":
+            return Expression("constant", (), value)
+        if b.value == 1.0:
+            return a
+    return Expression("div", (a, b), value, a.is_open or b.is_open)
+
+
+_FOLDED: dict[str, Callable[..., Expression]] = {"add": add, "sub": sub, "mul": mul, "div": div}
+"""What an operation with a number does not change; most nodes are made of these four."""
 
 
 def half(a: Expression) -> Expression:
@@ -242,13 +280,21 @@ def nodes(roots: Iterable[Expression]) -> Iterator[Expression]:
 
 
 def unknowns(roots: Iterable[Expression]) -> Iterator[Unknown]:
-    """The unknowns that the roots depend on."""
-    for node in nodes(roots):
-        if node.op == "unknown":
-            assert isinstance(node.payload, Unknown)
-            yield node.payload
-        elif node.op == "lazy":
-            yield from node.payload.unknowns()  # type: ignore[attr-defined]
+    """The unknowns that the roots depend on, in the order of `nodes`."""
+    seen: set[Expression] = set()
+    for root in roots:
+        stack = [root]
+        while stack:
+            node = stack.pop()
+            if node in seen:
+                continue
+            seen.add(node)
+            if node.op == "unknown":
+                yield node.payload  # type: ignore[misc]
+            elif node.op == "lazy":
+                yield from node.payload.unknowns()  # type: ignore[attr-defined]
+            else:
+                stack.extend(node.args)
 
 
 @dataclass

@@ -29,9 +29,43 @@ _QUOTED = 60
 
 def failure_notes(lowered: Lowered, solution: Solution) -> list[Diagnostic]:
     """One error for each group that could not be solved for reasons of its own."""
+    return [report.diagnostic() for report in _reports(lowered, solution)]
+
+
+@dataclass(frozen=True)
+class Party:
+    """A constraint in a conflict: the structure that holds it, how far it is off where the search came
+    nearest, what would fit in it in words ("" if that is not known), and the edit that writes it.
+    """
+
+    path: str
+    text: str
+    span: Span
+    off: float
+    would_fit: str
+    fix: Fix | None
+
+
+@dataclass(frozen=True)
+class Conflict:
+    """Constraints that do not hold together, in order of writing. `is_minimal`: without any one of them the
+    others do.
+    """
+
+    headline: str
+    is_minimal: bool
+    parties: tuple[Party, ...]
+
+
+def conflicts(lowered: Lowered, solution: Solution) -> tuple[Conflict, ...]:
+    """What the errors of `failure_notes` are about, one for one, as data."""
+    return tuple(report.conflict() for report in _reports(lowered, solution))
+
+
+def _reports(lowered: Lowered, solution: Solution) -> list[_Report]:
     stated = Counter(constraint.span for constraint in lowered.stated if constraint is not None)
     own = [f for f in solution.failures if not _follows(f, solution.failures, lowered.groups)]
-    return [_Report(lowered, solution, failure, stated).diagnostic() for failure in own]
+    return [_Report(lowered, solution, failure, stated) for failure in own]
 
 
 def _follows(failure: GroupFailure, failures: Sequence[GroupFailure], paths: Sequence[str]) -> bool:
@@ -91,6 +125,17 @@ class _Report:
         return Diagnostic(
             code, headline, chief.stated.span, self._claim(chief), tuple(labels), hints, self._fix(chief)
         )
+
+    def conflict(self) -> Conflict:
+        return Conflict(self._headline()[1], self.failure.minimal, tuple(map(self._told, self.parties)))
+
+    def _told(self, party: _Party) -> Party:
+        """One of the parties; where no number mends it alone, as a wish if an edit can make it one."""
+        stated, fix = party.stated, party.fix
+        if fix is None and self.is_proven and self._is_single(stated):
+            fix = wished(stated)
+        would_fit = party.remedy.text if party.remedy else ""
+        return Party(stated.holder.path, stated.text, stated.span, party.member.off, would_fit, fix)
 
     def _party(self, member: Member) -> _Party | None:
         stated = self.lowered.stated[member.index]

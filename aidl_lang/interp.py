@@ -14,6 +14,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 
 from aidl_lang import ast
 from aidl_lang.building.evaluate import evaluate
@@ -61,6 +62,7 @@ def _library_scope(program: Program) -> Scope:
     library = program.library
     scope = Scope(None)
 
+    @cache
     def supply(name: str) -> list[Candidate]:
         if name not in library.callables and name not in SIGNATURES:
             return []

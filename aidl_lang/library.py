@@ -34,7 +34,7 @@ _HEAD = struct.Struct(">II32s")
 _Place: TypeAlias = tuple[int, int, int]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Library:
     """
     sources      the files, in the order of their names

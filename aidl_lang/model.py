@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
 from aidl_lang.lettering import Glyph
+from aidl_lang.records import record
 from aidl_lang.source import Span
 from aidl_lang.units import MaybeDimension
 from aidl_lang.values import Array, ListVal, Num, PointVal, members
@@ -45,6 +46,11 @@ class Frame:
     rotation: Expression = ex.ZERO
     mirrored: bool = False
 
+    @property
+    def is_level(self) -> bool:
+        """Whether it is exactly not turned, as most are."""
+        return self.rotation.is_constant and self.rotation.value == 0.0
+
     def outward(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
         """Coordinates of this frame → of the parent's."""
         u, v = self.turn(x, y)
@@ -52,15 +58,17 @@ class Frame:
 
     def inward(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
         """Coordinates of the parent's frame → of this one."""
-        u, v = ex.sub(x, self.x), ex.sub(y, self.y)
-        c, s = self._cos_sin()
-        a = ex.add(ex.mul(c, u), ex.mul(s, v))
-        b = ex.sub(ex.mul(c, v), ex.mul(s, u))
+        a, b = ex.sub(x, self.x), ex.sub(y, self.y)
+        if not self.is_level:
+            c, s = self._cos_sin()
+            a, b = ex.add(ex.mul(c, a), ex.mul(s, b)), ex.sub(ex.mul(c, b), ex.mul(s, a))
         return (ex.apply("neg", a) if self.mirrored else a), b
 
     def turn(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
         if self.mirrored:
             x = ex.apply("neg", x)
+        if self.is_level:
+            return x, y
         c, s = self._cos_sin()
         return ex.sub(ex.mul(c, x), ex.mul(s, y)), ex.add(ex.mul(s, x), ex.mul(c, y))
 
@@ -329,7 +337,7 @@ def convert_angle(angle: Expression, source: Structure, target: Structure) -> Ex
 # --- Conditions and constraints --------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Comparison:
     """`left REL right`, REL one of `== != <= >= < >`, with boxes spelled out.
 
@@ -350,7 +358,7 @@ class Comparison:
         return frozenset(ex.unknowns([self.left])) or frozenset(ex.unknowns([self.right]))
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Condition:
     """A condition over unknowns: a comparison, or `and`, `or`, `not` of conditions."""
 
@@ -365,7 +373,7 @@ class Condition:
                 yield from part.comparisons()
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Constraint:
     """One constraint as its author sees it. `weight` is None for a hard one."""
 

@@ -33,3 +33,26 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
         folded.setdefault(fold(key), key)
     likeness = 0.6 if len(name) < 5 else 0.7  # one wrong letter weighs more in a short name
     return [folded[match] for match in get_close_matches(fold(name), folded, n=count, cutoff=likeness)]
+
+
+def is_slip(name: str, meant: str) -> bool:
+    """Whether one name is so near to the other that nobody need be asked: a letter wrong, missing, too many or
+    exchanged with its neighbour, two of them in a long name, or only the beginning written.
+    """
+    a, b = fold(name), fold(meant)
+    if len(a) > 3 and b.startswith(a):
+        return True
+    return _distance(a, b) <= (1 if len(a) < 8 else 2)
+
+
+def _distance(a: str, b: str) -> int:
+    """Slips between two words, a letter that stands at most one place off counting once."""
+    above: list[int] = []
+    row = list(range(len(b) + 1))
+    for i, x in enumerate(a, 1):
+        further, above, row = above, row, [i]
+        for j, y in enumerate(b, 1):
+            row.append(min(above[j] + 1, row[j - 1] + 1, above[j - 1] + (x != y)))
+            if i > 1 and j > 1 and x == b[j - 2] and y == a[i - 2]:
+                row[j] = min(row[j], further[j - 2] + 1)
+    return row[-1]

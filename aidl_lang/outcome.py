@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from aidl_lang.boxes import SIDES
@@ -63,10 +63,13 @@ def assertion_notes(
     if not solved_fully:
         return []
     evaluator.measure = _Measure(solved, drawing)
-    return [_failed(a, evaluator) for a in model.assertions if not holds(a.condition, evaluator, _TOLERANCE)]
+    return [d for a in model.assertions if (d := assertion_note(a, evaluator)) is not None]
 
 
-def _failed(assertion: Assertion, evaluate: Evaluator) -> Diagnostic:
+def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | None:
+    """An assertion that does not hold at the values of the evaluator, with the numbers; None if it does."""
+    if holds(assertion.condition, evaluate, _TOLERANCE):
+        return None
     message = assertion.message or f"`{assertion.text}` does not hold"
     where = f" [{assertion.label}]" if assertion.label else ""
     shown = "; ".join(_compared(c, evaluate) for c in _false_parts(assertion.condition, evaluate))
@@ -99,6 +102,19 @@ def _compared(comparison: Comparison, evaluate: Callable[..., float]) -> str:
     return f"{short(left)} {comparison.relation} {short(right)}"
 
 
+def measured(kind: str, regions: Sequence[Region], size: float) -> float:
+    """A measurement of what is drawn; `size` is that of the drawing."""
+    match kind:
+        case "area":
+            return area(regions[0])
+        case "perimeter":
+            return perimeter(regions[0])
+        case "clearance":
+            return clearance(*regions)
+        case _:
+            return float(overlap_area(*regions) > _TOLERANCE * size)
+
+
 class _Measure:
     """Answers what only the drawing can: areas, perimeters, clearances, overlaps."""
 
@@ -110,16 +126,7 @@ class _Measure:
         assert isinstance(payload, Measurement)
         if payload.kind in SIDES:
             return self._side(payload)
-        regions = [self._region(thing) for thing in payload.of]
-        match payload.kind:
-            case "area":
-                return area(regions[0])
-            case "perimeter":
-                return perimeter(regions[0])
-            case "clearance":
-                return clearance(*regions)
-            case _:
-                return float(overlap_area(*regions) > _TOLERANCE * self.drawing.size)
+        return measured(payload.kind, [self._region(thing) for thing in payload.of], self.drawing.size)
 
     def _side(self, payload: Measurement) -> float:
         """A side of the box of an outline that was worked out after solving, as a structure sees it."""

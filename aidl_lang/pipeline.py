@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from aidl_lang import library as library_module
 from aidl_lang import parser
 from aidl_lang.building.state import DEFAULT_LIMITS, Limits
+from aidl_lang.checking.subset import adapted
 from aidl_lang.diagnostics import Diagnostic, has_errors, ordered
 from aidl_lang.interp import Interpretation, interpret
 from aidl_lang.model import Knob
@@ -27,14 +28,17 @@ from aidl_lang.solver.problem import Settings as SolverSettings
 from aidl_lang.source import SourceFile
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
+from aidl_lang.variants import Variant
 from aidl_lang.world import World
 
 if TYPE_CHECKING:
     from aidl_lang.export import Exported, Options
     from aidl_lang.expression import Evaluator
+    from aidl_lang.failures import Conflict
     from aidl_lang.geometry.drawing import Drawing
+    from aidl_lang.lower import Lowered
     from aidl_lang.solved import Dimension, SolvedModel
-    from aidl_lang.solver.solution import StageReport
+    from aidl_lang.solver.solution import Solution, StageReport
 
 _RECURSION = 20_000
 """Python frames for deeply nested programs; the limits on nesting and calls end sooner."""
@@ -42,16 +46,18 @@ _RECURSION = 20_000
 
 _IMPORT_FAILURES = frozenset({"E0210", "E0211", "E0212", "E0213", "E0804"})
 _CIRCLE = "E0207"
+_UNUSED = "W0201"
 _MISSING_NAMES = frozenset({"E0201", "E0203"})
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Limits for programs that are not trusted, and the solver's settings."""
+    """Limits for programs that are not trusted, the solver's settings, and the subset of the language."""
 
     text: parser.Limits = parser.DEFAULT_LIMITS
     building: Limits = DEFAULT_LIMITS
     solving: SolverSettings = SolverSettings(tolerance=1e-10)
+    variant: Variant = Variant.FULL
 
 
 @dataclass
@@ -67,6 +73,8 @@ class Compiled:
     show: frozenset[str] = field(default_factory=frozenset)
     stages: tuple[tuple[str, StageReport], ...] = ()
     """What the solver tried, in order: the path of a structure, and one stage for it."""
+    conflicts: Callable[[], tuple[Conflict, ...]] = field(default=tuple, repr=False)
+    """What tells, for a program that does not solve, the constraints that do not hold together."""
 
     @property
     def ok(self) -> bool:
@@ -137,8 +145,11 @@ def _front(
     with watch("resolve"):
         resolution = resolve(parsed.module, world, library)
     with watch("typecheck"):
-        program = typecheck(resolution)
-    return program, [*parsed.diagnostics, *program.diagnostics]
+        program = typecheck(resolution, settings.variant)
+    found = program.diagnostics
+    if has_errors(parsed.diagnostics):  # what was left out may have used them
+        found = tuple(d for d in found if d.code != _UNUSED)
+    return program, [*parsed.diagnostics, *found]
 
 
 def _build(
@@ -153,7 +164,8 @@ def _build(
     with watch("interpret"):
         built = interpret(program, params, settings.building)
     static += [violation.diagnostic(built.written) for violation in program.violations]
-    return built, ordered([*static, *_new(built.diagnostics, static)])
+    found = [*static, *_new(built.diagnostics, static)]
+    return built, ordered(adapted(found, settings.variant))
 
 
 def _new(found: Sequence[Diagnostic], known: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
@@ -188,6 +200,18 @@ def _sizes(built: Interpretation, evaluator: Evaluator) -> Callable[[SolvedModel
             return sizes(built.model, solved, evaluator)
 
     return sizes
+
+
+def _conflicts(lowered: Lowered, solution: Solution) -> Callable[[], tuple[Conflict, ...]]:
+    """What tells the conflicts of a program, worked out when they are asked for."""
+
+    def conflicts() -> tuple[Conflict, ...]:
+        from aidl_lang.failures import conflicts
+
+        with _working():
+            return conflicts(lowered, solution)
+
+    return conflicts
 
 
 def _beside(notes: Sequence[Diagnostic], errors: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
@@ -282,9 +306,10 @@ def _finish(
     if solution.status is not Status.SOLVED:
         notes = []  # the parts are not where they belong
     notes = list(_beside(notes, found))
-    everything = ordered([*diagnostics, *found, *notes])
+    everything = ordered([*diagnostics, *adapted([*found, *notes], settings.variant)])
     stages = tuple((lowered.groups[stage.group], stage) for stage in solution.stages)
-    return Compiled(model.status, everything, watch.seconds, known, model, drawing, show, stages)
+    conflicts = _conflicts(lowered, solution)
+    return Compiled(model.status, everything, watch.seconds, known, model, drawing, show, stages, conflicts)
 
 
 __all__ = ["Compiled", "Knob", "Memory", "Settings", "check", "compile", "formatted", "front", "knobs"]

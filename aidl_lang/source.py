@@ -9,6 +9,8 @@ from bisect import bisect_right
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from aidl_lang.records import record
+
 
 @dataclass(frozen=True, eq=False)
 class SourceFile:
@@ -35,7 +37,7 @@ class SourceFile:
         return self.text[start:end].rstrip("\r")
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Span:
     """A half-open range `start:end` of a source file."""
 

@@ -25,6 +25,8 @@ from aidl_lang.solved import SolvedModel
 
 ALL_PAIRS = 100
 """Bodies up to which every two of them are compared."""
+_NAMED = 6
+"""Paths that a list names."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,10 @@ class Width:
     a: Vec
     b: Vec
     part: str
+
+    def to_dict(self) -> dict[str, object]:
+        """The form in JSON."""
+        return {"length": self.length, "from": self.a, "to": self.b, "part": self.part}
 
 
 @dataclass(frozen=True)
@@ -67,6 +73,39 @@ class Part:
     volume: float | None = None
     mass: float | None = None
 
+    def to_dict(self) -> dict[str, object]:
+        """The form in JSON."""
+        left, bottom, right, top = self.box
+        squares = self.inertia
+        return {
+            "path": self.path,
+            "kind": self.kind,
+            "bodies": self.bodies,
+            "area": self.area,
+            "perimeter": self.perimeter,
+            "centroid": self.centroid,
+            "box": {"left": left, "right": right, "top": top, "bottom": bottom},
+            "width": right - left,
+            "height": top - bottom,
+            "pieces": self.pieces,
+            "holes": self.holes,
+            "inertia": {
+                "xx": squares.xx,
+                "yy": squares.yy,
+                "xy": squares.xy,
+                "polar": squares.polar,
+                "principal": squares.principal,
+                "angle": squares.angle,
+            },
+            "wall": self.wall and self.wall.to_dict(),
+            "gap": self.gap and self.gap.to_dict(),
+            "thickness": self.thickness,
+            "material": self.material,
+            "density": self.density,
+            "volume": self.volume,
+            "mass": self.mass,
+        }
+
 
 @dataclass(frozen=True)
 class Survey:
@@ -90,6 +129,22 @@ class NothingThereError(KeyError):
         self.reason = reason
         self.near = tuple(near)
         self.known = tuple(known)
+
+    @property
+    def diagnostic(self) -> Diagnostic:
+        path = self.args[0]
+        what = f"`{path}` {self.reason}" if self.reason else f"there is no `{path}` in the drawing"
+        hints = [f"did you mean {' or '.join(f'`{name}`' for name in self.near)}?"] if self.near else []
+        if self.known:
+            hints.append(f"there is {listed(self.known)}")
+        return Diagnostic("E0919", what, hints=tuple(hints))
+
+
+def listed(names: Sequence[str]) -> str:
+    """The first of them as a sentence has them, and how many more there are."""
+    shown = ", ".join(f"`{name}`" for name in names[:_NAMED])
+    more = len(names) - _NAMED
+    return f"{shown} and {more} more" if more > 0 else shown
 
 
 def survey(

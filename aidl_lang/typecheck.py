@@ -14,10 +14,11 @@ from aidl_lang import ast
 from aidl_lang.checking.conditions import check_condition, check_operation
 from aidl_lang.checking.cycles import find_cycles
 from aidl_lang.checking.facts import Fact
-from aidl_lang.checking.habits import check_square, check_unused_geometry
+from aidl_lang.checking.habits import check_square, check_unused_geometry, check_unused_params
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.operators import compare
+from aidl_lang.checking.subset import check_subset
 from aidl_lang.checking.validity import check_validity
 from aidl_lang.checking.violations import Violation
 from aidl_lang.checking.wording import a, shown
@@ -38,6 +39,7 @@ from aidl_lang.types import (
     accepts,
 )
 from aidl_lang.units import ANGLE, LENGTH
+from aidl_lang.variants import Variant
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +61,8 @@ class Program:
     rejected: frozenset[ast.Call] = frozenset()
 
 
-def check(resolution: Resolution) -> Program:
-    """Check every body of a program. Never raises for what the program says."""
+def check(resolution: Resolution, variant: Variant = Variant.FULL) -> Program:
+    """Check every body of a program, and that it keeps to a variant. Never raises for what it says."""
     inference = Inference(resolution)
     checker = Checker(inference)
     violations: list[Violation] = []
@@ -69,6 +71,8 @@ def check(resolution: Resolution) -> Program:
         violations += check_validity(module, inference)
     find_cycles(inference)
     check_unused_geometry(inference)
+    check_unused_params(inference)
+    inference.diagnostics += check_subset(inference, variant)
     return Program(
         main=resolution.main,
         imports=resolution.imports,

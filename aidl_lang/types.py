@@ -5,17 +5,18 @@ One choice serves the checker, which knows types only, and the interpreter, whic
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TypeAlias
 
 from aidl_lang import ast
 from aidl_lang.names import fold
-from aidl_lang.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension, describe
+from aidl_lang.records import record
+from aidl_lang.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension, describe
 
 
-@dataclass(frozen=True)
+@record()
 class AnyType:
     """Not known before the program is built: accepted everywhere, checked again when values are there."""
 
@@ -23,7 +24,7 @@ class AnyType:
         return "anything"
 
 
-@dataclass(frozen=True)
+@record()
 class NumberType:
     """`dimension` is None for a bare number."""
 
@@ -34,13 +35,13 @@ class NumberType:
         return "whole number" if self.whole else describe(self.dimension)
 
 
-@dataclass(frozen=True)
+@record()
 class TextType:
     def __str__(self) -> str:
         return "text"
 
 
-@dataclass(frozen=True)
+@record()
 class TruthType:
     """true and false, and conditions over unknowns."""
 
@@ -48,25 +49,25 @@ class TruthType:
         return "condition"
 
 
-@dataclass(frozen=True)
+@record()
 class PointType:
     def __str__(self) -> str:
         return "point"
 
 
-@dataclass(frozen=True)
+@record()
 class RangeType:
     def __str__(self) -> str:
         return "range"
 
 
-@dataclass(frozen=True)
+@record()
 class RecordType:
     def __str__(self) -> str:
         return "record"
 
 
-@dataclass(frozen=True)
+@record()
 class ListType:
     """A list or an array; `length` where it is known."""
 
@@ -77,7 +78,7 @@ class ListType:
         return f"list of {self.element}s" if not isinstance(self.element, AnyType) else "list"
 
 
-@dataclass(frozen=True)
+@record()
 class GeometryType:
     """`kind` is a primitive (`line`, `arc`, `circle`, …), the name of a shape, or "" for any geometry."""
 
@@ -87,13 +88,13 @@ class GeometryType:
         return self.kind or "geometry"
 
 
-@dataclass(frozen=True)
+@record()
 class StructureType:
     def __str__(self) -> str:
         return "structure"
 
 
-@dataclass(frozen=True)
+@record()
 class BoxType:
     """The box of a structure, a geometry or a list of them."""
 
@@ -161,6 +162,8 @@ def accepts(wanted: Type, given: Type) -> int | None:
         return 4
     if isinstance(given, AnyType):
         return 3
+    if wanted is given:
+        return 0
     match wanted:
         case NumberType():
             return _accepts_number(wanted, given)
@@ -212,7 +215,7 @@ def _accepts_box(given: Type) -> int | None:
             return None
 
 
-@dataclass(frozen=True)
+@record()
 class Given:
     """An argument of a call as the choice sees it; `name` is None for a positional one."""
 
@@ -220,7 +223,7 @@ class Given:
     type: Type
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Signature:
     """A callable: `node` is its definition and `kind` what sort of one, both None for what is built in;
     `standard` is what every program has. One that `takes_any` takes every named argument.
@@ -239,10 +242,24 @@ class Signature:
         """Parameter names by their folded spelling."""
         return {fold(name): name for name, _, _ in self.parameters}
 
-    @property
+    @cached_property
     def gathers(self) -> bool:
         """Whether positional arguments are collected: the first parameter is a list."""
         return bool(self.parameters) and isinstance(self.parameters[0][1], ListType)
+
+    @cached_property
+    def needed(self) -> int:
+        """How many parameters have to be given something."""
+        return sum(not optional for _, _, optional in self.parameters)
+
+    def may_take(self, positional: int, words: Set[str]) -> bool:
+        """Whether so many arguments without a name and these (folded) names could fit, whatever their types:
+        a look that spares most overloads of a name the matching.
+        """
+        if self.takes_any or self.gathers:
+            return self.takes_any or words <= self.by_fold.keys()
+        count = positional + len(words)
+        return self.needed <= count <= len(self.parameters) and words <= self.by_fold.keys()
 
     def __str__(self) -> str:
         shown = [
@@ -253,7 +270,7 @@ class Signature:
         return f"{self.name}({', '.join(shown)})"
 
 
-@dataclass(frozen=True)
+@record()
 class Source:
     """Where an argument comes from: the one at `index` of the call, one of its two parts, or the point of it
     as x and of `other` as y.
@@ -264,7 +281,7 @@ class Source:
     other: int | None = None
 
 
-@dataclass(frozen=True)
+@record()
 class Binding:
     """Which argument goes to which parameter: parameter name → indices into the arguments.
 
@@ -285,16 +302,26 @@ class Binding:
         return next((name for name, taken in self.arguments.items() if places & set(taken)), None)
 
 
-@dataclass(frozen=True)
+@record()
 class Mismatch:
     """Why a candidate does not fit; `argument` is the index of the argument to blame, if one is; `meanings`
-    are the parameters between which its name does not choose.
+    are the parameters between which its name does not choose; `kinds` are what is wanted and what is given,
+    where these differ.
     """
 
     signature: Signature
-    reason: str
+    problem: str
     argument: int | None = None
     meanings: tuple[str, ...] = ()
+    kinds: tuple[Type, Type] | None = None
+
+    @property
+    def reason(self) -> str:
+        """What is said of it: most candidates that do not fit are never spoken of."""
+        if self.kinds is None:
+            return self.problem
+        wanted, given = map(with_article, self.kinds)
+        return f"{self.problem} to be {wanted}, not {given}"
 
 
 _GATHERED = 20
@@ -359,8 +386,7 @@ def _fitted(
             index = arguments[name][0]
             step = accepts(kind, given[index].type)
             if step is None:
-                wanted, got = with_article(kind), with_article(given[index].type)
-                return Mismatch(signature, f"needs `{name}` to be {wanted}, not {got}", index)
+                return Mismatch(signature, f"needs `{name}`", index, kinds=(kind, given[index].type))
             distance += step
     return Binding(signature, arguments, gathered, (distance, defaulted), positional)
 
@@ -373,5 +399,12 @@ def with_article(kind: object) -> str:
     return f"{'an' if word[0] in 'aeiou' else 'a'} {word}"
 
 
-def number(dimension: Dimension | None) -> NumberType:
-    return NumberType(dimension)
+@lru_cache(maxsize=256)
+def number_type(dimension: MaybeDimension, whole: bool) -> NumberType:
+    """The type of a number, made once: types are compared, and looked up, all the time."""
+    return NumberType(dimension, whole)
+
+
+@lru_cache(maxsize=256)
+def geometry_type(kind: str) -> GeometryType:
+    return GeometryType(kind)

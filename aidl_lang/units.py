@@ -22,6 +22,7 @@ class Dimension(NamedTuple):
 
 
 PLAIN = Dimension()
+_PURE = (None, PLAIN)
 LENGTH = Dimension(length=1)
 ANGLE = Dimension(angle=1)
 AREA = Dimension(length=2)
@@ -62,7 +63,7 @@ def add(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
 
 def multiply(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
     """Dimension of a product; a bare number times a plain one (`10 * cos(a)`) stays bare."""
-    if {a, b} <= {None, PLAIN} and (a is None or b is None):
+    if (a is None and b in _PURE) or (b is None and a in _PURE):
         return None
     a, b = a or PLAIN, b or PLAIN
     return Dimension(a.length + b.length, a.angle + b.angle)
@@ -70,7 +71,7 @@ def multiply(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
 
 def divide(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
     """Dimension of a quotient; a bare number by a plain one stays bare."""
-    if a is None and b in (None, PLAIN):
+    if a is None and b in _PURE:
         return None
     a, b = a or PLAIN, b or PLAIN
     return Dimension(a.length - b.length, a.angle - b.angle)

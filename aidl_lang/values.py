@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
-from typing import TYPE_CHECKING, TypeAlias
+from functools import cache
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression
+from aidl_lang.records import record
 from aidl_lang.types import (
     ANY,
     BoxType,
-    GeometryType,
     ListType,
-    NumberType,
     PointType,
     RangeType,
     RecordType,
@@ -24,6 +23,8 @@ from aidl_lang.types import (
     TextType,
     TruthType,
     Type,
+    geometry_type,
+    number_type,
     with_article,
 )
 from aidl_lang.units import LENGTH, PLAIN, MaybeDimension
@@ -43,7 +44,7 @@ class Status(IntEnum):
     REFERENCE = 4
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Num:
     """A number: mm, degrees or their products."""
 
@@ -64,7 +65,7 @@ class Num:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class PointVal:
     """Coordinates in the frame of the structure that asks."""
 
@@ -72,13 +73,13 @@ class PointVal:
     y: Num
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Text:
     value: str
     is_param: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class RangeVal:
     start: Num
     end: Num
@@ -86,19 +87,19 @@ class RangeVal:
     step: Num | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class ListVal:
     items: tuple[Value, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class RecordVal:
     """Values under names of their own: `record(clearance: 3.4, tap: 2.5)`."""
 
     fields: Mapping[str, Value]
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Instantiation:
     """A call of a template, waiting for the name it is assigned to. `scope` is what its body sees."""
 
@@ -109,7 +110,7 @@ class Instantiation:
     node: ast.Call
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Nothing:
     """What an expression with a reported error yields; whatever it touches yields nothing too."""
 
@@ -146,7 +147,7 @@ class Pattern(Array):
         self.settings = settings
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class StructureCopy:
     """A structure yet to be made as a copy of another, waiting for the name it is assigned to.
 
@@ -219,36 +220,39 @@ def members(value: Value) -> Sequence[Value] | None:
 
 def type_of(value: Value) -> Type:
     """The type by which overloads are chosen."""
+    make = _types().get(type(value))
+    return make(value) if make is not None else ANY
+
+
+@cache
+def _types() -> Mapping[type, Callable[[Any], Type]]:
+    """What makes the type of a value, by its class."""
     from aidl_lang.boxes import Box
     from aidl_lang.model import Condition, Geometry, Structure
 
-    match value:
-        case Num():
-            return NumberType(value.dimension, value.is_whole)
-        case PointVal():
-            return PointType()
-        case Geometry():
-            return GeometryType(value.type)
-        case Structure():
-            return StructureType()
-        case Box():
-            return BoxType()
-        case Text():
-            return TextType()
-        case bool() | Condition():
-            return TruthType()
-        case Instantiation():
-            return StructureType()
-        case RangeVal():
-            return RangeType()
-        case RecordVal():
-            return RecordType()
-        case ListVal() | Array():
-            items = members(value) or ()
-            kinds = {type_of(item) for item in items}
-            return ListType(kinds.pop() if len(kinds) == 1 else ANY, len(items))
-        case _:
-            return ANY
+    def always(kind: Type) -> Callable[[Any], Type]:
+        return lambda _: kind
+
+    return {
+        Num: lambda v: number_type(v.dimension, v.is_whole),
+        PointVal: always(PointType()),
+        Geometry: lambda v: geometry_type(v.type),
+        **dict.fromkeys((Structure, Instantiation), always(StructureType())),
+        Box: always(BoxType()),
+        Text: always(TextType()),
+        **dict.fromkeys((bool, Condition), always(TruthType())),
+        RangeVal: always(RangeType()),
+        RecordVal: always(RecordType()),
+        ListVal: lambda v: _list_type(v.items),
+        **dict.fromkeys((Array, Pattern), lambda v: _list_type(v.items())),
+    }
+
+
+def _list_type(items: Sequence[Value]) -> Type:
+    kinds = iter(items)
+    first = type_of(next(kinds, NOTHING))
+    same = all(kind is first or kind == first for kind in map(type_of, kinds))
+    return ListType(first if same else ANY, len(items))
 
 
 def kind_of(value: Value) -> str:

@@ -14,7 +14,9 @@ _FENCE = re.compile(r"^ *```(\S*) *(.*)$")
 
 @dataclass(frozen=True)
 class Block:
-    """One block. `note` is what follows the language on its first line: `error`, `fragment`, `file=NAME`."""
+    """One block. `note` is what follows the language on its first line: `error`, `fragment`, `file=NAME`,
+    `variant=NAME`.
+    """
 
     path: Path
     line: int
@@ -30,6 +32,10 @@ class Block:
     @property
     def file(self) -> str | None:
         return self.note.removeprefix("file=") if self.note.startswith("file=") else None
+
+    @property
+    def variant(self) -> str:
+        return self.note.removeprefix("variant=") if self.note.startswith("variant=") else "full"
 
 
 def blocks(path: Path) -> Iterator[Block]:

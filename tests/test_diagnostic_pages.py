@@ -10,6 +10,7 @@ import pytest
 from aidl_lang import explain, pipeline
 from aidl_lang.render import render
 from aidl_lang.source import SourceFile
+from aidl_lang.variants import Variant
 from aidl_lang.world import MemoryWorld
 from tests.documents import ROOT, Block, blocks, programs
 
@@ -60,7 +61,10 @@ def _compile(page: Path, heading: str) -> list[str]:
     """The codes that the program under a heading gives, with the files that stand beside it."""
     found = [block for block in programs(page) if block.heading == heading]
     main = next(block for block in found if not block.file)
-    compiled = pipeline.compile(SourceFile(main.place, main.text), MemoryWorld(_files(found)))
+    settings = pipeline.Settings(variant=Variant(main.variant))
+    compiled = pipeline.compile(
+        SourceFile(main.place, main.text), MemoryWorld(_files(found)), settings=settings
+    )
     print("\n".join(map(render, compiled.diagnostics)))
     return [d.code for d in compiled.diagnostics]
 

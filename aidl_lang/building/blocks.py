@@ -13,7 +13,7 @@ from aidl_lang.model import Structure
 
 def run_block(it: Interpreter, statements: Sequence[ast.Statement], scope: Scope, here: Structure) -> None:
     """Run the statements of a body. Callables and constants are visible in the whole of it."""
-    hoist_callables(scope, statements)
+    hoist_callables(it, scope, statements)
     hoist_values(scope, statements, here)
     ahead = Ahead(statements, scope, here)
     it.ahead.append(ahead)
@@ -24,15 +24,21 @@ def run_block(it: Interpreter, statements: Sequence[ast.Statement], scope: Scope
         it.ahead.pop()
 
 
-def hoist_callables(scope: Scope, statements: Iterable[ast.Statement]) -> None:
+def hoist_callables(it: Interpreter, scope: Scope, statements: Iterable[ast.Statement]) -> None:
     for node in statements:
         match node:
             case ast.FunctionDefinition() | ast.ShapeDefinition() | ast.ConstraintDefinition():
-                scope.callables.setdefault(node.name.text, []).append(Candidate(signature(node), scope))
+                _hoist(it, scope, node)
             case ast.Structure(parameters=parameters) if parameters is not None:
-                scope.callables.setdefault(node.name.text, []).append(Candidate(signature(node), scope))
+                _hoist(it, scope, node)
             case ast.Alias(name=name, target=target):
                 scope.aliases[name.text] = target.text
+
+
+def _hoist(it: Interpreter, scope: Scope, node: ast.Callable) -> None:
+    if node not in it.signatures:
+        it.signatures[node] = signature(node)
+    scope.callables.setdefault(node.name.text, []).append(Candidate(it.signatures[node], scope))
 
 
 def hoist_values(scope: Scope, statements: Iterable[ast.Statement], here: Structure) -> None:

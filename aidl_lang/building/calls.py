@@ -23,6 +23,7 @@ from aidl_lang.model import Condition, Geometry
 from aidl_lang.names import find, nearest
 from aidl_lang.types import (
     ANY,
+    AnyType,
     Binding,
     BoxType,
     Given,
@@ -65,32 +66,26 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
     if not candidates:
         _unknown_callable(it, node, env)
         return NOTHING
-    if any(c.signature.kind is ast.Structure for c in candidates):
+    signatures = [c.signature for c in candidates]
+    if ast.Structure in [s.kind for s in signatures]:
         # References passed to a template are tied by its instantiating structure, which may reach further.
         env = Env(env.scope, env.here, Reach.SUBTREE if env.reach is Reach.OWN else env.reach)
     values: list[Value] = [] if receiver is None or isinstance(receiver, Namespace) else [receiver]
     first = len(values)
-    signatures = [c.signature for c in candidates]
     values += [
         Text(a.value.span.text) if is_word(a, signatures) else evaluate(it, a.value, env)
         for a in node.arguments
     ]
-    given = [Given(None, type_of(v)) for v in values[:first]]
-    given += [
-        Given(a.name.text if a.name else None, type_of(v))
-        for a, v in zip(node.arguments, values[first:], strict=True)
-    ]
     nodes: list[ast.Node] = [node.receiver] if first and node.receiver is not None else []
     nodes += [a.value for a in node.arguments]
-    candidates = usable(candidates, values, env)
-    chosen = select([c.signature for c in candidates], given)
+    if Nothing in map(type, values):
+        return NOTHING
+    signatures = usable(signatures, values, env)
+    chosen = _choice(it, node, signatures, values)
     if isinstance(chosen, list):
-        if not any(isinstance(v, Nothing) for v in values):
-            _no_overload(it, node, chosen, nodes, values)
+        _no_overload(it, node, chosen, nodes, values)
         return NOTHING
     candidate = next(c for c in candidates if c.signature is chosen.signature)
-    if any(isinstance(v, Nothing) for v in values):
-        return NOTHING
     values, nodes = arranged(chosen, values, nodes)
     arguments = bound(it, chosen, values, nodes, env)
     if arguments is None:
@@ -105,6 +100,20 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
         return result
     finally:
         it.leave()
+
+
+def _choice(
+    it: Interpreter, node: ast.Call, signatures: list[Signature], values: Sequence[Value]
+) -> Binding | list[Mismatch]:
+    """Which overload the call means. Types decide, so what was chosen once holds whenever they come again."""
+    occasion = (node, tuple(map(type_of, values)))
+    known = it.choices.get(occasion)
+    if known is None or known[0] != signatures:
+        names: list[str | None] = [None] * (len(values) - len(node.arguments))
+        names += [a.name.text if a.name else None for a in node.arguments]
+        given = [Given(name, kind) for name, kind in zip(names, occasion[1], strict=True)]
+        known = it.choices[occasion] = signatures, select(signatures, given)
+    return known[1]
 
 
 def find_candidates(it: Interpreter, name: str, scope: Scope, receiver: Value | None) -> list[Candidate]:
@@ -163,6 +172,7 @@ def bound(
 ) -> dict[str, Value] | None:
     """Parameter → argument, each as the kind of value the parameter asks for."""
     result: dict[str, Value] = {}
+    is_copying = binding.signature.name in COPYING
     for name, kind, _ in binding.signature.parameters:
         indices = binding.arguments.get(name)
         if indices is None:
@@ -175,7 +185,7 @@ def bound(
             return None
         if isinstance(value, Condition) and isinstance(kind, TruthType) and _is_flag(binding.signature, name):
             value = truth(it, value, nodes[indices[0]])
-        if binding.signature.name in COPYING:
+        if is_copying:
             for number in (value.x, value.y) if isinstance(value, PointVal) else (value,):
                 if isinstance(number, Num) and refuses_measure(it, number, nodes[indices[0]].span):
                     return None
@@ -197,13 +207,15 @@ def _spliced(value: Value) -> Sequence[Value]:
 
 def _as_kind(it: Interpreter, value: Value, kind: object, node: ast.Node, env: Env) -> Value | None:
     match kind:
-        case PointType():
-            return as_point(it, value, node, env)
+        case AnyType():
+            return value
         case NumberType(dimension):
             if isinstance(value, Geometry):
                 return edge_coordinate(it, value, node, env)
-            if isinstance(value, Num):
+            if isinstance(value, Num) and value.dimension != dimension:
                 return Num(value.expression, dimension, value.status)
+        case PointType():
+            return as_point(it, value, node, env)
         case BoxType():
             return box_of(value, env.here)
         case ListType(PointType()) if (items := members(value)) is not None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
 
 from aidl_lang import ast, units
 from aidl_lang import expression as ex
@@ -214,7 +213,7 @@ def holds(
 
 
 def placed_by(comparison: Comparison, placed: frozenset[Unknown]) -> Comparison:
-    return replace(comparison, moved=placed)
+    return Comparison(comparison.relation, comparison.left, comparison.right, comparison.dimension, placed)
 
 
 def replace_placed(condition: Condition, placed: frozenset[Unknown]) -> Condition:

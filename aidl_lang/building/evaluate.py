@@ -223,6 +223,8 @@ def _binary(it: Interpreter, node: ast.Binary, env: Env) -> Value:
     right = evaluate(it, node.right, env)
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
+    if isinstance(left, Num) and isinstance(right, Num):
+        return arithmetic(it, node.operator, left, right, node)
     if node.operator == "+" and (together := lists.joined(left, right)) is not None:
         return together
     a, b = (as_point(it, v, n, env) for v, n in ((left, node.left), (right, node.right)))
@@ -287,7 +289,7 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
             return _undefined(it, node)
         return number(x - y * math.floor(x / y), dimension, status)
     result = ex.apply(_OPS[op], a.expression, b.expression)
-    if result.is_constant and not math.isfinite(result.value):
+    if result.op == "constant" and not math.isfinite(result.value):
         return _undefined(it, node)
     return Num(result, dimension, status)
 

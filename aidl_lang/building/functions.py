@@ -297,9 +297,7 @@ def _measure(kind: str, dimension: Dimension) -> Function:
             wrong = next(v for v in a.values() if not isinstance(v, Structure | Geometry))
             it.report("E0310", f"`{kind}` measures structures and geometry, not {kind_of(wrong)}", node)
             return NOTHING
-        measured = Num(
-            Expression("measure", (), math.nan, Measurement(kind, of)), dimension, Status.REFERENCE
-        )
+        measured = Num(ex.measure(Measurement(kind, of)), dimension, Status.REFERENCE)
         return compare_numbers(it, "==", measured, _YES, node) if kind == "overlaps" else measured
 
     return function

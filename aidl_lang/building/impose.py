@@ -109,8 +109,8 @@ def _impose_condition(
             return
         if isinstance(part, Comparison):
             comparisons.append(part)
-    measured = [n.payload for n in ex.nodes(e for c in comparisons for e in (c.left, c.right))]
-    found = [m for m in measured if isinstance(m, Measurement)]
+    measured = ex.nodes(e for c in comparisons for e in (c.left, c.right) if e.is_open)
+    found = [n.payload for n in measured if isinstance(n.payload, Measurement)]
     if found and found[0].kind in SIDES:
         _box_unknown(it, found[0], node)
         return

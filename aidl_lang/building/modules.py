@@ -76,7 +76,7 @@ def _file_scope(
     if module in loading:
         return loading[module]
     scope = loading[module] = Scope(library)
-    hoist_callables(scope, module.statements)
+    hoist_callables(it, scope, module.statements)
     for statement in module.statements:
         if isinstance(statement, ast.Import) and (other := it.program.imports.get(statement)) is not None:
             inner = _file_scope(it, other, library, loading)

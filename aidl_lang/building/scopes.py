@@ -14,6 +14,7 @@ from aidl_lang import ast
 from aidl_lang.expression import Unknown
 from aidl_lang.model import Geometry, Structure
 from aidl_lang.names import find
+from aidl_lang.records import record
 from aidl_lang.types import Signature
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ class CopiedBinding:
 Binding: TypeAlias = "Value | LetBinding | ParamBinding | VarBinding | PassedBinding | CopiedBinding"
 
 
-@dataclass(frozen=True)
+@record(eq=False)
 class Candidate:
     """A callable and the scope its body sees; `scope` is None for what is built in."""
 
@@ -122,9 +123,11 @@ class Scope:
 
     def find(self, name: str) -> tuple[str, Scope] | None:
         """The scope that has a value of this name: as written anywhere, else the nearest spelled alike."""
-        for scope in self.chain():
+        scope: Scope | None = self
+        while scope is not None:
             if name in scope.values:
                 return name, scope
+            scope = scope.parent
         for scope in self.chain():
             if (alike := find(name, scope.values)) is not None:
                 return alike, scope
@@ -140,19 +143,21 @@ class Scope:
     def candidates(self, name: str) -> list[Candidate]:
         """All callables of a name, innermost first; aliases followed."""
         found: list[Candidate] = []
-        seen: set[str] = set()
-        while name not in seen:
-            seen.add(name)
+        seen: list[str] = []
+        key: str | None = name
+        while key is not None and key not in seen:
+            seen.append(key)
             alias: str | None = None
-            for scope in self.chain():
-                key = name if name in scope.callables else None
-                found += scope.callables[key] if key else ()
+            scope: Scope | None = self
+            while scope is not None:
+                if key in scope.callables:
+                    found += scope.callables[key]
                 if scope.supply is not None:
-                    found += scope.supply(name)
-                alias = alias or scope.aliases.get(name)
-            if alias is None:
-                break
-            name = alias
+                    found += scope.supply(key)
+                if alias is None:
+                    alias = scope.aliases.get(key)
+                scope = scope.parent
+            key = alias
         return found
 
     def callable_names(self, library: Mapping[str, object]) -> dict[str, None]:

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang import ast
 from aidl_lang import expression as ex
@@ -15,9 +15,10 @@ from aidl_lang.building.scopes import Scope
 from aidl_lang.diagnostics import Diagnostic, Fix, Label
 from aidl_lang.expression import Unknown
 from aidl_lang.model import Assertion, Comparison, Constraint, Geometry, Knob, Structure
+from aidl_lang.records import record
 from aidl_lang.source import Span
 from aidl_lang.typecheck import Program
-from aidl_lang.types import Binding
+from aidl_lang.types import Binding, Mismatch, Signature, Type
 from aidl_lang.units import ANGLE, MaybeDimension
 from aidl_lang.values import Num, PointVal, Value
 
@@ -33,7 +34,7 @@ class Reach(Enum):
     READ = "asserts: anything, since they steer nothing"
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Env:
     """Where an expression stands: the names it sees, and the structure in whose frame it is read."""
 
@@ -61,6 +62,7 @@ class Stop(Exception):  # noqa: N818 (not an error of ours: the program went ove
     """Building ends here; what there is so far is the result."""
 
 
+Occasion: TypeAlias = tuple[ast.Call, tuple[Type, ...]]
 Executor = Callable[..., None]
 """Does what a statement says: (interpreter, statement, scope, structure)."""
 
@@ -107,6 +109,10 @@ class Interpreter:
     edited: set[tuple[ast.Call, tuple[str, ...]]] = field(default_factory=set)
     """edits that were applied, and in which turns of the loops around"""
     edited_names: dict[int, frozenset[str]] = field(default_factory=dict)
+    signatures: dict[ast.Callable, Signature] = field(default_factory=dict)
+    """of the definitions of bodies"""
+    choices: dict[Occasion, tuple[list[Signature], Binding | list[Mismatch]]] = field(default_factory=dict)
+    """which of some overloads a call means when its arguments have these types"""
     root: Structure | None = None
     entities: int = 0
     turns: int = 0

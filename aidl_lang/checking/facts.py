@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from aidl_lang import ast
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import Symbol
 from aidl_lang.types import ANY, AnyType, GeometryType, ListType, NumberType, PointType, Type
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Place:
     """Whose unknowns are read: the structure at the path `below`, seen from the structure `holder` that the
     program text is in (or from the file).
@@ -22,7 +23,7 @@ class Place:
 NOTHING_READ: frozenset[Place] = frozenset()
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Fact:
     """
     type   of the value
@@ -52,7 +53,7 @@ class Fact:
         kind = self.type
         for _ in range(times):
             kind = ListType(kind)
-        return replace(self, type=kind, bare=None, pattern="" if times else self.pattern)
+        return Fact(kind, self.reads, self.of, self.place, None, "" if times else self.pattern)
 
     def element(self) -> Fact:
         """A member of a list of such values."""

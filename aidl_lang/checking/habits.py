@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from aidl_lang import ast
 from aidl_lang.builtins import MATH
 from aidl_lang.checking.wording import shown
-from aidl_lang.diagnostics import Edit, Fix
+from aidl_lang.diagnostics import Edit, Fix, has_errors
 from aidl_lang.resolving.declare import made_by
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.source import Span
@@ -100,6 +100,33 @@ def check_unused_geometry(check: Inference) -> None:
                 label="`let` only names it",
                 hints=[f"`{symbol.name} = {shown(node.value)}` makes it a part of the drawing"],
                 fix=Fix("leave out `let`", (Edit(word, ""),)),
+            )
+
+
+def check_unused_params(check: Inference) -> None:
+    """A `param` of the program itself that nothing refers to; silent where an error may have hidden a use."""
+    resolution = check.resolution
+    if has_errors([*resolution.diagnostics, *check.diagnostics]):
+        return
+    params = [s for s in resolution.symbols if isinstance(s.node, ast.Param)]
+    if not params:
+        return
+    used = {symbol for node, symbol in resolution.uses.items() if isinstance(node, ast.Name | ast.Member)}
+    unresolved = {
+        node.name.text
+        for module in resolution.modules
+        for node in ast.walk(module)
+        if isinstance(node, ast.Member) and node not in resolution.uses
+    }
+    for symbol in params:
+        assert isinstance(symbol.node, ast.Param)
+        is_own = symbol.node.span.source is resolution.main.source
+        if is_own and symbol not in used and symbol.name not in unresolved:
+            check.report(
+                "W0201",
+                f"`{symbol.name}` is used nowhere: setting it changes nothing",
+                symbol.node.name,
+                hints=["use it where its value is meant, or leave it out"],
             )
 
 

@@ -17,14 +17,19 @@ from aidl_lang.cli import (
     compile,
     diff,
     doc,
+    eval,
     explain,
     fmt,
+    generate,
+    grammar,
     guide,
+    mcp,
     measure,
     new,
     params,
     report,
     show,
+    tool_schema,
     watch,
 )
 from aidl_lang.version import __version__
@@ -32,7 +37,25 @@ from aidl_lang.version import __version__
 INTERRUPTED = 130
 BROKEN_PIPE = 141
 
-_VERBS = (compile, check, show, measure, diff, fmt, params, doc, guide, explain, watch, new)
+_VERBS = (
+    compile,
+    check,
+    show,
+    measure,
+    diff,
+    fmt,
+    params,
+    doc,
+    guide,
+    grammar,
+    explain,
+    watch,
+    new,
+    generate,
+    mcp,
+    tool_schema,
+    eval,
+)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

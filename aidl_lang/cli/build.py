@@ -85,7 +85,8 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> Outcom
     outputs = targets(arguments)
     world = files.world(arguments.file)
     params, show = dict(arguments.params), tuple(sorted(arguments.show))
-    compiled = pipeline.compile(source, world, params=params, show=show, memory=memory)
+    settings = pipeline.Settings(variant=arguments.variant)
+    compiled = pipeline.compile(source, world, params, settings, show, memory)
     written: tuple[str, ...] = ()
     notes: tuple[Diagnostic, ...] = ()
     if compiled.ok or (arguments.best_effort and compiled.drawing is not None):

@@ -3,28 +3,17 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from aidl_lang.cli import files
+from aidl_lang.cli.options import add_variant
 from aidl_lang.cli.report import UseError, exit_code, say, show
-from aidl_lang.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.source import SourceFile
 
 if TYPE_CHECKING:
-    from aidl_lang.world import DiskWorld
-
-_ROUNDS = 20
-"""Times that `--fix` looks again: one fix may bring another mistake to light."""
-
-
-@dataclass(frozen=True)
-class Checked:
-    """The findings in a program as it stands now, and the titles of the fixes made on the way."""
-
-    source: SourceFile
-    diagnostics: list[Diagnostic]
-    fixes: tuple[str, ...] = ()
+    from aidl_lang.mending import Mended
+    from aidl_lang.variants import Variant
 
 
 def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -32,6 +21,7 @@ def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - reads standard input")
     parser.add_argument("--fix", action="store_true", help="write the program with all fixes applied")
     parser.add_argument("--json", action="store_true", help="print the diagnostics as JSON")
+    add_variant(parser)
     parser.set_defaults(run=run)
 
 
@@ -39,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
     found: list[Diagnostic] = []
     fixes: list[dict[str, str]] = []
     for name in arguments.files:
-        checked = _check(name, arguments.fix)
+        checked = _check(name, arguments.fix, arguments.variant)
         found += checked.diagnostics
         fixes += [{"file": name, "title": title} for title in checked.fixes]
         if not arguments.json:
@@ -54,42 +44,25 @@ def run(arguments: argparse.Namespace) -> int:
     return exit_code(found)
 
 
-def _check(name: str, fix: bool) -> Checked:
+def _check(name: str, fix: bool, variant: Variant) -> Mended:
     """Check one file; a file that cannot be read is a finding like others, so that the rest is checked."""
     from aidl_lang import pipeline
+    from aidl_lang.mending import Mended, mend
 
+    settings = pipeline.Settings(variant=variant)
     try:
         source, world = files.read(name), files.world(name)
         if not fix:
-            return Checked(source, pipeline.check(source, world))
-        checked = mend(source, world)
+            return Mended(source, pipeline.check(source, world, settings))
+        checked = mend(source, world, settings)
         if name == files.STANDARD or checked.source.text != source.text:
             files.write(name, checked.source.text.encode())
     except UseError as reason:
-        return Checked(SourceFile(name, ""), [reason.diagnostic])
+        return Mended(SourceFile(name, ""), [reason.diagnostic])
     return checked
 
 
-def mend(source: SourceFile, world: DiskWorld) -> Checked:
-    """Apply fixes and look again until nothing changes, the text returns to an earlier one, or the limit."""
-    from aidl_lang import pipeline
-
-    fixes: list[str] = []
-    seen: set[str] = set()
-    for _ in range(_ROUNDS):
-        diagnostics = pipeline.check(source, world)
-        seen.add(source.text)
-        text, applied = apply_fixes(source, diagnostics)
-        if not applied or text in seen:
-            break
-        fixes += [d.fix.title for d in diagnostics if d.fix][:applied]
-        source = SourceFile(source.name, text)
-    else:
-        diagnostics = pipeline.check(source, world)
-    return Checked(source, diagnostics, tuple(fixes))
-
-
-def _tell(name: str, checked: Checked) -> None:
+def _tell(name: str, checked: Mended) -> None:
     from aidl_lang.render import summary
 
     for title in checked.fixes:

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import argparse
 
+from aidl_lang.cli.options import add_variant
+
 
 def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser = verbs.add_parser("guide", help="print the language on a few pages", description=__doc__)
-    parser.add_argument("--full", action="store_true", help="with the whole reference after it")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--full", action="store_true", help="with the whole reference after it")
+    add_variant(kind)
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
     from aidl_lang.reference.guide import full_guide, guide
 
-    print((full_guide if arguments.full else guide)(), end="")
+    print(full_guide() if arguments.full else guide(arguments.variant), end="")
     return 0

@@ -14,11 +14,9 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.contacts import Contact
     from aidl_lang.geometry.curves import Vec
     from aidl_lang.pipeline import Compiled
-    from aidl_lang.survey import NothingThereError, Part, Survey, Width
+    from aidl_lang.survey import Part, Survey, Width
 
 _MOST_PAIRS = 20
-_MOST_NAMES = 6
-"""Names of what could have been meant, and of parts that touch nothing."""
 _NOTHING = "–"
 
 
@@ -54,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         found = survey(compiled.model, compiled.drawing, arguments.paths, dict(arguments.densities))
     except NothingThereError as reason:
-        raise _unmeasured(reason) from None
+        raise UseError.of(reason.diagnostic) from None
     show([*compiled.diagnostics, *found.notes])
     if arguments.json:
         _print_json(compiled, found)
@@ -74,21 +72,6 @@ def _density(text: str) -> tuple[str, float]:
     return name, value
 
 
-def _unmeasured(reason: NothingThereError) -> UseError:
-    path = reason.args[0]
-    what = f"`{path}` {reason.reason}" if reason.reason else f"there is no `{path}` in the drawing"
-    hints = [f"did you mean {' or '.join(f'`{name}`' for name in reason.near)}?"] if reason.near else []
-    if reason.known:
-        hints.append(f"there is {_listed(reason.known)}")
-    return UseError("E0919", what, *hints)
-
-
-def _listed(names: Sequence[str]) -> str:
-    shown = ", ".join(f"`{name}`" for name in names[:_MOST_NAMES])
-    more = len(names) - _MOST_NAMES
-    return f"{shown} and {more} more" if more > 0 else shown
-
-
 # --- Text ----------------------------------------------------------------------------------------
 
 
@@ -99,6 +82,8 @@ def _lines(found: Survey, asked: bool) -> Iterator[str]:
 
 
 def _text(found: Survey, asked: bool) -> Iterator[str]:
+    from aidl_lang.survey import listed
+
     yield from _block(found.whole)
     if asked:
         for part in found.parts:
@@ -112,7 +97,7 @@ def _text(found: Survey, asked: bool) -> Iterator[str]:
         yield ""
         yield from _pairs(found)
     if found.alone:
-        yield f"touches no other: {_listed(found.alone)}"
+        yield f"touches no other: {listed(found.alone)}"
 
 
 def _block(part: Part) -> Iterator[str]:
@@ -233,53 +218,14 @@ def _print_json(compiled: Compiled, found: Survey) -> None:
 
     document = {
         "units": "mm",
-        "whole": _part_dict(found.whole),
-        "parts": [_part_dict(part) for part in found.parts],
+        "whole": found.whole.to_dict(),
+        "parts": [part.to_dict() for part in found.parts],
         "pairs": [_pair_dict(pair) for pair in found.pairs],
         "all_pairs": not found.is_partial,
         "alone": list(found.alone),
         "diagnostics": [to_dict(d) for d in [*compiled.diagnostics, *found.notes]],
     }
     print(json.dumps(rounded(document), indent=1, ensure_ascii=False, allow_nan=False))
-
-
-def _part_dict(part: Part) -> dict[str, Any]:
-    left, bottom, right, top = part.box
-    squares = part.inertia
-    return {
-        "path": part.path,
-        "kind": part.kind,
-        "bodies": part.bodies,
-        "area": part.area,
-        "perimeter": part.perimeter,
-        "centroid": part.centroid,
-        "box": {"left": left, "right": right, "top": top, "bottom": bottom},
-        "width": right - left,
-        "height": top - bottom,
-        "pieces": part.pieces,
-        "holes": part.holes,
-        "inertia": {
-            "xx": squares.xx,
-            "yy": squares.yy,
-            "xy": squares.xy,
-            "polar": squares.polar,
-            "principal": squares.principal,
-            "angle": squares.angle,
-        },
-        "wall": _width_dict(part.wall),
-        "gap": _width_dict(part.gap),
-        "thickness": part.thickness,
-        "material": part.material,
-        "density": part.density,
-        "volume": part.volume,
-        "mass": part.mass,
-    }
-
-
-def _width_dict(width: Width | None) -> dict[str, Any] | None:
-    if width is None:
-        return None
-    return {"length": width.length, "from": width.a, "to": width.b, "part": width.part}
 
 
 def _pair_dict(pair: Contact) -> dict[str, Any]:

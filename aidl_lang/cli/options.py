@@ -3,12 +3,28 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from aidl_lang.cli import sizes
+
+if TYPE_CHECKING:
+    from aidl_lang.llm.messages import Sampling
+    from aidl_lang.llm.providers import Connection, Price
+    from aidl_lang.variants import Variant
 
 
 def add_program(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="the program; - reads standard input")
+
+
+def add_variant(parser: argparse._ActionsContainer) -> None:
+    parser.add_argument(
+        "--variant",
+        type=_variant,
+        default="full",
+        metavar="NAME",
+        help="the language, or a subset of it: full (the default), no-hierarchy, no-constraints",
+    )
 
 
 def add_params(
@@ -107,11 +123,72 @@ def _add_cutting(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_provider(parser: argparse.ArgumentParser) -> None:
+    """The options that say which language model is asked, and how; see `connection` and `sampling`."""
+    group = parser.add_argument_group("the model")
+    group.add_argument(
+        "--provider",
+        default="",
+        metavar="NAME",
+        help="openai (or any server that speaks its protocol), anthropic, or exec:COMMAND "
+        "(default: what the environment says)",
+    )
+    group.add_argument("--model", default="", metavar="NAME", help="the model (default: $AIDL_MODEL)")
+    group.add_argument(
+        "--base-url", default="", metavar="URL", help="of the server, as in http://localhost:11434/v1"
+    )
+    group.add_argument("--seed", type=int, metavar="N", help="of the reply, for servers that have one")
+    group.add_argument("--temperature", type=_temperature, metavar="T", help="0 is the least random")
+    group.add_argument("--max-tokens", type=_positive, metavar="N", help="of one reply")
+    group.add_argument(
+        "--timeout",
+        type=_seconds,
+        default=600.0,
+        metavar="SECONDS",
+        help="how long the model may be silent (default: 600)",
+    )
+    group.add_argument(
+        "--price",
+        type=_price,
+        metavar="IN/OUT",
+        help="dollars per million tokens, where the server does not tell the cost (default: $AIDL_PRICE)",
+    )
+
+
+def connection(arguments: argparse.Namespace) -> Connection:
+    """Which model the options of `add_provider` name."""
+    from aidl_lang.llm.providers import Connection
+
+    return Connection(
+        provider=arguments.provider,
+        model=arguments.model,
+        base_url=arguments.base_url,
+        timeout=arguments.timeout,
+        price=arguments.price,
+    )
+
+
+def sampling(arguments: argparse.Namespace) -> Sampling:
+    from aidl_lang.llm.messages import Sampling
+
+    return Sampling(arguments.seed, arguments.temperature, arguments.max_tokens)
+
+
 def _definition(text: str) -> tuple[str, str]:
     name, equals, value = (part.strip() for part in text.partition("="))
     if not (name and equals and value):
         raise argparse.ArgumentTypeError(f"expected NAME=VALUE, as in width=200, not `{text}`")
     return name, value
+
+
+def _variant(text: str) -> Variant:
+    from aidl_lang.variants import Variant
+
+    try:
+        return Variant(text)
+    except ValueError:
+        known = ", ".join(Variant)
+        raise argparse.ArgumentTypeError(f"there is no `{text}`; there are {known}") from None
 
 
 def _pixels(text: str) -> int:
@@ -138,3 +215,40 @@ def _layers(text: str) -> frozenset[str]:
         if layer not in SHOW:
             raise argparse.ArgumentTypeError(f"there is no `{layer}`; there are {', '.join(SHOW)}")
     return frozenset(layers)
+
+
+def _temperature(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value <= 2:
+        raise argparse.ArgumentTypeError(f"expected a number from 0 to 2, not `{text}`")
+    return value
+
+
+def _positive(text: str) -> int:
+    if not text.isdecimal() or not 1 <= int(text) <= 1_000_000:
+        raise argparse.ArgumentTypeError(f"expected a number from 1 to 1000000, not `{text}`")
+    return int(text)
+
+
+def _seconds(text: str) -> float:
+    try:
+        value = float(text.removesuffix("s"))
+    except ValueError:
+        value = 0.0
+    if not 0 < value <= 86_400:
+        raise argparse.ArgumentTypeError(f"expected seconds above 0 and up to a day, not `{text}`")
+    return value
+
+
+def _price(text: str) -> Price:
+    from aidl_lang.llm.providers import Price
+
+    try:
+        return Price.parse(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"expected dollars per million tokens in and out, as in 2.5/10, not `{text}`"
+        ) from None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import accumulate
 
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.distance import region_distance
@@ -14,19 +15,19 @@ from aidl_lang.geometry.sections import Section, difference, fill, intersection,
 from aidl_lang.geometry.trace import trace
 
 
-def united(a: Region, b: Region) -> Region:
-    """What lies in one or both."""
-    return _combined(a, b, lambda p, q: union([p, q]))
+def united(*regions: Region) -> Region:
+    """What lies in any of them."""
+    return _combined(regions, lambda *sections: union(sections))
 
 
 def without(a: Region, b: Region) -> Region:
     """What lies in a and not in b."""
-    return _combined(a, b, difference)
+    return _combined((a, b), difference)
 
 
 def common(a: Region, b: Region) -> Region:
     """What lies in both."""
-    return _combined(a, b, intersection)
+    return _combined((a, b), intersection)
 
 
 def overlap_area(a: Region, b: Region) -> float:
@@ -42,13 +43,14 @@ def clearance(a: Region, b: Region) -> float:
     return closest[0] if closest else float("inf")
 
 
-def _combined(a: Region, b: Region, operation: Callable[[Section, Section], Section]) -> Region:
-    pieces: list[Piece] = [p for region in (a, b) for loop in region.loops for p in loop.pieces]
+def _combined(regions: Sequence[Region], operation: Callable[..., Section]) -> Region:
+    pieces: list[Piece] = [p for region in regions for loop in region.loops for p in loop.pieces]
     network = Network(pieces)
-    first = sum(len(loop.pieces) for loop in a.loops)
+    counts = [sum(len(loop.pieces) for loop in region.loops) for region in regions]
+    firsts = accumulate([0, *counts][:-1])
 
-    def traced() -> Region:
-        return trace(network, operation(section_of(network, a, 0), section_of(network, b, first))).region
+    def traced(placed: Sequence[tuple[Region, int]] = tuple(zip(regions, firsts, strict=True))) -> Region:
+        return trace(network, operation(*(section_of(network, r, first) for r, first in placed))).region
 
     return exactly(network, traced)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from aidl_lang import ast
 from aidl_lang.builtins import WORDS
 from aidl_lang.diagnostics import Edit, Fix, Label
-from aidl_lang.names import fold, nearest
+from aidl_lang.names import fold, is_slip, nearest
 from aidl_lang.resolving.foreign import call_answer, value_hint
 from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind, word_meant
 from aidl_lang.source import Span
@@ -208,7 +208,10 @@ def did_you_mean(like: Sequence[str], mark: str = "") -> str:
 
 
 def respell(node: ast.Node, like: Sequence[str]) -> Fix | None:
-    return Fix(f"write `{like[0]}`", (Edit(node.span, like[0]),)) if like else None
+    """Writes the nearest name where nobody would doubt that it was meant."""
+    if not like or not (is_slip(node.span.text, like[0]) or like == ["self"]):
+        return None
+    return Fix(f"write `{like[0]}`", (Edit(node.span, like[0]),))
 
 
 def list_of(start: str, names: Sequence[str], mark: str = "") -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from aidl_lang import ast
 from aidl_lang.builtins import EVERYWHERE, MATH, SIGNATURES
@@ -53,8 +54,11 @@ class Resolution:
         return self.scopes[definition]
 
 
+@lru_cache(maxsize=4)
 def library_scope(library: Library) -> Scope:
-    """The outermost scope: what is built in and what the library defines."""
+    """The outermost scope: what is built in and what the library defines. Nothing declares anything in it, so
+    one serves all programs.
+    """
     scope = Scope(_NOWHERE)
     scope.callables = _Joined(SIGNATURES, library.callables)
     for name, target in library.aliases.items():

@@ -1,0 +1,81 @@
+"""Why a program does not solve: who is in conflict, what each would need, and whether that would do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import TypeAlias
+
+from aidl_lang import failures, pipeline
+from aidl_lang.agents.results import Conflict, Party, Replacement, place, repair
+from aidl_lang.diagnostics import Diagnostic, Fix, apply_fixes
+from aidl_lang.pipeline import Settings
+from aidl_lang.remedies import short
+from aidl_lang.source import SourceFile
+from aidl_lang.world import World
+
+CODES = ("E0601", "E0602", "E0603", "E0605")
+"""Of the diagnostics that conflicts are told by."""
+Params: TypeAlias = Mapping[str, float | str | bool] | None
+_OUTCOMES = {
+    True: ", and the program solves",
+    False: ", but the program does not solve by that alone",
+    None: "",
+}
+_MOST_TRIED = 12
+"""Remedies that are tried: each is a program to be solved."""
+
+
+class Remedies:
+    """Tries edits on one program."""
+
+    def __init__(self, source: SourceFile, world: World, params: Params, settings: Settings) -> None:
+        self.source, self.world, self.params, self.settings = source, world, params, settings
+        self.tried = 0
+
+    def conflict(self, found: failures.Conflict) -> Conflict:
+        return Conflict(found.headline, found.is_minimal, [self._party(party) for party in found.parties])
+
+    def _party(self, party: failures.Party) -> Party:
+        return Party(
+            party.text,
+            party.path,
+            place(party.span),
+            party.off if math.isfinite(party.off) else None,
+            party.would_fit,
+            repair(party.fix) if party.fix else None,
+            self._solves(party.fix) if party.fix else None,
+        )
+
+    def _solves(self, fix: Fix) -> bool | None:
+        """Whether the program solves with an edit; None if that was not tried."""
+        if self.tried == _MOST_TRIED:
+            return None
+        self.tried += 1
+        text, applied = apply_fixes(self.source, [Diagnostic("E0601", "", fix=fix)])
+        if not applied:
+            return None
+        changed = SourceFile(self.source.name, text)
+        return pipeline.compile(changed, self.world, self.params, self.settings).status == "solved"
+
+
+def told(conflict: Conflict) -> str:
+    """In lines."""
+    lead = "without any one of these the others hold" if conflict.is_minimal else "these do not hold"
+    return "\n".join(
+        [f"{conflict.headline}; {lead}:", *(line for p in conflict.parties for line in _told(p))]
+    )
+
+
+def _told(party: Party) -> Iterator[str]:
+    off = f"off by {short(party.off)}" if party.off else ""
+    words = "; ".join(filter(None, (party.would_fit, off)))
+    yield f"- line {party.place.line}, in {party.held_by}: {party.constraint}{f' ({words})' if words else ''}"
+    if party.remedy is not None:
+        edits = " and ".join(map(_edit, party.remedy.replacements))
+        yield f"    {party.remedy.title}: {edits}{_OUTCOMES[party.solves]}"
+
+
+def _edit(edit: Replacement) -> str:
+    where = f"line {edit.place.line}, column {edit.place.column}"
+    return f"{where}: `{edit.old}` becomes `{edit.new}`" if edit.old else f"{where}: insert `{edit.new}`"

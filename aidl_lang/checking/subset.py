@@ -1,0 +1,160 @@
+"""Programs in a subset of the language: what they use that it does not have.
+
+Looked at is what the program and its imports say themselves, never the library: a shape made of constraints
+there is a primitive here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from aidl_lang import ast
+from aidl_lang.builtins import EDITS, FINISHES
+from aidl_lang.checking.infer import Inference
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.names import fold
+from aidl_lang.source import Span
+from aidl_lang.types import AnyType, StructureType, TruthType, Type
+from aidl_lang.variants import FORBIDDEN, Construct, Variant, instead, speaks_of_absent
+
+_BESIDE = (
+    ast.Import,
+    ast.Param,
+    ast.Let,
+    ast.Alias,
+    ast.FunctionDefinition,
+    ast.ShapeDefinition,
+    ast.ConstraintDefinition,
+    ast.Structure,
+    ast.Todo,
+)
+"""What may stand beside a structure at file level without making an assembly around both."""
+
+_WHOLE = frozenset({"E0406", "E0408"})
+"""Codes that speak of a whole statement: what else is wrong inside it goes with it."""
+
+
+def check_subset(infer: Inference, variant: Variant) -> list[Diagnostic]:
+    """What a checked program, with its imports, says that its variant does not have."""
+    walker = _Walker(infer, variant)
+    if FORBIDDEN[variant]:
+        for module in infer.resolution.modules:
+            walker.module(module)
+    return walker.diagnostics
+
+
+def adapted(diagnostics: Iterable[Diagnostic], variant: Variant) -> list[Diagnostic]:
+    """Diagnostics that advise nothing the variant does not have, and are silent about what is inside a
+    statement that it does not have.
+    """
+    found = list(diagnostics)
+    own = {rule.code for rule in FORBIDDEN[variant].values()}
+    if not own:
+        return found
+    gone = [d.span for d in found if d.code in own & _WHOLE and d.span is not None]
+    return [
+        d if d.code in own else _advice(d, variant)
+        for d in found
+        if d.code in own or d.span is None or not any(span.overlaps(d.span) for span in gone)
+    ]
+
+
+def _advice(d: Diagnostic, variant: Variant) -> Diagnostic:
+    is_mended = d.fix is not None and any(speaks_of_absent(variant, e.replacement) for e in d.fix.edits)
+    hints = [hint for hint in d.hints if not speaks_of_absent(variant, hint)]
+    return replace(d, hints=(*hints, *instead(variant, d.code)), fix=None if is_mended else d.fix)
+
+
+class _Walker:
+    """Goes through files and reports every construct that the variant is without."""
+
+    def __init__(self, infer: Inference, variant: Variant) -> None:
+        self.infer = infer
+        self.rules = FORBIDDEN[variant]
+        self.root: ast.Structure | None = None
+        self.diagnostics: list[Diagnostic] = []
+
+    def module(self, module: ast.Module) -> None:
+        roots = [s for s in module.statements if isinstance(s, ast.Structure) and s.parameters is None]
+        if roots and module is self.infer.resolution.main:
+            self.root = roots[0]
+            beside = (s for s in module.statements if not isinstance(s, _BESIDE))
+            if (first := next(beside, None)) is not None:
+                self._report(Construct.LOOSE, first.span, self.root.name.text)
+        stack: list[ast.Node] = list(module.statements)
+        while stack:
+            node = stack.pop()
+            if not self._states(node):
+                self._look_at(node)
+                stack += ast.children(node)
+
+    def _states(self, node: ast.Node) -> bool:
+        """Whether a statement says what must hold; that reports all that is inside it."""
+        match node:
+            case ast.Constrain() | ast.Prefer():
+                self._report(Construct.CONSTRAINT, node.span)
+            case ast.ExpressionStatement(value) if self._constrains(value):
+                self._report(Construct.CONSTRAINT, node.span)
+            case ast.ConstraintDefinition(name=name):
+                self._report(Construct.DEFINITION, node.span, name.text)
+            case _:
+                return False
+        return True
+
+    def _constrains(self, value: ast.Expression) -> bool:
+        """Whether a bare expression is a constraint; a call that fits nothing is what was called."""
+        kind = self._type(value)
+        if not isinstance(value, ast.Call):
+            return isinstance(kind, TruthType)
+        name = self.infer.resolution.canonical.get(value.callee, value.callee.text)
+        if name in EDITS | FINISHES:
+            return False
+        may_be = isinstance(kind, AnyType) and self._may_call(value, ast.ConstraintDefinition)
+        return isinstance(kind, TruthType) or may_be or name == "fixed"
+
+    def _look_at(self, node: ast.Node) -> None:
+        match node:
+            case ast.Structure(name=name) if node is not self.root:
+                construct = Construct.HOLE if node.kind == "hole" else Construct.STRUCTURE
+                construct = Construct.TEMPLATE if node.parameters is not None else construct
+                self._report(construct, name.span, name.text)
+            case ast.ShapeDefinition(name=name):
+                self._report(Construct.SHAPE, name.span, name.text)
+            case ast.Var(name=name):
+                word = Span(node.span.source, node.span.start, node.span.start + len("var"))
+                self._report(
+                    Construct.UNKNOWN, name.span, name.text, Fix("make it a `let`", (Edit(word, "let"),))
+                )
+            case ast.Call(callee=callee):
+                if isinstance(self._type(node), StructureType) and self._may_call(node, ast.Structure):
+                    self._report(Construct.TEMPLATE, callee.span, callee.text)
+                elif isinstance(self._type(node), TruthType) and self._may_call(
+                    node, ast.ConstraintDefinition
+                ):
+                    self._report(Construct.RELATION, callee.span, callee.text)
+                self._smooth(node)
+            case _:
+                pass
+
+    def _smooth(self, call: ast.Call) -> None:
+        """`smooth: true` on a step of a path lets the solver turn it."""
+        candidates = self.infer.resolution.candidates.get(call, ())
+        if not any(s.standard and "smooth" in s.by_fold for s in candidates):
+            return
+        for argument in call.arguments:
+            is_off = isinstance(argument.value, ast.Boolean) and not argument.value.value
+            if argument.name is not None and fold(argument.name.text) == "smooth" and not is_off:
+                self._report(Construct.SMOOTH, argument.span, argument.span.one_line)
+
+    def _type(self, node: ast.Expression) -> Type | None:
+        fact = self.infer.facts.get(node)
+        return fact.type if fact is not None else None
+
+    def _may_call(self, node: ast.Call, kind: type[ast.Callable]) -> bool:
+        return any(s.kind is kind for s in self.infer.resolution.candidates.get(node, ()))
+
+    def _report(self, construct: Construct, span: Span, name: str = "", fix: Fix | None = None) -> None:
+        if (rule := self.rules.get(construct)) is not None:
+            message, hint = (text.replace("{name}", name) for text in (rule.message, rule.hint))
+            self.diagnostics.append(Diagnostic(rule.code, message, span, hints=(hint,), fix=fix))

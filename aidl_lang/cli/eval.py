@@ -1,0 +1,177 @@
+"""`aidl eval`: how well a model does with the language and with subsets of it, over prompts and runs."""
+
+from __future__ import annotations
+
+import argparse
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aidl_lang.cli.options import add_provider, connection, sampling
+from aidl_lang.cli.report import UseError, say, show
+
+if TYPE_CHECKING:
+    from aidl_lang.evaluation.plan import Plan
+    from aidl_lang.evaluation.requirements import Prompt
+    from aidl_lang.evaluation.run import Done
+    from aidl_lang.evaluation.store import Store
+    from aidl_lang.llm.messages import Provider
+
+_VARIANTS = ("full", "no-hierarchy", "no-constraints", "openscad")
+_OPENSCAD = "openscad"
+
+
+def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    parser = verbs.add_parser(
+        "eval", help="measure how models do, over prompts and runs", description=__doc__
+    )
+    parser.add_argument(
+        "--out", default="evaluation", metavar="DIR", help="folder of the results (default: evaluation)"
+    )
+    parser.add_argument("--prompts", nargs="+", metavar="NAME", help="those of that name (default: all)")
+    parser.add_argument(
+        "--prompt-folder", metavar="DIR", help="where prompts are read from (default: those that come along)"
+    )
+    parser.add_argument(
+        "--variants", nargs="+", choices=_VARIANTS, default=list(_VARIANTS), help="default: all"
+    )
+    parser.add_argument(
+        "--runs", type=_count, default=3, metavar="N", help="of each prompt in each variant (default: 3)"
+    )
+    parser.add_argument(
+        "--attempts", type=_count, default=5, metavar="N", help="replies in a conversation (default: 5)"
+    )
+    parser.add_argument("--jobs", type=_count, default=4, metavar="N", help="at a time (default: 4)")
+    parser.add_argument(
+        "--time-limit",
+        type=_count,
+        default=60,
+        metavar="SECONDS",
+        help="for judging a program, for drawing and for editing it (default: 60)",
+    )
+    parser.add_argument(
+        "--clip-weights", metavar="FILE", help="weights of CLIP (default: $AIDL_CLIP_WEIGHTS)"
+    )
+    parser.add_argument(
+        "--clip-model",
+        default="ViT-B-32-quickgelu",
+        metavar="NAME",
+        help="what they are weights of, as open_clip names it (default: ViT-B-32-quickgelu)",
+    )
+    parser.add_argument(
+        "--report", action="store_true", help="ask nothing: report on the runs that are there"
+    )
+    add_provider(parser)
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    if find_spec("pebble") is None:
+        raise UseError(
+            "E0949", "`aidl eval` needs a package that is not installed", "pip install 'aidl-lang[eval]'"
+        )
+    from aidl_lang.evaluation.report import report
+    from aidl_lang.evaluation.store import Store, StoreError
+
+    try:
+        store = Store(Path(arguments.out))
+        left = _run(arguments, store)
+        print(report(store, arguments.clip_weights, arguments.clip_model), end="")
+    except StoreError as reason:
+        raise UseError.of(reason.diagnostic) from None
+    say(f"{store.folder / 'index.html'}: the gallery; evaluation.md, .csv and .json beside it: the tables")
+    return 1 if left else 0
+
+
+def _run(arguments: argparse.Namespace, store: Store) -> int:
+    """Do what is left to do, and return how many jobs are still left."""
+    from aidl_lang.evaluation.run import run
+
+    plan = _plan(arguments)
+    provider = None if arguments.report else _provider(arguments)
+    if provider is not None:
+        store.begin(plan, provider.name)
+    outcome = run(plan, provider, store, arguments.jobs, float(arguments.time_limit), _progress)
+    if outcome.failure is not None:
+        show([outcome.failure])
+        say(f"{outcome.left} conversations are left to be had: the same command goes on with them")
+    return outcome.left
+
+
+def _plan(arguments: argparse.Namespace) -> Plan:
+    from dataclasses import replace
+
+    from aidl_lang.evaluation.plan import Plan
+    from aidl_lang.llm.generation import Settings
+
+    asked = sampling(arguments)
+    seeded = replace(asked, seed=1 if asked.seed is None else asked.seed)
+    settings = Settings(arguments.attempts, seeded)
+    return Plan(_prompts(arguments), _variants(arguments), arguments.runs, settings)
+
+
+def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
+    from difflib import get_close_matches
+
+    from aidl_lang.evaluation.requirements import PromptError, load
+
+    folder = arguments.prompt_folder
+    try:
+        known = {prompt.name: prompt for prompt in load(Path(folder) if folder else None)}
+    except (PromptError, OSError) as error:
+        raise UseError("E0947", f"the prompts cannot be read: {error}") from None
+    if not known:
+        raise UseError("E0947", f"there are no prompts in `{folder}`", "a prompt is a file `NAME.aidl`")
+    for name in arguments.prompts or ():
+        if name not in known:
+            near = get_close_matches(name, known, n=1)
+            hint = f"did you mean `{near[0]}`?" if near else f"there are {', '.join(known)}"
+            raise UseError("E0947", f"there is no prompt `{name}`", hint)
+    return tuple(known[name] for name in dict.fromkeys(arguments.prompts or known))
+
+
+def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
+    from aidl_lang.evaluation.openscad import OpenScad
+
+    wanted = [name for name in _VARIANTS if name in arguments.variants]
+    if _OPENSCAD in wanted and not OpenScad().is_installed:
+        wanted.remove(_OPENSCAD)
+        if not wanted:
+            raise UseError("E0949", "`openscad` is not installed", "leave out `--variants openscad`")
+        say("openscad is left out: it is not installed")
+    return tuple(wanted)
+
+
+def _provider(arguments: argparse.Namespace) -> Provider:
+    from aidl_lang.llm.messages import ProviderError
+    from aidl_lang.llm.providers import connect
+
+    try:
+        return connect(connection(arguments))
+    except ProviderError as reason:
+        raise UseError.of(reason.diagnostic) from None
+
+
+def _progress(done: Done) -> None:
+    say(
+        f"{done.number}/{done.count} {done.job.prompt}, {done.job.variant}, run {done.job.run}: {_came(done)}"
+    )
+
+
+def _came(done: Done) -> str:
+    if done.failure is not None:
+        return f"broke off: {done.failure.message}"
+    count = len(done.record["attempts"])
+    after = f"after {count} attempt{'s' if count != 1 else ''}"
+    if not done.record["ok"]:
+        return f"not valid {after}"
+    lost = f", {len(done.record['missing'])} lost" if done.record["missing"] else ""
+    results = done.record.get("requirements", ())
+    met = sum(result["status"] == "met" for result in results)
+    return f"valid {after}{lost}" + (f", {met}/{len(results)} requirements" if results else "")
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or not 1 <= int(text) <= 10_000:
+        raise argparse.ArgumentTypeError(f"expected a number from 1 to 10000, not `{text}`")
+    return int(text)

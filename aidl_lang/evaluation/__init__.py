@@ -1,0 +1,1 @@
+"""How well programs answer what was asked for: prompts, what their drawings must have, and runs over both."""

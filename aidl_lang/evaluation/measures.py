@@ -1,0 +1,67 @@
+"""What is measured of a valid program, in a worker: its drawing, what it has, and how it takes to changes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from aidl_lang import pipeline
+from aidl_lang.evaluation import editability, openscad, shapes
+from aidl_lang.evaluation.editability import Edits
+from aidl_lang.evaluation.requirements import Prompt, Result, examine
+from aidl_lang.evaluation.whole import pieces
+from aidl_lang.export import Options
+from aidl_lang.geometry.boolean import united
+from aidl_lang.geometry.region import Region
+from aidl_lang.source import SourceFile
+
+OPENSCAD = "openscad"
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """`numbers` holds only what the language has; `requirements` is empty where nothing is examined."""
+
+    png: bytes
+    numbers: Mapping[str, float] = field(default_factory=dict)
+    requirements: tuple[Result, ...] = ()
+
+
+def draw(variant: str, program: str, prompt: Prompt) -> Drawn:
+    """A valid program drawn and measured."""
+    return _draw_openscad(program) if variant == OPENSCAD else _draw_aidl(program, prompt)
+
+
+def _draw_aidl(program: str, prompt: Prompt) -> Drawn:
+    source = SourceFile("part.aidl", program)
+    compiled = pipeline.compile(source)
+    model, drawing = compiled.model, compiled.drawing
+    if model is None or drawing is None:
+        raise ValueError("the program was judged valid, and is not")
+    numbers: dict[str, float] = {
+        "structures": sum(1 for _ in model.root.walk()),
+        "constraints": len(model.constraints),
+        "detached": _detached(united(*(body.region for body in drawing.bodies))),
+    }
+    if model.degrees is not None:
+        numbers["degrees"] = model.degrees
+    png = compiled.export(".png", Options(pixels=shapes.PIXELS))
+    return Drawn(png, numbers, examine(prompt, source, compiled))
+
+
+def _draw_openscad(program: str) -> Drawn:
+    drawn = shapes.region(openscad.render(program).outlines)
+    numbers = {"structures": float(openscad.structures(program)), "detached": _detached(drawn)}
+    return Drawn(shapes.png(drawn), numbers)
+
+
+def _detached(drawn: Region) -> float:
+    """How many pieces there are beyond the first."""
+    return max(0.0, pieces(drawn) - 1)
+
+
+def edit(variant: str, program: str) -> Edits:
+    """A valid program changed at its knobs."""
+    if variant == OPENSCAD:
+        return editability.of_openscad(program)
+    return editability.of_aidl(SourceFile("part.aidl", program))

@@ -1,0 +1,71 @@
+"""The formats: what each is made of."""
+
+from __future__ import annotations
+
+from aidl_lang.grammars.descent import from_left_to_right
+from aidl_lang.grammars.notation import (
+    Chars,
+    Name,
+    Node,
+    Repeat,
+    Rules,
+    Seq,
+    Text,
+    alt,
+    optional,
+    reachable,
+    seq,
+)
+from aidl_lang.grammars.reader import read_source
+from aidl_lang.grammars.spacing import spaced
+from aidl_lang.grammars.terminals import SPACING, bounded_terminals, reading_terminals
+from aidl_lang.grammars.writing import GBNF, LARK, W3C
+from aidl_lang.kinds import KINDS
+
+# Text that does not hold three backticks, and the opening of a block.
+_PROSE = Repeat(alt(Chars("^`"), seq(Text("`"), Chars("^`")), seq(Text("``"), Chars("^`"))), 0, None)
+_OPENING = seq(_PROSE, Text("```aidl"), optional(Chars("\\r")), Chars("\\n"))
+
+
+def as_it_is() -> str:
+    return read_source().text
+
+
+def for_readers() -> str:
+    """W3C EBNF: the rules of the source, of which white space is no part."""
+    return W3C.definitions(read_source().rules) + "\n" + W3C.definitions(reading_terminals())
+
+
+def for_decoding(format: str, fenced: bool) -> str:
+    """Bounded terminals, white space in the rules, and no kinds of structures other than those there are."""
+    rules = spaced(_with_kinds(read_source().rules), "module") | SPACING
+    program = seq(optional(Name("heading")), Name("module"))
+    if fenced:
+        rules["start"] = seq(Name("OPENING"), program, Name("new_line"), Text("```"), optional(Name("SPACE")))
+    else:
+        rules["start"] = seq(program, optional(Name("space")))
+    terminals = {**bounded_terminals(), "OPENING": _OPENING}
+    if format == "gbnf":
+        return GBNF.definitions(reachable(from_left_to_right(rules) | terminals, "start"))
+    used = reachable(rules | terminals, "start")
+    return "%llguidance {}\n\n" + LARK.definitions(used)
+
+
+def _with_kinds(rules: Rules) -> dict[str, Node]:
+    """The rules with the kinds of structures where they take any name: the parser refuses others by itself."""
+    return {
+        **rules,
+        "kind": alt(*map(Text, KINDS)),
+        **{
+            name: _first_replaced(rules[name], Name("NAME"), Name("kind"))
+            for name in ("structure", "template")
+        },
+    }
+
+
+def _first_replaced(node: Node, old: Node, new: Node) -> Node:
+    """A sequence with another item in the place of the first of one sort."""
+    if not isinstance(node, Seq):
+        raise TypeError(f"not a sequence: {node}")
+    at = node.items.index(old)
+    return seq(*node.items[:at], new, *node.items[at + 1 :])

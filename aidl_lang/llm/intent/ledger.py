@@ -1,0 +1,247 @@
+"""What the programs of a conversation meant, one after another, and what was lost on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+from aidl_lang.llm.intent.canonical import names_in
+from aidl_lang.llm.intent.changes import Changes, Fate, compare, strength
+from aidl_lang.llm.intent.inventory import Inventory, Item, Kind, inventory
+from aidl_lang.llm.intent.loss import Loss
+from aidl_lang.llm.intent.probing import Prober, State, stands
+from aidl_lang.llm.intent.wording import named
+from aidl_lang.pipeline import Compiled, Settings, front
+from aidl_lang.source import SourceFile
+from aidl_lang.world import World
+
+_PROBES = 12
+"""Times that a program is compiled to try what it lost."""
+_RESTORING = 30
+"""The same for putting back what fits."""
+_THINGS = frozenset({Kind.STRUCTURE, Kind.GEOMETRY})
+_UNREAD = ("E01", "E08")
+"""Errors after which a part of a program may not have been read."""
+_ORDER = tuple(Kind)
+"""In which losses are put back: what is spoken of before what speaks of it."""
+
+
+@dataclass(frozen=True)
+class Restored:
+    """A program with what fits back into it, and the phrases of what was put back."""
+
+    text: str
+    items: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Noted:
+    """A program of the conversation, and the items for which it is the last that had them; for each, what
+    stood in its place in the next program, if anything did.
+    """
+
+    attempt: int
+    inventory: Inventory
+    last: dict[Item, Item | None] = field(default_factory=dict)
+
+
+class Ledger:
+    """Remembers what the programs of one conversation meant. `note` each in turn; `missing` is then what any
+    earlier one had and the last one lacks.
+
+    A program that is to be edited is noted first, as attempt 1: what was asked to go will be missing as well.
+    """
+
+    def __init__(self, world: World | None = None, settings: Settings | None = None) -> None:
+        self._world, self._settings = world, settings or Settings()
+        self._noted: list[_Noted] = []
+        self._text = ""
+        self._known: tuple[Loss, ...] = ()
+
+    @property
+    def missing(self) -> tuple[Loss, ...]:
+        """What is lost now, in the order of the attempts and of writing."""
+        return tuple(loss for loss in self._known if _counts(loss))
+
+    def note(self, source: SourceFile, compiled: Compiled | None) -> None:
+        """Take down the program of an attempt, and what came of it (None if it was not compiled)."""
+        here = self.inventory(source, compiled)
+        prober = Prober(source.name, self._world, self._settings, _PROBES)
+        self._known = tuple(_probed(loss, c, prober, compiled) for loss, c in self.losses(here, compiled))
+        self._text = source.text
+        accepted = {loss.item for loss in self._known if loss.fate is Fate.REWRITTEN and not _open(loss)}
+        for noted in self._noted:
+            fates = compare(noted.inventory, here).fates
+            heirs = {item: heir or fates[item][1] for item, heir in noted.last.items()}
+            noted.last.clear()
+            noted.last.update((i, h) for i, h in heirs.items() if not _is_there(i, fates[i][0], accepted))
+        self._noted.append(_Noted(len(self._noted) + 1, here, dict.fromkeys(here.items)))
+
+    def restore(self, source: SourceFile) -> Restored:
+        """Put back what an earlier program had and this one lacks, as far as it fits with everything: one
+        after another, each kept only if the program still solves, without new errors or failed asserts.
+        """
+        settled = (State.IMPLIED, State.CONFLICTS)
+        known = self._known if source.text == self._text else ()
+        prober = Prober(source.name, self._world, self._settings, _RESTORING)
+        return _Restoring(self, prober, source).run({k.item for k in known if k.finding.state in settled})
+
+    def inventory(self, source: SourceFile, compiled: Compiled | None) -> Inventory:
+        """What a program means to have."""
+        program, found = front(source, self._world, self._settings)
+        return inventory(program.resolution, found if compiled is None else compiled.diagnostics)
+
+    def losses(self, here: Inventory, compiled: Compiled | None) -> Iterator[tuple[Loss, Changes]]:
+        """What noted programs had and another lacks, with the changes since."""
+        reports: list[tuple[Loss, Changes]] = []
+        for noted in self._noted:
+            changes = compare(noted.inventory, here)
+            reports += ((loss, changes) for loss in _losses(noted, changes))
+        items = {loss.item for loss, _ in reports}
+        heirs = {item: heir for noted in self._noted for item, heir in noted.last.items()}
+        unread = compiled is None or any(d.code.startswith(_UNREAD) for d in compiled.diagnostics)
+        text = _squeezed(here.source.text) if unread else ""
+        twice = {_lesser(item, heir) for item in items if (heir := heirs[item]) in items and heir is not None}
+        for loss, changes in reports:
+            if loss.item not in twice and not (unread and _mark(loss.item) in text):
+                yield loss, changes
+
+
+def _losses(noted: _Noted, changes: Changes) -> Iterator[Loss]:
+    """What another program lacks of what one was the last to have. What goes with a structure, or with what
+    it speaks of, is told with that.
+    """
+    lost = [i for i in noted.last if _is_missing(i, *changes.fates[i])]
+    gone = {i.thing: i for i in lost if i.kind in _THINGS and changes.fates[i][0] is Fate.GONE}
+    params = {i.thing[-1]: i for i in lost if i.kind is Kind.PARAM}
+    dependents: dict[Item, list[Item]] = {}
+    told: list[Item] = []
+    for item in lost:
+        inside = [*(item.home[:k] for k in range(1, len(item.home) + 1)), item.thing]
+        if any(path in gone and gone[path] is not item for path in inside):
+            continue
+        if item.home and item.home not in changes.before.things and item.home not in changes.after.bodies:
+            continue  # in a definition that is not there, so that nothing uses it
+        owner = next((gone[path] for path in sorted(item.things) if path in gone), None)
+        owner = owner or next((params[name] for name in sorted(names_in(item.key)) if name in params), None)
+        if owner is not None and item.kind not in _THINGS:
+            dependents.setdefault(owner, []).append(item)
+        else:
+            told.append(item)
+    for item in told:
+        fate, now = changes.fates[item]
+        yield Loss(
+            item,
+            noted.inventory,
+            noted.attempt,
+            fate,
+            now,
+            dependents=tuple(dependents.get(item, ())),
+        )
+
+
+def _lesser(item: Item, heir: Item) -> Item:
+    """Which of a statement and what it became is not told when both are lost: the older, but for a wish."""
+    return heir if strength(heir) < strength(item) else item
+
+
+def _is_missing(item: Item, fate: Fate, now: Item | None) -> bool:
+    """Whether something is to be told, or to be tried: a statement that was right may not have been rewritten
+    to one that says less. What a diagnostic offered is no loss.
+    """
+    match fate:
+        case Fate.GONE:
+            return not item.may_go
+        case Fate.WEAKENED:
+            return not (item.may_go or item.may_bend)
+        case Fate.REWRITTEN:
+            return not item.wrong and item.kind is Kind.CONSTRAINT
+    return False
+
+
+def _is_there(item: Item, fate: Fate, accepted: set[Item]) -> bool:
+    """Whether what an item meant need not be looked for any more."""
+    if fate is Fate.REWRITTEN:
+        return item.wrong or item in accepted or item.kind is not Kind.CONSTRAINT
+    return fate not in (Fate.GONE, Fate.WEAKENED)
+
+
+def _counts(loss: Loss) -> bool:
+    """A loss, and not what other words may say as well."""
+    if loss.fate is Fate.REWRITTEN:
+        return loss.finding.state is State.FITS
+    return loss.finding.state is not State.IMPLIED
+
+
+def _open(loss: Loss) -> bool:
+    return loss.finding.state in (State.FITS, State.UNTRIED)
+
+
+def _probed(loss: Loss, changes: Changes, prober: Prober, base: Compiled | None) -> Loss:
+    """A loss with what comes of putting it back, unless something may stand in its place."""
+    if loss.kind is Kind.PARAM or (loss.kind in _THINGS and _has_successor(loss.item, changes)):
+        return loss
+    return replace(loss, finding=prober.tried(loss.item, changes, base).finding)
+
+
+def _squeezed(text: str) -> str:
+    """A program without comments and white space."""
+    return "".join("".join(line.split("//")[0].split()) for line in text.splitlines())
+
+
+def _mark(item: Item) -> str:
+    """What an item leaves in a text that could not be read."""
+    node = item.node
+    if item.kind is Kind.STRUCTURE:
+        return "".join(item.span.text.split("{")[0].split())
+    return _squeezed(node.span.text)
+
+
+class _Restoring:
+    """A program into which losses are put back one after another."""
+
+    def __init__(self, ledger: Ledger, prober: Prober, source: SourceFile) -> None:
+        self.ledger, self.prober, self.source = ledger, prober, source
+        self.base = prober.compiled(source)
+        self.here = ledger.inventory(source, self.base)
+        self.done: list[str] = []
+
+    def run(self, settled: set[Item]) -> Restored:
+        found = self.ledger.losses(self.here, self.base) if stands(self.base) else ()
+        lost = [(loss, changes) for loss, changes in found if loss.item not in settled]
+        for loss, changes in sorted(lost, key=lambda pair: _ORDER.index(pair[0].kind)):
+            if loss.kind in _THINGS or loss.kind is Kind.PARAM:
+                if loss.kind is Kind.PARAM or not _has_successor(loss.item, changes):
+                    self._put_thing(loss)
+            elif self._put(loss.item, loss.inventory):
+                self.done.append(named(loss.item, loss.inventory))
+        return Restored(self.source.text, tuple(self.done))
+
+    def _put(self, item: Item, inventory: Inventory) -> bool:
+        """Whether an item could be put back."""
+        trial = self.prober.tried(item, compare(inventory, self.here), self.base)
+        if trial.compiled is None or trial.finding.state is not State.FITS:
+            return False
+        self.source, self.base = trial.source, trial.compiled
+        self.here = self.ledger.inventory(self.source, self.base)
+        return True
+
+    def _put_thing(self, loss: Loss) -> None:
+        """Put back a structure, geometry or parameter, and what spoke of it; alone it makes no sense if
+        anything did, and a parameter never does.
+        """
+        before = self.source, self.base, self.here
+        if not self._put(loss.item, loss.inventory):
+            return
+        kept = [item for item in loss.dependents if self._put(item, loss.inventory)]
+        if not kept and (loss.dependents or loss.kind is Kind.PARAM):
+            self.source, self.base, self.here = before
+            return
+        self.done += [named(item, loss.inventory) for item in (loss.item, *kept)]
+
+
+def _has_successor(item: Item, changes: Changes) -> bool:
+    """Whether something new stands where a structure or geometry was, perhaps in its place."""
+    home = changes.paths.get(item.home, item.home)
+    known = set(changes.paths.values())
+    return any(o.home == home and path not in known for path, o in changes.after.things.items())

@@ -1,0 +1,34 @@
+/// bicycle
+assembly bicycle {
+    solid whole { todo }
+    var pieces = 1
+
+    param wheel_count = 2 in 1..20
+    for i in 0..<wheel_count {
+        @note("wheel, tyre / tire, rim")
+        solid wheel[i] { todo }
+    }
+    @note("frame, main frame, chassis, main triangle")
+    solid frame { todo }
+    @note("saddle, seat")
+    solid saddle { todo }
+    @note("handlebar, handle bar, steering bar, bar, handle, steering, stem, grip")
+    solid handlebar { todo }
+
+    assert len(wheel) == 2, "there are two wheels"
+    for w in wheel { assert abs(w.width - w.height) <= 0.05 * w.width, "the wheels are round" }
+    assert abs(wheel[0].width - wheel[-1].width) <= 0.1 * wheel[0].width,
+        "the wheels are of like size"
+    assert abs(wheel[0].bottom - wheel[-1].bottom) <= 0.02 * whole.height,
+        "the wheels stand on one level"
+    assert abs(wheel[0].center_x - wheel[-1].center_x) >= 0.5 * (wheel[0].width + wheel[-1].width),
+        "the wheels are clear of each other"
+    assert saddle.bottom >= wheel[0].center_y, "the saddle is above the hubs"
+    assert handlebar.center_y >= wheel[0].center_y, "the handlebar is above the hubs"
+    assert saddle.center_x >= min([w.center_x for w in wheel]) and saddle.center_x <= max(
+        [w.center_x for w in wheel]
+    ),
+        "the saddle is between the hubs"
+    for w in wheel { assert overlapping(frame, w), "the frame reaches both wheels" }
+    assert pieces <= 1, "the parts hold together"
+}

@@ -1,0 +1,36 @@
+/// house with a chimney
+assembly house {
+    solid whole { todo }
+    var pieces = 1
+
+    @note("wall, house body, main body, body, building, facade, house")
+    solid wall { todo }
+    @note("roof")
+    solid roof { todo }
+    @note("chimney, chimney stack, smokestack")
+    solid chimney { todo }
+    @note("door, front door, entrance")
+    solid door { todo }
+    param window_count = 2 in 0..60
+    for i in 0..<window_count {
+        @note("window, pane")
+        solid window[i] { todo }
+    }
+
+    assert roof.center_y >= wall.center_y and roof.top >= wall.top,
+        "the roof is on top of the walls"
+    assert roof.width >= 0.95 * wall.width, "the roof covers the walls"
+    assert clearance(roof, wall) <= 0.01 * whole.height, "the roof lies on the walls"
+    assert chimney.left >= roof.left and chimney.right <= roof.right,
+        "the chimney is over the roof, not beside it"
+    assert clearance(chimney, roof) <= 0.01 * whole.height, "the chimney stands on the roof"
+    assert chimney.top >= roof.center_y and chimney.width <= 0.35 * roof.width,
+        "the chimney rises slim out of the roof"
+    assert inside(door, wall) and door.bottom <= wall.bottom + 0.1 * wall.height,
+        "the door is at the foot of the wall"
+    for w in window {
+        assert inside(w, whole) and (inside(w, door) or no_overlap(w, door)),
+            "the windows are in the house and clear of the door"
+    }
+    assert pieces <= 1, "the parts hold together"
+}

@@ -1,0 +1,29 @@
+/// robot face
+assembly robot_face {
+    solid whole { todo }
+    var symmetry = 1
+
+    @note("head, face, skull, plate")
+    solid head { todo }
+    param eye_count = 2 in 1..9
+    for i in 0..<eye_count {
+        @note("eye")
+        solid eye[i] { todo }
+    }
+    @note("mouth, grille, speaker, grill")
+    solid mouth { todo }
+
+    assert len(eye) == 2, "there are two eyes"
+    assert abs(eye[0].width - eye[-1].width) <= 0.1 * eye[0].width, "the eyes are of like size"
+    assert abs(eye[0].center_y - eye[-1].center_y) <= 0.02 * head.height, "the eyes are level"
+    assert abs((eye[0].center_x + eye[-1].center_x) / 2 - head.center_x) <= 0.05 * head.width,
+        "the eyes are left and right of the middle"
+    for e in eye {
+        assert inside(e, head), "the eyes are in the face"
+        assert e.center_y >= mouth.top, "the eyes are above the mouth"
+    }
+    assert no_overlap(eye[0], eye[-1]), "the eyes are apart"
+    assert inside(mouth, head) and abs(mouth.center_x - head.center_x) <= 0.1 * head.width,
+        "the mouth is in the middle of the face"
+    assert symmetry >= 0.8, "left and right are alike"
+}

@@ -1,0 +1,29 @@
+/// panelled door with a handle
+assembly door {
+    solid whole { todo }
+
+    @note("leaf, slab, door, door leaf, door slab, door panel, body")
+    solid door { todo }
+    param panel_count = 4 in 1..24
+    for i in 0..<panel_count {
+        @note("panel, inset / recess; not door panel")
+        solid panel[i] { todo }
+    }
+    @note("handle, knob, lever, doorknob, door knob, latch")
+    solid handle { todo }
+
+    assert door.height in 1.5 * door.width..4 * door.width, "the door has the proportions of one"
+    assert len(panel) >= 2, "there are several panels"
+    for p in panel { assert inside(p, door), "the panels are in the door" }
+    for i in 0..<len(panel) {
+        for j in i + 1..<len(panel) {
+            assert no_overlap(panel[i], panel[j]), "the panels are apart from each other"
+        }
+    }
+    assert inside(handle, door), "the handle is on the door"
+    assert abs(handle.center_x - door.center_x) >= 0.2 * door.width, "the handle is at a side"
+    assert handle.center_y in door.bottom + 0.25 * door.height..door.bottom + 0.75 * door.height,
+        "the handle is at the height of a hand"
+    assert handle.height <= 0.3 * door.height and handle.width <= 0.4 * door.width,
+        "the handle is small beside the door"
+}

@@ -1,0 +1,33 @@
+/// cabinet with drawers
+assembly cabinet {
+    solid whole { todo }
+
+    @note("cabinet, carcass, carcase, case, corpus, body, frame, outer, shell, chest, box")
+    solid cabinet { todo }
+    param drawer_count = 3 in 1..24
+    for i in 0..<drawer_count {
+        @note("drawer, drawer front, front")
+        solid drawer[i] { todo }
+    }
+    param handle_count = 3 in 0..120
+    for i in 0..<handle_count {
+        @note("handle, knob, pull, grip")
+        solid handle[i] { todo }
+    }
+
+    assert len(drawer) >= 2, "there are several drawers"
+    for d in drawer { assert inside(d, cabinet), "the drawers are in the cabinet" }
+    for i in 0..<len(drawer) {
+        for j in i + 1..<len(drawer) {
+            assert no_overlap(drawer[i], drawer[j]), "the drawers do not overlap"
+        }
+    }
+    for d in drawer {
+        assert abs(d.width - drawer[0].width) <= 0.6 * drawer[0].width,
+            "the drawers are of like width"
+    }
+    assert sum([d.width * d.height for d in drawer]) >= 0.3 * cabinet.width * cabinet.height,
+        "the drawers fill a good part of the front"
+    assert len(handle) == 0 or len(handle) >= len(drawer), "each drawer has its handle"
+    for h in handle { assert inside(h, cabinet), "the handles are on the front" }
+}

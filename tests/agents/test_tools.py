@@ -1,0 +1,477 @@
+"""What the tools say of programs whose answers are worked out by hand."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+from PIL import Image
+
+from aidl_lang.agents.calling import Answer, answer
+from aidl_lang.agents.tools import Tools
+from aidl_lang.agents.workspace import Limits, Workspace
+from tests.documents import ROOT
+
+TELEPHONE = (ROOT / "examples" / "telephone.aidl").read_text("utf-8")
+MODEL = jsonschema.Draft202012Validator(json.loads((ROOT / "docs" / "model.schema.json").read_text("utf-8")))
+PLATE = """\
+solid plate {
+    /// How wide it is.
+    param width = 4cm in 20..80
+    param edge = "round" in ["round", "square"]
+    param thin = true
+    outline = rectangle(center: origin, width: width, height: 20)
+    if thin and edge == "square" { tab = rectangle(center: fixed((0, 10)), width: 4, height: 4) }
+    hole bore { rim = circle(center: fixed((10, 0)), radius: 5) }
+}
+"""
+CONFLICT = """\
+assembly pair {
+    solid left { disk = circle(center: (0, 0), radius: guess(5)) }
+    solid right { disk = circle(center: (20, 0), radius: guess(3)) }
+    constrain left.disk.radius == 6
+    constrain left.disk.radius + right.disk.radius == 12
+    constrain right.disk.radius == 7
+}
+"""
+
+
+def ask(name: str, workshop: Tools | None = None, /, **arguments: object) -> Answer:
+    return answer(workshop or Tools(), name, arguments)
+
+
+def refused(made: Answer) -> str:
+    assert made.is_error
+    return made.text
+
+
+# --- check -----------------------------------------------------------------------------------------
+
+
+def test_check_gives_places_reasons_and_replacements() -> None:
+    program = "solid plate {\n    rim = circle(raduis: 3)\n}\n"
+    made = ask("check", program=program)
+    (finding,) = made.data["findings"]["listed"]
+    assert (finding["code"], finding["severity"]) == ("E0324", "error")
+    assert (finding["place"]["line"], finding["place"]["column"]) == (2, 18)
+    (replacement,) = finding["fix"]["replacements"]
+    assert (replacement["old"], replacement["new"]) == ("raduis", "radius")
+    assert not made.data["ok"]
+    assert made.data["fixed_program"] == program.replace("raduis", "radius")
+    assert made.data["findings_after_fixes"] == {"listed": [], "left_out": 0}
+    assert "line 2 becomes\n        rim = circle(radius: 3)" in made.text
+
+
+def test_check_of_a_right_program() -> None:
+    made = ask("check", program=PLATE)
+    assert made.data["ok"]
+    assert made.data["fixed_program"] is None
+    assert made.text == "no mistakes found"
+
+
+def test_check_lists_a_bounded_number_of_findings() -> None:
+    program = "solid a {\n" + "".join(f"    c{i} = circle(radius: w{i})\n" for i in range(80)) + "}\n"
+    found = ask("check", program=program).data["findings"]
+    assert len(found["listed"]) == 50
+    assert found["left_out"] >= 30
+
+
+# --- compile ---------------------------------------------------------------------------------------
+
+
+def test_compile_draws_and_tells() -> None:
+    made = ask("compile", program=TELEPHONE)
+    assert (made.data["ok"], made.data["status"], made.data["degrees_of_freedom"]) == (True, "solved", 2)
+    assert made.data["motions"] == ["`telephone` can slide left–right and up–down"]
+    base, receiver, _ = made.data["bodies"]
+    assert (base["path"], base["left"], base["right"], base["area"]) == ("telephone.base", -80, 80, 10880)
+    assert receiver["bottom"] == pytest.approx(base["top"] + 2)
+    contact = {(c["a"], c["b"]): c for c in made.data["contacts"]}["telephone.base", "telephone.receiver"]
+    assert (contact["relation"], contact["gap"]) == ("apart", pytest.approx(2))
+    (knob,) = made.data["params"]
+    assert (knob["path"], knob["value"], knob["low"], knob["high"]) == ("width", 160, 100, 240)
+    (picture,) = made.pictures
+    with Image.open(io.BytesIO(picture)) as image:
+        assert (image.format, max(image.size)) == ("PNG", 1000)
+
+
+def test_compile_with_params_and_dimensions() -> None:
+    plain, wide, dimensioned = (
+        ask("compile", program=PLATE, **more)
+        for more in ({}, {"params": {"width": "6cm"}}, {"dimensioned": True})
+    )
+    assert wide.data["bodies"][0]["right"] == 30
+    assert wide.data["bodies"][0]["area"] == pytest.approx(60 * 20 - 25 * 3.14159265358979)
+    assert plain.pictures != dimensioned.pictures
+
+
+def test_model_is_valid_and_can_be_had_by_path() -> None:
+    whole = ask("compile", program=TELEPHONE, formats=["model"])
+    MODEL.validate(whole.data["model"])
+    assert whole.data["shortened"] is None
+    assert whole.pictures == ()
+    part = ask("compile", program=TELEPHONE, formats=["model"], path="receiver").data["model"]
+    MODEL.validate(part)
+    assert part["root"]["path"] == "telephone.receiver"
+    assert set(part["regions"]) == {"telephone.receiver"}
+    assert {c["path"] for c in part["constraints"]} == {"telephone.receiver"}
+    missing = ask("compile", program=TELEPHONE, formats=["model"], path="reciever")
+    assert "did you mean `telephone.receiver`?" in refused(missing)
+
+
+@pytest.mark.parametrize("most", [200, 4_000, 8_000, 12_000, 16_000])
+def test_model_is_shortened_with_a_word(most: int) -> None:
+    workshop = Tools(Workspace(limits=Limits(text=most)))
+    made = ask("compile", workshop, program=TELEPHONE, formats=["model"])
+    MODEL.validate(made.data["model"])
+    size = len(json.dumps(made.data["model"], ensure_ascii=False, separators=(",", ":")))
+    assert size <= max(most, 4_000)
+    assert made.data["shortened"].endswith("left out: ask for one structure by its `path`")
+    assert made.data["shortened"] in made.text
+
+
+def test_files_are_made_of_what_is_right() -> None:
+    made = ask("compile", program=PLATE, formats=["svg", "pdf"])
+    svg, pdf = made.data["exports"]
+    assert (svg["format"], svg["encoding"]) == ("svg", "text")
+    assert svg["content"] in made.text
+    assert (pdf["format"], pdf["encoding"]) == ("pdf", "base64")
+    assert base64.b64decode(pdf["content"]).startswith(b"%PDF")
+    assert pdf["content"] not in made.text
+    assert ask("compile", program=CONFLICT, formats=["svg"]).data["exports"] == []
+    small = Tools(Workspace(limits=Limits(text=100)))
+    assert "the svg file has" in ask("compile", small, program=PLATE, formats=["svg"]).text
+
+
+def test_program_that_does_not_solve_is_drawn_as_far_as_it_came() -> None:
+    made = ask("compile", program=CONFLICT)
+    assert (made.is_error, made.data["ok"]) == (False, False)
+    assert made.data["status"] in ("partial", "failed")
+    assert "the picture shows how far the solver came" in made.text
+    assert len(made.pictures) == 1
+
+
+def test_wrong_program_is_an_answer() -> None:
+    made = ask("compile", program="solid a { b = circle(radius: w) }", formats=["png", "model", "svg"])
+    assert (made.is_error, made.data["status"], made.data["model"]) == (False, "wrong", None)
+    assert made.pictures == ()
+    assert "E0201" in made.text
+
+
+# --- Imports ---------------------------------------------------------------------------------------
+
+IMPORTS = 'import "lib/bolt.aidl"\nsolid a { b = bolt() at (0, 0) }\n'
+BOLT = "solid bolt() { rim = circle(radius: 3) }\n"
+
+
+def test_imports_come_from_the_files_given() -> None:
+    made = ask("compile", program=IMPORTS, files={"lib/bolt.aidl": BOLT}, formats=[])
+    assert made.data["bodies"][0]["right"] == 3
+
+
+def test_nothing_is_read_from_disk_unless_it_is_allowed(tmp_path: Path) -> None:
+    (tmp_path / "lib").mkdir()
+    (tmp_path / "lib" / "bolt.aidl").write_text(BOLT)
+    assert not ask("check", program=IMPORTS).data["ok"]
+    assert ask("check", Tools(Workspace(tmp_path)), program=IMPORTS).data["ok"]
+
+
+@pytest.mark.parametrize("name", ["../secret.aidl", "lib/../../secret.aidl", "link.aidl", "{}/secret.aidl"])
+def test_nothing_outside_the_root_is_read(tmp_path: Path, name: str) -> None:
+    root = tmp_path / "root"
+    (root / "lib").mkdir(parents=True)
+    (tmp_path / "secret.aidl").write_text(BOLT)
+    (root / "link.aidl").symlink_to(tmp_path / "secret.aidl")
+    program = IMPORTS.replace("lib/bolt.aidl", name.format(tmp_path))
+    made = ask("check", Tools(Workspace(root)), program=program)
+    assert "lies outside the project" in made.text
+    assert not made.data["ok"]
+    assert ask("check", Tools(Workspace(tmp_path)), program=IMPORTS.replace("lib/bolt", "secret")).data["ok"]
+
+
+def test_names_of_files_cannot_leave_the_project() -> None:
+    assert refused(ask("check", program=PLATE, files={"../x.aidl": BOLT})) == (
+        "error E0944: the file name `../x.aidl` cannot be used: it lies outside the project\n"
+        "  hint: name files as the program imports them, as `parts/bolt.aidl`"
+    )
+
+
+# --- measure, edit_param ---------------------------------------------------------------------------
+
+
+def test_measure() -> None:
+    made = ask("measure", program=PLATE, path="bore")
+    (bore,) = made.data["parts"]
+    assert (bore["path"], bore["kind"]) == ("plate.bore", "hole")
+    assert bore["area"] == pytest.approx(25 * 3.14159265358979)
+    assert made.data["whole"]["wall"]["length"] == pytest.approx(5)
+    assert "error E0919: there is no `bor` in the drawing" in refused(
+        ask("measure", program=PLATE, path="bor")
+    )
+    assert "E0601" in refused(ask("measure", program=CONFLICT))
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "old", "new"),
+    [
+        ("width", 50, "4cm", "5cm"),
+        ("plate.width", "1.5in", "4cm", "1.5in"),
+        ("edge", "square", '"round"', '"square"'),
+        ("thin", False, "true", "false"),
+    ],
+)
+def test_edit_param_changes_nothing_else(name: str, value: object, old: str, new: str) -> None:
+    made = ask("edit_param", program=PLATE, name=name, value=value)
+    assert made.data["program"] == PLATE.replace(f"= {old}", f"= {new}")
+    assert (made.data["replacement"]["old"], made.data["replacement"]["new"]) == (old, new)
+    assert made.data["ok"]
+
+
+def test_edit_param_tells_what_changed() -> None:
+    made = ask("edit_param", program=PLATE, name="width", value=60)
+    assert "grew: width 40 → 60 (+20)" in made.data["changes"]
+    assert made.text.startswith("line 3: `4cm` became `6cm`; solved\n")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "text"),
+    [
+        (
+            "width",
+            90,
+            "error E0945: `width` is 90 as written, outside its range 20..80\n"
+            "  hint: give a value in 20..80, or widen the range of the `param`",
+        ),
+        (
+            "widht",
+            50,
+            "error E0945: there is no param `widht`\n  hint: did you mean `width`?\n"
+            "  hint: params of this program: `width`, `edge`, `thin`",
+        ),
+        ("thin", 3, "error E0945: `3` does not fit: `thin` is true or false"),
+        ("width", True, "error E0945: `True` does not fit: `width` is a number"),
+        ("edge", 3, "error E0945: `3` does not fit: `edge` is a text"),
+        (
+            "width",
+            "5cm + origin",
+            "error E0945: `5cm + origin` does not fit: `width` is a number, with a unit or without: "
+            "mm, cm, m, in, ft, deg, rad, turn",
+        ),
+    ],
+)
+def test_edit_param_refuses(name: str, value: object, text: str) -> None:
+    assert refused(ask("edit_param", program=PLATE, name=name, value=value)) == text
+
+
+def test_edit_param_refuses_what_another_file_declares() -> None:
+    library = "solid bolt() { param size = 3 in 1..5\n rim = circle(radius: size) }\n"
+    made = ask("edit_param", program=IMPORTS, files={"lib/bolt.aidl": library}, name="b.size", value=2)
+    assert "`b.size` is declared in `lib/bolt.aidl`" in refused(made)
+
+
+# --- explain_conflict ------------------------------------------------------------------------------
+
+
+def test_conflict_names_everyone_and_what_would_mend_it() -> None:
+    made = ask("explain_conflict", program=CONFLICT)
+    (conflict,) = made.data["conflicts"]
+    assert conflict["is_minimal"]
+    told = [(p["constraint"], p["place"]["line"], p["held_by"], p["would_fit"]) for p in conflict["parties"]]
+    assert told == [
+        ("left.disk.radius == 6", 4, "pair", "5 would fit"),
+        ("left.disk.radius + right.disk.radius == 12", 5, "pair", "13 would fit"),
+        ("right.disk.radius == 7", 6, "pair", "6 would fit"),
+    ]
+    for party in conflict["parties"]:
+        (edit,) = party["remedy"]["replacements"]
+        lines = CONFLICT.splitlines(keepends=True)
+        at, line = edit["place"]["column"] - 1, edit["place"]["line"] - 1
+        assert lines[line][at:].startswith(edit["old"])
+        lines[line] = lines[line][:at] + edit["new"] + lines[line][at + len(edit["old"]) :]
+        assert party["solves"]
+        assert ask("compile", program="".join(lines), formats=[]).data["status"] == "solved"
+    assert made.data["degrees_of_freedom"] == 4
+    assert made.data["findings"]["listed"] == []
+
+
+def test_remedy_that_is_not_enough_is_called_so() -> None:
+    second = CONFLICT.replace("}\n}", "}\n}").rstrip("}\n") + (
+        "\n    constrain left.width == 3\n    constrain left.width == 4\n}\n"
+    )
+    parties = [p for c in ask("explain_conflict", program=second).data["conflicts"] for p in c["parties"]]
+    assert parties
+    assert not any(party["solves"] for party in parties)
+
+
+def test_program_that_solves_has_no_conflict() -> None:
+    program = (
+        "solid a {\n    b = circle(radius: 3)\n    constrain b.radius == 3\n"
+        "    constrain b.radius == 3mm\n    constrain b.diameter == 6\n}\n"
+    )
+    made = ask("explain_conflict", program=program)
+    assert (made.data["status"], made.data["conflicts"]) == ("solved", [])
+    assert {f["code"] for f in made.data["findings"]["listed"]} == {"N0602"}
+    assert made.data["motions"] == ["`b` can slide left–right and up–down"]
+    assert made.text.startswith("every constraint holds: there is no conflict")
+
+
+def test_conflict_of_a_wrong_program() -> None:
+    made = ask("explain_conflict", program="solid a { b = circle(radius: w) }")
+    assert made.data["status"] == "wrong"
+    assert made.text.startswith("the program does not get as far as solving")
+
+
+# --- Reading ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("query", "name"),
+    [
+        ("round the corners", "fillet"),
+        ("wheel with teeth", "gear"),
+        ("hole for a screw", "screw_hole"),
+        ("color", "@color"),
+        ("E0301", "E0301"),
+        ("rectangel", "rectangle"),
+        ("orthogonal", "perpendicular"),
+        ("written size became another", "N0601"),
+    ],
+)
+def test_search_finds(query: str, name: str) -> None:
+    hits = ask("search", query=query, limit=5).data["hits"]
+    assert name in [hit["name"] for hit in hits]
+    assert all(hit["summary"] for hit in hits)
+
+
+def test_search_gives_forms_and_an_example_that_compiles() -> None:
+    (hit,) = ask("search", query="slot", limit=1).data["hits"]
+    assert hit["name"] == "slot"
+    assert hit["forms"][0].startswith("slot(")
+    assert ask("compile", program=hit["example"], formats=[]).data["ok"]
+
+
+def test_search_for_nothing() -> None:
+    assert ask("search", query="qqqq zzzz").text == "nothing fits; try other words, or read the guide"
+
+
+def test_explain_a_name_a_synonym_and_a_code() -> None:
+    assert ask("explain", name="orthogonal").data["title"] == "perpendicular"
+    assert "## Mended" in ask("explain", name="e0301").text
+    assert refused(ask("explain", name="rectangl_shape_thing")).startswith("error E0912: there is no `rect")
+
+
+def test_guide_by_sections() -> None:
+    whole = ask("guide")
+    assert "Constraints" in whole.data["sections"]
+    section = ask("guide", section="constraints").text
+    assert section.startswith("## Constraints\n")
+    assert section in whole.text
+    assert ask("guide", variant="no-constraints").text != whole.text
+    assert "sections: `Structures`" in refused(ask("guide", section="nonsense"))
+
+
+# --- Arguments and limits --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "text"),
+    [
+        (
+            "chek",
+            {},
+            "error E0944: there is no tool `chek`\n  hint: did you mean `check`?\n  hint: tools: check, "
+            "compile, guide, search, explain, measure, edit_param, explain_conflict",
+        ),
+        (
+            "compile",
+            {"program": "", "format": "png"},
+            "error E0944: `compile` has no parameter `format`\n  hint: did you mean `formats`?\n"
+            "  hint: parameters: program, params, files, formats, path, dimensioned",
+        ),
+        (
+            "check",
+            {"program": None},
+            "error E0944: `check` needs `program`\n  hint: The text of the whole AIDL program.",
+        ),
+        (
+            "check",
+            {"program": ["solid"]},
+            'error E0944: `program` of `check` takes a text, not `["solid"]`\n'
+            "  hint: The text of the whole AIDL program.",
+        ),
+        (
+            "search",
+            {"query": "x", "limit": 2.5},
+            "error E0944: `limit` of `search` takes a whole number, not `2.5`\n"
+            "  hint: How many hits at most.",
+        ),
+        (
+            "compile",
+            {"program": "", "dimensioned": "yes"},
+            'error E0944: `dimensioned` of `compile` takes true or false, not `"yes"`\n'
+            "  hint: Draw the dimensions of what is sized.",
+        ),
+    ],
+)
+def test_arguments_that_do_not_fit(name: str, arguments: Mapping[str, Any], text: str) -> None:
+    assert refused(answer(Tools(), name, arguments)) == text
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf"), 10**310, [1], {}])
+def test_params_that_are_no_numbers(value: object) -> None:
+    text = refused(ask("compile", program=PLATE, params={"width": value}))
+    assert "`params` of `compile` takes a number or a text or true or false, not `" in text
+    text = refused(ask("edit_param", program=PLATE, name="width", value=value))
+    assert "`value` of `edit_param` takes a number or a text or true or false, not `" in text
+
+
+def test_text_with_half_a_character() -> None:
+    assert "takes a text in Unicode" in refused(ask("check", program="// \ud800"))
+
+
+def test_pairs_stand_for_a_mapping() -> None:
+    pairs = [{"name": "width", "value": 60}]
+    assert ask("compile", program=PLATE, params=pairs, files=[], formats=[]).data["bodies"][0]["right"] == 30
+    assert "takes an object" in refused(ask("compile", program=PLATE, params=[{"name": "width"}]))
+
+
+def test_size_of_programs_is_limited() -> None:
+    assert refused(ask("check", program="// " + "x" * 400_000)) == (
+        "error E0944: the program and its files have 400,003 characters, more than the 400,000 allowed\n"
+        "  hint: say what repeats with `for` and with templates"
+    )
+    assert "101 files were given" in refused(
+        ask("check", program="", files={f"{i}.aidl": "" for i in range(101)})
+    )
+
+
+@pytest.mark.parametrize(
+    ("program", "code"),
+    [
+        ("fn f(x) = f(x + 1)\nsolid a { b = circle(radius: f(1)) }", "E0806"),
+        ("solid a { for i in 0..30000 { b[i] = circle(radius: 3) } }", "E0805"),
+        ("solid a { " + "solid b { " * 3_000 + "}" * 3_001, "E0802"),
+    ],
+)
+def test_programs_without_end(program: str, code: str) -> None:
+    made = ask("compile", program=program)
+    assert made.data["status"] == "wrong"
+    assert code in [f["code"] for f in made.data["findings"]["listed"]]
+
+
+def test_odd_names_come_back_as_text() -> None:
+    made = ask("compile", program='solid a { b = text("</svg><b>\\n世", height: 5) }')
+    assert not made.is_error
+    json.dumps(made.data, allow_nan=False)
+
+
+def test_same_call_same_answer() -> None:
+    assert ask("compile", program=TELEPHONE, formats=["png", "model", "dxf"]) == ask(
+        "compile", program=TELEPHONE, formats=["png", "model", "dxf"]
+    )

@@ -1,0 +1,76 @@
+"""What programs cannot do to the process that serves them."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import pytest
+
+from aidl_lang.agents.results import Page
+from aidl_lang.agents.tools import Tools
+from aidl_lang.agents.workers import MEMORY, Workers
+
+pytest.importorskip("pebble")
+
+
+@dataclass(frozen=True)
+class Broken(Tools):
+    """Fails in the ways that a program might."""
+
+    def explain(self, name: str) -> Page:
+        match name:
+            case "hang":
+                time.sleep(600)
+            case "end":
+                os._exit(3)
+            case "devour":
+                bytearray(2 * MEMORY)
+        return Page(name, name)
+
+
+@pytest.fixture
+def workers() -> Iterator[Workers]:
+    made = Workers(Broken(), seconds=15.0)
+    yield made
+    made.close()
+
+
+def test_calls_that_break_are_given_up_and_others_answered(workers: Workers) -> None:
+    workers.seconds = 3.0
+    hang, fine = asyncio.run(_both(workers, "hang", "fine"))
+    assert hang == (
+        "error E0943: the call took longer than 3 s and was given up\n"
+        "  hint: ask for less: fewer parts, smaller arrays, no outlines worked out of many others"
+    )
+    assert fine == "fine"
+    workers.seconds = 60.0
+    end, fine = asyncio.run(_both(workers, "end", "fine"))
+    assert end.startswith("error E0943: the call ended the process that worked on it and was given up")
+    assert fine == "fine"
+    devour, fine = asyncio.run(_both(workers, "devour", "fine"))
+    assert devour.startswith("error E0943: the call needs more memory than there is for it and was given up")
+    assert fine == "fine"
+
+
+async def _both(workers: Workers, *names: str) -> list[str]:
+    made = await asyncio.gather(*(workers.answer("explain", {"name": name}) for name in names))
+    assert [m.is_error for m in made] == [name != "fine" for name in names]
+    return [m.text for m in made]
+
+
+def test_call_that_is_cancelled_ends_its_process(workers: Workers) -> None:
+    """Else two calls that hang would leave no process for the third."""
+    workers.seconds = 600.0
+
+    async def cancelled() -> str:
+        calls = [asyncio.create_task(workers.answer("explain", {"name": "hang"})) for _ in range(2)]
+        await asyncio.sleep(4.0)
+        for call in calls:
+            call.cancel()
+        return (await asyncio.wait_for(workers.answer("explain", {"name": "fine"}), 60.0)).text
+
+    assert asyncio.run(cancelled()) == "fine"

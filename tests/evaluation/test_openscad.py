@@ -1,0 +1,122 @@
+"""OpenSCAD beside AIDL: what counts as valid, what the model is told, and what is kept from programs."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from aidl_lang.evaluation import openscad, shapes
+from aidl_lang.evaluation.openscad import OpenScad, knobs, render, structures
+from aidl_lang.geometry.measures import area, region_bounds
+
+needs_openscad = pytest.mark.skipif(not OpenScad().is_installed, reason="openscad is not installed")
+
+PLATE = """\
+width = 80; // not height = 3;
+h = 40.5;
+/* depth = 3; module no() {} */
+label = "size = 4;";
+sum = width + 1;
+module plate() { inner = 2; square([width, 40]); }
+difference() { plate(); translate([20, 20]) circle(r = 10, $fn = 4); }
+"""
+
+
+def test_knobs_are_the_plain_numbers_of_the_top_level() -> None:
+    assert knobs(PLATE) == {"width": 80.0, "h": 40.5}
+    assert knobs("a = -1e3; a = 2; { b = 3; }") == {"a": 2.0}
+    assert structures(PLATE) == 1
+
+
+@needs_openscad
+def test_a_program_is_drawn_with_its_holes() -> None:
+    drawn = shapes.region(render(PLATE).outlines)
+    assert region_bounds(drawn) == pytest.approx((0, 0, 80, 40))
+    assert area(drawn) == pytest.approx(80 * 40 - 200)  # a square of diagonal 20 is cut out
+    assert [len(face.holes) for face in drawn.faces] == [1]
+    wider = shapes.region(render(PLATE, {"width": 100.0}).outlines)
+    assert region_bounds(wider)[2] == pytest.approx(100)
+    with Image.open(io.BytesIO(shapes.png(drawn))) as picture:
+        pixels = np.asarray(picture.convert("RGB"))
+    assert max(picture.size) == shapes.PIXELS
+    assert tuple(pixels[2, 2]) == (255, 255, 255)
+    middle, hole = (
+        pixels[picture.height // 2, picture.width * 3 // 4],
+        pixels[picture.height // 2, picture.width * 28 // 106],
+    )
+    assert tuple(middle) != (255, 255, 255)
+    assert tuple(hole) == (255, 255, 255)
+
+
+@needs_openscad
+@pytest.mark.parametrize(
+    ("program", "errors"),
+    [
+        ("square(3 4);", ("error (line 1): Parser error: syntax error",)),
+        (
+            "cube(3);",
+            ("error: the drawing must be flat, not a solid: do without extrusion, `cube`, `sphere` …",),
+        ),
+        ("x = 3;", ("error: nothing is drawn",)),
+        ("", ("error: nothing is drawn",)),
+        ("square(0);", ("error: nothing is drawn",)),
+        ('square([1, 1]);\nassert(false, "no");', ("error (line 2): Assertion 'false' failed: \"no\"",)),
+    ],
+)
+def test_what_does_not_draw_is_not_valid(program: str, errors: tuple[str, ...]) -> None:
+    assert render(program).errors == errors
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        'import("/etc/drawing.svg");',
+        'import /* */ ("a.dxf");',
+        "include <a.scad>\nsquare(1);",
+        "use <a.scad>\nsquare(1);",
+        'surface("a.png");',
+        'linear_extrude(file = "a.dxf");',
+        "square(1); \0",
+    ],
+)
+def test_files_are_out_of_reach(program: str) -> None:
+    (error,) = render(program).errors
+    assert error.startswith("error: files cannot be read")
+
+
+@needs_openscad
+def test_a_comment_about_files_is_no_offence() -> None:
+    assert render('// import("a")\nlabel = "include <a>"; square(1);').ok
+
+
+@needs_openscad
+@pytest.mark.parametrize(
+    "program",
+    ["for (i = [0 : 1e5]) for (j = [0 : 1e5]) square(i + j);", "function f(n) = f(n + 1) + 1; echo(f(0));"],
+)
+def test_a_program_without_end_is_stopped(program: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(openscad, "_SECONDS", 2)
+    assert not render(program).ok
+
+
+@needs_openscad
+def test_the_model_is_told_and_a_remark_is_made_once() -> None:
+    conversation = OpenScad().conversation()
+    wrong = conversation.judge("square(3 4);")
+    assert (wrong.ok, wrong.stage) == (False, "render")
+    assert wrong.feedback.startswith("error (line 1): Parser error: syntax error\n\nMend this")
+    remarked = conversation.judge("square(3);\nwheel(4);")
+    assert remarked.ok
+    assert remarked.feedback.startswith("warning (line 2): Ignoring unknown module 'wheel'\n\n")
+    assert conversation.judge("square(3);\nwheel(4);").feedback == ""
+    assert conversation.judge("square(3);").feedback == ""
+    assert wrong.weight > remarked.weight
+
+
+def test_without_openscad_it_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert not OpenScad().is_installed

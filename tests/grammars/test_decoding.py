@@ -1,0 +1,215 @@
+"""What engines for constrained decoding make of the exported grammar, beside what the parser makes of the same text."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+import pytest
+
+from aidl_lang.grammars import export
+from aidl_lang.kinds import KINDS
+from aidl_lang.source import SourceFile
+from aidl_lang.syntax.automaton import Automaton
+from aidl_lang.syntax.tables import load_tables
+from aidl_lang.syntax.tokens import END, Token, tokenize
+from aidl_lang.syntax.tree import Builder
+from tests.grammars.engines import Engine, all_programs, engine, syntax_errors
+
+SHORT = [text for text in all_programs().values() if 40 < len(text) < 1500 and not syntax_errors(text)]
+
+
+def test_every_program_is_taken_to_its_end_or_not_at_all_as_by_the_parser() -> None:
+    assert len(all_programs()) > 500
+    different = {}
+    for place, text in all_programs().items():
+        taken, of, accepted = engine().takes(text)
+        if accepted == bool(syntax_errors(text)):
+            different[place] = (taken, of)
+    assert different == {}
+
+
+# --- Mutants --------------------------------------------------------------------------------------
+
+
+def mutant(rng: random.Random, tokens: list[Token]) -> list[str]:
+    """The texts of the tokens with one change."""
+    texts = [token.text for token in tokens]
+    at = rng.randrange(len(texts))
+    other = rng.choice(texts)
+    brackets = [i for i, text in enumerate(texts) if text[-1] in "()[]{}"]
+    names = [i for i, token in enumerate(tokens) if token.kind == "NAME"]
+    match rng.choice(["left out", "doubled", "swapped", "replaced", "bracket", "keyword", "cut"]):
+        case "left out":
+            del texts[at]
+        case "doubled":
+            texts.insert(at, texts[at])
+        case "swapped":
+            after = min(at + 1, len(texts) - 1)
+            texts[at], texts[after] = texts[after], texts[at]
+        case "replaced":
+            texts[at] = other
+        case "bracket" if brackets:
+            del texts[rng.choice(brackets)]
+        case "keyword" if names:
+            texts[rng.choice(names)] = rng.choice(sorted(load_tables().reserved))
+        case _:
+            texts = texts[: at + 1]
+    return texts
+
+
+def laid_out(texts: list[str]) -> str:
+    """White space between all tokens, and as the parser wants it before a `(`."""
+    return "".join(("\n" if text == "(" else " ") + text for text in texts).lstrip()
+
+
+def unexpected(text: str) -> tuple[Token, list[Token]] | None:
+    """The first token that cannot stand where it does, and all tokens, as the automaton has it before any mending."""
+    source = SourceFile("", text)
+    tokens = tokenize(source)
+    automaton = Automaton(load_tables(), Builder(source, tokens.docs))
+    wrong = next((token for token in tokens.tokens if not automaton.feed(token)), None)
+    return (wrong, tokens.tokens) if wrong else None
+
+
+def refused_byte(text: str) -> int:
+    """The first byte that cannot be taken; the length where all can but the text must go on."""
+    tokens = engine().vocabulary(text)
+    matcher = engine().matcher()
+    taken = matcher.try_consume_tokens(tokens)
+    before = len(engine().vocabulary.text(tokens[:taken]).encode())
+    if taken == len(tokens):
+        assert not matcher.is_accepting()
+        return before
+    within = list(engine().vocabulary.tokens[tokens[taken]])
+    bytes_taken = matcher.try_consume_tokens(within)
+    assert bytes_taken < len(within), "the token could have been taken"
+    return before + bytes_taken
+
+
+def stricter_here(tokens: list[Token], at: int) -> bool:
+    """Where the export takes less than the language: the kinds of structures, and words that may be keywords."""
+    token, before = tokens[at], tokens[at - 1]
+    wrong_kind = token.kind in ("NAME", "CALL") and before.kind == "NAME" and before.text not in KINDS
+    return wrong_kind or token.kind in load_tables().soft_words or before.kind in load_tables().soft_words
+
+
+def mutants(count: int) -> list[tuple[str, Token, list[Token]]]:
+    """So many texts that the parser refuses for their syntax, each with the token that it refuses."""
+    rng = random.Random(1)
+    found: list[tuple[str, Token, list[Token]]] = []
+    while len(found) < count:
+        tokens = [t for t in tokenize(SourceFile("", rng.choice(SHORT))).tokens if t.kind != END]
+        text = laid_out(mutant(rng, tokens))
+        if refused := unexpected(text):
+            found.append((text, *refused))
+    return found
+
+
+def test_mutants_are_refused_at_the_token_that_the_parser_refuses() -> None:
+    """The byte at which the engine stops is one of the refused token, or the one behind it.
+
+    Behind it where the token itself could still have become another: `constrain` may be the beginning of a name.
+    """
+    cases = mutants(250)
+    different = []
+    for text, wrong, tokens in cases:
+        refused = refused_byte(text)
+        start, end = (len(text[:offset].encode()) for offset in (wrong.start, wrong.end))
+        if not start <= refused <= end:
+            offset = len(text.encode()[:refused].decode(errors="ignore"))
+            at = next(i for i, token in enumerate(tokens) if offset <= token.end)
+            different.append((text, wrong, offset, stricter_here(tokens, at)))
+    assert [case for case in different if not case[3]] == []
+    assert len(different) <= len(cases) // 20
+
+
+# --- Walks ----------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def walker() -> tuple[Engine, np.ndarray, np.ndarray]:
+    """A small vocabulary, how often its tokens stand in programs, and which of them close brackets."""
+    small = Engine(export("llguidance"), 8000)
+    counts = np.zeros(len(small.vocabulary.tokens))
+    for text in SHORT:
+        for token in small.tokenizer.greedy_tokenize(text):
+            counts[token] += 1
+    closing = np.array([token.strip() in (b"}", b")", b"]", b"})", b"}}") for token in small.vocabulary.tokens])
+    return small, counts, closing
+
+
+def walk(walker: tuple[Engine, np.ndarray, np.ndarray], seed: int) -> str | None:
+    """A text of tokens drawn from those allowed, mostly by how often programs have them; None if it does not end."""
+    small, counts, closing = walker
+    rng = np.random.default_rng(seed)
+    matcher, tokens, length = small.matcher(), [], rng.integers(5, 90)
+    while not (matcher.is_accepting() and (len(tokens) > length or rng.random() < 0.02)):
+        allowed = np.frombuffer(matcher.compute_logit_bias(), dtype=np.uint8)[: len(counts)] > 0
+        allowed[small.vocabulary.eos_token_id] = False
+        assert allowed.any(), "there is no way on, and the text may not end here"
+        weights = allowed * (1.0 if rng.random() < 0.1 else counts + 1e-4)
+        if len(tokens) > length:
+            weights = weights * np.where(closing, 200, 1)
+        tokens.append(int(rng.choice(len(weights), p=weights / weights.sum())))
+        assert matcher.consume_token(tokens[-1]), matcher.get_error()
+        if len(tokens) > 400:
+            return None
+    return small.vocabulary.text(tokens)
+
+
+def test_what_the_engine_lets_through_is_read_by_the_parser(
+    walker: tuple[Engine, np.ndarray, np.ndarray],
+) -> None:
+    texts = [text for seed in range(40) if (text := walk(walker, seed)) is not None]
+    assert len(texts) >= 36
+    assert len(set(texts)) > 30
+    assert {text: codes for text in texts if (codes := syntax_errors(text))} == {}
+
+
+# --- Particular places ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "x = 0..9", "x = 0.5..1", "x = 2.y", "x = 1e3mm", "let a = -b", "constrain !(a or b)", "constrain ! a == b",
+        "// only a comment\n", "", "\n\n", "a = b;c = d", "solid s { }", "solid s{a = b}", "constrain {a == b,c == d}",
+        "let größe = 3", "path(from: a)", "let a = b\n(c - d).x == 3", "constrain { (a - b).x == 3 }",
+        "/// doc\n\n// more\nsolid s { } // end\n",
+    ],
+)  # fmt: skip
+def test_taken_by_both(text: str) -> None:
+    assert engine().takes(text)[2]
+    assert syntax_errors(text) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "let constrain = 3", "at = 3", "x = 3y = 4", "x = 0...5", "x = f (3)", "letx", "let x = 3 if", "solidd s { }",
+        "alias a = b(c).x == 3", "x = 3 4 5", "import a", "constrain {", "a = 'b", "/* open", "x = 3 // no end of line",
+        "then = 4", "x = 3.", "for i in 0..9 ( a )",
+    ],
+)  # fmt: skip
+def test_not_taken(text: str) -> None:
+    assert not engine().takes(text)[2]
+
+
+@pytest.mark.parametrize("piece", ["\n", " ", "// loop\n", "\n// loop\n", "//", "x", "1"])
+def test_nothing_outside_brackets_and_statements_goes_on_for_ever(piece: str) -> None:
+    text = "x = a " + 5000 * piece
+    taken, of, _ = engine().takes(text)
+    assert taken < of
+
+
+# --- Free text before the program -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("prose", ["", "A washer. `ring` does it:\n\n", "``two`` backticks\n", "größer\n"])
+def test_a_fenced_program_after_free_text(prose: str) -> None:
+    text = f"{prose}```aidl\nsolid s {{ }}\n```\n"
+    assert engine(True).takes(text)[2]
+    assert not engine(True).takes(text.replace("solid", "solidd"))[2]
+    assert not engine(True).takes(prose + "solid s { }")[2]
+    assert not engine(True).takes(text + "And that is all.")[2]

@@ -1,0 +1,124 @@
+"""Each format is complete, the same every time, and read by a tool that is made for it."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from lark import Lark
+from llguidance.gbnf_to_lark import gbnf_to_lark
+
+from aidl_lang.grammars import FENCED_FORMATS, FORMATS, export
+from aidl_lang.resources import resource
+from aidl_lang.syntax.tables import load_tables
+from tests.grammars.engines import Engine, all_programs, syntax_errors
+
+SOURCE = resource("grammar/aidl.lark").read_text(encoding="utf-8")
+RULES = set(re.findall(r"^[?!]*([a-z_]+):", SOURCE, flags=re.MULTILINE))
+TOKENS = load_tables().literals
+
+
+def defined(text: str) -> set[str]:
+    return set(re.findall(r"^([\w-]+)\s*(?:::=|:)", text, flags=re.MULTILINE))
+
+
+def test_lark_is_the_source() -> None:
+    assert export("lark") == SOURCE
+
+
+@pytest.mark.parametrize("format", FORMATS)
+def test_every_fixed_text_occurs(format: str) -> None:
+    text = export(format)
+    assert len(TOKENS) > 50
+    assert [token for token in TOKENS if f'"{token}"' not in text] == []
+
+
+def test_every_rule_occurs() -> None:
+    for_readers = defined(export("ebnf"))
+    assert {rule.lstrip("_") for rule in RULES} - for_readers == set()
+    for_engine = {re.sub(r"_(after|ending)_\w+$", "", name) for name in defined(export("llguidance"))}
+    assert RULES - for_engine == set()
+
+
+@pytest.mark.parametrize("format", ["llguidance", "gbnf", "ebnf"])
+def test_every_name_used_is_defined_once(format: str) -> None:
+    text = export(format)
+    plain = re.sub(r'"(?:[^"\\]|\\.)*"|' + r"'[^']*'|/\[(?:[^\]\\]|\\.)*\]/|\[(?:[^\]\\]|\\.)*\]", " ", text)
+    names = re.findall(r"^([\w-]+)\s*(?:::=|:)", plain, flags=re.MULTILINE)
+    assert len(names) == len(set(names))
+    used = set(re.findall(r"[A-Za-z_][\w-]*", re.sub(r"%llguidance", " ", plain)))
+    assert used == set(names)
+
+
+@pytest.mark.parametrize("fenced", [False, True])
+@pytest.mark.parametrize("format", FENCED_FORMATS)
+def test_names_are_no_reserved_words(format: str, fenced: bool) -> None:
+    """The rule for names alone, asked of the engine."""
+    text = export(format, fenced)
+    text = gbnf_to_lark(text) if format == "gbnf" else text
+    name = re.search(r"^NAME:.*?(?=\n\w+:)", text, flags=re.MULTILINE | re.DOTALL)
+    assert name
+    words = Engine(f"start: NAME\n{name[0]}\n")
+    reserved = load_tables().reserved
+    assert [word for word in reserved if words.takes(word)[2]] == []
+    near = {word + end for word in reserved for end in ("s", "_", "0", "é")}
+    near |= {word[:n] for word in reserved for n in range(1, len(word))}
+    near |= {word[:n] + "q" + word[n + 1 :] for word in reserved for n in range(len(word))}
+    near |= {word.capitalize() for word in reserved} - load_tables().soft_words
+    assert [word for word in near - reserved if not words.takes(word)[2]] == []
+
+
+def test_letters_of_names_are_letters_to_the_parser() -> None:
+    name = re.search(r"^NAME ::= \[(.*?)\]", export("gbnf"), flags=re.MULTILINE)
+    assert name
+    ranges = re.findall(r"([^\x00-\x7f])-([^\x00-\x7f])", name[1])
+    letters = [chr(n) for a, b in ranges for n in range(ord(a), ord(b) + 1)]
+    assert len(letters) > 500
+    assert [letter for letter in letters if not re.fullmatch(r"[^\W\d]", letter)] == []
+
+
+def test_gbnf_has_no_left_recursion() -> None:
+    text = export("gbnf")
+    items = {n: re.sub(r'"(?:[^"\\]|\\.)*"|\[(?:[^\]\\]|\\.)*\]', "'", d) for n, d in _definitions(text)}
+    assert not any(re.search(rf"(^|[|(]) *({re.escape(name)})(?![\w-])", d) for name, d in items.items())
+    gbnf_to_lark(text)
+
+
+def _definitions(text: str) -> list[tuple[str, str]]:
+    return [(name.strip(), body) for name, body in (line.split("::=", 1) for line in text.splitlines())]
+
+
+@pytest.fixture(scope="module")
+def converted() -> Engine:
+    return Engine(gbnf_to_lark(export("gbnf")))
+
+
+def test_gbnf_takes_the_same_programs(converted: Engine) -> None:
+    """As the engine reads it that llguidance's own converter makes of it."""
+    places = sorted(all_programs())
+    some = [p for p in places if p.startswith("examples")] + places[::12]
+    assert {p for p in some if converted.takes(all_programs()[p])[2] == bool(syntax_errors(all_programs()[p]))} == set()
+
+
+@pytest.mark.parametrize("text", ["letx", "x = 3y = 4", "let at = 3", "x = f (3)", "x = ((((((((((1", "solid s {"])
+def test_gbnf_refuses(converted: Engine, text: str) -> None:
+    assert not converted.takes(text)[2]
+
+
+def test_gbnf_fenced() -> None:
+    fenced = Engine(gbnf_to_lark(export("gbnf", fenced=True)))
+    assert fenced.takes("So:\n```aidl\nsolid s { }\n```\n")[2]
+    assert not fenced.takes("So:\nsolid s { }\n")[2]
+
+
+def test_lark_itself_reads_what_llguidance_reads() -> None:
+    text = export("llguidance").removeprefix("%llguidance {}\n")
+    parser = Lark(text, parser="earley", start="start")
+    assert parser.parse("solid s { }\n")
+
+
+def test_what_is_not_there_raises() -> None:
+    with pytest.raises(ValueError, match="bnf"):
+        export("bnf")
+    with pytest.raises(ValueError, match="lark"):
+        export("lark", fenced=True)

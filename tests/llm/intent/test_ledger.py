@@ -1,0 +1,326 @@
+"""What a conversation loses is noticed, named and put back; what is only said in another way is no loss."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from aidl_lang import pipeline
+from aidl_lang.llm.intent import Kind, Ledger, request
+from aidl_lang.source import SourceFile
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+
+CLOCK = """assembly clock {
+    param size = 60mm in 40..100
+    solid face { disc = circle(center: origin, radius: size) }
+    @detached
+    solid hand rotated 15deg {
+        blade = rectangle(center: (0, 20), width: 4, height: 40)
+    }
+    solid foot {
+        block = rectangle(center: (3, -70), width: 50, height: guess(18), angle: 10deg)
+    }
+    constrain {
+        foot.below(face, gap: 0)
+        foot.centered_horizontally(face)
+        hand.bottom == face.center_y
+        foot.block.height == 20
+    }
+    assert foot.top <= face.bottom
+}
+"""
+
+
+@cache
+def compiled(text: str) -> pipeline.Compiled:
+    return pipeline.compile(SourceFile("clock.aidl", text))
+
+
+def told(*programs: str) -> Ledger:
+    """A conversation of these programs."""
+    ledger = Ledger()
+    for text in programs:
+        ledger.note(SourceFile("clock.aidl", text), compiled(text))
+    return ledger
+
+
+def phrases(*programs: str) -> list[str]:
+    return [loss.phrase for loss in told(*programs).missing]
+
+
+def changed(*pairs: tuple[str, str], text: str = CLOCK) -> str:
+    for old, new in pairs:
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+def restored(text: str, *before: str) -> str:
+    ledger = told(*before, text)
+    return ledger.restore(SourceFile("clock.aidl", text)).text
+
+
+HAND = """    @detached
+    solid hand rotated 15deg {
+        blade = rectangle(center: (0, 20), width: 4, height: 40)
+    }
+"""
+BELOW, MIDDLE = "foot.below(face, gap: 0)", "foot.centered_horizontally(face)"
+
+
+@pytest.mark.parametrize(
+    "after",
+    [
+        changed((BELOW, "under(foot, face, gap: 0mm)"), (MIDDLE, "center_horizontally(foot, face)")),
+        changed(("hand.bottom == face.center_y", "face.center_y == hand.bottom")),
+        changed((f"        {BELOW}\n        {MIDDLE}\n", f"        {MIDDLE}\n        {BELOW}\n")),
+        changed((f"        {BELOW}\n", ""), ("    assert", f"    constrain {BELOW}\n    assert")),
+        changed(("foot", "stand")),
+        changed(("foot", "stand"), ("block", "slab")),
+        changed(("clock", "timepiece")),
+        changed(("15deg", "20deg"), ("height == 20", "height == 22"), ("60mm", "70mm")),
+        changed((BELOW, "foot.top == face.bottom")),
+        changed((BELOW, "foot.below(face, gap: 0) and foot.block.width <= 60")),
+        changed(
+            ("    solid foot {\n        block", "    solid base { solid foot {\n        block"),
+            ("10deg)\n    }", "10deg)\n    } }"),
+            ("foot.", "base.foot."),
+        ),
+        " ".join(CLOCK.split()),
+    ],
+    ids=[
+        *("synonyms", "sides", "order", "block", "renamed", "all renamed", "root", "numbers"),
+        *("rewritten", "joined", "moved", "format"),
+    ],
+)
+def test_the_same_in_other_words_is_no_loss(after: str) -> None:
+    assert compiled(after).status == "solved"
+    assert phrases(CLOCK, after) == []
+
+
+@pytest.mark.parametrize(
+    ("after", "phrase"),
+    [
+        (
+            changed((f"        {MIDDLE}\n", "")),
+            "`foot.centered_horizontally(face)` (in `clock`) is gone: it fits as it was; put it back",
+        ),
+        (
+            changed((" rotated 15deg", "")),
+            "the rotation `rotated 15deg` of `clock.hand` is gone: it fits as it was; put it back",
+        ),
+        (
+            changed((" rotated 15deg", " rotated 0deg")),
+            "the rotation `rotated 15deg` of `clock.hand` is gone: it fits as it was; put it back",
+        ),
+        (
+            changed((", angle: 10deg", "")),
+            "the rotation `angle: 10deg` of `clock.foot.block` is gone: it fits as it was; put it back",
+        ),
+        (
+            changed((MIDDLE, f"prefer {MIDDLE} weight 2")),
+            "`foot.centered_horizontally(face)` (in `clock`) became a wish: it fits as it was; put it back",
+        ),
+        (
+            changed((f"        {MIDDLE}\n", ""), ("    assert", f"    assert {MIDDLE}\n    assert")),
+            "`foot.centered_horizontally(face)` (in `clock`) is only checked now, by an `assert`: it fits as"
+            " it was; put it back",
+        ),
+        (
+            changed(("    assert foot.top <= face.bottom\n", "")),
+            "`assert foot.top <= face.bottom` (in `clock`) is gone: it fits as it was; put it back",
+        ),
+        (
+            changed((HAND, ""), ("        hand.bottom == face.center_y\n", "")),
+            "structure `clock.hand` (solid, 1 geometry) is gone, and with it `hand.bottom == face.center_y`:"
+            " it fits as it was; put it back",
+        ),
+        (
+            changed((BELOW, "foot.width <= face.width")),
+            "`foot.below(face, gap: 0)` (in `clock`) was replaced by `foot.width <= face.width`, which says"
+            " less: it fits as it was; put it back",
+        ),
+        (
+            changed(("    param size = 60mm in 40..100\n", ""), ("radius: size", "radius: 60")),
+            "`param size = 60mm in 40..100` (in `clock`) is gone: what it set is written as numbers now, or"
+            " not at all; use it there again",
+        ),
+        ("", "structure `clock` (assembly, 3 structures, 3 geometries, 4 constraints) is gone"),
+    ],
+    ids=[
+        *("constraint", "rotation", "level", "angle", "wish", "assert only", "assert", "structure"),
+        *("says less", "param", "all"),
+    ],
+)
+def test_a_loss_is_named(after: str, phrase: str) -> None:
+    assert phrases(CLOCK, after) == [phrase]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (f"        {MIDDLE}\n", ""),
+        (" rotated 15deg", ""),
+        (" rotated 15deg", " rotated 0deg"),
+        (", angle: 10deg", ", angle: 0"),
+        (", angle: 10deg", ""),
+        (MIDDLE, f"prefer {MIDDLE}"),
+        ("    assert foot.top <= face.bottom\n", ""),
+    ],
+)
+def test_what_fits_is_put_back(old: str, new: str) -> None:
+    after = changed((old, new))
+    text = restored(after, CLOCK)
+    assert phrases(CLOCK, text) == []
+    before, now = compiled(CLOCK).model, compiled(text).model
+    assert before is not None
+    assert now is not None
+    assert now.degrees == before.degrees
+
+
+def test_a_structure_comes_back_with_what_spoke_of_it() -> None:
+    after = changed((HAND, ""), ("        hand.bottom == face.center_y\n", ""))
+    ledger = told(CLOCK, after)
+    result = ledger.restore(SourceFile("clock.aidl", after))
+    assert result.items == (
+        "structure `clock.hand` (solid, 1 geometry)",
+        "`hand.bottom == face.center_y` (in `clock`)",
+    )
+    assert phrases(CLOCK, result.text) == []
+
+
+def test_a_constraint_comes_back_under_new_names() -> None:
+    after = changed((f"        {MIDDLE}\n", ""), ("foot", "stand"))
+    assert "stand.centered_horizontally(face)" in restored(after, CLOCK)
+
+
+LID = """drawing tin {
+    box = rectangle(center: fixed((0, 0)), width: fixed(60), height: 30)
+    lid = rectangle(center: (3, 25), width: 40, height: 6)
+    constrain {
+        lid.left == box.left
+        lid.right == box.right
+        lid.width == 40
+        lid.bottom == box.top
+    }
+}
+"""
+
+
+def test_what_was_deleted_to_silence_an_error_is_missed() -> None:
+    silenced = changed(("        lid.right == box.right\n", ""), text=LID)
+    assert compiled(LID).status != "solved"
+    assert compiled(silenced).status == "solved"
+    ledger = told(LID, silenced)
+    (loss,) = ledger.missing
+    assert (loss.kind, loss.path, loss.text, loss.attempt) == (
+        Kind.CONSTRAINT,
+        "tin",
+        "lid.right == box.right",
+        1,
+    )
+    assert loss.phrase == (
+        "`lid.right == box.right` (in `tin`) is gone: as it was it conflicts with `lid.left == box.left` and"
+        " `lid.width == 40`; say it in another way, or mend one of those"
+    )
+    assert loss.phrase in request(ledger.missing)
+    assert ledger.restore(SourceFile("clock.aidl", silenced)).text == silenced
+    mended = changed(("        lid.width == 40\n", "        lid.width >= 40\n"), text=LID)
+    assert phrases(LID, silenced, mended) == []
+
+
+def test_a_loss_is_remembered_until_it_is_made_good() -> None:
+    without = changed((f"        {MIDDLE}\n", ""))
+    other = changed(("40..100", "40..90"), text=without)
+    ledger = told(CLOCK, without, other)
+    assert [loss.attempt for loss in ledger.missing] == [1]
+    ledger.note(SourceFile("clock.aidl", CLOCK), compiled(CLOCK))
+    assert ledger.missing == ()
+
+
+def test_a_wrong_statement_may_be_replaced() -> None:
+    wrong = changed((" rotated 15deg", ""), (BELOW, f"{BELOW}\n        turn_by(hand, 15deg)"))
+    assert phrases(wrong, CLOCK) == []
+    assert phrases(wrong, changed((" rotated 15deg", ""))) == [
+        "`turn_by(hand, 15deg)` (in `clock`) is gone: it was written wrongly; say it in a way that is right"
+    ]
+
+
+def test_what_was_offered_to_go_may_go() -> None:
+    twice = changed((MIDDLE, f"{MIDDLE}\n        foot.center_x == face.center_x"))
+    notes = [d for d in compiled(twice).diagnostics if d.code == "N0602"]
+    assert len(notes) == 1
+    assert phrases(twice, CLOCK) == []
+
+
+def test_what_could_not_be_read_is_not_called_gone() -> None:
+    broken = changed(("width: 4,", "width: 4 4,"))
+    assert compiled(broken).status == "wrong"
+    assert phrases(CLOCK, broken) == []
+
+
+def test_what_other_words_imply_is_no_loss() -> None:
+    before = """drawing d {
+    a = circle(center: fixed((0, 0)), radius: 5)
+    b = circle(center: (20, 1), radius: 5)
+    constrain {
+        b.center.y == a.center.y
+        b.center.x == 20
+    }
+}
+"""
+    referred = changed(
+        ("b = circle(center: (20, 1)", "b = circle(center: a.center + (20, 0)"),
+        ("        b.center.y == a.center.y\n", ""),
+        ("        b.center.x == 20\n", ""),
+        text=before,
+    )
+    assert phrases(before, referred) == []
+
+
+def constraint_lines() -> list[tuple[str, str]]:
+    """Examples with one constraint each left out, of those that have it on a line of its own."""
+    found = []
+    for name in ("telephone", "key", "bottle_opener", "toy_sword"):
+        lines = (EXAMPLES / f"{name}.aidl").read_text().splitlines()
+        inside = False
+        for number, line in enumerate(lines):
+            if line.strip() == "}":
+                inside = False
+            if inside and line.count("(") == line.count(")"):
+                found.append((name, number))
+            if line.strip() == "constrain {":
+                inside = True
+    return [(name, str(number)) for name, number in found]
+
+
+@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(st.sampled_from(constraint_lines()))
+def test_any_constraint_deleted_is_named_and_put_back(chosen: tuple[str, str]) -> None:
+    name, number = chosen[0], int(chosen[1])
+    text = (EXAMPLES / f"{name}.aidl").read_text()
+    lines = text.splitlines()
+    after = "\n".join([*lines[:number], *lines[number + 1 :]]) + "\n"
+    words = lines[number].split("//")[0].strip()
+    (loss,) = told(text, after).missing
+    assert loss.text == " ".join(words.split())
+    assert phrases(text, restored(after, text)) == []
+
+
+@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    st.sampled_from(["telephone", "key", "bottle_opener", "toy_sword"]),
+    st.text(st.characters(codec="utf-8"), max_size=5),
+    st.floats(0, 1),
+    st.floats(0, 1),
+)
+def test_any_text_may_follow(name: str, junk: str, first: float, second: float) -> None:
+    text = (EXAMPLES / f"{name}.aidl").read_text()
+    a, b = sorted(int(share * len(text)) for share in (first, second))
+    ledger = told(text, text[:a] + junk + text[b:])
+    assert all(loss.phrase for loss in ledger.missing)

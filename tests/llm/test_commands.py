@@ -1,0 +1,257 @@
+"""Commands in place of a server: `exec:COMMAND`."""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from aidl_lang.llm.messages import Finish, Image, Message, ProviderError, Reply, Sampling, Usage
+from aidl_lang.llm.providers import Closable, Connection, Price, connect
+
+Make = Callable[..., Closable]
+
+PLAIN = Sampling()
+SAID = [Message("system", "the guide"), Message("user", "a telephone", (Image("image/png", b"abc"),))]
+
+
+@pytest.fixture
+def command(tmp_path: Path) -> Make:
+    """`command("print('a reply')")` is a provider that runs this as Python."""
+
+    def make(program: str, **more: Any) -> Closable:
+        script = tmp_path / "a reply.py"
+        script.write_text(program, encoding="utf-8")
+        return connect(Connection(f"exec:{sys.executable} '{script}'", **{"timeout": 20.0, **more}), {})
+
+    return make
+
+
+def ask(provider: Closable, sampling: Sampling = PLAIN) -> Reply:
+    return provider.reply(SAID, sampling, lambda piece: None)
+
+
+def failure(provider: Closable) -> tuple[str, str, tuple[str, ...]]:
+    with pytest.raises(ProviderError) as caught:
+        ask(provider)
+    told = caught.value.diagnostic
+    return told.code, told.message.replace(provider.name, "COMMAND"), told.hints
+
+
+def test_what_a_command_reads(command: Make) -> None:
+    provider = command("import sys; sys.stdout.write(sys.stdin.read())", model="m")
+    reply = ask(provider, Sampling(7, 0.5, 9, {"top_k": 3}))
+    assert json.loads(reply.text) == {
+        "messages": [
+            {"role": "system", "content": "the guide", "images": []},
+            {
+                "role": "user",
+                "content": "a telephone",
+                "images": ["data:image/png;base64," + base64.b64encode(b"abc").decode()],
+            },
+        ],
+        "sampling": {"seed": 7, "temperature": 0.5, "max_tokens": 9, "top_k": 3},
+        "model": "m",
+    }
+    assert (reply.finish, reply.usage) == (Finish.COMPLETE, Usage(None, None, None))
+
+
+def test_text_is_heard_while_the_command_runs(command: Make, tmp_path: Path) -> None:
+    waits = f"""
+import os, sys, time
+sys.stdout.write("ünï"); sys.stdout.flush()
+while not os.path.exists({str(tmp_path / "heard")!r}): time.sleep(0.01)
+sys.stdout.write("code")
+"""
+    heard: list[str] = []
+
+    def hear(piece: str) -> None:
+        heard.append(piece)
+        (tmp_path / "heard").touch()
+
+    reply = command(waits).reply(SAID, PLAIN, hear)
+    assert (reply.text, heard) == ("ünïcode", ["ünï", "code"])
+
+
+def test_characters_may_come_in_halves(command: Make) -> None:
+    halves = r"""
+import sys, time
+for byte in "✓é".encode(): sys.stdout.buffer.write(bytes([byte])); sys.stdout.flush(); time.sleep(0.02)
+"""
+    assert ask(command(halves)).text == "✓é"
+
+
+def test_command_may_tell_more_as_json(command: Make) -> None:
+    told = {
+        "text": "solid a {}",
+        "usage": {"input": 100, "output": 10, "cost": 0.5},
+        "finish": "cut",
+        "model": "mine",
+    }
+    heard: list[str] = []
+    reply = command(f"print('''{json.dumps(told)}''')").reply(SAID, PLAIN, heard.append)
+    assert reply == Reply("solid a {}", Usage(100, 10, 0.5), Finish.CUT, "mine")
+    assert heard == ["solid a {}"]
+
+
+def test_cost_by_the_price(command: Make) -> None:
+    told = {"text": "a", "usage": {"input": 1_000_000, "output": 500_000}}
+    assert ask(command(f"print('{json.dumps(told)}')", price=Price(2, 10))).usage.cost == pytest.approx(7.0)
+
+
+@pytest.mark.parametrize("text", ['{"a": 1}', "{ not json", '[{"text": "x"}]', "{" * 9999])
+def test_json_of_another_kind_is_the_text(command: Make, text: str) -> None:
+    heard: list[str] = []
+    reply = command(f"import sys; sys.stdout.write({text!r})").reply(SAID, PLAIN, heard.append)
+    assert reply.text == "".join(heard) == text
+
+
+@pytest.mark.parametrize(
+    ("program", "code", "message", "hints"),
+    [
+        (
+            "import sys; sys.exit('no model\\x1b[2J here')",
+            "E0936",
+            "`COMMAND` ended with exit code 1",
+            ("it said: no model [2J here",),
+        ),
+        (
+            "import os; os.kill(os.getpid(), 15)",
+            "E0936",
+            "`COMMAND` ended with SIGTERM",
+            (),
+        ),
+        (
+            "import sys; print('  '); print('thinking', file=sys.stderr)",
+            "E0938",
+            "the reply of `COMMAND` cannot be used: it wrote nothing",
+            ("it said: thinking",),
+        ),
+        (
+            "import sys; sys.stdout.buffer.write(b'solid \\xff')",
+            "E0938",
+            "the reply of `COMMAND` cannot be used: its output is not UTF-8 text",
+            (),
+        ),
+        (
+            "import sys; sys.stdout.buffer.write('é'.encode()[:1])",
+            "E0938",
+            "the reply of `COMMAND` cannot be used: its output is not UTF-8 text",
+            (),
+        ),
+        (
+            "while True: print('x' * 10000)",
+            "E0938",
+            "the reply has more than 1,000,000 characters",
+            ("the model repeats itself: set --max-tokens, or take another model",),
+        ),
+        (
+            "import sys\nwhile True: print('x' * 10000, file=sys.stderr)",
+            "E0938",
+            "the reply has more than 1,000,000 characters",
+            ("the model repeats itself: set --max-tokens, or take another model",),
+        ),
+        (
+            """print('{"text": 3}')""",
+            "E0938",
+            "the reply of `COMMAND` cannot be used: `text` in its JSON is not a string",
+            (),
+        ),
+        (
+            """print('{"text": "a", "finish": "tired"}')""",
+            "E0938",
+            "the reply of `COMMAND` cannot be used: `finish` in its JSON is none of complete, cut, refused",
+            (),
+        ),
+    ],
+)
+def test_failures(command: Make, program: str, code: str, message: str, hints: tuple[str, ...]) -> None:
+    assert failure(command(program)) == (code, message, hints)
+
+
+def test_only_the_end_of_what_it_said_is_told(command: Make) -> None:
+    program = "import sys\nfor i in range(9): print('line', i, file=sys.stderr)\nsys.exit(3)"
+    assert failure(command(program)) == (
+        "E0936",
+        "`COMMAND` ended with exit code 3",
+        ("it said: line 6", "it said: line 7", "it said: line 8"),
+    )
+
+
+def test_silent_command_is_killed_with_its_children(command: Make, tmp_path: Path) -> None:
+    program = f"""
+import subprocess, sys, time
+child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+open({str(tmp_path / "pid")!r}, "w").write(str(child.pid))
+print("half of", flush=True)
+time.sleep(600)
+"""
+    code, message, hints = failure(command(program, timeout=3))
+    assert (code, message) == ("E0937", "`COMMAND` was silent for 3 seconds and was stopped")
+    assert hints == ("--timeout SECONDS gives it longer",)
+    assert _ends(int((tmp_path / "pid").read_text()))
+
+
+def test_command_that_closes_its_output_and_stays(command: Make) -> None:
+    program = "import os, time; print('a', flush=True); os.close(1); os.close(2); time.sleep(600)"
+    assert failure(command(program, timeout=1.5))[0] == "E0937"
+
+
+def test_command_is_killed_when_nobody_listens_any_more(command: Make, tmp_path: Path) -> None:
+    program = f"""
+import os, time
+open({str(tmp_path / "pid")!r}, "w").write(str(os.getpid()))
+print("a", flush=True)
+time.sleep(600)
+"""
+
+    def hear(piece: str) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        command(program).reply(SAID, PLAIN, hear)
+    assert _ends(int((tmp_path / "pid").read_text()))
+
+
+def test_input_need_not_be_read(command: Make) -> None:
+    said = [Message("user", "x" * 3_000_000)]
+    assert command("print('done')").reply(said, PLAIN, lambda piece: None).text == "done\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [("nowhere-to-be-found", "No such file or directory"), ("/", "Permission denied")],
+)
+def test_command_that_cannot_be_run(name: str, reason: str) -> None:
+    provider = connect(Connection(f"exec:{name} --fast"), {})
+    code, message, hints = failure(provider)
+    assert (code, message) == ("E0936", f"`{name}` cannot be run: {reason}")
+    assert hints == (
+        "is the path right, and may it be executed? A script may want `python` or `sh` before it",
+    )
+
+
+def _ends(process: int) -> bool:
+    """Whether a process is gone, or goes within ten seconds."""
+    for _ in range(1000):
+        try:
+            os.kill(process, 0)
+        except ProcessLookupError:
+            return True
+        if _is_zombie(process):
+            return True
+        time.sleep(0.01)
+    return False
+
+
+def _is_zombie(process: int) -> bool:
+    """Killed, but not yet taken note of by whoever has inherited it."""
+    stat = Path(f"/proc/{process}/stat")
+    return stat.exists() and stat.read_text().rpartition(")")[2].split()[0] == "Z"

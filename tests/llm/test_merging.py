@@ -1,0 +1,97 @@
+"""A change touches the lines that it changes, and means what the model wrote."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from aidl_lang import ast
+from aidl_lang.llm.merging import merge
+from aidl_lang.parser import parse
+from aidl_lang.source import SourceFile
+
+EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.aidl"))
+TELEPHONE = (Path(__file__).parents[2] / "examples/telephone.aidl").read_text("utf-8")
+
+
+def carelessly(text: str) -> str:
+    """The program as a model may hand it back: without comments, and laid out in another way."""
+    bare = re.sub(r"[ \t]*//[^\n]*", "", text)
+    return re.sub(r"\n\s*\n", "\n", bare).replace("    ", "\t")
+
+
+def changed(before: str, after: str) -> list[str]:
+    lines = difflib.unified_diff(before.splitlines(), after.splitlines(), n=0, lineterm="")
+    return [line for line in lines if line[:1] in "+-" and line[:3] not in ("+++", "---")]
+
+
+def tree(text: str) -> ast.Module:
+    parsed = parse(SourceFile("part.aidl", text))
+    assert not parsed.diagnostics
+    return parsed.module
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_a_program_handed_back_as_it_was_is_not_touched(path: Path) -> None:
+    text = path.read_text("utf-8")
+    assert merge(text, carelessly(text)) == text
+
+
+def test_a_number_is_one_line() -> None:
+    after = carelessly(TELEPHONE).replace("radius: 28", "radius: 34")
+    assert changed(TELEPHONE, merge(TELEPHONE, after)) == [
+        "-        plate = circle(center: origin, radius: 28)",
+        "+        plate = circle(center: origin, radius: 34)",
+    ]
+
+
+def test_a_comment_behind_a_changed_line_stays() -> None:
+    after = carelessly(TELEPHONE).replace("guess(15)", "guess(14)")
+    assert changed(TELEPHONE, merge(TELEPHONE, after)) == [
+        "-        right_ear = circle(center: (55, 60), radius: guess(15))"
+        "  // a little off: constraints mend it",
+        "+        right_ear = circle(center: (55, 60), radius: guess(14))"
+        "  // a little off: constraints mend it",
+    ]
+
+
+def test_a_new_name_does_not_touch_the_inside() -> None:
+    after = carelessly(TELEPHONE).replace("assembly telephone", "assembly phone")
+    assert changed(TELEPHONE, merge(TELEPHONE, after)) == ["-assembly telephone {", "+assembly phone {"]
+
+
+def test_a_statement_goes_and_one_comes() -> None:
+    after = carelessly(TELEPHONE).replace("receiver.width <= base.width", "")
+    after = after.replace("solid base {", "solid foot { pad = rectangle(width: 5, height: 5) }\nsolid base {")
+    assert changed(TELEPHONE, merge(TELEPHONE, after)) == [
+        "+\tsolid foot { pad = rectangle(width: 5, height: 5) }",
+        "-        receiver.width <= base.width",
+    ]
+
+
+def test_what_does_not_parse_is_handed_on_as_it_is() -> None:
+    assert merge(TELEPHONE, "solid a {") == "solid a {"
+    assert merge("solid a {", TELEPHONE) == TELEPHONE
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.sampled_from(EXAMPLES), st.data())
+def test_the_result_means_what_was_written(path: Path, data: st.DataObject) -> None:
+    """Whatever lines a model leaves out or writes anew: if it parses, the result is the same program."""
+    text = path.read_text("utf-8")
+    lines = carelessly(text).splitlines()
+    for _ in range(data.draw(st.integers(0, 3))):
+        place = data.draw(st.integers(0, len(lines) - 1))
+        lines[place] = data.draw(
+            st.sampled_from(
+                ["", re.sub(r"\d+", "7", lines[place]), f"{lines[place]} ; todo", lines[place] + lines[place]]
+            )
+        )
+    after = "\n".join(lines)
+    if not parse(SourceFile("part.aidl", after)).diagnostics:
+        assert ast.same(tree(carelessly(merge(text, after))), tree(after))

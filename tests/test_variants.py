@@ -1,0 +1,426 @@
+"""Subsets of the language: what each lacks is reported, what it has means the same as in the whole, and its
+guide speaks of nothing else.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+from typing import TypeAlias
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from aidl_lang import builtins, pipeline
+from aidl_lang.cli import main
+from aidl_lang.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.pipeline import Compiled
+from aidl_lang.reference.collect import reference
+from aidl_lang.reference.guide import guide
+from aidl_lang.render import render
+from aidl_lang.source import SourceFile
+from aidl_lang.variants import FORBIDDEN, Variant
+from aidl_lang.world import DiskWorld, MemoryWorld
+from tests.documents import ROOT
+from tests.property.programs import Part, Sketch, part, sketches
+
+Told: TypeAlias = tuple[str, str, str, tuple[str, ...]]
+"""Of a diagnostic: its code, the text of its place, its message and its hints."""
+
+FLAT, WRITTEN = Variant.NO_HIERARCHY, Variant.NO_CONSTRAINTS
+SUBSETS = (FLAT, WRITTEN)
+CODES = {variant: {rule.code for rule in FORBIDDEN[variant].values()} for variant in Variant}
+
+ONE = "`no-hierarchy` has one structure"
+AS_WRITTEN = "`no-constraints` draws everything as it is written"
+OTHER = "write its geometry and constraints straight into the first structure, under names of their own"
+CUT = "cut it out: `body = cut(plate, bore)`"
+LOOP = "repeat geometry in a loop, `for i in 0..3 { bore[i] = circle(…) }`; if it is a hole, " + CUT
+WHERE = (
+    "write where things are and how large: by numbers, `param`s, or parts of geometry above, as in "
+    "`center: plate.top_left + (5, -5)`"
+)
+STATED = f"{AS_WRITTEN} and has no constraints"
+
+
+def compiled(text: str, variant: Variant, files: dict[str, str] | None = None) -> Compiled:
+    chosen = pipeline.Settings(variant=variant)
+    return pipeline.compile(SourceFile("part.aidl", text), MemoryWorld(files or {}), settings=chosen)
+
+
+def checked(text: str, variant: Variant, files: dict[str, str] | None = None) -> list[Diagnostic]:
+    chosen = pipeline.Settings(variant=variant)
+    return pipeline.check(SourceFile("part.aidl", text), MemoryWorld(files or {}), chosen)
+
+
+def told(d: Diagnostic) -> Told:
+    return d.code, d.span.text if d.span else "", d.message, d.hints
+
+
+# --- What is forbidden ----------------------------------------------------------------------------
+
+FOUND: dict[str, tuple[Variant, str, list[Told]]] = {
+    "hole": (
+        FLAT,
+        "solid plate {\n body = circle(radius: 9)\n hole bore { rim = circle(radius: 3) }\n}",
+        [
+            (
+                "E0403",
+                "bore",
+                f"{ONE}, and `bore` is a hole of its own",
+                (f"draw its outline in the one structure, and {CUT}",),
+            )
+        ],
+    ),
+    "child in an if": (
+        FLAT,
+        "assembly a {\n if true { solid plate { body = circle(radius: 9) } }\n}",
+        [("E0403", "plate", f"{ONE}, and `plate` is another", (OTHER,))],
+    ),
+    "second root": (
+        FLAT,
+        "solid a { body = circle(radius: 9) }\nsolid b { body = circle(center: (30, 0), radius: 9) }",
+        [("E0403", "b", f"{ONE}, and `b` is another", (OTHER,))],
+    ),
+    "beside the root": (
+        FLAT,
+        "let r = 9\nsolid a { body = circle(radius: r) }\n"
+        "rim = circle(center: (30, 0), radius: 9)\nassert true",
+        [
+            (
+                "E0403",
+                "rim = circle(center: (30, 0), radius: 9)",
+                f"{ONE}, and this stands outside `a`",
+                ("write it inside `a`",),
+            )
+        ],
+    ),
+    "template": (
+        FLAT,
+        "solid a {\n solid peg(r = 4) { body = circle(radius: r) }\n"
+        " p = peg(r: 5)\n q = linear_array(peg(), n: 2, pitch: 20)\n}",
+        [("E0404", "peg", f"{ONE}, and the template `peg` makes more", (LOOP,))] * 3,
+    ),
+    "template of the library": (
+        FLAT,
+        'solid a {\n disc = circle(radius: 30)\n bolts = bolt_circle(count: 6, diameter: 44, size: "m4")\n}',
+        [("E0404", "bolt_circle", f"{ONE}, and the template `bolt_circle` makes more", (LOOP,))],
+    ),
+    "shape": (
+        FLAT,
+        "solid a {\n shape eye(r: length) { rim = circle(radius: r) }\n e = eye(r: 4)\n}",
+        [
+            (
+                "E0405",
+                "eye",
+                "in `no-hierarchy` all geometry is on one level, and the shape `eye` has parts of its own",
+                (
+                    "write its parts where it is used, or make it one `path` or `polygon`; "
+                    "`fn` can work out points",
+                ),
+            )
+        ],
+    ),
+    "constrain": (
+        WRITTEN,
+        "solid a {\n c = circle(radius: 9)\n constrain { c.radius == 8\n misspelt(c) }\n"
+        " if true { constrain c.radius == 7 }\n}",
+        [
+            ("E0406", "constrain { c.radius == 8\n misspelt(c) }", STATED, (WHERE,)),
+            ("E0406", "constrain c.radius == 7", STATED, (WHERE,)),
+        ],
+    ),
+    "prefer and bare constraints": (
+        WRITTEN,
+        "solid a {\n c = circle(radius: 9)\n prefer c.radius == 8 weight 2\n c.radius <= 9\n fixed(c)\n"
+        " horizontal(c, 5)\n c.centered_in(c)\n move(c, by: (2, 0))\n}",
+        [
+            ("E0406", text, STATED, (WHERE,))
+            for text in (
+                "prefer c.radius == 8 weight 2",
+                "c.radius <= 9",
+                "fixed(c)",
+                "horizontal(c, 5)",
+                "c.centered_in(c)",
+            )
+        ],
+    ),
+    "var": (
+        WRITTEN,
+        "solid a {\n var gap = 5\n c = circle(center: (gap, 0), radius: 9)\n}",
+        [
+            (
+                "E0407",
+                "gap",
+                f"{AS_WRITTEN}, and `gap` is an unknown",
+                ("name its value by `let`, or make it a `param`",),
+            )
+        ],
+    ),
+    "constraint": (
+        WRITTEN,
+        "solid a {\n constraint near(a: box, b: box) { a.left == b.right }\n c = circle(radius: 9)\n}",
+        [
+            (
+                "E0408",
+                "constraint near(a: box, b: box) { a.left == b.right }",
+                f"{AS_WRITTEN}, and `near` defines a constraint",
+                ("let a function work out what it ties, as in `fn top_of(a) = a.center + (0, 10)`",),
+            )
+        ],
+    ),
+    "relation": (
+        WRITTEN,
+        "solid a {\n c = circle(radius: 9)\n d = circle(radius: 3)\n"
+        " assert d.inside(c)\n assert distance(c.center, d.center) <= 1\n}",
+        [
+            (
+                "E0409",
+                "inside",
+                "`no-constraints` has no relations, and `inside` is one",
+                ("compare coordinates or measures, as in `assert lid.bottom >= box.top`",),
+            )
+        ],
+    ),
+    "smooth": (
+        WRITTEN,
+        "solid a {\n p = path(from: (0, 0), line_to((20, 0)), arc_to((20, 10), radius: 6, smooth: true), "
+        "line_to((0, 10), smooth: false), close())\n}",
+        [
+            (
+                "E0409",
+                "smooth: true",
+                f"{AS_WRITTEN}, and `smooth: true` would move a step of the path",
+                (
+                    "give the points of a smooth outline, or use `tangent_arc_to` and `arc_by`, "
+                    "which go on smoothly",
+                ),
+            )
+        ],
+    ),
+}
+
+
+@pytest.mark.parametrize(("variant", "text", "expected"), FOUND.values(), ids=FOUND)
+def test_what_a_variant_lacks_is_reported(variant: Variant, text: str, expected: list[Told]) -> None:
+    found = [d for d in checked(text, variant) if d.is_error]
+    assert [told(d) for d in found] == expected
+    assert not CODES[variant] & {d.code for d in checked(text, Variant.FULL)}
+    other = FLAT if variant is WRITTEN else WRITTEN
+    assert not CODES[variant] & {d.code for d in checked(text, other)}
+
+
+def test_every_construct_is_tried() -> None:
+    messages = {message for _, _, expected in FOUND.values() for _, _, message, _ in expected}
+    for rules in FORBIDDEN.values():
+        for rule in rules.values():
+            pattern = ".+".join(map(re.escape, rule.message.split("{name}")))
+            assert any(re.fullmatch(pattern, message) for message in messages), rule.message
+
+
+def test_imports_are_held_to_the_variant_and_the_library_is_not() -> None:
+    files = {"lib.aidl": "hole slit(w = 2) { r = circle(radius: w) }\nvar gap = 2\nfn two(x) = 2 * x"}
+    text = 'import "lib.aidl"\nsolid a { body = rounded_rectangle(width: two(20), height: 20, radius: 4) }'
+    for variant, code, name in ((FLAT, "E0404", "slit"), (WRITTEN, "E0407", "gap")):
+        (found,) = (d for d in checked(text, variant, files) if d.is_error)
+        assert (found.code, found.span and found.span.text) == (code, name)
+        assert found.span is not None
+        assert found.span.source.name == "lib.aidl"
+
+
+def test_a_var_is_mended() -> None:
+    source = SourceFile("part.aidl", "solid a {\n var gap = 5\n c = circle(center: (gap, 0), radius: 9)\n}")
+    chosen = pipeline.Settings(variant=WRITTEN)
+    text, applied = apply_fixes(source, pipeline.check(source, settings=chosen))
+    assert applied == 1
+    assert text == source.text.replace("var", "let")
+    assert compiled(text, WRITTEN).ok
+
+
+# --- What is advised ------------------------------------------------------------------------------
+
+
+def test_no_advice_to_constrain_where_nothing_is_constrained() -> None:
+    text = "solid a {\n c = circle(radius: 9)\n hole b { d = circle(center: c.center, radius: 2) }\n}"
+    (full,) = checked(text, Variant.FULL)
+    (found,) = checked(text, WRITTEN)
+    assert found.code == full.code == "E0401"
+    assert full.fix is not None
+    assert found.fix is None
+    assert found.hints == (
+        "name the value in the structure around both, as in `let middle = (10, 0)`, and use the name in both",
+    )
+
+
+def test_no_advice_to_make_a_hole_where_there_is_one_structure() -> None:
+    text = "solid a {\n plate = circle(radius: 9)\n bore = circle(radius: 2)\n}"
+    (full,) = (d for d in compiled(text, Variant.FULL).diagnostics if d.code == "W0701")
+    (found,) = (d for d in compiled(text, FLAT).diagnostics if d.code == "W0701")
+    assert full.fix is not None
+    assert found.fix is None
+    assert found.hints == (f"to make it a hole, {CUT}",)
+
+
+def test_no_constraint_is_put_in_to_close_a_gap() -> None:
+    text = (
+        "solid a {\n r = line((0, 0), (20, 0))\n s = line((20, 0.00001), (10, 20))\n"
+        " t = line((10, 20), (0, 0))\n}"
+    )
+    (full,) = (d for d in compiled(text, Variant.FULL).diagnostics if d.code == "N0708")
+    (found,) = (d for d in compiled(text, WRITTEN).diagnostics if d.code == "N0708")
+    assert full.fix is not None
+    assert (found.fix, found.hints) == (None, ())
+
+
+# --- What is taken means the same -----------------------------------------------------------------
+
+
+@cache
+def corpus() -> dict[str, str]:
+    """The examples, and every eighth program of the reference."""
+    programs = {path.name: path.read_text("utf-8") for path in sorted((ROOT / "examples").glob("*.aidl"))}
+    entries = [e for e in reference().entries.values() if e.doc.example]
+    return programs | {entry.name: entry.doc.example for entry in entries[::8]}
+
+
+@pytest.mark.parametrize("variant", SUBSETS)
+def test_programs_are_taken_or_told_what_the_variant_lacks(variant: Variant) -> None:
+    """A program that is right in the whole language is wrong for no other reason, and else draws the same."""
+    taken = 0
+    for name, text in corpus().items():
+        found = compiled(text, variant)
+        errors = {d.code for d in found.diagnostics if d.is_error}
+        assert errors <= CODES[variant], f"{name}\n" + "\n".join(map(render, found.diagnostics))
+        if not errors:
+            taken += 1
+            assert found.export(".json") == compiled(text, Variant.FULL).export(".json"), name
+    assert 10 < taken < len(corpus())
+
+
+@settings(max_examples=25, deadline=None)
+@given(sketches())
+def test_without_constraints_everything_is_as_written(sketch: Sketch) -> None:
+    bare = sketch.text([p.text(constraints=()) for p in sketch.parts], relations=())
+    bare = bare.replace("constrain {\n\n}", "")
+    found = compiled(bare, WRITTEN)
+    assert found.ok, "\n".join(map(render, found.diagnostics))
+    assert not any(stage.rows for _, stage in found.stages)
+    assert found.export(".json") == compiled(bare, Variant.FULL).export(".json")
+    stated = sum(bool(p.constraints) for p in sketch.parts) + 1
+    assert [d.code for d in checked(sketch.text(), WRITTEN) if d.is_error] == ["E0406"] * stated
+
+
+@settings(max_examples=25, deadline=None)
+@given(part("alone"), st.integers(1, 9))
+def test_one_structure_is_the_same_with_and_without_hierarchy(single: Part, unit: int) -> None:
+    text = f"param unit = {unit}\n{single.text()}"
+    found, full = compiled(text, FLAT), compiled(text, Variant.FULL)
+    assert not CODES[FLAT] & {d.code for d in found.diagnostics}
+    assert found.status == full.status
+    if found.ok:
+        assert found.drawing == full.drawing
+    nested = checked(f"assembly around {{\nparam unit = {unit}\n{single.text()}\n}}", FLAT)
+    assert [d.code for d in nested if d.is_error] == ["E0403"]
+
+
+# --- The guides -----------------------------------------------------------------------------------
+
+UNSAID = {
+    FLAT: r"\bhole \S+ \{|`hole`|\btemplates?\b|\bchild|\bassembly\b"
+    r"|\bshape \w+\(|\bat \(|@detached|\bnests?\b|_mount\(",
+    WRITTEN: r"\bconstrain|\bprefer\b|\bvar\b|\bweight\b|\bguess|\bsolve|\bfixed\b"
+    r"|\babove\(|\binside\(|\bsmooth\b"
+    r"|\brotatable\b|\btangent\(|\bmeshes\b",
+}
+"""What a guide to a variant does not speak of, apart from the list of reserved words."""
+
+
+def programs(variant: Variant) -> list[str]:
+    return re.findall(r"```aidl\n(.*?)```", guide(variant), flags=re.DOTALL)
+
+
+@pytest.mark.parametrize("variant", SUBSETS)
+def test_programs_of_a_guide_are_of_its_variant(variant: Variant) -> None:
+    assert len(programs(variant)) >= 3
+    for text in programs(variant):
+        found = compiled(text, variant)
+        assert found.ok, "\n".join(map(render, found.diagnostics))
+        assert found.diagnostics == []
+
+
+@pytest.mark.parametrize("variant", SUBSETS)
+def test_guide_does_not_speak_of_what_the_variant_lacks(variant: Variant) -> None:
+    text = re.sub(r"Reserved: [^.]*\.", "", guide(variant))
+    assert [m[0] for m in re.finditer(UNSAID[variant], text)] == []
+    assert re.search(UNSAID[variant], guide()), "the pattern finds nothing anywhere"
+
+
+@pytest.mark.parametrize("variant", SUBSETS)
+def test_guide_names_nothing_that_the_variant_refuses(variant: Variant) -> None:
+    """Names of the library whose every form is refused are left out, and all others are there."""
+    words = set(re.findall(r"@?\w+", guide(variant)))
+    left_out = {e.name for e in reference().entries.values() if e.sort != "word" and e.name not in words}
+    sorts = {reference().entries[name].sort for name in left_out}
+    expected = {FLAT: {"template"}, WRITTEN: {"relation", "constraint", "builtin"}}
+    assert sorts == expected[variant]
+    marks = {name for name in left_out if name in builtins.SIGNATURES}
+    assert marks == (set() if variant is FLAT else {"fixed", "guess", "nearest"})
+
+
+def test_guides_are_shorter_than_the_whole() -> None:
+    import mistral_common
+    from mistral_common.tokens.tokenizers.tekken import Tekkenizer
+
+    vocabulary = Path(mistral_common.__file__).parent / "data" / "tekken_240911.json"
+    count = Tekkenizer.from_file(str(vocabulary))
+    full, *others = (len(count.encode(guide(v), bos=False, eos=False)) for v in Variant)
+    assert max(others) < full
+
+
+@pytest.mark.parametrize("variant", SUBSETS)
+def test_no_marks_are_left_in_a_guide(variant: Variant) -> None:
+    assert not re.search(r"\{\{|\}\}|\n\n\n", guide(variant))
+
+
+# --- The command line -----------------------------------------------------------------------------
+
+PROGRAM = "solid a {\n c = circle(radius: 9)\n constrain c.radius == 8\n}\n"
+
+
+def test_verbs_take_a_variant(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "a.aidl"
+    file.write_text(PROGRAM)
+    assert main(["check", str(file), "--variant", "no-constraints"]) == 1
+    assert STATED in capsys.readouterr().err
+    assert main(["compile", str(file), "--variant", "no-constraints"]) == 1
+    assert STATED in capsys.readouterr().err
+    assert not file.with_suffix(".svg").exists()
+    assert main(["compile", str(file), "--variant", "no-hierarchy"]) == 0
+    assert file.with_suffix(".svg").exists()
+    assert pipeline.check(SourceFile("a.aidl", PROGRAM), DiskWorld(tmp_path)) == []
+
+
+def test_guide_of_a_variant_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["guide", "--variant", "no-hierarchy"]) == 0
+    assert capsys.readouterr().out == guide(FLAT)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (
+            ["check", "a.aidl", "--variant", "none"],
+            "there is no `none`; there are full, no-hierarchy, no-constraints",
+        ),
+        (["guide", "--full", "--variant", "no-hierarchy"], "not allowed with argument --full"),
+    ],
+)
+def test_wrong_use_is_refused(
+    arguments: list[str], expected: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as reason:
+        main(arguments)
+    assert reason.value.code == 2
+    assert expected in capsys.readouterr().err
