@@ -298,8 +298,12 @@ class Binding:
 
     def parameter_of(self, index: int) -> str | None:
         """The parameter that gets an argument of the call, whole."""
-        places = {i for i, s in enumerate(self.sources) if s == Source(index)} if self.sources else {index}
-        return next((name for name, taken in self.arguments.items() if places & set(taken)), None)
+        whole = Source(index)
+        places = [i for i, s in enumerate(self.sources) if s == whole] if self.sources else [index]
+        for name, taken in self.arguments.items():
+            if any(place in taken for place in places):
+                return name
+        return None
 
 
 @record()

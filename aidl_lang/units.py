@@ -7,6 +7,7 @@ a number written without a unit is *bare*: it takes the dimension its place asks
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 
@@ -61,6 +62,7 @@ def add(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
     raise ValueError(f"{describe(a)} and {describe(b)}")
 
 
+@lru_cache(maxsize=256)
 def multiply(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
     """Dimension of a product; a bare number times a plain one (`10 * cos(a)`) stays bare."""
     if (a is None and b in _PURE) or (b is None and a in _PURE):
@@ -69,6 +71,7 @@ def multiply(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
     return Dimension(a.length + b.length, a.angle + b.angle)
 
 
+@lru_cache(maxsize=256)
 def divide(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
     """Dimension of a quotient; a bare number by a plain one stays bare."""
     if a is None and b in _PURE:

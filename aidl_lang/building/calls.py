@@ -67,9 +67,9 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
         _unknown_callable(it, node, env)
         return NOTHING
     signatures = [c.signature for c in candidates]
-    if ast.Structure in [s.kind for s in signatures]:
+    if env.reach is Reach.OWN and ast.Structure in [s.kind for s in signatures]:
         # References passed to a template are tied by its instantiating structure, which may reach further.
-        env = Env(env.scope, env.here, Reach.SUBTREE if env.reach is Reach.OWN else env.reach)
+        env = Env(env.scope, env.here, Reach.SUBTREE)
     values: list[Value] = [] if receiver is None or isinstance(receiver, Namespace) else [receiver]
     first = len(values)
     values += [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 from aidl_lang import ast, units
 from aidl_lang import expression as ex
@@ -264,7 +265,13 @@ _DIMENSION: dict[str, Callable[[units.MaybeDimension, units.MaybeDimension], uni
     "*": units.multiply,
     "/": units.divide,
 }
-_OPS = {"+": "add", "-": "sub", "*": "mul", "/": "div", "^": "power"}
+_OPERATION: dict[str, Callable[[ex.Expression, ex.Expression], ex.Expression]] = {
+    "+": ex.add,
+    "-": ex.sub,
+    "*": ex.mul,
+    "/": ex.div,
+    "^": partial(ex.apply, "power"),
+}
 
 
 def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num | Nothing:
@@ -288,7 +295,7 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
         if y == 0:
             return _undefined(it, node)
         return number(x - y * math.floor(x / y), dimension, status)
-    result = ex.apply(_OPS[op], a.expression, b.expression)
+    result = _OPERATION[op](a.expression, b.expression)
     if result.op == "constant" and not math.isfinite(result.value):
         return _undefined(it, node)
     return Num(result, dimension, status)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aidl_lang.cli.options import add_provider, connection, sampling
+from aidl_lang.cli.options import add_provider, provider, sampling
 from aidl_lang.cli.report import UseError, say, show
 
 if TYPE_CHECKING:
@@ -15,7 +14,6 @@ if TYPE_CHECKING:
     from aidl_lang.evaluation.requirements import Prompt
     from aidl_lang.evaluation.run import Done
     from aidl_lang.evaluation.store import Store
-    from aidl_lang.llm.messages import Provider
 
 _VARIANTS = ("full", "no-hierarchy", "no-constraints", "openscad")
 _OPENSCAD = "openscad"
@@ -66,10 +64,6 @@ def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
 
 
 def run(arguments: argparse.Namespace) -> int:
-    if find_spec("pebble") is None:
-        raise UseError(
-            "E0949", "`aidl eval` needs a package that is not installed", "pip install 'aidl-lang[eval]'"
-        )
     from aidl_lang.evaluation.report import report
     from aidl_lang.evaluation.store import Store, StoreError
 
@@ -87,26 +81,27 @@ def _run(arguments: argparse.Namespace, store: Store) -> int:
     """Do what is left to do, and return how many jobs are still left."""
     from aidl_lang.evaluation.run import run
 
-    plan = _plan(arguments)
-    provider = None if arguments.report else _provider(arguments)
-    if provider is not None:
-        store.begin(plan, provider.name)
-    outcome = run(plan, provider, store, arguments.jobs, float(arguments.time_limit), _progress)
+    asked = None if arguments.report else provider(arguments)
+    plan = _plan(arguments, asked is not None and asked.takes_seeds)
+    if asked is not None:
+        store.begin(plan, asked.name)
+    outcome = run(plan, asked, store, arguments.jobs, float(arguments.time_limit), _progress)
     if outcome.failure is not None:
         show([outcome.failure])
         say(f"{outcome.left} conversations are left to be had: the same command goes on with them")
     return outcome.left
 
 
-def _plan(arguments: argparse.Namespace) -> Plan:
+def _plan(arguments: argparse.Namespace, takes_seeds: bool) -> Plan:
     from dataclasses import replace
 
     from aidl_lang.evaluation.plan import Plan
     from aidl_lang.llm.generation import Settings
 
     asked = sampling(arguments)
-    seeded = replace(asked, seed=1 if asked.seed is None else asked.seed)
-    settings = Settings(arguments.attempts, seeded)
+    if asked.seed is None and takes_seeds:
+        asked = replace(asked, seed=1)
+    settings = Settings(arguments.attempts, asked)
     return Plan(_prompts(arguments), _variants(arguments), arguments.runs, settings)
 
 
@@ -139,17 +134,12 @@ def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
         if not wanted:
             raise UseError("E0949", "`openscad` is not installed", "leave out `--variants openscad`")
         say("openscad is left out: it is not installed")
+    if _OPENSCAD in wanted and arguments.constrain:
+        wanted.remove(_OPENSCAD)
+        if not wanted:
+            raise UseError("E0950", "--constrain has no grammar for `openscad`", "leave --constrain out")
+        say("openscad is left out: --constrain has the grammar of AIDL alone")
     return tuple(wanted)
-
-
-def _provider(arguments: argparse.Namespace) -> Provider:
-    from aidl_lang.llm.messages import ProviderError
-    from aidl_lang.llm.providers import connect
-
-    try:
-        return connect(connection(arguments))
-    except ProviderError as reason:
-        raise UseError.of(reason.diagnostic) from None
 
 
 def _progress(done: Done) -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.cli import files
-from aidl_lang.cli.options import add_provider, connection, sampling
+from aidl_lang.cli.options import add_provider, provider, sampling
 from aidl_lang.cli.report import UseError, say, show
 
 if TYPE_CHECKING:
@@ -54,17 +54,11 @@ def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
 
 
 def run(arguments: argparse.Namespace) -> int:
-    from aidl_lang.llm.messages import ProviderError
-    from aidl_lang.llm.providers import connect
-
     places = _places(arguments)
     task = _task(arguments)
-    try:
-        provider = connect(connection(arguments))
-    except ProviderError as reason:
-        raise UseError.of(reason.diagnostic) from None
+    asked = provider(arguments)
     language = _language(arguments)
-    runs = [_Run(arguments, places, task, provider, language, k) for k in range(arguments.runs)]
+    runs = [_Run(arguments, places, task, asked, language, k) for k in range(arguments.runs)]
     done = [run.generation() for run in runs]
     best = min(range(len(done)), key=lambda k: _weight(done[k]))
     return _deliver(arguments, places, done[best], f"run {best + 1}: " if len(done) > 1 else "")

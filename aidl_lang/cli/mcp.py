@@ -47,12 +47,8 @@ def _port(text: str) -> int:
 
 
 def _require_packages() -> None:
-    missing = [name for name in ("mcp", "pebble") if find_spec(name) is None]
-    if missing:
-        what = " and ".join(f"`{name}`" for name in missing)
-        raise UseError(
-            "E0942", f"the server needs {what}, not installed here", "pip install 'aidl-lang[mcp]'"
-        )
+    if find_spec("mcp") is None:
+        raise UseError("E0942", "the server needs `mcp`, not installed here", "pip install 'aidl-lang[mcp]'")
 
 
 def _root(name: str | None) -> Path | None:

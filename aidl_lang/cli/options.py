@@ -9,7 +9,7 @@ from aidl_lang.cli import sizes
 
 if TYPE_CHECKING:
     from aidl_lang.llm.messages import Sampling
-    from aidl_lang.llm.providers import Connection, Price
+    from aidl_lang.llm.providers import Closable, Price
     from aidl_lang.variants import Variant
 
 
@@ -124,7 +124,7 @@ def _add_cutting(parser: argparse.ArgumentParser) -> None:
 
 
 def add_provider(parser: argparse.ArgumentParser) -> None:
-    """The options that say which language model is asked, and how; see `connection` and `sampling`."""
+    """The options that say which language model is asked, and how; see `provider` and `sampling`."""
     group = parser.add_argument_group("the model")
     group.add_argument(
         "--provider",
@@ -141,6 +141,12 @@ def add_provider(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--temperature", type=_temperature, metavar="T", help="0 is the least random")
     group.add_argument("--max-tokens", type=_positive, metavar="N", help="of one reply")
     group.add_argument(
+        "--constrain",
+        type=_server,
+        metavar="SERVER",
+        help="keep the model to the grammar, at a server of this kind: llama.cpp, sglang, vllm",
+    )
+    group.add_argument(
         "--timeout",
         type=_seconds,
         default=600.0,
@@ -155,17 +161,27 @@ def add_provider(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def connection(arguments: argparse.Namespace) -> Connection:
-    """Which model the options of `add_provider` name."""
-    from aidl_lang.llm.providers import Connection
+def provider(arguments: argparse.Namespace) -> Closable:
+    """The model that the options of `add_provider` name. Raises UseError."""
+    from aidl_lang.llm.messages import ProviderError
+    from aidl_lang.llm.providers import Connection, connect
 
-    return Connection(
+    said = Connection(
         provider=arguments.provider,
         model=arguments.model,
         base_url=arguments.base_url,
         timeout=arguments.timeout,
         price=arguments.price,
     )
+    try:
+        connected = connect(said)
+        if not arguments.constrain:
+            return connected
+        from aidl_lang.llm.decoding import Constrained
+
+        return Constrained(connected, arguments.constrain)
+    except ProviderError as reason:
+        raise UseError.of(reason.diagnostic) from None
 
 
 def sampling(arguments: argparse.Namespace) -> Sampling:
@@ -241,6 +257,14 @@ def _seconds(text: str) -> float:
     if not 0 < value <= 86_400:
         raise argparse.ArgumentTypeError(f"expected seconds above 0 and up to a day, not `{text}`")
     return value
+
+
+def _server(text: str) -> str:
+    from aidl_lang.llm.decoding import SERVERS
+
+    if text not in SERVERS:
+        raise argparse.ArgumentTypeError(f"there is no `{text}`; there are {', '.join(SERVERS)}")
+    return text
 
 
 def _price(text: str) -> Price:

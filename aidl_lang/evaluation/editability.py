@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -47,9 +46,6 @@ class Edits:
     edits: tuple[Edit, ...]
     narrowed: int = 0
     skipped: int = 0
-
-    def counts(self) -> dict[str, int]:
-        return dict(Counter(str(edit.outcome) for edit in self.edits))
 
 
 def of_aidl(source: SourceFile) -> Edits:

@@ -14,7 +14,7 @@ def export(format: str, fenced: bool = False) -> str:
 
     Raises ValueError for another format, and for `fenced` with one that is not in FENCED_FORMATS.
     """
-    if format not in FORMATS or fenced and format not in FENCED_FORMATS:
+    if format not in FORMATS or (fenced and format not in FENCED_FORMATS):
         raise ValueError(f"no such export: {format}, fenced={fenced}")
     from aidl_lang.grammars import formats
 

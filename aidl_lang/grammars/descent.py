@@ -1,8 +1,8 @@
 """Rules for engines that read from left to right without a table: no left recursion, few ways open at a time.
 
-GBNF engines follow every way a text may be read at once. A rule that begins with itself never ends there, and each
-level of brackets at which two alternatives begin alike doubles the work. So left recursion becomes repetition, and
-alternatives that begin with the same rule share it.
+GBNF engines follow every way a text may be read at once. A rule that begins with itself never ends there,
+and each level of brackets at which two alternatives begin alike doubles the work. So left recursion becomes
+repetition, and alternatives that begin with the same rule share it.
 """
 
 from __future__ import annotations
@@ -29,16 +29,17 @@ def from_left_to_right(rules: Rules) -> dict[str, Node]:
     for members in left_recursive(rules):
         group = _Group(rules, members)
         result = {name: group.joined(node) for name, node in result.items()} | group.rules
-    shared = _Sharing(result, frozenset(rules) - {"space", "new_line"})
+    shared = _Sharing(result, frozenset(rules) - {"gap", "new_line"})
     return {name: shared.node(node) for name, node in result.items()}
 
 
 class _Group:
     """Rules that may begin with each other.
 
-    What they hold is a walk: from a beginning that is in no rule of the group (`base`), over what may follow each
-    rule that is complete (`steps`), to the rule that was wanted. `rules` are the new ones: for each old rule its
-    beginnings, and behind these one rule for each place on the walk, which may be empty at its end.
+    What they hold is a walk: from a beginning that is in no rule of the group (`base`), over what may
+    follow each rule that is complete (`steps`), to the rule that was wanted. `rules` are the new ones: for
+    each old rule its beginnings, and behind these one rule for each place on the walk, which may be empty
+    at its end.
     """
 
     def __init__(self, rules: Rules, group: set[str]) -> None:
@@ -148,9 +149,6 @@ class _Sharing:
     def _choice(self, items: list[Node]) -> Node:
         while (opened := self._opened(items)) != items:
             items = opened
-        items = [
-            seq(self.node(f), rest) if isinstance(f, Alt) else seq(f, rest) for f, rest in map(_first, items)
-        ]
         by_first: dict[Node, list[Node]] = {}
         for item in items:
             first, rest = _first(item)
@@ -163,17 +161,19 @@ class _Sharing:
         )
 
     def _opened(self, items: list[Node]) -> list[Node]:
-        """The alternatives, with one rule at the beginning of one replaced by what it stands for, if that helps."""
+        """The alternatives with one beginning replaced by what it stands for, if that helps to share it."""
         firsts = [_first(item)[0] for item in items]
         below = [self._below(first) for first in firsts]
         pairs = [(i, j) for i in range(len(items)) for j in range(len(items)) if firsts[i] != firsts[j]]
-        for i, _ in [p for p in pairs if firsts[p[1]] in below[p[0]]] + [
-            p for p in pairs if below[p[0]] & below[p[1]]
-        ]:
+        helps = [
+            *(i for i, _ in pairs if _is_choice(firsts[i])),
+            *(i for i, j in pairs if firsts[j] in below[i]),
+            *(i for i, j in pairs if below[i] & below[j]),
+        ]
+        for i in helps[:1]:
             first, rest = _first(items[i])
-            assert isinstance(first, Name)
-            into = [seq(one, rest) for one in _alternatives(self.rules[first.name])]
-            return items[:i] + into + items[i + 1 :]
+            stands_for = self.rules[first.name] if isinstance(first, Name) else first
+            return items[:i] + [seq(one, rest) for one in _alternatives(stands_for)] + items[i + 1 :]
         return items
 
     def _below(self, node: Node) -> set[Node]:
@@ -191,6 +191,11 @@ class _Sharing:
             }
             found |= level
         return found
+
+
+def _is_choice(node: Node) -> bool:
+    """Whether a beginning is a choice; white space is none, for all have it alike."""
+    return isinstance(node, Alt) or (isinstance(node, Repeat) and node.high == 1 and node.item != Name("gap"))
 
 
 def _alternatives(node: Node) -> list[Node]:

@@ -22,9 +22,10 @@ from aidl_lang.grammars.terminals import SPACING, bounded_terminals, reading_ter
 from aidl_lang.grammars.writing import GBNF, LARK, W3C
 from aidl_lang.kinds import KINDS
 
-# Text that does not hold three backticks, and the opening of a block.
-_PROSE = Repeat(alt(Chars("^`"), seq(Text("`"), Chars("^`")), seq(Text("``"), Chars("^`"))), 0, None)
-_OPENING = seq(_PROSE, Text("```aidl"), optional(Chars("\\r")), Chars("\\n"))
+# Lines that do not hold three backticks, and the opening of a block.
+_TICKS = optional(alt(Text("`"), Text("``")))
+_LINES = optional(seq(Repeat(seq(_TICKS, Chars("^`")), 0, None), _TICKS, Chars("\\n")))
+_OPENING = seq(_LINES, Text("```aidl"), optional(Chars("\\r")), Chars("\\n"))
 
 
 def as_it_is() -> str:
@@ -43,7 +44,7 @@ def for_decoding(format: str, fenced: bool) -> str:
     if fenced:
         rules["start"] = seq(Name("OPENING"), program, Name("new_line"), Text("```"), optional(Name("SPACE")))
     else:
-        rules["start"] = seq(program, optional(Name("space")))
+        rules["start"] = seq(program, optional(Name("gap")))
     terminals = {**bounded_terminals(), "OPENING": _OPENING}
     if format == "gbnf":
         return GBNF.definitions(reachable(from_left_to_right(rules) | terminals, "start"))
@@ -52,7 +53,7 @@ def for_decoding(format: str, fenced: bool) -> str:
 
 
 def _with_kinds(rules: Rules) -> dict[str, Node]:
-    """The rules with the kinds of structures where they take any name: the parser refuses others by itself."""
+    """The rules with the kinds of structures where they take any name; the parser refuses others."""
     return {
         **rules,
         "kind": alt(*map(Text, KINDS)),

@@ -15,7 +15,7 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class Chars:
-    """One character: the inside of a class such as `A-Za-z_`, with `\\n`, `\\t`, `\\r`, `\\\\` for those signs."""
+    r"""One character: the inside of a class such as `A-Za-z_`; `\n`, `\t`, `\r`, `\\` are escaped."""
 
     members: str
 

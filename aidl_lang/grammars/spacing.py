@@ -9,9 +9,9 @@ longest match. So each token is given the white space that may stand before it, 
 | a keyword or a number (WORD) | some | some | any |
 | a name (NAME) | some | a new line | any |
 
-A name and a `(` would be a call, and one with blanks between them is taken for a slip. Where rules end in different
-ways, the stricter row holds for what follows. A list of statements, though, is followed up to each way it ends,
-so that `;` and `,` need no white space behind them.
+A name and a `(` would be a call, and one with blanks between them is taken for a slip. Where rules end in
+different ways, the stricter row holds for what follows. A list of statements, though, is followed up to
+each way it ends, so that `;` and `,` need no white space behind them.
 """
 
 from __future__ import annotations
@@ -86,7 +86,9 @@ class _Weaver:
 
     def _first_kinds(self, name: str) -> set[str]:
         first = corners(name, self.rules, self.nullable)
-        return {_kind(token) for token in first if isinstance(token, Text) or token.name not in self.rules}
+        return {
+            _kind(token) for token in first if not isinstance(token, Name) or token.name not in self.rules
+        }
 
     def end(self, node: Node) -> int:
         """What the last token counts as, the strictest of the possible ones."""
@@ -183,8 +185,8 @@ def _kind(token: Node) -> str:
 
 def _gap(before: int, kind: str) -> Node:
     if kind == "sign" or before == FREE:
-        return optional(Name("space"))
-    return Name("new_line" if before == NAME and kind == "(" else "space")
+        return optional(Name("gap"))
+    return Name("new_line" if before == NAME and kind == "(" else "gap")
 
 
 def _token(token: Node) -> Node:

@@ -1,9 +1,9 @@
 """The terminals of the grammar, bounded: what a model may write where the language itself sets no end.
 
-Small models repeat themselves: a comment, blank lines, the digits of a number or the letters of a name without end.
-Every repetition inside a terminal is bounded here, and what a model has no need of is left out: comments other than
-`//`, numbers that begin with a point, and letters beyond the Latin and Greek ones. All of it is part of what the
-language takes; the reverse does not hold.
+Small models repeat themselves: a comment, blank lines, the digits of a number or the letters of a name
+without end. Every repetition inside a terminal is bounded here, and what a model has no need of is left
+out: comments other than `//`, numbers that begin with a point, and letters beyond the Latin and Greek ones.
+All of it is part of what the language takes; the reverse does not hold.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def _members(characters: set[str]) -> str:
 
 _REST = Repeat(Chars(_members(set(_ASCII)) + _LETTERS), 0, _MOST_LETTERS)  # of a name
 _DIGITS = Repeat(Chars("0-9"), 1, _MOST_DIGITS)
-_EXPONENT = seq(Chars("eE"), optional(Chars("+\\-")), Repeat(Chars("0-9"), 1, 2))
+_EXPONENT = seq(Chars("eE"), optional(Chars("+-")), Repeat(Chars("0-9"), 1, 2))
 _SCALE = seq(optional(_EXPONENT), optional(Alt(tuple(map(Text, UNITS)))))
 _BLANKS = Chars(" \\t")
 _NEWLINES = Repeat(
@@ -56,8 +56,8 @@ def _quoted(quote: str) -> Node:
 def bounded_terminals() -> dict[str, Node]:
     """The terminals of the source, and those that only exports have.
 
-    A number is a rule rather than a terminal. Engines without backtracking in their lexers could not go back over
-    the point in `0..9`: WHOLE ends before a point, and FRACTION begins with it.
+    A number is a rule rather than a terminal. Engines without backtracking in their lexers could not go
+    back over the point in `0..9`: WHOLE ends before a point, and FRACTION begins with it.
     """
     name = _names_without(load_tables().reserved | _taken_soft_words())
     return {
@@ -77,15 +77,15 @@ _COMMENTS = seq(Name("COMMENT"), optional(Name("SPACE")))
 
 SPACING: dict[str, Node] = {
     "number": alt(Name("WHOLE"), seq(Name("DIGITS"), Name("FRACTION"))),
-    "space": seq(Name("SPACE"), Repeat(_COMMENTS, 0, _MOST_COMMENTS)),
+    "gap": seq(Name("SPACE"), Repeat(_COMMENTS, 0, _MOST_COMMENTS)),
     "new_line": seq(Name("BREAK"), Repeat(_COMMENTS, 0, _MOST_COMMENTS)),
     "heading": Repeat(_COMMENTS, 1, _MOST_COMMENTS),
 }
-"""Rules made of the terminals; `new_line` is white space with the end of a line in it."""
+"""Rules made of the terminals; `new_line` is a gap with the end of a line in it."""
 
 
 def reading_terminals() -> dict[str, Node]:
-    """The terminals by their own names, as people read them: reserved words stand as literals in the rules."""
+    """The terminals by their own names, without what the rules name as literals."""
     bounded = bounded_terminals()
     return {
         "NAME": seq(Chars(_members(set(_ASCII) - set(_DECIMALS)) + _LETTERS), _REST),

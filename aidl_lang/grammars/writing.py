@@ -60,7 +60,7 @@ def _name_in_gbnf(name: str) -> str:
 
 
 def _chars_in_w3c(members: str) -> str:
-    for escape, plain in (("\\n", "#xA"), ("\\r", "#xD"), ("\\t", "#x9"), ("\\-", "#x2D"), ("\\\\", "#x5C")):
+    for escape, plain in (("\\n", "#xA"), ("\\r", "#xD"), ("\\t", "#x9"), ("\\\\", "#x5C")):
         members = members.replace(escape, plain)
     return f"[{members}]"
 

@@ -101,6 +101,14 @@ class Provider(Protocol):
     def name(self) -> str:
         """As it is shown and recorded: `openai:gpt-5`, `exec:./reply.py`; holds no key."""
 
+    @property
+    def takes_seeds(self) -> bool:
+        """Whether a request may say from which seed its reply is drawn."""
+
+    @property
+    def takes_grammars(self) -> bool:
+        """Whether a request may hold a grammar that the reply is to keep to."""
+
     def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
         """Ask for the next message. `hear` gets the pieces of the text as they arrive.
 

@@ -14,8 +14,6 @@ from aidl_lang.agents.results import Page
 from aidl_lang.agents.tools import Tools
 from aidl_lang.agents.workers import MEMORY, Workers
 
-pytest.importorskip("pebble")
-
 
 @dataclass(frozen=True)
 class Broken(Tools):

@@ -218,4 +218,4 @@ def test_openscad_runs_beside(evaluation: Evaluation) -> None:
     ]
     png = (evaluation.out / "pictures" / "telephone" / "openscad" / "1.png").read_bytes()
     with Image.open(io.BytesIO(png)) as picture:
-        assert picture.size == (512, 449)  # 80 by 70 with a margin of 3 % of 80 all around
+        assert picture.size == (512, 404)  # 90 by 69.95 (the circle has 30 sides), margins of 3 % of 90

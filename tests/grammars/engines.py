@@ -21,8 +21,8 @@ _VOCABULARY = Path(mistral_common.__file__).parent / "data" / "tekken_240911.jso
 class Vocabulary:
     """The first `size` tokens of Mistral's tokenizer, its special ones left out.
 
-    They are in the order in which they were merged, so that a part of them is a tokenizer as well. The first 256 are
-    the bytes.
+    They are in the order in which they were merged, so that a part of them is a tokenizer as well. The
+    first 256 are the bytes.
     """
 
     def __init__(self, size: int) -> None:

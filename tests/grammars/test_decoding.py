@@ -1,4 +1,4 @@
-"""What engines for constrained decoding make of the exported grammar, beside what the parser makes of the same text."""
+"""What engines for constrained decoding make of the exported grammar, beside what the parser does."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def laid_out(texts: list[str]) -> str:
 
 
 def unexpected(text: str) -> tuple[Token, list[Token]] | None:
-    """The first token that cannot stand where it does, and all tokens, as the automaton has it before any mending."""
+    """The first token that cannot stand where it does, and all tokens; before any mending."""
     source = SourceFile("", text)
     tokens = tokenize(source)
     automaton = Automaton(load_tables(), Builder(source, tokens.docs))
@@ -88,7 +88,7 @@ def refused_byte(text: str) -> int:
 
 
 def stricter_here(tokens: list[Token], at: int) -> bool:
-    """Where the export takes less than the language: the kinds of structures, and words that may be keywords."""
+    """Where the export takes less than the language: kinds of structures, and words that may be keywords."""
     token, before = tokens[at], tokens[at - 1]
     wrong_kind = token.kind in ("NAME", "CALL") and before.kind == "NAME" and before.text not in KINDS
     return wrong_kind or token.kind in load_tables().soft_words or before.kind in load_tables().soft_words
@@ -109,7 +109,8 @@ def mutants(count: int) -> list[tuple[str, Token, list[Token]]]:
 def test_mutants_are_refused_at_the_token_that_the_parser_refuses() -> None:
     """The byte at which the engine stops is one of the refused token, or the one behind it.
 
-    Behind it where the token itself could still have become another: `constrain` may be the beginning of a name.
+    Behind it where the token itself could still have become another: `constrain` may be the beginning of a
+    name.
     """
     cases = mutants(250)
     different = []
@@ -135,12 +136,14 @@ def walker() -> tuple[Engine, np.ndarray, np.ndarray]:
     for text in SHORT:
         for token in small.tokenizer.greedy_tokenize(text):
             counts[token] += 1
-    closing = np.array([token.strip() in (b"}", b")", b"]", b"})", b"}}") for token in small.vocabulary.tokens])
+    closing = np.array(
+        [token.strip() in (b"}", b")", b"]", b"})", b"}}") for token in small.vocabulary.tokens]
+    )
     return small, counts, closing
 
 
 def walk(walker: tuple[Engine, np.ndarray, np.ndarray], seed: int) -> str | None:
-    """A text of tokens drawn from those allowed, mostly by how often programs have them; None if it does not end."""
+    """A text of allowed tokens, drawn mostly by how often programs have them; None if it does not end."""
     small, counts, closing = walker
     rng = np.random.default_rng(seed)
     matcher, tokens, length = small.matcher(), [], rng.integers(5, 90)
@@ -173,8 +176,10 @@ def test_what_the_engine_lets_through_is_read_by_the_parser(
 @pytest.mark.parametrize(
     "text",
     [
-        "x = 0..9", "x = 0.5..1", "x = 2.y", "x = 1e3mm", "let a = -b", "constrain !(a or b)", "constrain ! a == b",
-        "// only a comment\n", "", "\n\n", "a = b;c = d", "solid s { }", "solid s{a = b}", "constrain {a == b,c == d}",
+        "x = 0..9", "x = 0.5..1", "x = 2.y", "x = 1e3mm", "let a = -b", "constrain !(a or b)",
+        "constrain ! a == b",
+        "// only a comment\n", "", "\n\n", "a = b;c = d", "solid s { }", "solid s{a = b}",
+        "constrain {a == b,c == d}",
         "let größe = 3", "path(from: a)", "let a = b\n(c - d).x == 3", "constrain { (a - b).x == 3 }",
         "/// doc\n\n// more\nsolid s { } // end\n",
     ],
@@ -187,8 +192,10 @@ def test_taken_by_both(text: str) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "let constrain = 3", "at = 3", "x = 3y = 4", "x = 0...5", "x = f (3)", "letx", "let x = 3 if", "solidd s { }",
-        "alias a = b(c).x == 3", "x = 3 4 5", "import a", "constrain {", "a = 'b", "/* open", "x = 3 // no end of line",
+        "let constrain = 3", "at = 3", "x = 3y = 4", "x = 0...5", "x = f (3)", "letx", "let x = 3 if",
+        "solidd s { }",
+        "alias a = b(c).x == 3", "x = 3 4 5", "import a", "constrain {", "a = 'b", "/* open",
+        "x = 3 // no end of line",
         "then = 4", "x = 3.", "for i in 0..9 ( a )",
     ],
 )  # fmt: skip

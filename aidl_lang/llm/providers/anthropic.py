@@ -24,6 +24,8 @@ class Anthropic(Server):
     """
 
     kind = "anthropic"
+    takes_seeds = False
+    takes_grammars = False
 
     def __init__(self, connection: Connection) -> None:
         import anthropic

@@ -26,6 +26,9 @@ _LINES = 3
 class Command:
     """`exec:COMMAND`, split as a shell would but not run by one. It is started anew for every reply."""
 
+    takes_seeds = True
+    takes_grammars = True
+
     def __init__(self, connection: Connection) -> None:
         self.name = connection.provider
         self._connection = connection

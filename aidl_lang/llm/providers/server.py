@@ -21,6 +21,7 @@ from aidl_lang.llm.providers.draft import UNKNOWN, Draft, dig, one_line, words
 from aidl_lang.llm.providers.http import is_silence
 
 _SHOWN = 8
+_GRAMMAR = ("grammar", "ebnf", "structured_outputs")
 _TOO_LONG = ("context length", "context window", "context size", "context_length", "too long", "too large")
 
 
@@ -32,6 +33,8 @@ class Server(ABC):
     """A model behind a server. The connection is one that `decide` has filled in."""
 
     kind: ClassVar[str]
+    takes_seeds = True
+    takes_grammars = True
 
     def __init__(self, sdk: ModuleType, client: Any, connection: Connection) -> None:
         self._sdk = sdk
@@ -234,4 +237,6 @@ def _remedies(said: str) -> Iterator[str]:
         yield "servers of your own: OLLAMA_CONTEXT_LENGTH=16384, llama-server -c, vllm --max-model-len"
     if "image" in said:
         yield "take a model that sees pictures, or leave --image out"
+    if any(sign in said for sign in _GRAMMAR):
+        yield "does --constrain name the kind of server that answers? Without it no grammar is sent"
     yield from (f"leave --{name} out" for name in ("temperature", "seed") if name in said)

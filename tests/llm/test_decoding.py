@@ -1,0 +1,186 @@
+"""The grammar on its way to a server, and replies that do not keep to it."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from aidl_lang.cli import main
+from aidl_lang.llm.replies import find_program
+from tests.grammars.engines import engine
+from tests.llm.scripted import Failed, Says, Scripted
+
+PROGRAM = "solid plate {\n    outline = rectangle(center: origin, width: 60, height: 40)\n}\n"
+REPLY = f"A plate is a rectangle.\n\n```aidl\n{PROGRAM}```"
+
+
+@pytest.fixture
+def generate(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scripted: Callable[..., Scripted]
+) -> Callable[..., tuple[int, Scripted]]:
+    """Run the command in a folder of its own against a script: its exit code and the server."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(steps: list[Any], *arguments: str) -> tuple[int, Scripted]:
+        server = scripted(steps)
+        address = ["--base-url", server.base_url, "--model", "m"]
+        return main(["generate", "a plate", *address, *arguments]), server
+
+    return run
+
+
+def grammar(capsys: pytest.CaptureFixture[str]) -> str:
+    """What the command writes."""
+    capsys.readouterr()
+    assert main(["grammar", "--format", "gbnf", "--fenced"]) == 0
+    return capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("server", "members"),
+    [
+        ("llama.cpp", lambda grammar: {"grammar": grammar}),
+        ("sglang", lambda grammar: {"ebnf": grammar}),
+        ("vllm", lambda grammar: {"structured_outputs": {"grammar": grammar}}),
+    ],
+)
+def test_what_a_server_is_sent(
+    generate: Callable[..., Any],
+    capsys: pytest.CaptureFixture[str],
+    server: str,
+    members: Callable[[str], dict[str, Any]],
+) -> None:
+    _, plain = generate([REPLY])
+    code, constrained = generate([REPLY], "--constrain", server, "-o", "plate.aidl")
+    assert code == 0
+    assert Path("plate.aidl").read_text("utf-8") == PROGRAM
+    assert constrained.requests[0].body == plain.requests[0].body | members(grammar(capsys))
+    transcript = json.loads(Path("plate.transcript.json").read_text("utf-8"))
+    assert transcript["provider"] == f"openai:m (constrained: {server})"
+
+
+def test_every_request_of_a_conversation_has_it(generate: Callable[..., Any]) -> None:
+    wrong = REPLY.replace("rectangle(", "rectangular_thing(")
+    code, server = generate([Failed(503), wrong, REPLY], "--constrain", "llama.cpp")
+    assert code == 0
+    assert [len(request.body["grammar"]) for request in server.requests] == 3 * [
+        len(server.requests[0].body["grammar"])
+    ]
+
+
+def test_a_command_reads_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("reply.py").write_text(
+        "import json, sys\n"
+        "open('grammar', 'w', encoding='utf-8').write(json.load(sys.stdin)['sampling']['grammar'])\n"
+        f"print({REPLY!r})\n",
+        encoding="utf-8",
+    )
+    provider = ["--provider", f"exec:{sys.executable} reply.py"]
+    assert main(["generate", "a plate", *provider, "--constrain", "llama.cpp"]) == 0
+    assert Path("grammar").read_text("utf-8") == grammar(capsys)
+
+
+# --- Servers that do not ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "reply",
+    [
+        f"{REPLY}\nAnd that is all.",
+        "A plate is a rectangle.",
+        PROGRAM,
+        REPLY.replace("```aidl", "```"),
+        REPLY.replace("(center", "(((center"),
+        REPLY.removesuffix("```"),
+        "",
+    ],
+)
+def test_a_reply_that_does_not_keep_to_the_grammar(
+    generate: Callable[..., Any], capsys: pytest.CaptureFixture[str], reply: str
+) -> None:
+    code, server = generate([reply, REPLY], "--constrain", "vllm", "-o", "plate.aidl")
+    assert (code, len(server.requests), list(Path().iterdir())) == (2, 1, [])
+    assert capsys.readouterr().err == (
+        "error[E0951]: the reply of openai:m does not keep to the grammar: `structured_outputs` in the request was "
+        "not heeded\n"
+        "  = hint: does --constrain name the kind of server that answers? It knows llama.cpp, sglang, vllm\n"
+        "  = hint: without --constrain, mistakes of syntax are told to the model\n"
+    )
+
+
+def test_a_reply_cut_off_is_no_breach(generate: Callable[..., Any]) -> None:
+    code, server = generate([Says(REPLY[:60], finish="length"), REPLY], "--constrain", "llama.cpp")
+    assert code == 0
+    assert server.requests[1].texts[-1].startswith("Your reply was cut off")
+
+
+def test_a_server_that_refuses_it(generate: Callable[..., Any], capsys: pytest.CaptureFixture[str]) -> None:
+    refusal = Failed(400, "Unrecognized request argument supplied: ebnf")
+    code, _ = generate([refusal], "--constrain", "sglang")
+    assert code == 2
+    assert capsys.readouterr().err == (
+        "error[E0935]: the request was refused (400): Unrecognized request argument supplied: ebnf\n"
+        "  = hint: does --constrain name the kind of server that answers? Without it no grammar is sent\n"
+    )
+
+
+@pytest.mark.parametrize("verb", [["generate", "a plate"], ["eval", "--variants", "full"]])
+def test_anthropic_takes_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], verb: list[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("ANTHROPIC_API_KEY", "k")
+    said = ["--provider", "anthropic", "--model", "m", "--constrain", "vllm"]
+    assert main([*verb, *said]) == 2
+    assert capsys.readouterr().err == (
+        "error[E0950]: anthropic:m takes no grammar\n  = hint: leave --constrain out\n"
+    )
+
+
+def test_openscad_has_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("aidl_lang.evaluation.openscad.OpenScad.is_installed", True)
+    said = ["--base-url", "http://localhost:1/v1", "--model", "m", "--constrain", "vllm"]
+    assert main(["eval", "--variants", "openscad", *said]) == 2
+    assert capsys.readouterr().err == (
+        "error[E0950]: --constrain has no grammar for `openscad`\n  = hint: leave --constrain out\n"
+    )
+
+
+def test_an_unknown_kind_of_server(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["generate", "a plate", "--constrain", "ollama"])
+    assert ended.value.code == 2
+    assert "there is no `ollama`; there are llama.cpp, sglang, vllm" in capsys.readouterr().err
+
+
+# --- What the grammar lets through is found -------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("", ""),
+        ("Two words, and `code`.\r\n", " \n"),
+        ("``two``\n", "\n"),
+        ("", "          "),
+    ],
+)
+def test_what_is_let_through_is_found(before: str, after: str) -> None:
+    text = f"{before}```aidl\n{PROGRAM}\n        ```{after}"
+    assert engine(True).takes(text)[2]
+    assert (find_program(text, ("aidl",), bool).program or "").strip() == PROGRAM.strip()
+
+
+def test_a_block_begins_on_a_line_of_its_own() -> None:
+    assert not engine(True).takes(f"Here it is: {REPLY[REPLY.index('```') :]}")[2]

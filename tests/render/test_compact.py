@@ -1,0 +1,95 @@
+"""Diagnostics as a language model reads them."""
+
+from __future__ import annotations
+
+from aidl_lang import pipeline
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.render import compact
+from aidl_lang.source import SourceFile, Span
+
+SHELF = """assembly shelf {
+    solid board { edge = rectangle(width: 80, height: 4) }
+    solid foot { edge = rectangle(width: 6, height: 30) }
+    constrain {
+        foot.below(board, gap: 0)
+        foot.bottom == board.bottom - 40
+        foot.height == 30
+    }
+}
+"""
+
+
+def told(program: str) -> str:
+    return compact(pipeline.compile(SourceFile("part.aidl", program)).diagnostics)
+
+
+def span(source: SourceFile, text: str) -> Span:
+    start = source.text.index(text)
+    return Span(source, start, start + len(text))
+
+
+def test_a_conflict() -> None:
+    assert told(SHELF) == (
+        "error E0601 line 7: `foot.below(board, gap: 0)`, `foot.bottom == board.bottom - 40` and "
+        "`foot.height == 30` cannot hold together\n"
+        "  7 | foot.height == 30\n"
+        "  why: 40 would fit\n"
+        "  line 5: conflicts with this; 10 would fit | foot.below(board, gap: 0)\n"
+        "  line 6: conflicts with this; 30 would fit | foot.bottom == board.bottom - 40\n"
+        "  fix (write `40`): line 7 becomes\n"
+        "            foot.height == 40"
+    )
+
+
+def test_nothing() -> None:
+    assert compact([]) == ""
+
+
+def test_errors_come_first_and_what_repeats_is_counted() -> None:
+    source = SourceFile("part.aidl", "\n".join(f"name_{k}" for k in range(40)))
+    many = [
+        Diagnostic(f"{'WE'[k % 2]}02{k % 4:02}", f"number {k}", span(source, f"name_{k}")) for k in range(40)
+    ]
+    blocks = compact(many).split("\n\n")
+    assert [b.partition(":")[0] for b in blocks[:4]] == [
+        "error E0201 line 2",
+        "error E0203 line 4",
+        "error E0201 line 6",
+        "error E0203 line 8",
+    ]
+    assert len(blocks) == 16
+    codes = ("E0201", "E0203", "W0200", "W0202")
+    assert blocks[-4:] == [f"and 7 more {code}, to be mended alike" for code in codes]
+
+
+def test_fixes_are_lines_to_write() -> None:
+    source = SourceFile("part.aidl", "one\ntwo\nthree\nfour\n")
+
+    def fix(*edits: tuple[str, str]) -> list[str]:
+        made = Fix("mend", tuple(Edit(span(source, old), new) for old, new in edits))
+        return compact([Diagnostic("E0101", "wrong", span(source, "two"), fix=made)]).splitlines()[2:]
+
+    assert fix(("two", "2")) == ["  fix (mend): line 2 becomes", "    2"]
+    assert fix(("two\n", "")) == ["  fix (mend): line 2 goes"]
+    assert fix(("two\nthree", "2\n3")) == ["  fix (mend): lines 2-3 become", "    2", "    3"]
+    assert fix(("one\n", "one\n1.5\n")) == ["  fix (mend): after line 1 write", "    1.5"]
+    assert fix(("one", "1"), ("four", "4")) == [
+        "  fix (mend): line 1 becomes",
+        "    1",
+        "  and: line 4 becomes",
+        "    4",
+    ]
+
+
+def test_other_files_are_named() -> None:
+    here, there = SourceFile("part.aidl", "use x"), SourceFile("lib.aidl", "let x = 1")
+    told = compact([Diagnostic("E0101", "no", span(here, "x"), secondary=(Label(span(there, "x"), "here"),))])
+    assert told == "error E0101 line 1: no\n  1 | use x\n  lib.aidl line 1: here | let x = 1"
+
+
+def test_what_a_program_holds_cannot_break_the_form() -> None:
+    source = SourceFile("a\nb.aidl", "x\x1b[31m" + "y" * 500)
+    lines = compact([Diagnostic("E0101", "two\nlines", Span(source, 0, 1))]).splitlines()
+    assert lines[0] == "error E0101 line 1: two lines"
+    assert "\x1b" not in lines[1]
+    assert len(lines[1]) < 220
