@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format reference bench bench-regions bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test test-model lint format reference bench bench-check bench-regions bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -18,6 +18,10 @@ demo: $(READY) ## set up, then draw examples/telephone.aidl
 
 test: $(READY) ## run all tests
 	$(BIN)/python -m pytest -n auto
+
+test-model: $(READY) ## ask a real small model; installs it and llama.cpp into build/model, once
+	$(BIN)/python tests/model/install.py build/model
+	AIDL_TEST_MODEL=build/model $(BIN)/python -m pytest tests/model
 
 lint: $(READY) ## style, format, types and the direction of imports
 	$(BIN)/ruff check .
@@ -34,6 +38,9 @@ reference: $(READY) ## write docs/reference, docs/guide.md and llms.txt anew fro
 
 bench: $(READY) ## measure the command and the stages
 	$(BIN)/python benchmarks/run.py
+
+bench-check: $(READY) ## measure a check beside another language's
+	$(BIN)/python benchmarks/check.py
 
 bench-regions: $(READY) ## measure regions beside other libraries
 	$(BIN)/python benchmarks/regions.py

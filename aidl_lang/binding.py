@@ -33,13 +33,16 @@ from aidl_lang.units import LENGTH
 
 Outcomes: TypeAlias = Sequence[Binding | Mismatch]
 
+_MOST_KEPT = 16
+"""Arguments of a call whose outcome is kept for the next time: hardly any has more, and those take memory."""
+
 
 def outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> Outcomes:
     """The candidates that fit, perhaps beside some that do not, or else why none does. Arguments are read in
     other words only if none takes them as written. What the author defines comes before the definitions of
     that name that every program has.
     """
-    if all(candidate.standard for candidate in candidates):
+    if len(given) <= _MOST_KEPT and all(candidate.standard for candidate in candidates):
         return _of_standard(tuple(candidates), tuple(given))
     return _outcomes(candidates, given)
 

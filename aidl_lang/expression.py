@@ -227,7 +227,7 @@ def div(a: Expression, b: Expression) -> Expression:
 
 
 _FOLDED: dict[str, Callable[..., Expression]] = {"add": add, "sub": sub, "mul": mul, "div": div}
-"""What an operation with a number does not change; most nodes are made of these four."""
+"""The operations that most nodes are made of, each with its own folding."""
 
 
 def half(a: Expression) -> Expression:

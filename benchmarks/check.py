@@ -2,13 +2,13 @@
 
     python benchmarks/check.py [--runs N] [PROGRAM …]
 
-Prints Markdown. Programs are a typical one of 100 lines, `organiser.aidl`, and the examples. They take turns in one
-process; the first rounds are thrown away, and the medians reported. Time is processor time.
+Prints Markdown. Programs are a typical one of 100 lines, `organiser.aidl`, and the examples. They take turns
+in one process; the first rounds are thrown away, and the medians reported. Time is processor time.
 
-The peer is OpenSCAD on a program of 100 lines that draws the same, `organiser.scad`: from the text to a tree of
-primitives with numbers in them (`-o x.csg`), beside the same on an empty file. It runs loops and modules as a
-check does, and holds no places back to be solved for: there is no constraint in its program, nor are types and
-references checked before it runs. Both are measured as whole commands, since OpenSCAD is nothing else.
+The peer is OpenSCAD on a program of 100 lines that draws the same, `organiser.scad`: from the text to a tree
+of primitives with numbers in them (`-o x.csg`), beside the same on an empty file. It runs loops and modules
+as a check does; but every place in it is worked out by hand, so there are no constraints to read, and types
+and references are not checked before it runs. Both are measured as whole commands: OpenSCAD is nothing else.
 """
 
 from __future__ import annotations

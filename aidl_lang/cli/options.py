@@ -6,6 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from aidl_lang.cli import sizes
+from aidl_lang.cli.report import UseError
 
 if TYPE_CHECKING:
     from aidl_lang.llm.messages import Sampling
@@ -144,7 +145,8 @@ def add_provider(parser: argparse.ArgumentParser) -> None:
         "--constrain",
         type=_server,
         metavar="SERVER",
-        help="keep the model to the grammar, at a server of this kind: llama.cpp, sglang, vllm",
+        help="keep the model to the grammar, at a server of this kind: llama.cpp, sglang or vllm, "
+        "or as in vllm:llguidance where that engine decodes",
     )
     group.add_argument(
         "--timeout",

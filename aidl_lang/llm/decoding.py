@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
@@ -9,7 +10,6 @@ from aidl_lang.diagnostics import has_errors
 from aidl_lang.grammars import export
 from aidl_lang.llm.messages import Finish, Message, ProviderError, Reply, Sampling
 from aidl_lang.llm.providers import Closable
-from aidl_lang.llm.replies import find_program
 from aidl_lang.parser import parse
 from aidl_lang.source import SourceFile
 
@@ -18,19 +18,24 @@ _MEMBERS: dict[str, Callable[[str], dict[str, object]]] = {
     "sglang": lambda grammar: {"ebnf": grammar},
     "vllm": lambda grammar: {"structured_outputs": {"grammar": grammar}},
 }
-SERVERS = tuple(_MEMBERS)
+_ENGINE = ":llguidance"
+SERVERS = (*_MEMBERS, *(kind + _ENGINE for kind in _MEMBERS))
+"""Kinds of servers: as they are, and with llguidance as the engine that decodes."""
+
+_REPLY = re.compile(r"(?:(?!```).)*^```aidl\r?\n(?P<program>.*)```\s*", re.M | re.S)
 
 
 def members(server: str, fenced: bool = True) -> Mapping[str, object]:
-    """What a request to one of SERVERS has in addition; without `fenced` the reply is a program and nothing else."""
-    return _MEMBERS[server](export("gbnf", fenced))
+    """What a request to one of SERVERS has in addition; without `fenced` the reply is a bare program."""
+    format = "llguidance" if server.endswith(_ENGINE) else "gbnf"
+    return _MEMBERS[server.removesuffix(_ENGINE)](export(format, fenced))
 
 
 class Constrained:
     """A provider whose server is told to keep the model to the grammar, free text first, and does so.
 
-    Servers pass over members of a request that they do not know. So a reply that came to its end is looked at, and
-    one that the grammar does not let through is an error.
+    Servers pass over members of a request that they do not know. So a reply that came to its end is looked
+    at, and one that the grammar does not let through is an error.
     """
 
     def __init__(self, provider: Closable, server: str) -> None:
@@ -60,7 +65,6 @@ class Constrained:
 
 
 def _keeps_to_the_grammar(text: str) -> bool:
-    """Whether a reply ends with its block, and the program in it has no errors of syntax."""
-    program = find_program(text, ("aidl",), lambda bare: False).program
-    is_at_its_end = text.rstrip().endswith("```")
-    return is_at_its_end and program is not None and not has_errors(parse(SourceFile("", program)).diagnostics)
+    """Whether a reply is free text and one block, and the program in it has no errors of syntax."""
+    found = _REPLY.fullmatch(text)
+    return found is not None and not has_errors(parse(SourceFile("", found["program"])).diagnostics)

@@ -28,8 +28,7 @@ def test_formats_that_are_not_there(aidl: Aidl) -> None:
     assert aidl("grammar", "--format", "bnf") == Result(
         2,
         "",
-        "error[E0940]: there is no format `bnf`\n"
-        "  = hint: the formats: lark, llguidance, gbnf, ebnf\n",
+        "error[E0940]: there is no format `bnf`\n  = hint: the formats: lark, llguidance, gbnf, ebnf\n",
     )
     assert aidl("grammar", "--fenced") == Result(
         2,

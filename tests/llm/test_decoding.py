@@ -16,6 +16,7 @@ from tests.grammars.engines import engine
 from tests.llm.scripted import Failed, Says, Scripted
 
 PROGRAM = "solid plate {\n    outline = rectangle(center: origin, width: 60, height: 40)\n}\n"
+KNOWN = "llama.cpp, sglang, vllm, llama.cpp:llguidance, sglang:llguidance, vllm:llguidance"
 REPLY = f"A plate is a rectangle.\n\n```aidl\n{PROGRAM}```"
 
 
@@ -34,10 +35,10 @@ def generate(
     return run
 
 
-def grammar(capsys: pytest.CaptureFixture[str]) -> str:
+def grammar(capsys: pytest.CaptureFixture[str], format: str = "gbnf") -> str:
     """What the command writes."""
     capsys.readouterr()
-    assert main(["grammar", "--format", "gbnf", "--fenced"]) == 0
+    assert main(["grammar", "--format", format, "--fenced"]) == 0
     return capsys.readouterr().out
 
 
@@ -60,6 +61,8 @@ def test_what_a_server_is_sent(
     assert code == 0
     assert Path("plate.aidl").read_text("utf-8") == PROGRAM
     assert constrained.requests[0].body == plain.requests[0].body | members(grammar(capsys))
+    _, other = generate([REPLY], "--constrain", f"{server}:llguidance")
+    assert other.requests[0].body == plain.requests[0].body | members(grammar(capsys, "llguidance"))
     transcript = json.loads(Path("plate.transcript.json").read_text("utf-8"))
     assert transcript["provider"] == f"openai:m (constrained: {server})"
 
@@ -109,9 +112,9 @@ def test_a_reply_that_does_not_keep_to_the_grammar(
     code, server = generate([reply, REPLY], "--constrain", "vllm", "-o", "plate.aidl")
     assert (code, len(server.requests), list(Path().iterdir())) == (2, 1, [])
     assert capsys.readouterr().err == (
-        "error[E0951]: the reply of openai:m does not keep to the grammar: `structured_outputs` in the request was "
-        "not heeded\n"
-        "  = hint: does --constrain name the kind of server that answers? It knows llama.cpp, sglang, vllm\n"
+        "error[E0951]: the reply of openai:m does not keep to the grammar: `structured_outputs` in the "
+        "request was not heeded\n"
+        f"  = hint: does --constrain name the kind of server that answers? It knows {KNOWN}\n"
         "  = hint: without --constrain, mistakes of syntax are told to the model\n"
     )
 
@@ -161,7 +164,7 @@ def test_an_unknown_kind_of_server(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["generate", "a plate", "--constrain", "ollama"])
     assert ended.value.code == 2
-    assert "there is no `ollama`; there are llama.cpp, sglang, vllm" in capsys.readouterr().err
+    assert f"there is no `ollama`; there are {KNOWN}\n" in capsys.readouterr().err
 
 
 # --- What the grammar lets through is found -------------------------------------------------------
