@@ -53,19 +53,28 @@ def remarks(compiled: Compiled, *, may_constrain: bool) -> str:
     warnings = [d for d in compiled.diagnostics if d.code.startswith("W")]
     floating = floats(compiled.model) if may_constrain and compiled.model is not None else ()
     blocks = [compact(warnings)] if warnings else []
-    blocks += [
-        f"warning: `{path}` floats: no constraint ties it to the rest, it stands where it was first guessed"
-        for path in floating[:_MOST]
-    ]
+    if floating:
+        names = ", ".join(f"`{path}`" for path in floating[:_MOST]) + ", …" * (len(floating) > _MOST)
+        verb, stands = ("floats", "it stands") if len(floating) == 1 else ("float", "they stand")
+        blocks.append(
+            f"warning: {names} {verb}: no constraint speaks of where, so {stands} as first guessed. Say how "
+            "parts lie to each other, as in `a.above(b, gap: 2)` or `centered_in(a, b)`"
+        )
     return "\n\n".join(blocks)
 
 
 def floats(model: SolvedModel) -> tuple[str, ...]:
-    """Paths, without the root, of structures that can slide anywhere by themselves."""
+    """Paths, without the root, of structures that can slide anywhere and that no constraint around ties."""
     root = model.root
     ways = Counter(m.things[0] for m in model.motions if m.kind == "slide" and len(m.things) == 1)
-    several = {s.path for s in root.walk() if s.path != root.path}
-    return tuple(path.removeprefix(f"{root.path}.") for path, n in ways.items() if n > 1 and path in several)
+    tied = {
+        path
+        for constraint in model.constraints
+        for path in constraint.mentions
+        if not f"{constraint.path}.".startswith(f"{path}.")
+    }
+    inner = (s.path for s in root.walk() if s.path != root.path)
+    return tuple(p.removeprefix(f"{root.path}.") for p in inner if ways[p] > 1 and p not in tied)
 
 
 def _freedom(model: SolvedModel) -> str:

@@ -1,0 +1,65 @@
+"""What a model is told beside its errors."""
+
+from __future__ import annotations
+
+from aidl_lang import pipeline
+from aidl_lang.llm import feedback
+from aidl_lang.source import SourceFile
+
+
+def floats(program: str) -> tuple[str, ...]:
+    model = pipeline.compile(SourceFile("part.aidl", program)).model
+    assert model is not None
+    return feedback.floats(model)
+
+
+LAMP = """assembly lamp {
+    solid foot { plate = rectangle(width: 60, height: 8) }
+    solid pole { rod = rectangle(center: (0, 34), width: 6, height: 60) }
+    solid shade { cone = trapezoid(center: (0, 80), bottom_width: 50, top_width: 30, height: 32) }
+    CONSTRAIN
+}
+"""
+
+
+def test_parts_without_a_constraint_float() -> None:
+    assert floats(LAMP.replace("CONSTRAIN", "")) == ("foot", "pole", "shade")
+    tied = LAMP.replace("CONSTRAIN", "constrain pole.above(foot, gap: 0)")
+    assert floats(tied) == ("shade",)
+
+
+def test_an_inequality_ties() -> None:
+    assert (
+        floats(LAMP.replace("CONSTRAIN", "constrain { foot.below(pole); shade.inside(pole, margin: -80) }"))
+        == ()
+    )
+
+
+def test_a_part_alone_does_not_float() -> None:
+    assert floats("solid plate { outline = rectangle(width: 60, height: 40) }") == ()
+
+
+def test_what_is_told_of_floating_parts() -> None:
+    compiled = pipeline.compile(SourceFile("part.aidl", LAMP.replace("CONSTRAIN", "")))
+    told = feedback.remarks(compiled, may_constrain=True)
+    assert "warning: `foot`, `pole`, `shade` float: no constraint speaks of where, so they stand" in told
+    assert "float" not in feedback.remarks(compiled, may_constrain=False)
+
+
+def test_the_stage_is_the_first_that_fails() -> None:
+    def stage(program: str) -> str:
+        return feedback.stage_of(pipeline.compile(SourceFile("part.aidl", program)).diagnostics)
+
+    plate = "solid plate { outline = rectangle(width: 60, height: 40) REST }"
+    assert stage(plate.replace("REST", "constrain }")) == "syntax"
+    assert stage(plate.replace("REST", "constrain outline.sise == 3")) == "types"
+    assert (
+        stage(plate.replace("REST", "hole h { c = circle(center: outline.center, radius: 3) }")) == "validity"
+    )
+    assert stage(plate.replace("REST", "constrain { outline.width == 1; outline.width == 2 }")) == "solve"
+    assert stage(plate.replace("REST", "assert outline.width == 1")) == "asserts"
+    apart = (
+        "assembly a { solid b { c = circle(radius: 3) } solid d { e = circle(center: (20, 0), radius: 3) } }"
+    )
+    assert stage(apart) == "contacts"
+    assert stage(plate.replace("REST", "")) == "done"
