@@ -8,6 +8,9 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
+_WIDER = 6
+"""Names beyond those wanted that are compared letter by letter."""
+
 
 def fold(name: str) -> str:
     """The form in which `CenterInside`, `centerInside` and `center_inside` are one name."""
@@ -32,17 +35,18 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
     for key in known:
         folded.setdefault(fold(key), key)
     likeness = 0.6 if len(name) < 5 else 0.7  # one wrong letter weighs more in a short name
-    return [folded[match] for match in get_close_matches(fold(name), folded, n=count, cutoff=likeness)]
+    wanted = fold(name)
+    matches = get_close_matches(wanted, folded, n=count + _WIDER, cutoff=likeness)
+    return [folded[match] for match in sorted(matches, key=lambda match: _distance(wanted, match))[:count]]
 
 
 def is_slip(name: str, meant: str) -> bool:
     """Whether one name is so near to the other that nobody need be asked: a letter wrong, missing, too many or
-    exchanged with its neighbour, two of them in a long name, or only the beginning written.
+    exchanged with its neighbour, two of them in a long name; but no word more or less, as in `same_center_x`.
     """
     a, b = fold(name), fold(meant)
-    if len(a) > 3 and b.startswith(a):
-        return True
-    return _distance(a, b) <= (1 if len(a) < 8 else 2)
+    slips = _distance(a, b)
+    return slips == 0 or (name.count("_") == meant.count("_") and slips <= (1 if len(a) < 8 else 2))
 
 
 def _distance(a: str, b: str) -> int:

@@ -102,7 +102,7 @@ class OpenScadConversation:
             stage="done" if rendered.ok else "render",
             feedback=f"{said}\n\n{_VALID if rendered.ok else _WRONG}" if said else "",
             program=program,
-            codes=tuple(error.partition(":")[0] for error in rendered.errors),
+            codes=tuple(re.split(r" \(|:", error)[0] for error in rendered.errors),
             weight=(int(not rendered.ok), len(rendered.errors), len(rendered.warnings)),
             numbers={"structures": structures(program), "warnings": len(rendered.warnings)},
         )
