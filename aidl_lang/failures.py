@@ -160,10 +160,10 @@ class _Report:
         return own and not stated.label and self.times[stated.span] == 1
 
     def _size(self, index: int) -> Unknown:
-        """The size that a constraint which nobody stated keeps from vanishing: `least - size <= 0`."""
+        """The size that a constraint which nobody stated keeps from vanishing: `least - size <= 0`, or `-size <= 0`."""
         problem = self.lowered.problem
         operands = problem.tape.operand_lists
-        _, size = operands[problem.constraints[index].rows[0].expression]
+        *_, size = operands[problem.constraints[index].rows[0].expression]
         return self.lowered.unknowns[operands[size][0]]
 
     def _chief(self) -> _Party:
