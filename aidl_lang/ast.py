@@ -303,6 +303,10 @@ class Equation(Node):
     left: Expression
     right: Expression
 
+    @property
+    def meant(self) -> Comparison:
+        return Comparison((self.left, self.right), ("==",), span=self.span)
+
 
 @record(eq=False, repr=False)
 class Prefer(Node):

@@ -124,7 +124,7 @@ def spelled_out(*roots: Expression) -> tuple[Expression, ...]:
     """The expressions of one comparison with every side of a box replaced by what it is there."""
     if not any(root.is_open for root in roots):
         return roots
-    order = list(ex.nodes(roots))
+    order = list(ex.nodes(roots, only_open=True))
     sides = [n.payload for n in order if isinstance(n.payload, _Side)]
     if not sides:
         return roots
@@ -199,6 +199,8 @@ def _curve(primitive: Geometry, here: Structure, side: str) -> Iterator[Expressi
     if primitive.recipe is not None and primitive.is_drawn_later:
         yield from _made(primitive, primitive.recipe, here, side)
         return
+    if primitive.type == "point":
+        return
     core = view(primitive, here)
     axis = side in ("top", "bottom")
     positive = side in ("right", "top")
@@ -207,9 +209,9 @@ def _curve(primitive: Geometry, here: Structure, side: str) -> Iterator[Expressi
             yield xy(core["start"])[axis]
             yield xy(core["end"])[axis]
         case "circle":
-            yield ex.apply("add" if positive else "sub", xy(core["center"])[axis], number(core["radius"]))
+            yield (ex.add if positive else ex.sub)(xy(core["center"])[axis], number(core["radius"]))
         case "arc":
-            yield _arc_extreme(core, clockwise(primitive, here), side)
+            yield _arc_extreme(primitive, here, side)
         case "ellipse":
             yield _ellipse_extreme(core, axis, positive)
         case "glyphs" if primitive.glyphs:
@@ -255,21 +257,27 @@ def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iter
 _TOWARDS = {"right": 0.0, "top": 90.0, "left": 180.0, "bottom": 270.0}
 
 
-def _arc_extreme(core: Mapping[str, Value], is_clockwise: bool, side: str) -> Expression:
+def _arc_extreme(arc: Geometry, here: Structure, side: str) -> Expression:
     """The quadrant point if the arc passes through it, else the further end."""
     axis, positive = side in ("top", "bottom"), side in ("right", "top")
-    center, start, end = core["center"], core["start"], core["end"]
-    first = end if is_clockwise else start
-    offset = ex.sub(ex.constant(_TOWARDS[side]), direction(center, first))
-    reached = ex.apply("mod", offset, ex.constant(360.0))
-    passes = ex.sub(sweep(core, is_clockwise), reached)
-    quadrant = ex.apply(
-        "add" if positive else "sub",
-        xy(center)[axis],
-        number(core["radius"]),
-    )
-    ends = ex.apply("maximum" if positive else "minimum", xy(start)[axis], xy(end)[axis])
+    core = view(arc, here)
+    first, turn = _turn(arc, here)
+    reached = ex.apply("mod", ex.sub(ex.constant(_TOWARDS[side]), first), ex.constant(360.0))
+    passes = ex.sub(turn, reached)
+    outwards = ex.add if positive else ex.sub
+    quadrant = outwards(xy(core["center"])[axis], number(core["radius"]))
+    further = "maximum" if positive else "minimum"
+    ends = ex.apply(further, xy(core["start"])[axis], xy(core["end"])[axis])
     return ex.apply("select", passes, quadrant, ends)
+
+
+def _turn(arc: Geometry, here: Structure) -> tuple[Expression, Expression]:
+    """Counter-clockwise, the direction in which an arc begins and its sweep, the same for all four sides."""
+    if (known := arc.turns.get(here)) is None:
+        core, is_clockwise = view(arc, here), clockwise(arc, here)
+        first = direction(core["center"], core["end" if is_clockwise else "start"])
+        known = arc.turns[here] = first, sweep(core, is_clockwise)
+    return known
 
 
 def _ellipse_extreme(core: Mapping[str, Value], axis: bool, positive: bool) -> Expression:

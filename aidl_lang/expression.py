@@ -18,6 +18,13 @@ if TYPE_CHECKING:
 
 DEGREE = math.pi / 180.0
 
+_WAYS = {
+    "length": "distance",
+    "angle": "direction",
+    "dx": "horizontal distance",
+    "dy": "vertical distance",
+}
+
 
 @dataclass(eq=False)
 class Unknown:
@@ -33,6 +40,7 @@ class Unknown:
     exact     a constant after all: read while building, or locked and named by no constraint
     outline   a side of the box of an empty structure
     locked    an angle that stays zero until a constraint names it
+    since     for the way to a literal point, the name of the one before it
     """
 
     guess: float
@@ -46,10 +54,33 @@ class Unknown:
     exact: bool = False
     locked: bool = False
     outline: bool = False
+    since: str = ""
 
     @property
     def path(self) -> str:
         return f"{self.holder.path}.{self.field}"
+
+    @property
+    def told(self) -> str:
+        """What it is, for people: not all that is unknown has a name in the program."""
+        if self.since:
+            target, _, measure = self.path.rpartition(".")
+            if target.endswith("_to"):  # how the library calls the point where a size ends
+                return f"`{target.removesuffix('_to')}`"
+            return f"the {_WAYS[measure]} from `{self.holder.path}.{self.since}` to `{target}`"
+        if self.holder.is_nameless:
+            return f"`{self.field}` of a {self.holder.path.rpartition('.')[2]} in `{self.owner.path}`"
+        return quoted(self.path)
+
+
+def quoted(path: str) -> str:
+    """A path, for people: no program can name what is nameless inside an outline made of others."""
+    outline, is_source, rest = path.partition(".source[")
+    if not is_source:
+        return f"`{path}`"
+    number, _, inside = rest.partition("]")
+    of = f"`{inside[1:]}` of " if inside else ""
+    return f"{of}nameless outline {int(number) + 1} in `{outline}`"
 
 
 class Lazy(Protocol):
@@ -176,10 +207,10 @@ def apply(op: str, *args: Expression) -> Expression:
     if (folded := _FOLDED.get(op)) is not None:
         return folded(*args)
     value = EVALUATE[op](*[a.value for a in args])
-    varying = [a for a in args if a.op != "constant"]
-    if not varying:
-        return Expression("constant", (), value)
-    return Expression(op, args, value, True in [a.is_open for a in varying])
+    for arg in args:
+        if arg.op != "constant":
+            return Expression(op, args, value, True in [a.is_open for a in args])
+    return Expression("constant", (), value)
 
 
 def add(a: Expression, b: Expression) -> Expression:
@@ -261,8 +292,10 @@ def exact_turn(degrees: float) -> tuple[float, float]:
     return math.cos(degrees * DEGREE), math.sin(degrees * DEGREE)
 
 
-def nodes(roots: Iterable[Expression]) -> Iterator[Expression]:
-    """Every node below the roots once, arguments before those that use them."""
+def nodes(roots: Iterable[Expression], *, only_open: bool = False) -> Iterator[Expression]:
+    """Every node below the roots once, arguments before those that use them; or only the open ones, which
+    form the top of each graph.
+    """
     seen: set[Expression] = set()
     for root in roots:
         stack = [(root, False)]
@@ -274,7 +307,7 @@ def nodes(roots: Iterable[Expression]) -> Iterator[Expression]:
                 seen.add(node)
                 if node.args:
                     stack.append((node, True))
-                    stack.extend((a, False) for a in node.args if a not in seen)
+                    stack.extend((a, False) for a in node.args if a not in seen and a.is_open >= only_open)
                 else:
                     yield node
 

@@ -113,7 +113,7 @@ class _Report:
     def diagnostic(self) -> Diagnostic:
         code, headline = self._headline()
         labels = [
-            Label(u.holder.span, f"`{u.path}` does not vanish")
+            Label(u.holder.span, f"{u.told} would have to become 0")
             for u in self.sizes
             if u.holder.span is not None
         ]
@@ -160,7 +160,9 @@ class _Report:
         return own and not stated.label and self.times[stated.span] == 1
 
     def _size(self, index: int) -> Unknown:
-        """The size that a constraint which nobody stated keeps from vanishing: `least - size <= 0`, or `-size <= 0`."""
+        """The size that a constraint which nobody stated keeps from vanishing: `least - size <= 0` or
+        `-size <= 0`.
+        """
         problem = self.lowered.problem
         operands = problem.tape.operand_lists
         *_, size = operands[problem.constraints[index].rows[0].expression]
@@ -179,7 +181,10 @@ class _Report:
             return wished(chief.stated)
         assert isinstance(chief.stated.wording, Wording)
         said = says(chief.stated.wording, chief.fix)
-        return left_out(chief.stated) if said in (party.stated.text for party in self.parties) else chief.fix
+        if said not in (party.stated.text for party in self.parties):
+            return chief.fix
+        assert chief.remedy is not None
+        return wished(chief.stated) if chief.remedy.is_relation else left_out(chief.stated)
 
     # -- words
 
@@ -189,7 +194,7 @@ class _Report:
         for party in self.parties:
             turns.setdefault(party.stated.span, []).append(party)
         names = _listed([_name(parties) for parties in turns.values()])
-        names = names or _listed([f"`{unknown.path}`" for unknown in self.sizes])
+        names = names or _listed([unknown.told for unknown in self.sizes])
         several = len(self.parties) > 1
         match failure.reason:
             case Failure.CONTRADICTORY:
@@ -229,7 +234,7 @@ class _Report:
                 wordings = [w for party in self.parties if isinstance(w := party.stated.wording, Wording)]
                 held = dict.fromkeys(f"`{name}`" for wording in wordings for name in wording.held())
                 if held:
-                    moving = _listed([f"`{self.lowered.unknowns[i].path}`" for i in self.failure.moving])
+                    moving = _listed([self.lowered.unknowns[i].told for i in self.failure.moving])
                     yield f"{_listed(list(held))} cannot move, only {moving}: a `guess(…)` frees a number"
             case Failure.NOT_CONVERGED:
                 yield "the search starts from what is written: first guesses near to what is meant help it"

@@ -16,7 +16,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.expression import DEGREE
+from aidl_lang.expression import DEGREE, quoted
 from aidl_lang.lower import Lowered, seen
 from aidl_lang.model import Geometry, Model, Structure
 from aidl_lang.primitives import DIRECTIONS
@@ -53,7 +53,7 @@ def sentences(found: Iterable[Motion], root: str) -> Iterator[str]:
     for motion in found:
         told.setdefault(motion.things, []).append(motion.words)
     for things, words in told.items():
-        names = [f"`{path.removeprefix(root + '.')}`" for path in things]
+        names = [quoted(path.removeprefix(root + ".")) for path in things]
         more = [f"{len(names) - NAMED} more"] if len(names) > NAMED + 1 else []
         named = _listed([*names[: NAMED if more else None], *more])
         slides = sorted(each.removeprefix("slide ") for each in words if each.startswith("slide "))

@@ -5,7 +5,7 @@ arithmetic over unknowns kept as an expression. An error is reported and yields 
 touches passes on in silence, so that one run reports all errors and still yields what can be drawn.
 
 The work is told in `building/`: `modules` (files and roots), `structures`, `statements`, `evaluate`
-(expressions), `calls` (overloads and definitions), `construct` (geometry and the exactness of its numbers),
+(expressions), `overloads` and `calls` (definitions), `construct` (geometry and the exactness of its numbers),
 `stated` and `impose` (constraints).
 """
 
@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from aidl_lang import ast
+from aidl_lang.building.calls import call
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.modules import run_module
 from aidl_lang.building.scopes import Binding, Candidate, LetBinding, Scope
@@ -44,7 +45,7 @@ def interpret(
     limits: Limits = DEFAULT_LIMITS,
 ) -> Interpretation:
     """Run a program. Never raises for what a program says; errors are among the diagnostics."""
-    it = Interpreter(program, overrides or {}, limits, EXECUTORS, evaluate)
+    it = Interpreter(program, overrides or {}, limits, EXECUTORS, evaluate, call)
     it.deadline = time.monotonic() + limits.seconds
     it.watched = frozenset(node for violation in program.violations for node in violation.nodes)
     try:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
@@ -115,11 +115,16 @@ class Geometry:
     recipe: Recipe | None = None
     finishes: dict[str, Num] = field(default_factory=dict)
     views: dict[Structure, dict[str, Value]] = field(default_factory=dict, repr=False)
+    turns: dict[Structure, tuple[Expression, Expression]] = field(default_factory=dict, repr=False)
 
     @property
     def bound_to(self) -> Structure:
         """The structure whose unknowns it depends on, which alone (and those around it) may constrain it."""
         return self.reach or self.owner
+
+    @property
+    def is_nameless(self) -> bool:
+        return self.name is None and (self.known_as is None or self.known_as.is_nameless)
 
     @property
     def path(self) -> str:
@@ -230,6 +235,7 @@ class Structure:
     finishes: list[Finish] = field(default_factory=list)
     doc: str | None = None
     is_complete: bool = False
+    is_nameless: ClassVar[bool] = False
 
     @property
     def path(self) -> str:
@@ -287,6 +293,8 @@ def chain(structure: Structure) -> list[Structure]:
 
 
 def common_ancestor(a: Structure, b: Structure) -> Structure:
+    if a.is_within(b):
+        return b
     above = set(chain(a))
     return next(s for s in chain(b) if s in above)
 

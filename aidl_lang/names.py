@@ -37,12 +37,13 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
     likeness = 0.6 if len(name) < 5 else 0.7  # one wrong letter weighs more in a short name
     wanted = fold(name)
     matches = get_close_matches(wanted, folded, n=count + _WIDER, cutoff=likeness)
-    return [folded[match] for match in sorted(matches, key=lambda match: _distance(wanted, match))[:count]]
+    matches.sort(key=lambda match: _distance(wanted, match))
+    return [folded[match] for match in matches[:count]]
 
 
 def is_slip(name: str, meant: str) -> bool:
-    """Whether one name is so near to the other that nobody need be asked: a letter wrong, missing, too many or
-    exchanged with its neighbour, two of them in a long name; but no word more or less, as in `same_center_x`.
+    """Whether one name is so near to the other that nobody need be asked: a letter wrong, missing, too many
+    or exchanged with its neighbour, two in a long name; but no word more or less, as in `same_center_x`.
     """
     a, b = fold(name), fold(meant)
     slips = _distance(a, b)

@@ -20,7 +20,7 @@ from aidl_lang.lower import Lowered
 from aidl_lang.model import Assertion, Comparison, Condition, Geometry, Measurement, Model, Structure
 from aidl_lang.remedies import short
 from aidl_lang.repetitions import repetition_notes
-from aidl_lang.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.solved import Change, Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.solution import Solution, Status
 
@@ -35,22 +35,39 @@ def solution_notes(
     found = failure_notes(lowered, solution)
     if solution.status is not Status.SOLVED:
         return found
-    for change in model.changed:
-        written, solved = short(change.written), short(change.solved)
-        if written == solved:
-            continue
-        agree = f"write {solved} to agree, or `fixed({written})` to insist"
-        vanished = f"they leave no room for it: `fixed({written})` insists, and tells which of them conflict"
-        found.append(
-            Diagnostic(
-                "N0601",
-                f"`{change.path}` was written {written} and became {solved}",
-                change.span,
-                "the constraints could not hold otherwise",
-                hints=(vanished if solved == "0" else agree,),
-            )
-        )
+    found += filter(None, map(_change_note, model.changed))
     return found + repetition_notes(lowered, solution, freedom)
+
+
+def _change_note(change: Change) -> Diagnostic | None:
+    """That a size changed; a warning where so much that it is hardly meant."""
+    written, solved = short(change.written), short(change.solved)
+    if written == solved:
+        return None
+    message = f"{change.told} was written {written} and became {solved}"
+    label = "the constraints could not hold otherwise"
+    how = _distortion(change)
+    if not how:
+        hint = f"write {solved} to agree, or `fixed({written})` to insist"
+        return Diagnostic("N0601", message, change.span, label, hints=(hint,))
+    hints = (
+        "look for a constraint that says something else than you mean: `fixed(…)` around what was written "
+        "tells which of them leave no room for it",
+        "if it may become what it will, write it as a `guess(…)`",
+    )
+    return Diagnostic("W0601", f"{message}, {how}", change.span, label, hints=hints)
+
+
+def _distortion(change: Change) -> str:
+    """What became of a size that is hardly meant; "" for one that is little off, and for an angle, which is
+    written as a direction to start from and has no half.
+    """
+    share = 1.0 if change.angular or change.written == 0.0 else change.solved / change.written
+    if share < 0.0:
+        return "turned around"
+    if share < 0.5 - _TOLERANCE:
+        return "less than half"
+    return "more than twice as much" if share > 2.0 + _TOLERANCE else ""
 
 
 # --- Assertions ----------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ from aidl_lang import ast
 from aidl_lang.diagnostics import Diagnostic, ordered
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.automaton import Automaton, Checkpoint
+from aidl_lang.syntax.brackets import lists_as_statements
 from aidl_lang.syntax.errors import explain, spaced_call
 from aidl_lang.syntax.functions import understood
 from aidl_lang.syntax.tables import load_tables
@@ -81,6 +82,7 @@ class _Reader:
         self.automaton = Automaton(load_tables(), builder)
         self.diagnostics = [spaced_call(source, token) for token in tokens.spaced_calls]
         self.diagnostics += understood(source, self.tokens)
+        self.diagnostics += lists_as_statements(source, self.tokens)
         self.automaton.enter_block()
         self.last = Checkpoint(
             0, self.automaton.states[:], self.automaton.values[:], self.automaton.starts[:], 0

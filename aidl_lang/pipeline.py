@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from aidl_lang import library as library_module
@@ -25,7 +26,7 @@ from aidl_lang.resolve import resolve
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.solver.memory import Memory
 from aidl_lang.solver.problem import Settings as SolverSettings
-from aidl_lang.source import SourceFile
+from aidl_lang.source import SourceFile, Span
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
 from aidl_lang.variants import Variant
@@ -75,6 +76,8 @@ class Compiled:
     """What the solver tried, in order: the path of a structure, and one stage for it."""
     conflicts: Callable[[], tuple[Conflict, ...]] = field(default=tuple, repr=False)
     """What tells, for a program that does not solve, the constraints that do not hold together."""
+    follows: Callable[[Span], bool] = field(default=lambda span: False, repr=False)
+    """What tells, for a program that solves, whether what is stated in a place follows from the rest."""
 
     @property
     def ok(self) -> bool:
@@ -282,7 +285,7 @@ def _finish(
     from aidl_lang.lower import lower
     from aidl_lang.outcome import assertion_notes, solution_notes
     from aidl_lang.readout import read_out
-    from aidl_lang.repetitions import preference
+    from aidl_lang.repetitions import follows, preference
     from aidl_lang.solver import Status, solve
     from aidl_lang.solver.analysis import analyse
 
@@ -308,8 +311,18 @@ def _finish(
     notes = list(_beside(notes, found))
     everything = ordered([*diagnostics, *adapted([*found, *notes], settings.variant)])
     stages = tuple((lowered.groups[stage.group], stage) for stage in solution.stages)
-    conflicts = _conflicts(lowered, solution)
-    return Compiled(model.status, everything, watch.seconds, known, model, drawing, show, stages, conflicts)
+    return Compiled(
+        model.status,
+        everything,
+        watch.seconds,
+        known,
+        model,
+        drawing,
+        show,
+        stages,
+        _conflicts(lowered, solution),
+        partial(follows, lowered, solution),
+    )
 
 
 __all__ = ["Compiled", "Knob", "Memory", "Settings", "check", "compile", "formatted", "front", "knobs"]

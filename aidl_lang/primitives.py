@@ -45,6 +45,8 @@ def translate(name: str, value: Value, owner: Structure, here: Structure) -> Val
 
 def is_reflected(owner: Structure, here: Structure) -> bool:
     """Whether an odd number of mirrored frames lies between the two."""
+    if owner is here:
+        return False
     meeting = common_ancestor(owner, here)
     flips = 0
     for start in (owner, here):

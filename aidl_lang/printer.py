@@ -291,7 +291,7 @@ class _Printer:
                 bare = begins_statement(node.value) and (constraints or is_call)
                 return doc("" if bare else "constrain ", expression(node.value))
             case ast.Equation():
-                equation = self._comparison(node)
+                equation = node.meant
                 return doc("" if begins_statement(equation) else "constrain ", expression(equation))
             case ast.Constrain():
                 return doc("constrain") if node.braces else self._constrain(node)
@@ -352,12 +352,9 @@ class _Printer:
         """`constrain` with its one item."""
         item = node.items.statements[0]
         if isinstance(item, ast.Equation):
-            return doc("constrain ", self.expressions.expression(self._comparison(item)))
+            return doc("constrain ", self.expressions.expression(item.meant))
         assert isinstance(item, ast.ExpressionStatement)
         return doc("constrain ", self.expressions.expression(item.value))
-
-    def _comparison(self, node: ast.Equation) -> ast.Comparison:
-        return ast.Comparison((node.left, node.right), ("==",), span=node.span)
 
     def _import(self, node: ast.Import) -> Doc:
         path = string_text(node.path.value)

@@ -75,8 +75,8 @@ def read_out(
 def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:
     for index in solution.changed:
         unknown = lowered.unknowns[index]
-        span = unknown.holder.span
-        yield Change(unknown.path, unknown.guess, float(solution.values[index]), span)
+        solved, span = float(solution.values[index]), unknown.holder.span
+        yield Change(unknown.path, unknown.guess, solved, span, unknown.told, unknown.angular)
 
 
 def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[ConstraintReport]:
@@ -90,7 +90,14 @@ def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[Con
 def report_of(stated: Constraint, residual: float, satisfied: bool) -> ConstraintReport:
     text = f"{stated.text} [{stated.label}]" if stated.label else stated.text
     return ConstraintReport(
-        stated.holder.path, text, stated.span, residual, satisfied, stated.mentions, stated.weight is not None
+        stated.holder.path,
+        text,
+        stated.span,
+        residual,
+        satisfied,
+        stated.mentions,
+        stated.weight is not None,
+        all(comparison.relation == "==" for comparison in stated.comparisons),
     )
 
 

@@ -16,6 +16,7 @@ from aidl_lang.building.wording import Wording, replaced
 from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.expression import Evaluator, Unknown
 from aidl_lang.model import SIZES, Comparison, Constraint
+from aidl_lang.names import fold
 from aidl_lang.solver.solution import Fit
 from aidl_lang.source import Span
 from aidl_lang.units import ANGLE, UNITS
@@ -30,26 +31,33 @@ _FAR = 10.0
 """A number so many times as large, and beyond the drawing as well, is not what anyone means."""
 _COARSE = 1e-2
 """Part of a change that may be added to make the number short, where there is a choice."""
+_OPPOSITES = {"leftof": "right_of", "rightof": "left_of", "above": "below", "below": "above"}
 
 
 @dataclass(frozen=True)
 class Remedy:
     """
-    written   the literals, or the name of a constant, in whose place something else would fit
+    written   the literals, the name of a constant, or that of a relation, in whose place something else
+              would fit
     fitting   what would, as an author would write it, to six digits
     exact     the same for each that is written, with as many digits as it takes
     choice    `at most `, `at least ` or nothing, where nothing else would fit
     ambiguous whether the statement has other numbers
     """
 
-    written: tuple[ast.Expression, ...]
+    written: tuple[ast.Node, ...]
     fitting: str
     exact: tuple[str, ...]
     choice: str = ""
     ambiguous: bool = False
 
     @property
+    def is_relation(self) -> bool:
+        return isinstance(self.written[0], ast.Identifier)
+
+    @property
     def is_literal(self) -> bool:
+        """Whether it is written in the statement itself."""
         return not isinstance(self.written[0], ast.Name)
 
     @property
@@ -76,8 +84,19 @@ def remedy(
     """
     found = _Search(wording, fit, values, size).found()
     if found is not None and vanishing and not found.written[0].span.text.startswith("-"):
+        found = None
+    return found or _opposite(wording, fit, values, size)
+
+
+def _opposite(wording: Wording, fit: Fit, values: Mapping[Unknown, float], size: float) -> Remedy | None:
+    """The relation to the other side, if that is where the others put it."""
+    call = wording.node
+    other = _OPPOSITES.get(fold(call.callee.text)) if isinstance(call, ast.Call) else None
+    if other is None or not isinstance(call, ast.Call):
         return None
-    return found
+    turned = replaced(call, call.callee, replace(call.callee, text=other))
+    search = _Search(wording, fit, values, size)
+    return Remedy((call.callee,), f"`{other}`", (other,)) if search.fits(turned) else None
 
 
 class _Search:
@@ -146,11 +165,20 @@ class _Search:
         node = self.wording.node
         for dial, value in turned:
             node = replaced(node, dial, ast.Number(value / _factor(dial), _unit(dial), "", span=dial.span))
+        return self._read(node)
+
+    def _read(self, node: ast.Expression) -> list[tuple[str, float]]:
         evaluate = Evaluator(self.values)
         return [_residual(comparison, evaluate) for comparison in self.wording.comparisons(node)]
 
     def _holds(self, turned: Sequence[tuple[ast.Expression, float]]) -> bool:
-        rows = self._rows(turned)
+        return self._is_met(self._rows(turned))
+
+    def fits(self, node: ast.Expression) -> bool:
+        """Whether another statement holds where the others do."""
+        return self._is_met(self._read(node))
+
+    def _is_met(self, rows: Sequence[tuple[str, float]]) -> bool:
         return bool(rows) and max(abs(r) if sign == "==" else r for sign, r in rows) <= self.tolerance
 
 
@@ -226,6 +254,7 @@ def rewritten(wording: Wording, found: Remedy) -> Fix | None:
         edits = tuple(Edit(n.span, text) for n, text in zip(found.written, found.exact, strict=True))
         return Fix(f"write {' and '.join(f'`{text}`' for text in found.exact)}", edits)
     name = found.written[0]
+    assert isinstance(name, ast.Name)
     declared = wording.param(name)
     if declared is None or not isinstance(declared.value, ast.Number):
         return None

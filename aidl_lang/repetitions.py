@@ -1,9 +1,12 @@
-"""What is said of constraints that follow from others, and of parts of which that could not be told."""
+"""What is said of constraints that follow from others, and of parts of which that could not be told; and of
+a single one whether it does.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,9 +15,13 @@ from aidl_lang.diagnostics import Diagnostic, Fix, Label
 from aidl_lang.lower import Lowered
 from aidl_lang.model import Constraint
 from aidl_lang.remedies import left_out
-from aidl_lang.solver import Settings, Solution, solve
-from aidl_lang.solver.analysis import Freedom
+from aidl_lang.solver import Constraint as SolverConstraint
+from aidl_lang.solver import Problem, Relation, Settings, Solution, Status, solve
+from aidl_lang.solver.analysis import Freedom, analyse
+from aidl_lang.solver.gradients import below
+from aidl_lang.solver.operations import Op
 from aidl_lang.solver.redundancy import Redundancy
+from aidl_lang.solver.solution import Failure
 from aidl_lang.source import Span
 
 _NAMED = 4
@@ -23,6 +30,12 @@ _LARGEST = 2000
 """Unknowns of a model that is solved again to see whether a constraint can be left out."""
 _SAME = 1e-6
 """Change of a value, in units of its scale, that counts as none."""
+_BROKEN = 1e-2
+"""How far an inequality is off to see whether others forbid it, in units of its scale."""
+_TRIED = 20
+"""Inequalities that are tried so, one by one."""
+_SECONDS = 1.0
+"""For each of them."""
 
 
 def preference(lowered: Lowered) -> list[int]:
@@ -115,3 +128,67 @@ def _undecided(lowered: Lowered, freedom: Freedom) -> Iterator[Diagnostic]:
             first.span,
             "this is the first of them",
         )
+
+
+# --- One constraint ------------------------------------------------------------------------------------
+
+
+def follows(lowered: Lowered, solution: Solution, span: Span) -> bool:
+    """Whether what is stated in a place of a solved model holds wherever the other constraints hold: an
+    equation near by and with sizes kept, as degrees of freedom are counted; an inequality everywhere. False
+    as well where that is too much to tell.
+    """
+    problem = lowered.problem
+    own = {i for i, stated in enumerate(lowered.stated) if stated is not None and stated.span.overlaps(span)}
+    hard = [(i, c) for i, c in enumerate(problem.constraints) if c.weight is None or i in own]
+    others = [c for i, c in hard if i not in own]
+    rows = [replace(c, rows=(row,), weight=None) for i, c in hard if i in own for row in c.rows]
+    equations = [c for c in rows if c.rows[0].relation is Relation.EQUAL]
+    inequalities = [c for c in rows if c.rows[0].relation is Relation.AT_MOST]
+    return (
+        len(inequalities) <= _TRIED
+        and _are_redundant(problem, solution, others, equations)
+        and not any(_can_be_broken(problem, solution, [*others, *equations], c) for c in inequalities)
+    )
+
+
+def _are_redundant(
+    problem: Problem,
+    solution: Solution,
+    others: Sequence[SolverConstraint],
+    equations: Sequence[SolverConstraint],
+) -> bool:
+    """Whether equations follow from others, sizes being kept."""
+    tape = problem.tape
+    is_size = tape.ops == Op.UNKNOWN
+    is_size[is_size] = problem.kept[tape.operands[is_size, 0]]
+    sizes = np.flatnonzero(is_size)
+    ops, operands, constants = tape.ops.copy(), tape.operands.copy(), tape.constants.copy()
+    constants[sizes] = solution.values[operands[sizes, 0]]
+    ops[sizes], operands[sizes] = Op.CONSTANT, -1
+    fixed = replace(tape, ops=ops, operands=operands, constants=constants)
+    moving = [c for c in equations if (fixed.ops[below(fixed, [c.rows[0].expression])] == Op.UNKNOWN).any()]
+    known = replace(problem, tape=fixed).with_constraints([*others, *moving])
+    count = len(others) + len(moving)
+    found = analyse(known, replace(solution, satisfied=(True,) * count)).redundant if moving else ()
+    return {each.constraint for each in found} >= set(range(len(others), count))
+
+
+def _can_be_broken(
+    problem: Problem, solution: Solution, others: Sequence[SolverConstraint], inequality: SolverConstraint
+) -> bool:
+    """Whether others hold somewhere where an inequality does not, or may do so."""
+    (row,), tape = inequality.rows, problem.tape
+    node, level = len(tape), tape.levels[row.expression] + 1
+    longer = replace(  # by a difference that is at most zero where the inequality is off
+        tape,
+        ops=np.append(tape.ops, [Op.CONSTANT, Op.SUB]).astype(tape.ops.dtype),
+        operands=np.vstack((tape.operands, [[-1] * 4, [node, row.expression, -1, -1]])).astype(np.int32),
+        constants=np.append(tape.constants, [_BROKEN * row.scale, 0.0]),
+        levels=np.append(tape.levels, [0, level]).astype(tape.levels.dtype),
+    )
+    opposite = replace(inequality, rows=(replace(row, expression=node + 1),))
+    tried = replace(problem, tape=longer, initial=solution.values).with_constraints([*others, opposite])
+    result = solve(tried, Settings(seconds=_SECONDS, explain=False))
+    timed_out = any(failure.reason is Failure.TIMED_OUT for failure in result.failures)
+    return timed_out or result.status is Status.SOLVED

@@ -25,9 +25,9 @@ from aidl_lang.diagnostics import Diagnostic, Fix, Label, ordered
 from aidl_lang.library import Library
 from aidl_lang.names import nearest
 from aidl_lang.resolving import complaints
-from aidl_lang.resolving.declare import Declarer, is_definition
+from aidl_lang.resolving.declare import Declarer, is_definition, made_by
 from aidl_lang.resolving.foreign import without_idle
-from aidl_lang.resolving.imports import ImportedModules, load_imports
+from aidl_lang.resolving.imports import ImportedModules, load_imports, with_inner_imports
 from aidl_lang.resolving.resolution import Resolution, library_scope
 from aidl_lang.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind, word_meant
 from aidl_lang.types import Signature
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
 def resolve(module: ast.Module, world: World | None, library: Library) -> Resolution:
     """Find what every name of a file, and of the files it imports, means. Never raises for what they say."""
+    module, misplaced = with_inner_imports(module)
     loaded = load_imports(module, world)
     main, notes = without_idle(module, loaded.modules)
     modules = tuple(main if m is module else m for m in loaded.modules)
@@ -46,7 +47,7 @@ def resolve(module: ast.Module, world: World | None, library: Library) -> Resolu
         library=library,
         modules=modules,
         imports=loaded.targets,
-        diagnostics=[*loaded.diagnostics, *notes],
+        diagnostics=[*misplaced, *loaded.diagnostics, *notes],
         library_scope=library_scope(library),
     )
     resolution.enter_library = Resolver(resolution, is_library=True).of_library
@@ -64,6 +65,7 @@ class Resolver:
         self.is_library = is_library
         self.is_ordered = True
         self.argument: ast.Call | None = None
+        self.condition: ast.Expression | None = None  # what stands among constraints by itself
 
     # --- Files and definitions -----------------------------------------------------------------
 
@@ -179,7 +181,10 @@ class Resolver:
                 self._later(items, scope)
             case ast.Equation(ast.Name(name) as left, right) if scope.value(name) is None:
                 self._unordered(scope, right)
-                complaints.no_declaration(self, left)
+                complaints.no_declaration(self, left, made_by(right, scope) is SymbolKind.LET)
+            case ast.ExpressionStatement(value=value):
+                self.condition = None if self.is_ordered else value
+                self._unordered(scope, value)
             case ast.For():
                 self._for(node, scope)
             case ast.If(test, then, otherwise):

@@ -151,7 +151,9 @@ class SolvedStructure:
 
 @dataclass(frozen=True)
 class ConstraintReport:
-    """A constraint as written, the structure that holds it, and how well it holds."""
+    """A constraint as written, the structure that holds it, and how well it holds. `exact`: it is made of
+    equations alone.
+    """
 
     path: str
     text: str
@@ -160,16 +162,19 @@ class ConstraintReport:
     satisfied: bool
     mentions: tuple[str, ...] = ()
     soft: bool = False
+    exact: bool = False
 
 
 @dataclass(frozen=True)
 class Change:
-    """A kept size that had to change."""
+    """A kept size that had to change. `told` is what it is, for people; `angular`: it counts in degrees."""
 
     path: str
     written: float
     solved: float
     span: Span | None
+    told: str = ""
+    angular: bool = False
 
 
 @dataclass(frozen=True)

@@ -62,6 +62,16 @@ class Span:
     def column(self) -> int:
         return self.source.position(self.start)[1]
 
+    @property
+    def with_separator(self) -> Span:
+        """A statement with the `;` or `,` behind it, and with its line where nothing else is on it."""
+        text, start, end = self.source.text, self.start, self.end
+        end += len(text[end:]) - len(text[end:].lstrip(" \t;,"))
+        begin = text.rfind("\n", 0, start) + 1
+        if not text[begin:start].strip() and text[end : end + 1] == "\n":
+            return Span(self.source, begin, end + 1)
+        return Span(self.source, start, end)
+
     def to(self, other: Span) -> Span:
         """The range from the start of this span to the end of the other."""
         return Span(self.source, self.start, max(self.end, other.end))

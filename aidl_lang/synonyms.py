@@ -40,6 +40,10 @@ bottom_left: lower_left left_bottom bl min corner
 bottom_right: lower_right right_bottom br
 top_left: upper_left left_top tl
 top_right: upper_right right_top tr max
+top_center: top top_middle top_mid middle_top mid_top
+bottom_center: bottom bottom_middle bottom_mid middle_bottom mid_bottom
+left_center: left left_middle left_mid middle_left mid_left
+right_center: right right_middle right_mid middle_right mid_right
 left: min_x x_min xmin minx
 right: max_x x_max xmax maxx
 bottom: min_y y_min ymin miny

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from aidl_lang import ast
-from aidl_lang.checking.conditions import check_condition, check_operation
+from aidl_lang.checking.conditions import check_condition, check_empty, check_item, check_operation
 from aidl_lang.checking.cycles import find_cycles
 from aidl_lang.checking.facts import Fact
 from aidl_lang.checking.habits import check_square, check_unused_geometry, check_unused_params
@@ -118,6 +118,7 @@ class Checker:
                 check_square(self.infer, node.value)
                 self._placement(node.placement)
             case ast.Constrain(items):
+                check_empty(self.infer, node)
                 self._items(items)
             case _:
                 self._simple(node)
@@ -186,7 +187,7 @@ class Checker:
         """What stands in `constrain { }` or in the body of a constraint."""
         for item in block.statements:
             if isinstance(item, ast.ExpressionStatement):
-                check_condition(self.infer, item.value)
+                check_item(self.infer, item.value)
             else:
                 self._item(item)
 

@@ -296,14 +296,25 @@ class Binding:
     positional: tuple[int, ...] = ()
     sources: tuple[Source, ...] = ()
 
+    @cached_property
+    def taken(self) -> tuple[tuple[str, Type, tuple[int, ...]], ...]:
+        """The parameters that are given something: name, type, and the indices of what."""
+        given = self.arguments
+        return tuple((n, kind, given[n]) for n, kind, _ in self.signature.parameters if n in given)
+
     def parameter_of(self, index: int) -> str | None:
         """The parameter that gets an argument of the call, whole."""
-        whole = Source(index)
-        places = [i for i, s in enumerate(self.sources) if s == whole] if self.sources else [index]
+        return self._meant.get(index)
+
+    @cached_property
+    def _meant(self) -> Mapping[int, str]:
+        meant: dict[int, str] = {}
         for name, taken in self.arguments.items():
-            if any(place in taken for place in places):
-                return name
-        return None
+            for place in taken:
+                source = self.sources[place] if self.sources else Source(place)
+                if source == Source(source.index):
+                    meant.setdefault(source.index, name)
+        return meant
 
 
 @record()

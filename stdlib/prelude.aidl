@@ -69,7 +69,7 @@ fn cross(a: point, b: point) = a.x * b.y - a.y * b.x
 /// ```
 fn unit(v: point) = (v.x / norm(v) * 1mm, v.y / norm(v) * 1mm)
 
-/// The point a share of the way from a to b: 0 is a, 1 is b.
+/// What lies a share of the way from a to b, which are points or numbers: 0 is a, 1 is b.
 ///
 /// ```aidl
 /// drawing ladder {
@@ -79,6 +79,8 @@ fn unit(v: point) = (v.x / norm(v) * 1mm, v.y / norm(v) * 1mm)
 /// }
 /// ```
 fn lerp(a: point, b: point, t: number) = a + (b - a) * t
+/// Of two numbers of one kind: lengths, angles, plain numbers.
+fn lerp(a, b, t: number) = a + (b - a) * t
 
 /// The middle of two points.
 fn midpoint(a: point, b: point) = (a + b) / 2

@@ -12,10 +12,10 @@ from aidl_lang.values import NOTHING, ListVal, Num, PointVal, Value
 
 def arranged(
     binding: Binding, values: Sequence[Value], nodes: Sequence[ast.Node]
-) -> tuple[list[Value], list[ast.Node]]:
+) -> tuple[Sequence[Value], Sequence[ast.Node]]:
     """The values that a binding speaks of by index, and the text each comes from."""
     if not binding.sources:
-        return list(values), list(nodes)
+        return values, nodes
     return [_value(s, values) for s in binding.sources], [nodes[s.index] for s in binding.sources]
 
 

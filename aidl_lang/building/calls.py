@@ -1,11 +1,10 @@
-"""Calls: which definition is meant, how its parameters are bound, and what running its body gives."""
+"""Calls: how the parameters of the definition that is meant are bound, and what running its body gives."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from aidl_lang import ast
-from aidl_lang.binding import select
 from aidl_lang.boxes import box_of
 from aidl_lang.building.arguments import arranged
 from aidl_lang.building.blocks import run_block
@@ -16,24 +15,21 @@ from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.lists import run
 from aidl_lang.building.outlines import remember, usable
+from aidl_lang.building.overloads import find_candidates, no_overload, site_of, unknown_callable
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.builtins import COPYING, SIGNATURES, is_word
+from aidl_lang.builtins import COPYING
 from aidl_lang.model import Condition, Geometry
-from aidl_lang.names import find, nearest
 from aidl_lang.types import (
     ANY,
-    AnyType,
     Binding,
     BoxType,
-    Given,
     ListType,
-    Mismatch,
     NumberType,
     PointType,
     Signature,
     TruthType,
-    with_article,
+    Type,
 )
 from aidl_lang.values import (
     NOTHING,
@@ -46,47 +42,45 @@ from aidl_lang.values import (
     PointVal,
     RangeVal,
     RecordVal,
-    Text,
     Value,
-    kind_of,
     members,
-    type_of,
 )
 
 
 def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
     """`f(…)` or `a.f(…)`."""
-    name = node.callee.text
     receiver: Value | None = None
     if node.receiver is not None:
         receiver = evaluate(it, node.receiver, env)
         if isinstance(receiver, Nothing):
             return NOTHING
-    candidates = find_candidates(it, name, env.scope, receiver)
+    candidates = find_candidates(it, node.callee.text, env.scope, receiver)
     if not candidates:
-        _unknown_callable(it, node, env)
+        unknown_callable(it, node, env)
         return NOTHING
-    signatures = [c.signature for c in candidates]
-    if env.reach is Reach.OWN and ast.Structure in [s.kind for s in signatures]:
+    site = site_of(it, node, candidates)
+    if site.instantiates and env.reach is Reach.OWN:
         # References passed to a template are tied by its instantiating structure, which may reach further.
         env = Env(env.scope, env.here, Reach.SUBTREE)
-    values: list[Value] = [] if receiver is None or isinstance(receiver, Namespace) else [receiver]
-    first = len(values)
-    values += [
-        Text(a.value.span.text) if is_word(a, signatures) else evaluate(it, a.value, env)
-        for a in node.arguments
+    given: list[Value] = []
+    nodes: Sequence[ast.Node] = site.nodes
+    if receiver is not None and node.receiver is not None and not isinstance(receiver, Namespace):
+        given, nodes = [receiver], (node.receiver, *nodes)
+    given += [
+        evaluate(it, at, env) if word is None else word
+        for at, word in zip(site.nodes, site.words, strict=True)
     ]
-    nodes: list[ast.Node] = [node.receiver] if first and node.receiver is not None else []
-    nodes += [a.value for a in node.arguments]
-    if Nothing in map(type, values):
+    if Nothing in map(type, given):
         return NOTHING
-    signatures = usable(signatures, values, env)
-    chosen = _choice(it, node, signatures, values)
+    if site.makes_outline:
+        candidates = usable(candidates, given, env)
+        site = site_of(it, node, candidates)
+    chosen = site.meaning(given)
     if isinstance(chosen, list):
-        _no_overload(it, node, chosen, nodes, values)
+        no_overload(it, node, chosen, nodes, given)
         return NOTHING
-    candidate = next(c for c in candidates if c.signature is chosen.signature)
-    values, nodes = arranged(chosen, values, nodes)
+    candidate = candidates[site.signatures.index(chosen.signature)]
+    values, nodes = arranged(chosen, given, nodes)
     arguments = bound(it, chosen, values, nodes, env)
     if arguments is None:
         return NOTHING
@@ -102,95 +96,26 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
         it.leave()
 
 
-def _choice(
-    it: Interpreter, node: ast.Call, signatures: list[Signature], values: Sequence[Value]
-) -> Binding | list[Mismatch]:
-    """Which overload the call means. Types decide, so what was chosen once holds whenever they come again."""
-    occasion = (node, tuple(map(type_of, values)))
-    known = it.choices.get(occasion)
-    if known is None or known[0] != signatures:
-        names: list[str | None] = [None] * (len(values) - len(node.arguments))
-        names += [a.name.text if a.name else None for a in node.arguments]
-        given = [Given(name, kind) for name, kind in zip(names, occasion[1], strict=True)]
-        known = it.choices[occasion] = signatures, select(signatures, given)
-    return known[1]
-
-
-def find_candidates(it: Interpreter, name: str, scope: Scope, receiver: Value | None) -> list[Candidate]:
-    """The callables of a name: as written, else spelled alike."""
-    if isinstance(receiver, Namespace):
-        inner = receiver.values.get("")
-        return inner.candidates(name) if isinstance(inner, Scope) else []
-    if found := scope.candidates(name):
-        return found
-    alike = find(name, _callable_names(it, scope))
-    return scope.candidates(alike) if alike else []
-
-
-def _callable_names(it: Interpreter, scope: Scope) -> dict[str, None]:
-    return scope.callable_names(it.program.library.callables) | dict.fromkeys(SIGNATURES)
-
-
-def _unknown_callable(it: Interpreter, node: ast.Call, env: Env) -> None:
-    like = nearest(node.callee.text, _callable_names(it, env.scope), 3)
-    hints = [f"did you mean {' or '.join(f'`{n}`' for n in like)}?"] if like else []
-    it.report("E0203", f"there is no `{node.callee.text}(…)`", node.callee, hints=hints)
-
-
-def _no_overload(
-    it: Interpreter,
-    node: ast.Call,
-    misses: Sequence[Mismatch],
-    nodes: Sequence[ast.Node],
-    values: Sequence[Value],
-) -> None:
-    if node in it.program.rejected:
-        return  # the checker has said so
-    name = node.callee.text
-    if it.place(node) is not node.span:
-        # What the library asks of a pair of things is told of the author's call, in the author's words.
-        things = [v for v in values if not isinstance(v, Text | bool)]
-        pairs = [[kind for _, kind, _ in m.signature.parameters] for m in misses]
-        known = dict.fromkeys(
-            " and ".join(map(with_article, kinds[:2])) for kinds in pairs if ANY not in kinds
-        )
-        hints = [f"it takes {', '.join(list(known)[:8])}"] if known else []
-        it.refuse(node, f"it does not go with {' and '.join(map(kind_of, things))}", hints)
-        return
-    closest = max(misses, key=lambda m: m.argument is not None)
-    at = nodes[closest.argument] if len(misses) == 1 and closest.argument is not None else node
-    if len(misses) == 1:
-        message, hints = f"`{name}` {closest.reason}", [f"it is called as `{closest.signature}`"]
-    else:
-        message = f"no `{name}` takes these arguments"
-        hints = [f"`{m.signature}`: {m.reason}" for m in misses]
-    it.report("E0311", message, at, hints=hints)
-
-
 def bound(
     it: Interpreter, binding: Binding, values: Sequence[Value], nodes: Sequence[ast.Node], env: Env
 ) -> dict[str, Value] | None:
     """Parameter → argument, each as the kind of value the parameter asks for."""
     result: dict[str, Value] = {}
-    is_copying = binding.signature.name in COPYING
-    for name, kind, _ in binding.signature.parameters:
-        indices = binding.arguments.get(name)
-        if indices is None:
-            continue
+    signature = binding.signature
+    for name, kind, indices in binding.taken:
         if name == binding.gathered:
             result[name] = ListVal(tuple(item for i in indices for item in _spliced(values[i])))
             continue
-        value = _as_kind(it, values[indices[0]], kind, nodes[indices[0]], env)
+        at = nodes[indices[0]]
+        value = _as_kind(it, values[indices[0]], kind, at, env)
         if value is None:
             return None
-        if isinstance(value, Condition) and isinstance(kind, TruthType) and _is_flag(binding.signature, name):
-            value = truth(it, value, nodes[indices[0]])
-        if is_copying:
-            for number in (value.x, value.y) if isinstance(value, PointVal) else (value,):
-                if isinstance(number, Num) and refuses_measure(it, number, nodes[indices[0]].span):
-                    return None
+        if isinstance(value, Condition) and isinstance(kind, TruthType) and _is_flag(signature, name):
+            value = truth(it, value, at)
+        if signature.name in COPYING and _follows_measure(it, value, at):
+            return None
         result[name] = value
-    if binding.signature.takes_any:
+    if signature.takes_any:
         result |= {name: values[indices[0]] for name, indices in binding.arguments.items()}
     return result
 
@@ -200,33 +125,47 @@ def _is_flag(signature: Signature, name: str) -> bool:
     return signature.kind is None or name == "rotatable"
 
 
+def _follows_measure(it: Interpreter, value: Value, node: ast.Node) -> bool:
+    numbers = (value.x, value.y) if isinstance(value, PointVal) else (value,)
+    return any(isinstance(number, Num) and refuses_measure(it, number, node.span) for number in numbers)
+
+
 def _spliced(value: Value) -> Sequence[Value]:
     items = members(value)
     return items if items is not None else [value]
 
 
-def _as_kind(it: Interpreter, value: Value, kind: object, node: ast.Node, env: Env) -> Value | None:
-    match kind:
-        case AnyType():
-            return value
-        case NumberType(dimension):
-            if isinstance(value, Geometry):
-                return edge_coordinate(it, value, node, env)
-            if isinstance(value, Num) and value.dimension != dimension:
-                return Num(value.expression, dimension, value.status)
-        case PointType():
-            return as_point(it, value, node, env)
-        case BoxType():
-            return box_of(value, env.here)
-        case ListType(PointType()) if (items := members(value)) is not None:
-            points = [as_point(it, item, node, env) if isinstance(item, ListVal) else item for item in items]
-            return ListVal(tuple(p for p in points if p is not None))
-        case ListType() if isinstance(value, Array):
-            return ListVal(tuple(value.items()))
-        case ListType() if isinstance(value, RangeVal):
-            items = run(it, value, node)
-            return ListVal(tuple(items)) if items is not None else None
+def _as_kind(it: Interpreter, value: Value, kind: Type, node: ast.Node, env: Env) -> Value | None:
+    convert = _CONVERSIONS.get(type(kind))
+    return convert(it, value, kind, node, env) if convert is not None else value
+
+
+def _as_number(it: Interpreter, value: Value, kind: NumberType, node: ast.Node, env: Env) -> Value | None:
+    if isinstance(value, Num):
+        same = value.dimension == kind.dimension
+        return value if same else Num(value.expression, kind.dimension, value.status)
+    return edge_coordinate(it, value, node, env) if isinstance(value, Geometry) else value
+
+
+def _as_list(it: Interpreter, value: Value, kind: ListType, node: ast.Node, env: Env) -> Value | None:
+    if isinstance(kind.element, PointType) and (items := members(value)) is not None:
+        points = [as_point(it, item, node, env) if isinstance(item, ListVal) else item for item in items]
+        return ListVal(tuple(p for p in points if p is not None))
+    if isinstance(value, Array):
+        return ListVal(tuple(value.items()))
+    if isinstance(value, RangeVal):
+        numbers = run(it, value, node)
+        return ListVal(tuple(numbers)) if numbers is not None else None
     return value
+
+
+_CONVERSIONS: Mapping[type[Type], Callable[..., Value | None]] = {
+    NumberType: _as_number,
+    PointType: lambda it, value, kind, node, env: as_point(it, value, node, env),
+    BoxType: lambda it, value, kind, node, env: box_of(value, env.here),
+    ListType: _as_list,
+}
+"""What makes an argument the kind of value that its parameter asks for; the rest stays as it is."""
 
 
 def invoke(
@@ -276,7 +215,7 @@ def _body_scope(
     return scope
 
 
-def default_of(it: Interpreter, parameter: ast.Parameter, kind: object, env: Env) -> Value:
+def default_of(it: Interpreter, parameter: ast.Parameter, kind: Type, env: Env) -> Value:
     """The default of a parameter that got no argument, in the scope of the definition."""
     if parameter.default is None:
         return NOTHING
@@ -298,6 +237,10 @@ def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
         match statement:
             case ast.ExpressionStatement(value=value):
                 found.append(evaluate(it, value, inner))
+            case ast.Equation():
+                if not any(d.code == "N0501" and d.span == statement.span for d in it.diagnostics):
+                    it.report("N0501", "`=` inside `constraint` is read as `==`", statement)
+                found.append(evaluate(it, statement.meant, inner))
             case ast.Constrain(items=items):
                 found.append(run_items(it, items, inner))
             case ast.For(variables=variables, iterable=iterable, body=body):

@@ -97,8 +97,8 @@ def positions(
     does not shorten it; where points are no corners (`edges` is false), as differences from the first.
     """
     placed: list[PointVal] = []
-    anchors: dict[str, tuple[Num, Expression]] = {}
-    before: tuple[PointVal, PointVal] | None = None
+    anchors: dict[str, tuple[Num, Expression, str]] = {}
+    before: tuple[PointVal, PointVal, str] | None = None
     for at, name in zip(points, names, strict=True):
         if edges and _is_literal(at) and before is not None and _apart(before[0], at):
             made = _beyond(it, before, at, holder, name, owner)
@@ -107,7 +107,7 @@ def positions(
             y = _coordinate(it, "y", at.y, anchors, holder, name, owner)
             made = point(x, y)
         if _is_literal(at):
-            before = (at, made)
+            before = (at, made, name)
         placed.append(made)
     return placed
 
@@ -122,16 +122,18 @@ def _apart(a: PointVal, b: PointVal) -> bool:
 
 def _beyond(
     it: Interpreter,
-    before: tuple[PointVal, PointVal],
+    before: tuple[PointVal, PointVal, str],
     at: PointVal,
     holder: Geometry | Structure,
     name: str,
     owner: Structure,
 ) -> PointVal:
     """A literal point by its distance and direction from the literal point before it."""
-    written, base = before
+    written, base, since = before
     way, angle = (
-        it.unknown(n.value, holder, f"{name}.{what}", owner=owner, dimension=n.dimension, kept=True)
+        it.unknown(
+            n.value, holder, f"{name}.{what}", owner=owner, dimension=n.dimension, kept=True, since=since
+        )
         for n, what in zip(_way(written, at), ("length", "angle"), strict=True)
     )
     return polar(base, way, angle)
@@ -147,7 +149,7 @@ def _coordinate(
     it: Interpreter,
     axis: str,
     number: Num,
-    anchors: dict[str, tuple[Num, Expression]],
+    anchors: dict[str, tuple[Num, Expression, str]],
     holder: Geometry | Structure,
     name: str,
     owner: Structure,
@@ -157,13 +159,15 @@ def _coordinate(
         return solvable(it, number, holder.span)
     if axis not in anchors or number.status is Status.GUESS:
         made = it.unknown(number.value, holder, f"{name}.{axis}", owner=owner, dimension=LENGTH)
-        anchors.setdefault(axis, (number, made))
+        anchors.setdefault(axis, (number, made, name))
         return made
-    first, base = anchors[axis]
+    first, base, since = anchors[axis]
     offset = number.value - first.value
     if Status.PARAM in (number.status, first.status):
         return ex.add(base, ex.constant(offset))
-    kept = it.unknown(offset, holder, f"{name}.d{axis}", owner=owner, dimension=LENGTH, kept=True)
+    kept = it.unknown(
+        offset, holder, f"{name}.d{axis}", owner=owner, dimension=LENGTH, kept=True, since=since
+    )
     return ex.add(base, kept)
 
 

@@ -71,6 +71,7 @@ class Copier:
             reach=self.reach or source.reach,
             finishes={},
             views={},
+            turns={},
         )
         self.made[source] = copy
         if source.name is None and source.known_as is None:

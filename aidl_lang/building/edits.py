@@ -16,12 +16,13 @@ from aidl_lang import expression as ex
 from aidl_lang.binding import select
 from aidl_lang.building.arguments import arranged
 from aidl_lang.building.blocks import hoist_values
-from aidl_lang.building.calls import bound, find_candidates
+from aidl_lang.building.calls import bound
 from aidl_lang.building.coerce import as_written, whole
 from aidl_lang.building.copies import motion_for
 from aidl_lang.building.derive import Copier
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.motion import STILL, Motion, Place, after
+from aidl_lang.building.overloads import find_candidates
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.builtins import EDITS
@@ -203,8 +204,8 @@ def _step(it: Interpreter, edit: Edit, thing: Value, centre: Place, here: Struct
         if node not in it.program.rejected:
             it.report("E0311", f"`{node.callee.text}` {chosen[0].reason}", node)
         return None
-    values, places = arranged(chosen, values, nodes)
-    arguments = bound(it, chosen, values, places, env)
+    taken, places = arranged(chosen, values, nodes)
+    arguments = bound(it, chosen, taken, places, env)
     if arguments is None:
         return None
     arguments = {name: v if name == "x" else as_written(v) for name, v in arguments.items()}

@@ -38,7 +38,7 @@ from aidl_lang.values import (
 def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
     """The value of an expression; NOTHING after an error, which has been reported."""
     value = _EVALUATE[type(node)](it, node, env)
-    if node in it.watched:
+    if it.watched and node in it.watched:
         if isinstance(value, Geometry):
             value = as_point(it, value, node, env) or value
         it.watch(node, value)
@@ -364,12 +364,6 @@ def _conditional(it: Interpreter, node: ast.Conditional, env: Env) -> Value:
     return evaluate(it, node.then if truth(it, test, node.test) else node.otherwise, env)
 
 
-def _call(it: Interpreter, node: ast.Call, env: Env) -> Value:
-    from aidl_lang.building.calls import call  # calls evaluate their arguments
-
-    return call(it, node, env)
-
-
 _EVALUATE: dict[type, Callable[..., Value]] = {
     ast.Number: _number,
     ast.String: lambda it, node, env: Text(node.value),
@@ -377,7 +371,7 @@ _EVALUATE: dict[type, Callable[..., Value]] = {
     ast.Name: _name,
     ast.Member: _member,
     ast.Index: _index,
-    ast.Call: _call,
+    ast.Call: lambda it, node, env: it.caller(it, node, env),
     ast.Point: _point,
     ast.List: _list,
     ast.Comprehension: _comprehension,

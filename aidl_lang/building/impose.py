@@ -109,7 +109,7 @@ def _impose_condition(
             return
         if isinstance(part, Comparison):
             comparisons.append(part)
-    measured = ex.nodes(e for c in comparisons for e in (c.left, c.right) if e.is_open)
+    measured = ex.nodes((e for c in comparisons for e in (c.left, c.right) if e.is_open), only_open=True)
     found = [n.payload for n in measured if isinstance(n.payload, Measurement)]
     if found and found[0].kind in SIDES:
         _box_unknown(it, found[0], node)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
 from aidl_lang import ast, boxes, primitives
 from aidl_lang import expression as ex
 from aidl_lang.boxes import Box
@@ -57,22 +59,8 @@ def not_built(it: Interpreter, node: ast.Name, branch: ast.If) -> Value:
 
 def read(it: Interpreter, binding: Binding, node: ast.Node, env: Env) -> Value:
     """The value of a name for the expression that reads it."""
-    match binding:
-        case LetBinding():
-            return _read_let(it, binding, node, env)
-        case ParamBinding():
-            return read_param(it, binding, node)
-        case VarBinding(value, unknown):
-            reached = may_read(it, unknown.owner, node, env)
-            return value if reached else as_written(value)
-        case PassedBinding():
-            return read_passed(it, binding, env)
-        case CopiedBinding(name, inner, source, carry):
-            assert isinstance(source.scope, Scope)
-            value = read(it, inner, node, Env(source.scope, source.owner, Reach.OWN))
-            return carry(name, value, source.owner)
-        case _:
-            return binding
+    reader = _READERS.get(type(binding))
+    return binding if reader is None else reader(it, binding, node, env)  # type: ignore[return-value]
 
 
 def _read_let(it: Interpreter, let: LetBinding, node: ast.Node, env: Env) -> Value:
@@ -93,6 +81,28 @@ def _read_let(it: Interpreter, let: LetBinding, node: ast.Node, env: Env) -> Val
     else:
         let.seen[env.here, env.reach] = value
     return value
+
+
+def _read_var(it: Interpreter, var: VarBinding, node: ast.Node, env: Env) -> Value:
+    reached = may_read(it, var.unknown.owner, node, env)
+    return var.value if reached else as_written(var.value)
+
+
+def _read_copied(it: Interpreter, copied: CopiedBinding, node: ast.Node, env: Env) -> Value:
+    source = copied.source
+    assert isinstance(source.scope, Scope)
+    value = read(it, copied.binding, node, Env(source.scope, source.owner, Reach.OWN))
+    return copied.carry(copied.name, value, source.owner)
+
+
+_READERS: Mapping[type, Callable[..., Value]] = {
+    LetBinding: _read_let,
+    ParamBinding: lambda it, binding, node, env: read_param(it, binding, node),
+    VarBinding: _read_var,
+    PassedBinding: lambda it, binding, node, env: read_passed(it, binding, env),
+    CopiedBinding: _read_copied,
+}
+"""How each sort of binding is read; what is none of them is a value."""
 
 
 def is_same_everywhere(value: Value) -> bool:

@@ -9,11 +9,11 @@ from aidl_lang import ast
 from aidl_lang.boxes import spelled_out
 from aidl_lang.building.coerce import as_written, may_read
 from aidl_lang.building.construct import size
+from aidl_lang.building.scopes import Candidate
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.builtins import FINISHES, OUTLINES
 from aidl_lang.model import SIZES, Finish, Geometry, Recipe, Structure, convert_point
 from aidl_lang.names import find, fold
-from aidl_lang.types import Signature
 from aidl_lang.units import LENGTH
 from aidl_lang.values import NOTHING, ListVal, Num, PointVal, Status, Text, Value, kind_of, length, members
 
@@ -142,14 +142,12 @@ def keep_unnamed(geometry: Geometry) -> None:
         geometry.parts["source"] = ListVal(tuple(unnamed))
 
 
-def usable(signatures: list[Signature], values: Sequence[Value], env: Env) -> list[Signature]:
-    """Without the overloads of the library where an outline is not of this structure: they would read its
-    unknowns.
+def usable(candidates: list[Candidate], values: Sequence[Value], env: Env) -> list[Candidate]:
+    """The overloads of an outline, without those of the library where a source is not of this structure: they
+    would read its unknowns.
     """
-    if not signatures or signatures[0].name not in OUTLINES:
-        return signatures
     far = any(isinstance(v, Geometry) and v.owner is not env.here for v in values)
-    return [s for s in signatures if s.kind is None] if far else signatures
+    return [c for c in candidates if c.signature.kind is None] if far else candidates
 
 
 def remember(result: Value, name: str, arguments: Arguments) -> None:

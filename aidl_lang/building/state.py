@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 from aidl_lang import ast
 from aidl_lang import expression as ex
@@ -18,12 +18,13 @@ from aidl_lang.model import Assertion, Comparison, Constraint, Geometry, Knob, S
 from aidl_lang.records import record
 from aidl_lang.source import Span
 from aidl_lang.typecheck import Program
-from aidl_lang.types import Binding, Mismatch, Signature, Type
+from aidl_lang.types import Binding, Signature
 from aidl_lang.units import ANGLE, MaybeDimension
 from aidl_lang.values import Num, PointVal, Value
 
 if TYPE_CHECKING:
     from aidl_lang.building.derive import Copier
+    from aidl_lang.building.overloads import Site
 
 
 class Reach(Enum):
@@ -62,7 +63,6 @@ class Stop(Exception):  # noqa: N818 (not an error of ours: the program went ove
     """Building ends here; what there is so far is the result."""
 
 
-Occasion: TypeAlias = tuple[ast.Call, tuple[Type, ...]]
 Executor = Callable[..., None]
 """Does what a statement says: (interpreter, statement, scope, structure)."""
 
@@ -86,6 +86,7 @@ class Interpreter:
     limits: Limits
     executors: Mapping[type, Executor]
     evaluator: Callable[[Interpreter, ast.Expression, Env], Value]
+    caller: Callable[[Interpreter, ast.Call, Env], Value]
     diagnostics: list[Diagnostic] = field(default_factory=list)
     unknowns: list[Unknown] = field(default_factory=list)
     constraints: list[Constraint] = field(default_factory=list)
@@ -111,8 +112,8 @@ class Interpreter:
     edited_names: dict[int, frozenset[str]] = field(default_factory=dict)
     signatures: dict[ast.Callable, Signature] = field(default_factory=dict)
     """of the definitions of bodies"""
-    choices: dict[Occasion, tuple[list[Signature], Binding | list[Mismatch]]] = field(default_factory=dict)
-    """which of some overloads a call means when its arguments have these types"""
+    sites: dict[ast.Call, Site] = field(default_factory=dict)
+    """what is known of calls from their text and the overloads of their names"""
     root: Structure | None = None
     entities: int = 0
     turns: int = 0
@@ -223,9 +224,10 @@ class Interpreter:
         kept: bool = False,
         frame_of: Structure | None = None,
         cell: bool = False,
+        since: str = "",
     ) -> ex.Expression:
         """A new unknown, as an expression."""
-        made = Unknown(guess, owner, holder, name, kept, dimension == ANGLE, frame_of, cell)
+        made = Unknown(guess, owner, holder, name, kept, dimension == ANGLE, frame_of, cell, since=since)
         self.unknowns.append(made)
         return ex.unknown(made)
 

@@ -58,10 +58,9 @@ def _read_items(it: Interpreter, statements: Sequence[ast.Statement], scope: Sco
                 if not isinstance(test, Nothing):
                     chosen = node.then if truth(it, test, node.test) else node.otherwise
                     _read_items(it, chosen.statements if chosen else (), scope, here)
-            case ast.Equation(left=left, right=right):
-                equal = ast.Comparison((left, right), ("==",), span=node.span)
+            case ast.Equation():
                 it.report("N0501", "`=` inside `constrain` is read as `==`", node)
-                impose(it, equal, env)
+                impose(it, node.meant, env)
             case ast.Assign():
                 scope.values[node.name.text] = LetBinding(node.value, scope)
             case _:

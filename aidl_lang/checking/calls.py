@@ -13,7 +13,7 @@ from aidl_lang.checking import fields
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, Place, joined
 from aidl_lang.checking.habits import check_habits
 from aidl_lang.checking.misfits import no_overload
-from aidl_lang.names import fold
+from aidl_lang.checking.standard import CONSTANT, result
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.types import (
     ANY,
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 
 _SAME_AS_ARGUMENT = frozenset({"fixed", "guess", "written", "abs", "min", "max"})
 _BUILD_TIME = frozenset({"floor", "ceil", "round"})
-_CONSTANT = frozenset({"len", "written"})
-"""What gives constants even of unknowns."""
 
 
 def call(check: Inference, node: ast.Call) -> Fact:
@@ -158,30 +156,11 @@ def _function(check: Inference, definition: ast.FunctionDefinition, reads: froze
     if definition in check.running:
         return UNKNOWN
     check.running.add(definition)
-    before = check.homes
-    scope = check.resolution.scope_of(definition)
-    check.homes = scope.homes
     try:
-        fact = check.fact(definition.value)
+        fact, reads_arguments = result(check, definition)
     finally:
-        check.homes = before
         check.running.discard(definition)
-    return replace(fact, reads=fact.reads | reads if _reads_arguments(definition) else fact.reads, bare=None)
-
-
-def _reads_arguments(definition: ast.FunctionDefinition) -> bool:
-    """Whether what a function gives depends on its arguments as they are solved, not only as written."""
-    names = {parameter.name.text for parameter in definition.parameters}
-    stack: list[ast.Node] = [definition.value]
-    while stack:
-        match stack.pop():
-            case ast.Name(text) if text in names:
-                return True
-            case ast.Call(callee=callee) if fold(callee.text) in _CONSTANT:
-                pass
-            case node:
-                stack.extend(ast.children(node))
-    return False
+    return replace(fact, reads=fact.reads | reads if reads_arguments else fact.reads, bare=None)
 
 
 def _built_in(
@@ -191,7 +170,7 @@ def _built_in(
     facts: Sequence[Fact],
     reads: frozenset[Place],
 ) -> Fact:
-    if name in _CONSTANT:
+    if name in CONSTANT:
         reads = NOTHING_READ
     if name in _BUILD_TIME:
         for n in nodes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from aidl_lang import ast
+from aidl_lang.builtins import EDITS, FINISHES
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.wording import a, shown
 from aidl_lang.diagnostics import Edit, Fix
@@ -11,7 +12,7 @@ from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.source import Span
 from aidl_lang.types import AnyType, GeometryType, NumberType, PointType, StructureType, TruthType
 
-_OPERATIONS = frozenset({"rotate", "move", "translate", "scale", "fillet", "chamfer"})
+_OPERATIONS = EDITS | FINISHES
 """Calls that are statements of their own: they edit what was written, and are no conditions."""
 
 
@@ -19,26 +20,53 @@ def check_operation(infer: Inference, node: ast.Expression) -> bool:
     """Whether a statement is an operation on geometry; its arguments are checked."""
     if not isinstance(node, ast.Call):
         return False
-    name = infer.resolution.canonical.get(node.callee, node.callee.text)
-    if name not in _OPERATIONS:
+    if _called(infer, node) not in _OPERATIONS:
         return False
     infer.fact(node)
     return True
 
 
-def check_condition(infer: Inference, node: ast.Expression) -> None:
-    """Report an expression that cannot constrain anything."""
+def _called(infer: Inference, node: ast.Call) -> str:
+    return infer.resolution.canonical.get(node.callee, node.callee.text)
+
+
+def check_empty(infer: Inference, node: ast.Constrain) -> None:
+    """Report a `constrain { }` without anything in it."""
+    if not node.items.statements and not node.items.span.text.strip("{} \t\r\n"):
+        fix = Fix("remove it", (Edit(node.span.with_separator, ""),))
+        infer.report("W0202", "this `constrain` holds nothing", node, fix=fix)
+
+
+def check_item(infer: Inference, node: ast.Expression) -> None:
+    """Report what cannot stand among constraints, where nothing is made and nothing edited."""
+    is_condition = isinstance(infer.fact(node).type, TruthType)
+    if isinstance(node, ast.Call) and (name := _called(infer, node)) in _OPERATIONS and not is_condition:
+        text = shown(node)
+        hints = [f"`{text}` is a statement of its own, outside `constrain`"]
+        if name in EDITS:
+            hints = [
+                "where a thing has to be says a relation: `a.left == b.right`, `a.above(b)`, "
+                "`coincident(a.end, b.start)`",
+                f"outside `constrain`, `{text}` changes what was written, and `name = {text}` makes a copy; "
+                "a structure is placed by `at`",
+            ]
+        infer.report("E0352", f"`{name}` constrains nothing: it changes what is drawn", node, hints=hints)
+        return
+    check_condition(infer, node, may_make=False)
+
+
+def check_condition(infer: Inference, node: ast.Expression, may_make: bool = True) -> None:
+    """Report an expression that cannot constrain anything; `may_make`: with a name it would be geometry."""
     fact = infer.fact(node)
     if isinstance(fact.type, TruthType):
         _check_logic(infer, node)
         return
     if isinstance(node, ast.Call):
-        name = infer.resolution.canonical.get(node.callee, node.callee.text)
-        if name == "fixed":
+        if _called(infer, node) == "fixed":
             return  # holds a thing where it was written
         scope = infer.resolution.scopes[infer.homes[-1]]
         if made_by(node, scope) is not SymbolKind.LET:
-            _needs_name(infer, node)
+            _needs_name(infer, node, may_make)
             return
     if isinstance(fact.type, AnyType):
         return
@@ -51,19 +79,20 @@ def check_condition(infer: Inference, node: ast.Expression) -> None:
     infer.report("E0321", f"`{text}` is {a(fact.type)} and constrains nothing", node, hints=[hint])
 
 
-def _needs_name(infer: Inference, node: ast.Call) -> None:
+def _needs_name(infer: Inference, node: ast.Call, may_make: bool) -> None:
     kind = node.callee.text
     taken = {symbol.name for symbol in infer.resolution.symbols}
     number = next(n for n in range(1, len(taken) + 2) if f"{kind}_{n}" not in taken)
     name = f"{kind}_{number}"
     start = Span(node.span.source, node.span.start, node.span.start)
+    remedy = "give it a name" if may_make else "make it outside `constrain`"
     infer.report(
         "E0323",
         f"this `{kind}` has no name, so nothing could refer to it",
         node,
         label="made and lost",
-        hints=[f"give it a name: `{name} = {shown(node)}`"],
-        fix=Fix(f"name it `{name}`", (Edit(start, f"{name} = "),)),
+        hints=[f"{remedy}: `{name} = {shown(node)}`"],
+        fix=Fix(f"name it `{name}`", (Edit(start, f"{name} = "),)) if may_make else None,
     )
 
 

@@ -109,9 +109,9 @@ def check_unused_params(check: Inference) -> None:
     if has_errors([*resolution.diagnostics, *check.diagnostics]):
         return
     params = [s for s in resolution.symbols if isinstance(s.node, ast.Param)]
-    if not params:
-        return
     used = {symbol for node, symbol in resolution.uses.items() if isinstance(node, ast.Name | ast.Member)}
+    if used.issuperset(params):
+        return
     unresolved = {
         node.name.text
         for module in resolution.modules
@@ -132,6 +132,7 @@ def check_unused_params(check: Inference) -> None:
 
 def _check_angles(check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], fit: Binding) -> None:
     """Numbers of radians where a number is read as degrees, and the reverse."""
+    called = _called(check, node)
     wanted = {name: kind for name, kind, _ in fit.signature.parameters}
     for index, value in enumerate(nodes):
         kind = wanted.get(fit.parameter_of(index) or "")
@@ -139,9 +140,9 @@ def _check_angles(check: Inference, node: ast.Call, nodes: Sequence[ast.Expressi
             assert isinstance(value, ast.Call)
             inner = value.arguments[0].value
             _not_degrees(check, value, inner, "deg", f"`{shown(value)}` is a plain number")
-        elif _called(check, node) in _TRIGONOMETRY and _is_module(check, node) and _is_plain(check, value):
+        elif called in _TRIGONOMETRY and _is_module(check, node) and _is_plain(check, value):
             _not_degrees(check, value, value, "rad", f"`{shown(node)}` is read in radians elsewhere")
-        elif _called(check, node) == "degrees" and _is_written(check, value):
+        elif called == "degrees" and _is_written(check, value):
             _not_degrees(check, node, value, "deg", f"`{shown(node)}` turns radians into an angle")
 
 

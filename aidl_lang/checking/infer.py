@@ -6,7 +6,7 @@ everywhere, and after an error the type is ANY too, so that one mistake is repor
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 from aidl_lang import ast, units
@@ -16,7 +16,7 @@ from aidl_lang.checking.wording import a, shown
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.resolving.resolution import Resolution
 from aidl_lang.resolving.symbols import Symbol
-from aidl_lang.source import Span
+from aidl_lang.source import SourceFile, Span
 from aidl_lang.types import (
     ANY,
     AnyType,
@@ -37,15 +37,18 @@ _DEEPEST = 120
 
 
 class Inference:
-    """Facts about the expressions of one program, and the diagnostics that finding them gave."""
+    """Facts about the expressions of one program, and the diagnostics that finding them gave.
 
-    def __init__(self, resolution: Resolution) -> None:
+    Nothing is said of what stands in `standard`, the library, and what is known of that is found out apart.
+    """
+
+    def __init__(self, resolution: Resolution, standard: Iterable[SourceFile] | None = None) -> None:
         self.resolution = resolution
         self.facts: dict[ast.Node, Fact] = {}
         self.diagnostics: list[Diagnostic] = []
         self.rejected: list[ast.Call] = []
         self.homes: tuple[ast.Node, ...] = (resolution.main,)
-        self._library = frozenset(resolution.library.sources)
+        self._standard = frozenset(resolution.library.sources if standard is None else standard)
         self.running: set[ast.Node] = set()
         self._depth = 0
         self._served: dict[Symbol, tuple[MaybeDimension, ast.Node]] = {}
@@ -63,11 +66,14 @@ class Inference:
         fix: Fix | None = None,
     ) -> Fact:
         """Say what is wrong in a program (the library has its own tests); nothing is known of the result."""
-        if node.span.source not in self._library:
+        if not self.is_standard(node):
             self.diagnostics.append(
                 Diagnostic(code, message, node.span, label, tuple(secondary), tuple(hints), fix)
             )
         return UNKNOWN
+
+    def is_standard(self, node: ast.Node) -> bool:
+        return node.span.source in self._standard
 
     def wants(self, node: ast.Expression, what: str, *allowed: type[Type]) -> Fact:
         """The fact of an expression that has to be of one of some types."""

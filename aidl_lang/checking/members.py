@@ -10,6 +10,7 @@ from aidl_lang import ast
 from aidl_lang.checking import fields
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, Place
 from aidl_lang.checking.named import of_symbol
+from aidl_lang.checking.standard import body_of, part
 from aidl_lang.checking.wording import a, shown
 from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.names import find, fold, nearest
@@ -122,16 +123,14 @@ def _seen(check: Inference, place: Place, of: ast.Node, base: Place, symbol: Sym
 
 def _of_shape(check: Inference, base: Fact, node: ast.Member) -> Fact:
     assert base.of is not None
-    scope = check.resolution.scope_of(base.of)
+    scope = body_of(check, base.of)
     key = find(node.name.text, scope.values)
     if key is None:
         if find(node.name.text, dict.fromkeys(fields.OUTLINE)):
             return Fact(ANY, base.reads)
         return _field(check, base, node, {}, list(scope.values))
-    symbol = scope.values[key]
-    _means(check, node, symbol)
-    fact = of_symbol(check, symbol)
-    return replace(fact, reads=base.reads, place=None, bare=None)
+    _means(check, node, scope.values[key])
+    return replace(part(check, base.of, key), reads=base.reads, place=None, bare=None)
 
 
 def _field(
@@ -199,11 +198,14 @@ def _no_member(check: Inference, node: ast.Member, what: str, known: Sequence[st
         return answer
     like = nearest(name, known)
     shown_names = ", ".join(f"`{n}`" for n in list(dict.fromkeys(known))[:8])
+    members = f"its members are {shown_names}, …"
+    if fold(name) in ("apex", "tip", "peak") and {"a", "b", "c", "centroid"} <= set(known):
+        like, members = [], "its corners are `a`, `b` and `c`, in the order in which they were given"
     return check.report(
         "E0202",
         f"`{shown(node.value)}` has no `{name}`" + (f"; did you mean `{like[0]}`?" if like else ""),
         node.name,
         label=f"not a member of {what}",
-        hints=() if like else (f"its members are {shown_names}, …",) if known else (),
+        hints=() if like else (members,) if known else (),
         fix=Fix(f"write `{like[0]}`", (Edit(node.name.span, like[0]),)) if like else None,
     )

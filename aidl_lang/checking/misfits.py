@@ -78,12 +78,14 @@ def example_of(signature: Signature) -> str | None:
     return None
 
 
-def _closeness(miss: Mismatch, given: Sequence[Given]) -> tuple[int, int, int, int]:
-    """How near a candidate comes: named arguments that it knows, then how little is left to give."""
-    known = sum(1 for g in given if g.name is not None and _knows(miss.signature, g.name))
+def _closeness(miss: Mismatch, given: Sequence[Given]) -> tuple[int, int, int, int, int]:
+    """How near a candidate comes: named arguments it knows, best by these names, then what is missing."""
+    names = [g.name for g in given if g.name is not None]
+    known = sum(1 for name in names if _knows(miss.signature, name))
+    same = sum(1 for name in names if fold(name) in miss.signature.by_fold)
     needed = sum(1 for _, _, optional in miss.signature.parameters if not optional)
     room = -abs(len(miss.signature.parameters) - len(given))
-    return known, int(miss.argument is not None), min(0, len(given) - needed), room
+    return known, same, int(miss.argument is not None), min(0, len(given) - needed), room
 
 
 def _knows(signature: Signature, word: str) -> bool:

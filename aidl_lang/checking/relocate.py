@@ -179,16 +179,3 @@ def insertion_after(statement: ast.Node, text: str) -> tuple[Span, str]:
         return Span(source, end, end), f"{';' if semicolon else ''} {text}" + ("" if semicolon else ";")
     stop = end + len(source.text[end:stop].rstrip())
     return Span(source, stop, stop), f"\n{indent}{text}"
-
-
-def removal(statement: ast.Node) -> Span:
-    """The span of a statement with its separator, and with its line where nothing else is on it."""
-    source = statement.span.source
-    text = source.text
-    start, end = statement.span.start, statement.span.end
-    while end < len(text) and text[end] in " \t;,":
-        end += 1
-    line_start = text.rfind("\n", 0, start) + 1
-    if not text[line_start:start].strip() and end < len(text) and text[end] == "\n":
-        return Span(source, line_start, end + 1)
-    return Span(source, start, end)

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from aidl_lang import ast
 from aidl_lang.checking.facts import Place, is_point
 from aidl_lang.checking.infer import Inference
-from aidl_lang.checking.relocate import Move, Site, insertion_after, removal
+from aidl_lang.checking.relocate import Move, Site, insertion_after
 from aidl_lang.checking.wording import shown
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.resolving.symbols import SymbolKind
+from aidl_lang.source import Span
 from aidl_lang.types import GeometryType, NumberType, StructureType
 
 
@@ -192,12 +193,28 @@ class Violation:
         if self.rule == 2:
             return Fix(
                 f"move the constraint to {_name(ancestor)}",
-                (Edit(removal(self.whole), ""), Edit(where, text)),
+                (Edit(self._emptied().span.with_separator, ""), Edit(where, text)),
             )
         return Fix(
             f"make it a first guess and state the relation in {_name(ancestor)}",
             (Edit(self.target.node.span, self._guess(written)), Edit(where, text)),
         )
+
+    def _emptied(self) -> ast.Node:
+        """The constraint, or the outermost block around it that holds nothing else."""
+        inner: ast.Node = self.whole
+        around = [s for s, _ in self.site.trail if not isinstance(s, ast.Structure) and s is not inner]
+        for statement in reversed(around):
+            blocks = [child for child in ast.children(statement) if isinstance(child, ast.Block)]
+            span = blocks[0].span
+            before, after = (
+                Span(span.source, span.start, inner.span.start),
+                Span(span.source, inner.span.end, span.end),
+            )
+            if len(blocks) > 1 or (before.text + after.text).strip(" \t\n;,{}"):
+                break
+            inner = statement
+        return inner
 
     def _guess(self, written: Mapping[ast.Node, tuple[float, float] | float]) -> str:
         """What is written instead: the value, or in a loop the expression with values for its references."""

@@ -59,7 +59,10 @@ class Outcome:
         if model is not None and model.degrees is not None and self.compiled.ok:
             freedom = f", {_count(model.degrees, 'degree')} of freedom"
         place, remark = (", ".join(self.written), "") if self.written else (program, ", nothing written")
-        return f"{place}: {self.compiled.status}{freedom}{remark}, {self.seconds:.2f} s"
+        status = self.compiled.status
+        if status == "solved" and not self.compiled.ok:
+            status = "errors after solving"
+        return f"{place}: {status}{freedom}{remark}, {self.seconds:.2f} s"
 
 
 def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:

@@ -121,7 +121,7 @@ def _characters(picture: Picture, name: str, extent: Extent) -> bytes:
 
 def _label(mark: Text, picture: Picture, extent: Extent) -> Label:
     """A text of the picture in cells. One that is turned is written level, about its middle."""
-    from aidl_lang.export.palette import rgb
+    from aidl_lang.geometry.colors import rgb
     from aidl_lang.terminal.letters import Label
 
     left, bottom, right, top = mark.box

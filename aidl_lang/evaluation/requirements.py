@@ -18,7 +18,8 @@ from pathlib import Path
 
 from aidl_lang import ast, parser
 from aidl_lang.diagnostics import has_errors
-from aidl_lang.evaluation.roles import Role, Thing, bind, origins
+from aidl_lang.evaluation.roles import Role, bind
+from aidl_lang.evaluation.things import Thing, origins
 from aidl_lang.evaluation.whole import MEASURES
 from aidl_lang.expression import Evaluator, Unknown
 from aidl_lang.geometry.boolean import united
@@ -105,7 +106,7 @@ def read(source: SourceFile) -> Prompt:
     if strays := sorted(ranges.keys() - names.keys()):
         raise PromptError(f"{source.name}: `{strays[0]}{_COUNT}` counts no role, or is 0 as written")
     roles = tuple(
-        Role.read(name, _note(child, source), many=name in ranges)
+        _role(child, name, source, many=name in ranges)
         for name, child in reversed(names.items())
         if name != WHOLE
     )
@@ -127,10 +128,13 @@ def _built(source: SourceFile, counts: Mapping[str, float]) -> tuple[Model, ast.
     return built.model, parser.parse(source).module
 
 
-def _note(role: Structure, source: SourceFile) -> str:
+def _role(role: Structure, name: str, source: SourceFile, *, many: bool) -> Role:
     match role.attributes.get("note"):
         case (Text(words, _),):
-            return words
+            try:
+                return Role.read(name, words, many=many)
+            except ValueError as reason:
+                raise PromptError(f"{source.name}: in the `@note` of `{name}`, {reason}") from None
         case _:
             raise PromptError(f"{source.name}: `{role.name}` has no `@note` of the words it goes by")
 
@@ -182,7 +186,7 @@ class _Examination:
 
     def __init__(self, prompt: Prompt, model: SolvedModel, drawing: Drawing, program: ast.Module) -> None:
         self.prompt, self.model, self.drawing = prompt, model, drawing
-        self.bound = bind(prompt.roles, model.root, origins(program))
+        self.bound = bind(prompt.roles, model, drawing, origins(program))
         counts = {
             f"{name}{_COUNT}": float(count if low <= (count := len(self.bound[name])) <= high else low)
             for name, (low, high) in prompt.ranges.items()
@@ -203,7 +207,7 @@ class _Examination:
     def _thing(self, placeholder: Structure) -> Thing | None:
         name, _, index = placeholder.name.partition("[")
         if name == WHOLE:
-            return Thing(self.model.root.path, (self.model.root,))
+            return Thing(((self.model.root,),))
         found, k = self.bound[name], int(index.rstrip("]") or 0)
         return found[k] if k < len(found) else None
 
@@ -259,7 +263,8 @@ class _Examination:
             return f"{found} of `{role}` were found, and {low} at least are needed"
         if found > high:
             return f"{found} of `{role}` were found, and {high} at most are looked at"
-        return None
+        buried = next((thing for thing in self.bound[role] if thing.is_buried), None)
+        return f"`{buried.path}` is inside other material and is not to be seen" if buried else None
 
     def _failure(self, assertion: Assertion) -> str | None:
         comparisons = assertion.condition.comparisons() if isinstance(assertion.condition, Condition) else ()

@@ -15,7 +15,7 @@ from aidl_lang.geometry.measures import area, measure, region_bounds
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.region import Face, Loop, Region
 
-_NEAR = 0.02
+NEAR = 0.02
 """Parts no further from each other than this share of the drawing hold together."""
 
 _BELOW_TOP = 0.03
@@ -35,7 +35,7 @@ def pieces(whole: Region) -> float:
         return k
 
     boxes = [region_bounds(Region((face,))) for face in whole.faces]
-    reach = _NEAR * _size(whole)
+    reach = NEAR * _size(whole)
     for i, j in near_pairs(boxes, reach):
         if head(i) != head(j):
             closest = region_distance(Region((whole.faces[i],)), Region((whole.faces[j],)))

@@ -135,8 +135,8 @@ class RemoteConversation:
 
 def _unjudged(program: str, reason: str) -> Verdict:
     feedback = (
-        f"The program could not be judged: {reason}. Say it in another way, smaller or simpler, without giving up what it "
-        "is to show, and answer with the whole program in one block."
+        f"The program could not be judged: {reason}. Say it in another way, smaller or simpler, without "
+        "giving up what it is to show, and answer with the whole program in one block."
     )
     return Verdict(False, "broken", feedback, program, codes=("broken",), weight=(_LAST,))
 

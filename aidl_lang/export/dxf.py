@@ -15,9 +15,10 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from aidl_lang.export import Exported, Job, palette
+from aidl_lang.export import Exported, Job
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.dxf_layers import Layers
+from aidl_lang.geometry.colors import rgb
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import TAU, ends, point, round_range
@@ -56,7 +57,7 @@ def _written(document: Any, job: Job) -> Exported:
     for outline in found:
         attributes: dict[str, Any] = {"layer": layers.name(outline.layer)}
         if outline.color is not None:
-            red, green, blue = palette.rgb(outline.color)
+            red, green, blue = rgb(outline.color)
             attributes["true_color"] = red << 16 | green << 8 | blue
         names = [(BODY, outline.path)] + ([(HOLE, outline.hole)] if outline.hole else [])
         for entity in entities.add(outline, attributes):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from aidl_lang.geometry.colors import rgb
+
 FILLS = (
     "#a7bcd6",  # slate blue
     "#d9c3a0",  # sand
@@ -13,6 +15,7 @@ FILLS = (
     "#bcc0c6",  # stone
 )
 OUTLINE = "#2f3b4a"
+LIGHT = "#b4bfcc"
 SEAM = "#2f3b4a"
 LOOSE = "#c2410c"
 CUT = "#ff0000"
@@ -26,15 +29,16 @@ GOOD = "#15803d"
 BAD = "#dc2626"
 FREE = "#b45309"
 
+_DARK = 112
+"""Brightness, of 255, up to which a dark line is not seen well."""
+
 
 def body_fill(index: int) -> str:
     """The colour of the body that is drawn as number `index`."""
     return FILLS[index % len(FILLS)]
 
 
-def rgb(color: str) -> tuple[int, int, int]:
-    """Red, green and blue of a CSS colour, from 0 to 255."""
-    from PIL import ImageColor
-
-    red, green, blue = ImageColor.getrgb(color)[:3]
-    return red, green, blue
+def contrasting(fill: str) -> str:
+    """An ink that is seen on a fill of this colour, and on white beside it."""
+    red, green, blue = rgb(fill)
+    return OUTLINE if 0.299 * red + 0.587 * green + 0.114 * blue > _DARK else LIGHT

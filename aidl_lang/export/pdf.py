@@ -13,10 +13,11 @@ from contextlib import contextmanager
 from functools import singledispatchmethod
 from typing import Any
 
-from aidl_lang.export import ExportError, palette
+from aidl_lang.export import ExportError
 from aidl_lang.export.font import FAMILY, font_file
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.numbers import size_text
+from aidl_lang.geometry.colors import rgb
 from aidl_lang.geometry.curves import Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, Bounds, derivative, ends, point, round_range
 from aidl_lang.geometry.region import Loop
@@ -147,11 +148,11 @@ class _Pen:
         self._canvas.drawText(text)
 
     def _fill(self, color: str) -> None:
-        self._canvas.setFillColorRGB(*(c / 255 for c in palette.rgb(color)))
+        self._canvas.setFillColorRGB(*(c / 255 for c in rgb(color)))
 
     def _ink(self, ink: Ink) -> None:
         canvas = self._canvas
-        canvas.setStrokeColorRGB(*(c / 255 for c in palette.rgb(ink.color)))
+        canvas.setStrokeColorRGB(*(c / 255 for c in rgb(ink.color)))
         canvas.setLineWidth(ink.width)
         canvas.setLineCap(int(ink.is_round))
         canvas.setLineJoin(int(ink.is_round))

@@ -146,6 +146,8 @@ def _seam(seam: Seam, size: float) -> Curves:
 
 def _stroke(stroke: Stroke, size: float) -> Curves:
     ink, dash, role = stroke.style.color or palette.OUTLINE, None, ""
+    if stroke.over is not None:
+        ink = palette.contrasting(stroke.over)
     if stroke.role != "drawing":
         ink, dash, role = palette.LOOSE, (0.012 * size, 0.008 * size), stroke.role
     return Curves(stroke.pieces, Ink(ink, STROKE_WIDTH * size, dash, is_round=True), role)

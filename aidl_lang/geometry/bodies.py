@@ -23,6 +23,7 @@ from aidl_lang.geometry.sections import (
     boxes_meet,
     covers,
     difference,
+    holes_of,
     intersection,
     is_nothing,
     union,
@@ -104,16 +105,29 @@ class FilledHole:
     filler: SolvedStructure | None
 
 
-Finding = InnerLoop | LooseCurves | IdleHole | FilledHole
+@dataclass(frozen=True)
+class CoveredHoles:
+    """Holes of a face that other faces of its structure cover."""
+
+    structure: SolvedStructure
+    face: OwnFace
+    count: int
+    covers: tuple[SolvedGeometry, ...]
+
+
+Finding = InnerLoop | LooseCurves | IdleHole | FilledHole | CoveredHoles
 
 
 @dataclass
 class Bodies:
-    """The state of the walk and its result; `sections` has each structure that has material or cuts."""
+    """The state of the walk and its result; `sections` has each structure that has material or cuts, `faces`
+    what each draws itself.
+    """
 
     network: Network
     shapes: Mapping[str, Sequence[Shape]]
     sections: dict[str, Section] = field(default_factory=dict)
+    faces: dict[str, list[OwnFace]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
 
     def masses(self, structure: SolvedStructure) -> list[Mass]:
@@ -149,6 +163,7 @@ class Bodies:
             self.findings.append(LooseCurves(structure, tuple(own.loose), numbers))
         if not own.faces:
             return None
+        self.faces[structure.path] = own.faces
         self._find_inner_loops(structure, own.faces)
         return union_of(own.faces)
 
@@ -170,6 +185,24 @@ class Bodies:
                 dropped.add(number)
                 names = tuple(g for f in around or near for g in f.geometries)
                 self.findings.append(InnerLoop(structure, face, names))
+        for number, face in enumerate(faces):
+            if number not in dropped:
+                others = [faces[i] for i in sorted(beside[number]) if i not in dropped]
+                self._find_covered_holes(structure, face, others)
+
+    def _find_covered_holes(self, structure: SolvedStructure, face: OwnFace, others: list[OwnFace]) -> None:
+        """Holes of a face of which nothing is left when the others are united with it."""
+        if not others or face.section.num_contour() == 1:
+            return
+        rest, covered, by = union_of(others), 0, dict[str, SolvedGeometry]()
+        for hole in holes_of(face.section):
+            if covers(rest, hole):
+                covered += 1
+                near = [f for f in others if boxes_meet(f.section, hole)]
+                alone = next((f for f in near if covers(f.section, hole)), None)
+                by.update((g.path, g) for f in ([alone] if alone else near) for g in f.geometries)
+        if covered:
+            self.findings.append(CoveredHoles(structure, face, covered, tuple(by.values())))
 
     def _united(
         self, solid: SolvedStructure, own: Section | None, children: list[Mass], cuts: list[Cut]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 
 _NAMES = """
 black silver gray grey white maroon red purple fuchsia green lime olive yellow navy blue teal aqua orange
@@ -50,3 +51,21 @@ def css_color(values: Sequence[object]) -> str | None:
 def similar_colors(name: str) -> list[str]:
     """Known names that a misspelt one may have meant, the likeliest first."""
     return difflib.get_close_matches(name.strip().lower(), sorted(COLOR_NAMES), n=3)
+
+
+def rgb(color: str) -> tuple[int, int, int]:
+    """Red, green and blue of a CSS colour, from 0 to 255."""
+    from PIL import ImageColor
+
+    red, green, blue = ImageColor.getrgb(color)[:3]
+    return red, green, blue
+
+
+_ALIKE = 16
+"""How far, of 255, each of red, green and blue may differ in colours that are hard to tell apart."""
+
+
+@lru_cache(maxsize=256)
+def look_alike(one: str, other: str) -> bool:
+    """Whether thin lines of one colour are not seen on the other."""
+    return one == other or all(abs(a - b) <= _ALIKE for a, b in zip(rgb(one), rgb(other), strict=True))

@@ -17,9 +17,11 @@ from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
+from aidl_lang.geometry.legibility import Ground, unseen_note
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import Network, exactly, union_bounds
 from aidl_lang.geometry.notes import color_note, detached_notes, finding_note, gap_note, unusable_note
+from aidl_lang.geometry.pieces import loose_piece_notes
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.seams import visible_seams
 from aidl_lang.geometry.trace import Traced, trace_all
@@ -60,7 +62,8 @@ class Stroke:
     """Curves drawn as lines.
 
     `role` is `drawing` for the curves of a drawing, `open` for curves of other structures that bound no face,
-    `hole` for the outline of a hole that nothing holds.
+    `hole` for the outline of a hole that nothing holds. `over`: the colour of what it lies on, where it
+    has the same from a structure around it, so that it would not be seen.
     """
 
     path: str
@@ -68,6 +71,7 @@ class Stroke:
     pieces: tuple[Piece, ...]
     style: Style
     role: str = "drawing"
+    over: str | None = None
 
 
 @dataclass(frozen=True)
@@ -124,12 +128,14 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     pairs = tuple(contacts(network, solids))
     notes += [note for f in walk.findings if (note := finding_note(f, network)) is not None]
     notes += detached_notes(model.root, [b.path for b in bodies], pairs)
+    notes += loose_piece_notes(model.root, walk, masses, solids, pairs)
     seams = tuple(
         Seam(path, m.structure.path, pieces)
         for m in masses
         for path, pieces in visible_seams(network, m, traced)
     )
-    strokes = tuple(_strokes(model.root, shapes, walk, styles, regions))
+    ground = Ground(network, [(b.style.color, m.section) for b, m in zip(bodies, masses, strict=True)])
+    strokes = tuple(_strokes(model.root, shapes, walk, styles, regions, ground, notes))
     plans = tuple(_plans(model.root))
     boxes = [b.box for b in bodies]
     boxes += [bounds(piece) for s in strokes for piece in s.pieces]
@@ -271,21 +277,55 @@ def _strokes(
     walk: Bodies,
     styles: dict[str, Style],
     regions: dict[str, Region],
+    ground: Ground,
+    notes: list[Diagnostic],
 ) -> Iterator[Stroke]:
     """The curves of drawings, and those of other structures that bound nothing."""
     curves = walk.network.curves
     loose = {f.structure.path: f.curves for f in walk.findings if isinstance(f, LooseCurves)}
+    own = _colored_drawings(root)
     for structure in root.walk():
         path, style = structure.path, styles[structure.path]
         if structure.kind == "drawing":
-            for shape in shapes[path]:
-                pieces = tuple(curves[number] for _, number in shape.leaves)
-                yield Stroke(path, shape.geometry.path, pieces, style)
+            yield from _inked(structure, shapes[path], style, ground, is_own=path in own, notes=notes)
         for leaf, number in loose.get(path, ()):
             yield Stroke(path, leaf.path, (curves[number],), style, "open")
     if root.kind == "hole" and root.path in regions:
         outline = tuple(p for loop in regions[root.path].loops for p in loop.pieces)
         yield Stroke(root.path, root.path, outline, styles[root.path], "hole")
+
+
+def _inked(
+    drawing: SolvedStructure,
+    shapes: list[Shape],
+    style: Style,
+    ground: Ground,
+    *,
+    is_own: bool,
+    notes: list[Diagnostic],
+) -> Iterator[Stroke]:
+    """The strokes of a drawing; a warning if it was given the colour of what it lies on."""
+    lost = []
+    for shape in shapes:
+        numbers = [number for _, number in shape.leaves]
+        hidden = ground.hides(style.color, numbers)
+        if is_own and hidden and all(hidden):
+            lost.append(shape.geometry.name)
+        over = style.color if any(hidden) and not is_own else None
+        pieces = tuple(ground.network.curves[number] for number in numbers)
+        yield Stroke(drawing.path, shape.geometry.path, pieces, style, over=over)
+    if lost and style.color:
+        notes.append(unseen_note(drawing, lost, style.color))
+
+
+def _colored_drawings(root: SolvedStructure) -> set[str]:
+    """Paths of the drawings that have a colour of their own, or from a drawing around them."""
+    return {
+        below.path
+        for s in root.walk()
+        if s.kind == "drawing" and css_color(s.attributes.get("color", ()))
+        for below in s.walk()
+    }
 
 
 def _plans(root: SolvedStructure) -> Iterator[PlanBox]:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.geometry.bodies import FilledHole, Finding, IdleHole, InnerLoop, LooseCurves
+from aidl_lang.geometry.bodies import CoveredHoles, FilledHole, Finding, IdleHole, InnerLoop, LooseCurves
 from aidl_lang.geometry.colors import similar_colors
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.curves import Bezier, Piece, Vec
@@ -56,7 +56,7 @@ def finding_note(finding: Finding, network: Network) -> Diagnostic | None:
         return None if finding.structure.kind == "assembly" else _loose_curves(finding, network)
     if isinstance(finding, IdleHole):
         return _idle_hole(finding)
-    return _filled_hole(finding)
+    return _covered_holes(finding) if isinstance(finding, CoveredHoles) else _filled_hole(finding)
 
 
 def _inner_loop(finding: InnerLoop) -> Diagnostic:
@@ -277,6 +277,25 @@ def _filled_hole(finding: FilledHole) -> Diagnostic:
     )
 
 
+def _covered_holes(finding: CoveredHoles) -> Diagnostic:
+    s, count = finding.structure, finding.count
+    face, by = listed([local(s, g) for g in finding.face.geometries]), [local(s, g) for g in finding.covers]
+    holes = f"{count} holes of {face} are" if count > 1 else f"a hole of {face} is"
+    return Diagnostic(
+        "W0708",
+        f"{holes} filled again by {listed(by)} in {s.kind} `{s.path}`",
+        finding.face.geometries[0].span or s.span,
+        "faces of one structure are united",
+        tuple(Label(g.span, "covers what it leaves open") for g in finding.covers[:2] if g.span),
+        (
+            f"if {listed(by)} shall only guide other geometry, write `construction` before it",
+            f"to cut both, unite them before: `cut(union(…, {by[0]}), …)`",
+            f"or put what is cut out into a `hole` in `{s.name}`, which cuts all of it",
+            "to see them as two pieces, make each a `solid` of its own in an `assembly`",
+        ),
+    )
+
+
 def detached_notes(root: SolvedStructure, paths: Sequence[str], pairs: Iterable[Contact]) -> list[Diagnostic]:
     """A warning for each body that touches and overlaps none of the others."""
     held: set[str] = set()
@@ -288,7 +307,7 @@ def detached_notes(root: SolvedStructure, paths: Sequence[str], pairs: Iterable[
         for one, other in ((pair.a, pair.b), (pair.b, pair.a)):
             candidate = (pair.gap or 0.0, other)
             nearest[one] = min(nearest.get(one, candidate), candidate, key=lambda c: c[0])
-    free = _marked_detached(root)
+    free = marked_detached(root)
     if sum(path not in free for path in paths) < 2:
         return []  # there is nothing that a part could touch
     lonely = [p for p in paths if p not in held and p not in free]
@@ -296,7 +315,7 @@ def detached_notes(root: SolvedStructure, paths: Sequence[str], pairs: Iterable[
     return [_detached(structures[p], nearest.get(p)) for p in lonely]
 
 
-def _marked_detached(root: SolvedStructure) -> set[str]:
+def marked_detached(root: SolvedStructure) -> set[str]:
     """Paths of the structures that are, or lie in one that is, `@detached`."""
     return {
         below.path

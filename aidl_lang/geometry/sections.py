@@ -101,6 +101,17 @@ def covers(cover: Section, section: Section) -> bool:
     return is_nothing(difference(section, cover), math.sqrt(abs(section.area())))
 
 
+def holes_of(section: Section) -> list[Section]:
+    """What its inner outlines enclose."""
+    whole = fill([p for p in section.to_polygons() if _turns_left(p)], "NonZero")
+    return difference(whole, section).decompose()
+
+
+def _turns_left(polygon: Polygon) -> bool:
+    x, y = (polygon - polygon[0]).T
+    return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) > 0.0
+
+
 def inside_mask(section: Section, spots: Sequence[Polygon]) -> NDArray[np.bool_]:
     """Which points in grid units lie inside."""
     return inside(section.to_polygons(), np.array(spots, dtype=np.float64).reshape(-1, 2))

@@ -23,7 +23,7 @@ _FILE = "part.aidl"
 _PIXELS = 512
 """Larger side of the picture of a plan."""
 _ASKED = 2
-"""Times that the same lost thing is asked for."""
+"""Times that the same lost thing is asked for, if it is clear that it was not meant."""
 
 _WRONG = (
     "Mend this without giving up anything the program means: what an error is about is not to be left out, "
@@ -166,7 +166,11 @@ class AidlConversation:
 
     def _to_ask_for(self) -> tuple[Loss, ...]:
         """What is missing and was not asked for too often."""
-        losses = tuple(loss for loss in self.ledger.missing if self.asked[_what(loss)] < _ASKED)
+        losses = tuple(
+            loss
+            for loss in self.ledger.missing
+            if self.asked[_what(loss)] < (1 if loss.is_doubtful else _ASKED)
+        )
         self.asked.update(map(_what, losses))
         return losses
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from aidl_lang.resolve import Resolver
 
 
-def no_declaration(resolver: Resolver, name: ast.Name) -> None:
+def no_declaration(resolver: Resolver, name: ast.Name, is_value: bool) -> None:
     """`h = …` among constraints compares; who writes it with a new name meant to declare one."""
     start = Span(name.span.source, name.span.start, name.span.start)
     resolver.report(
@@ -28,7 +28,7 @@ def no_declaration(resolver: Resolver, name: ast.Name) -> None:
         name,
         label="not declared",
         hints=(f"`let {name.text} = …` names an expression; geometry is made outside",),
-        fix=Fix("declare it with `let`", (Edit(start, "let "),)),
+        fix=Fix("declare it with `let`", (Edit(start, "let "),)) if is_value else None,
     )
 
 
@@ -101,15 +101,31 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: Scope) -> None:
         message, fix = called_field(node)
         resolver.report("E0206", message, node.callee, fix=fix)
         return
+    is_condition = resolver.condition is node
     like = nearest(name, scope.callable_names())
-    hints = () if like else ("define it with `fn`, `shape`, `constraint` or as a template",)
+    if is_condition and not (like and is_slip(name, like[0])):
+        like = nearest(name, [n for n in scope.callable_names() if _may_hold(scope, n)])
+    hint = _RELATIONS if is_condition else "define it with `fn`, `shape` or as a template"
     resolver.report(
         "E0203",
         f"there is no function, shape or constraint `{name}`" + did_you_mean(like),
         node.callee,
-        hints=hints,
+        hints=() if like else (hint,),
         fix=respell(node.callee, like),
     )
+
+
+_RELATIONS = (
+    "there are `coincident`, `tangent`, `equal`, `above`, `right_of`, `touching`, `centered_in`, "
+    "`align_left` and more; what has no name is an equation: `a.top == b.bottom`"
+)
+
+
+def _may_hold(scope: Scope, name: str) -> bool:
+    """Whether a callable may be a condition: shapes and templates are none."""
+    found = scope.called(name)
+    made = (SymbolKind.SHAPE, SymbolKind.TEMPLATE)
+    return found is not None and all(kind_of(s) not in made for s in found[1])
 
 
 def _as_template(node: ast.Structure) -> Fix | None:

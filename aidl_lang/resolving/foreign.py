@@ -10,7 +10,6 @@ from typing import Any, TypeVar
 from aidl_lang import ast
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.names import fold
-from aidl_lang.source import Span
 
 _Node = TypeVar("_Node", bound=ast.Node)
 
@@ -60,6 +59,12 @@ _CALLS: Mapping[str, str] = {
         ("linear_pattern pattern", "copies in a row are made by `linear_array(…)`"),
         ("circular_pattern", "copies about a centre are made by `polar_array(…)`"),
         ("if_then_else ternary select", "a choice is written `if c then a else b`"),
+        (
+            "connect connects connected attach attaches attached join joins joined weld welded glue glued "
+            "snap snapped mate mated fasten fastened link linked bond meet meets hinge hinged pinned",
+            "points become one by `coincident(a.end, b.start)`, "
+            "parts lie against each other by `touching(a, b)`",
+        ),
     )
     for word in words.split()
 }
@@ -130,18 +135,8 @@ def _idle(node: ast.ExpressionStatement) -> Diagnostic:
         f"`{node.value.callee.text}(…)` has nothing to do: compiling solves, draws and writes",
         node.span,
         hints=("the output is named on the command line: `aidl compile plate.aidl -o plate.svg`",),
-        fix=_removed(node),
+        fix=Fix("remove it", (Edit(node.span.with_separator, ""),)),
     )
-
-
-def _removed(node: ast.Node) -> Fix:
-    """The fix that takes a statement out, with the `;` behind it, and with its line if it stands alone."""
-    text, start, end = node.span.source.text, node.span.start, node.span.end
-    end += len(text[end:]) - len(text[end:].lstrip(" \t;"))
-    begin = len(text[:start].rstrip(" \t"))
-    if text[begin - 1 : begin] in ("", "\n") and text[end : end + 1] == "\n":
-        start, end = begin, end + 1
-    return Fix("remove it", (Edit(Span(node.span.source, start, end), ""),))
 
 
 def call_answer(node: ast.Call) -> tuple[str, str, str] | None:

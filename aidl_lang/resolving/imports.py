@@ -6,12 +6,13 @@ program and all below it. What is wrong inside an imported file is reported at i
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
 
 from aidl_lang import ast
-from aidl_lang.diagnostics import Diagnostic
-from aidl_lang.source import SourceFile
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.source import SourceFile, Span
 from aidl_lang.world import FileError, World, relative_to
 
 SUFFIX = ".aidl"
@@ -99,9 +100,10 @@ class _Loader:
         from aidl_lang.parser import parse
 
         parsed = parse(SourceFile(path, text))
-        self.result.diagnostics += parsed.diagnostics
-        self.visit(parsed.module, path)
-        return parsed.module
+        module, misplaced = with_inner_imports(parsed.module)
+        self.result.diagnostics += parsed.diagnostics + misplaced
+        self.visit(module, path)
+        return module
 
     def _text(self, statement: ast.Import, path: str) -> str | None:
         written = statement.path.value
@@ -113,11 +115,44 @@ class _Loader:
         try:
             return self.world.read(path)
         except FileError as error:
-            hint = "paths are relative to the file that imports"
+            hints = ["paths are relative to the file that imports"]
             if not path.endswith(SUFFIX):
-                hint = f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`"
-            self._report("E0210", f"`{path}` cannot be imported: {error.reason}", statement.path, hint)
+                hints = [f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`", "the library needs no import"]
+            self._report("E0210", f"`{path}` cannot be imported: {error.reason}", statement.path, *hints)
             return None
 
     def _report(self, code: str, message: str, node: ast.Node, *hints: str) -> None:
         self.result.diagnostics.append(Diagnostic(code, message, node.span, hints=hints))
+
+
+def with_inner_imports(module: ast.Module) -> tuple[ast.Module, list[Diagnostic]]:
+    """A file with the imports of its blocks before its statements, and E0353 for each of them."""
+    top = [s for s in module.statements if isinstance(s, ast.Import)]
+    if module.source.text.count("import") == len(top):
+        return module, []
+    inner = list(_imports(s for s in module.statements if not isinstance(s, ast.Import)))
+    end = top[-1].span.end if top else 0
+    place = Span(module.source, end, end)
+    found = [
+        _misplaced(node, Edit(place, f"\n{node.span.text}" if top else f"{node.span.text}\n"))
+        for node in inner
+    ]
+    return replace(module, statements=(*inner, *module.statements)), found
+
+
+def _imports(nodes: Iterator[ast.Node]) -> Iterator[ast.Import]:
+    for node in nodes:
+        if isinstance(node, ast.Import):
+            yield node
+        elif isinstance(node, ast.Block | ast.Callable | ast.For | ast.If):
+            yield from _imports(ast.children(node))
+
+
+def _misplaced(node: ast.Import, insertion: Edit) -> Diagnostic:
+    return Diagnostic(
+        "E0353",
+        "an import stands at the top of the file",
+        node.span,
+        "what it brings is known in the whole file",
+        fix=Fix("move it to the top", (Edit(node.span.with_separator, ""), insertion)),
+    )

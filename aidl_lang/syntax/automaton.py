@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import cache
 from typing import Any, NamedTuple
 
 from aidl_lang.syntax.tables import Tables
 from aidl_lang.syntax.tokens import END, Token
-from aidl_lang.syntax.tree import Builder
+from aidl_lang.syntax.tree import Builder, action
 
 
 class Checkpoint(NamedTuple):
@@ -20,6 +21,15 @@ class Checkpoint(NamedTuple):
     statements: int  # of the block so far
 
 
+@cache
+def _reductions(tables: Tables) -> list[tuple[int, int | None, tuple[int, ...], Callable[..., Any] | None]]:
+    """For each rule its size, what it passes on, what it keeps, and the method that makes its node."""
+    return [
+        (rule.size, rule.passes, rule.kept, action(rule.action) if rule.action else None)
+        for rule in tables.rules
+    ]
+
+
 class Automaton:
     """States, values and places of what has been read so far, as three stacks of one length."""
 
@@ -29,57 +39,47 @@ class Automaton:
         self.values: list[Any] = [None]
         self.starts: list[int] = [0]
         self.end = 0  # of the last token taken
-        self.methods: list[Callable[..., Any] | None] = [
-            builder.action(rule.action) if rule.action else None for rule in tables.rules
-        ]
+        self.builder = builder
+        self.reductions = _reductions(tables)
 
     def feed(self, token: Token) -> bool:
         """Take one token. False if it cannot stand here; the statement before it may be complete by then."""
         states, values, starts = self.states, self.values, self.starts
-        actions, rules, unit_steps = self.tables.actions, self.tables.rules, self.tables.unit_steps
+        actions, steps = self.tables.actions, self.tables.steps
         kind = token.kind
         if kind in self.tables.soft_words and not self._advance(list(states), kind):
             kind = "NAME"
-        while True:
-            state = states[-1]
-            target = actions[state].get(kind)
-            if target is None:
-                return kind == END and state == self.tables.end
-            if target >= 0:
-                states.append(target)
-                values.append(token)
-                starts.append(token.start)
-                self.end = token.end
-                return True
-            rule = rules[~target]
-            size = rule.size
-            if size == 1 and rule.passes == 0:
-                # Chains of these (a name is a product is a sum is …) are most of the work: one step for all.
-                step = (states[-2], state, kind)
-                if (reached := unit_steps.get(step)) is None:
-                    reached = unit_steps[step] = self._unit_chain(*step)
-                states[-1] = reached
-                continue
+        while (target := actions[states[-1]].get(kind)) is not None and target < 0:
+            size, passes, kept, method = self.reductions[~target]
             start = starts[-size] if size else token.start
-            if (method := self.methods[~target]) is not None:
-                parts = values[-size:] if size else []
+            if method is not None:
                 symbols: list[Any] = []
-                for i in rule.kept:
-                    part = parts[i]
+                for i in kept:
+                    part = values[i - size]
                     if type(part) is list:
                         symbols += part
                     else:
                         symbols.append(part)
-                value = method(start, self.end, *symbols)
-            elif rule.passes is not None:
-                value = values[rule.passes - size]
+                value = method(self.builder, start, self.end, *symbols)
+            elif passes is not None:
+                value = values[passes - size]
             else:
-                value = self._gather(rule.kept, size)
+                value = self._gather(kept, size)
             if size:
                 del states[-size:], values[-size:], starts[-size:]
-            states.append(actions[states[-1]][rule.origin])
+            step = (states[-1], target, kind)
+            if (reached := steps.get(step)) is None:
+                reached = steps[step] = self._reduced(*step)
+            states.append(reached)
             values.append(value)
             starts.append(start)
+        if target is None:
+            return kind == END and states[-1] == self.tables.end
+        states.append(target)
+        values.append(token)
+        starts.append(token.start)
+        self.end = token.end
+        return True
 
     def _gather(self, kept: tuple[int, ...], size: int) -> list[Any]:
         """The values of the kept symbols in one list, which is that of the first where there is one."""
@@ -94,9 +94,12 @@ class Automaton:
                 gathered.append(part)
         return [] if gathered is None else gathered
 
-    def _unit_chain(self, below: int, state: int, kind: str) -> int:
-        """The state after all reductions by rules that only pass on one value."""
-        actions, rules = self.tables.actions, self.tables.rules
+    def _reduced(self, below: int, reduction: int, kind: str) -> int:
+        """The state after a reduction and all those behind it that only pass on one value: chains of these (a
+        name is a product is a sum is …) are most of the work, so they are one step.
+        """
+        rules, actions = self.tables.rules, self.tables.actions
+        state = actions[below][rules[~reduction].origin]
         while (target := actions[state].get(kind)) is not None and target < 0:
             rule = rules[~target]
             if rule.size != 1 or rule.passes != 0:

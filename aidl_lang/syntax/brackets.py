@@ -3,13 +3,57 @@
 from __future__ import annotations
 
 from aidl_lang.diagnostics import Diagnostic, Label
-from aidl_lang.source import Span
+from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.tokens import END, Token, begins_line
-from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
+from aidl_lang.syntax.trouble import Problem, Repair, Trouble, closing, replaced
 from aidl_lang.syntax.words import VALUE_STARTS
 
 _CLOSER = {"(": ")", "CALL": ")", "[": "]", "{": "}"}
 _BRACKET = {"(": "the parenthesis", "CALL": "the call", "[": "the bracket", "{": "the block"}
+_VALUE_ENDS = ("NAME", "NUMBER", ")", "]")
+
+
+def lists_as_statements(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
+    """E0125 for each line such as `[a, b].above(c)` that goes on with the line above as an index, and E0101
+    where a statement would begin with a list. Both are read as the statements they were meant to be.
+    """
+    found: list[tuple[int, Diagnostic]] = []
+    opened: list[str] = []
+    for n, token in enumerate(tokens):
+        if token.kind == "[" and opened[-1:] in ([], ["{"]) and len(found) < _MOST_LISTS:
+            before = tokens[n - 1].kind if n else ";"
+            joined = before in _VALUE_ENDS and begins_line(source.text, token.start)
+            close = closing(tokens, n) if joined or before in _STATEMENT_ENDS else -1
+            after = [t.kind for t in tokens[close + 1 : close + 3]]
+            if close > 0 and (after == [".", "CALL"] or (not joined and after[0] in _GO_ON)):
+                found.append((n, _list_as_statement(source, token, joined)))
+        if token.kind in _CLOSER:
+            opened.append(token.kind)
+        elif token.kind in _CLOSER.values() and opened:
+            opened.pop()
+    for n, _ in reversed(found):
+        tokens.insert(n, Token("constrain", "constrain", tokens[n].start, tokens[n].start))
+    return [diagnostic for _, diagnostic in found]
+
+
+_MOST_LISTS = 100
+_STATEMENT_ENDS = ("{", "}", ";", ",")
+_GO_ON = (".", "==", "<=", ">=", "<", ">", "in")
+
+
+def _list_as_statement(source: SourceFile, token: Token, joined: bool) -> Diagnostic:
+    span, place = Span(source, token.start, token.end), Span(source, token.start, token.start)
+    fix = replaced("put `constrain` before it", place, "constrain ")
+    if not joined:
+        return Diagnostic("E0101", "a statement cannot begin with `[`", span, fix=fix)
+    return Diagnostic(
+        "E0125",
+        "a line that begins with `[` continues the line above",
+        span,
+        "read as an index of the expression above",
+        hints=("newlines end no statement; with `constrain` before it a list begins one",),
+        fix=fix,
+    )
 
 
 def wrong_closer(t: Trouble) -> Problem | None:

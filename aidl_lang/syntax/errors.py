@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from aidl_lang.diagnostics import Diagnostic, Label
 from aidl_lang.source import SourceFile, Span
-from aidl_lang.syntax import brackets, foreign, functions, missing, spelling
+from aidl_lang.syntax import brackets, foreign, functions, missing, placements, spelling
 from aidl_lang.syntax.tokens import END, Token
 from aidl_lang.syntax.trouble import Problem, Trouble, replaced
 from aidl_lang.syntax.words import describe
@@ -32,6 +32,7 @@ _QUESTIONS: tuple[Callable[[Trouble], Problem | None], ...] = (
     missing.nameless_structure,
     missing.repeated_placement,
     missing.out_of_place_in_constrain,
+    placements.placement_in_expression,
     spelling.reserved_word,
     missing.else_without_if,
     brackets.wrong_closer,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.source import SourceFile, Span
-from aidl_lang.syntax.tokens import END, Token
+from aidl_lang.syntax.tokens import END, Token, begins_line
 from aidl_lang.syntax.trouble import (
     LONGEST,
     Problem,
@@ -21,7 +21,8 @@ from aidl_lang.syntax.trouble import (
 
 def understood(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
     """Rewrite what is plain from its tokens alone, and would be read as something else: functions with a
-    body, `new`, `between`, and texts marked as in Python. Repairs count from the token they begin with.
+    body, `new`, `between`, texts marked as in Python, and what follows a `todo`. Repairs count from the token
+    they begin with.
     """
     found: list[Diagnostic] = []
     places = [n for n, token in enumerate(tokens) if token.text in _WORDS]
@@ -34,7 +35,8 @@ def understood(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
 
 
 _FUNCTION_WORDS = ("def", "function", "func", "fun", "fn")
-_WORDS = frozenset([*_FUNCTION_WORDS, "between", "lambda", "new", "f", "r", "u", "b"])
+_TODO_WORDS = ("todo", "TODO", "Todo", "TODO(")
+_WORDS = frozenset([*_FUNCTION_WORDS, *_TODO_WORDS, "between", "lambda", "new", "f", "r", "u", "b"])
 _MOST_PLACES, _MOST_REWRITTEN = 5000, 100  # beyond these nobody wrote it by hand
 
 
@@ -42,6 +44,8 @@ def _answer(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | N
     one, two = tokens[at], tokens[at + 1]
     if one.text in _FUNCTION_WORDS:
         return _function_with_body(source, tokens, at) if two.kind == "CALL" else None
+    if one.text in _TODO_WORDS:
+        return _todo(source, tokens, at)
     if one.kind != "NAME":
         return None
     match one.text:
@@ -62,6 +66,36 @@ def _left_out(source: SourceFile, word: Token, after: Token, message: str, hint:
     span = Span(source, word.start, word.end)
     fix = replaced(f"leave out `{word.text}`", Span(source, word.start, after.start), "")
     return Problem(Diagnostic("E0113", message, span, hints=(hint,) if hint else (), fix=fix), Repair(0, 1))
+
+
+def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | None:
+    """`todo "the lid"`, `todo: the lid`, `todo()`: what follows the word on its line is a remark."""
+    word, after = tokens[at], tokens[at + 1]
+    before = tokens[at - 1].kind if at else ";"
+    if before not in ("{", "}", ";") and not begins_line(source.text, word.start):
+        return None
+    if word.kind == "CALL" or after.kind == "(":
+        opening = at if word.kind == "CALL" else at + 1
+        inside, stop = slice(opening + 1, closing(tokens, opening)), closing(tokens, opening) + 1
+    elif after.kind in ("STRING", ":"):
+        stop = at + 2 if after.kind == "STRING" else statement_end(source, tokens, at + 1)
+        inside = slice(stop - 1 if after.kind == "STRING" else at + 2, stop)
+    else:
+        return None
+    end, told = tokens[stop - 1].end, tokens[inside]
+    if stop <= at or "\n" in source.text[word.start : end]:
+        return None
+    span = Span(source, word.start, end)
+    message, right = "`todo` stands alone", "todo"
+    if told:
+        remark = source.text[told[0].start : told[-1].end].strip("\"'")
+        is_last = not source.text[end : line_end(source.text, end)].strip()
+        message += "; what is still to be done says a comment"
+        right = f"todo  // {remark}" if is_last else f"todo /* {remark.replace('*/', '')} */"
+    return Problem(
+        Diagnostic("E0117", message, span, fix=replaced(f"write `{right}`", span, right)),
+        Repair(0, stop - at, (Token("todo", "todo", word.start, end),)),
+    )
 
 
 def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int) -> Problem | None:

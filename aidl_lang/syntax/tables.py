@@ -14,7 +14,7 @@ import pickle
 import re
 import sys
 import tempfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,8 +23,6 @@ from aidl_lang.resources import resource
 
 if TYPE_CHECKING:
     from lark.grammar import Rule as LarkRule
-
-_FORMAT = 3  # of the cached data: to be raised when the classes below change
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +48,7 @@ class Tables:
 
     `actions[state][symbol]` is a state to go to, or `~r` (negative) for a reduction by `rules[r]`.
     `reserved` are the words that CALL leaves out, `soft_words` those that are names wherever the grammar has
-    no place for them; in `statement_states` a statement may begin. `unit_steps` is filled while parsing.
+    no place for them; in `statement_states` a statement may begin. `steps` is filled while parsing.
     """
 
     start: int
@@ -63,7 +61,7 @@ class Tables:
     reserved: frozenset[str]
     soft_words: frozenset[str]
     statement_states: frozenset[int]
-    unit_steps: dict[tuple[int, int, str], int] = field(default_factory=dict)
+    steps: dict[tuple[int, int, str], int] = field(default_factory=dict)
 
 
 @cache
@@ -78,11 +76,12 @@ def load_tables() -> Tables:
 
 
 def cache_path(grammar: str) -> Path:
-    """The file that holds the tables of this grammar for this Python and this Lark."""
+    """The file that holds the tables of this grammar for this code, this Python and this Lark."""
     spec = importlib.util.find_spec("lark")
     lark = spec.origin if spec and spec.origin else ""
     stamp = os.stat(lark).st_mtime_ns if lark else 0
-    key = repr((_FORMAT, sys.version_info, lark, stamp, grammar)).encode()
+    code = Path(__file__).read_bytes()  # what the tables look like is decided here
+    key = repr((code, sys.version_info, lark, stamp, grammar)).encode()
     base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
     return Path(base) / "aidl" / f"grammar-{hashlib.sha256(key).hexdigest()[:32]}.pickle"
 
@@ -96,12 +95,13 @@ def _read(path: Path) -> Tables | None:
         EOFError,
         AttributeError,
         ImportError,
-        IndexError,
+        LookupError,
         ValueError,
         TypeError,
     ):
         return None
-    return tables if isinstance(tables, Tables) else None
+    whole = isinstance(tables, Tables) and vars(tables).keys() == {f.name for f in fields(Tables)}
+    return tables if whole else None
 
 
 def _write(path: Path, tables: Tables) -> None:

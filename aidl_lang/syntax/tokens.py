@@ -50,32 +50,28 @@ def tokenize(source: SourceFile, start: int = 0, end: int | None = None) -> Toke
     tokens = result.tokens
     doc: list[str] = []
     position, length = start, len(text) if end is None else end
-    while position < length:
-        found = match(text, position, length)
-        if found is None:
+    while position < length and (found := match(text, position, length)) is not None:
+        kind = found.lastgroup
+        if kind is None:
+            position = found.end()  # of the blanks
+            if position == length:
+                break
             token = _unknown(text, position, length)
-        elif (kind := found.lastgroup) == "SPACE":
-            position = found.end()
-            continue
-        elif kind == "COMMENT":
-            _take_comment(source, position, found.group(), result.comments, doc)
-            position = found.end()
-            continue
-        elif kind == "NAME":
-            token = Token(kind, found.group(), position, found.end())
-            if token.text in words:
-                token = token._replace(kind=token.text)
-            if token.kind == "NAME" or token.kind in soft:
-                token = _call_or_name(text, token, length, result)
-        elif kind == "SIGN":
-            token = Token(found.group(), found.group(), position, found.end())
-            if text.startswith("/*", position):
-                token = Token(
-                    UNKNOWN, text[position:length], position, length
-                )  # a comment that is not closed
         else:
-            token = Token(kind or UNKNOWN, found.group(), position, found.end())
-        if tokens and tokens[-1].end == position:
+            position, after = found.span(kind)
+            word = text[position:after]
+            if kind == "COMMENT":
+                _take_comment(source, position, word, result.comments, doc)
+                position = after
+                continue
+            if kind == "SIGN" or (kind == "NAME" and word in words):
+                kind = word
+            token = Token(kind, word, position, after)
+            if kind == "NAME" or kind in soft:
+                token = _call_or_name(text, token, length, result)
+            elif kind == "/" and text.startswith("/*", position):  # a comment that is not closed
+                token = Token(UNKNOWN, text[position:length], position, length)
+        if tokens and tokens[-1].end == position and tokens[-1].kind in ("NUMBER", ".."):
             token = _touching(tokens, token)
         if doc:
             result.docs[position] = "\n".join(doc)
@@ -104,7 +100,7 @@ def _call_or_name(text: str, name: Token, length: int, result: Tokens) -> Token:
 
 
 def _touching(tokens: list[Token], token: Token) -> Token:
-    """What a token is that touches the one before it: letters behind a number are meant as a unit."""
+    """What a token is that touches a number or `..`: letters behind a number are meant as a unit."""
     before = tokens[-1]
     if before.kind == "NUMBER" and token.kind in ("NAME", "CALL", "NUMBER"):
         digits = before.text.rstrip(_LETTERS) if token.kind != "NUMBER" else before.text
@@ -127,19 +123,20 @@ _BLANKS_AND_PARENTHESIS = re.compile(r"[ \t]+\(")
 
 @cache
 def _scanner() -> re.Pattern[str]:
+    """Blanks, and the comment or token behind them if one begins there."""
     tables = load_tables()
     patterns = tables.patterns
     signs = sorted((s for s in tables.literals if not s.isidentifier()), key=lambda s: (-len(s), s))
     space, *comments = (patterns[name] for name in tables.ignored)
     named = {
-        "SPACE": space,
         "COMMENT": "|".join(comments),
         "NAME": patterns["NAME"],
         "NUMBER": patterns["NUMBER"],
         "STRING": patterns["STRING"],
         "SIGN": "|".join(map(re.escape, signs)),
     }
-    return re.compile("|".join(f"(?P<{name}>{pattern})" for name, pattern in named.items()))
+    some = "|".join(f"(?P<{name}>{pattern})" for name, pattern in named.items())
+    return re.compile(f"(?:{space})?(?:{some})?")
 
 
 def _unknown(text: str, start: int, length: int) -> Token:

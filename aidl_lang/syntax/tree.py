@@ -33,10 +33,6 @@ class ThenIf:
 class Builder(ExpressionBuilder):
     """Makes the nodes of one file; see the module."""
 
-    def action(self, name: str) -> Callable[..., Any]:
-        """The method for a rule; a trailing underscore keeps clear of Python's own words."""
-        return cast(Callable[..., Any], getattr(self, name + "_" if iskeyword(name) else name))
-
     # --- Files and blocks ---
 
     def block(self, start: int, end: int, *statements: ast.Statement) -> ast.Block:
@@ -340,6 +336,11 @@ class Builder(ExpressionBuilder):
         self, start: int, end: int, then: ast.Expression, test: ast.Expression, other: Any
     ) -> Any:
         return self.conditional(start, end, test, then, other)
+
+
+def action(name: str) -> Callable[..., Any]:
+    """The method for a rule; a trailing underscore keeps clear of Python's own words."""
+    return cast(Callable[..., Any], getattr(Builder, name + "_" if iskeyword(name) else name))
 
 
 def _split(parts: tuple[Any, ...]) -> tuple[tuple[ast.Attribute, ...], list[Any]]:

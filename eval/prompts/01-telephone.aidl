@@ -3,15 +3,19 @@ assembly telephone {
     solid whole { todo }
     var pieces = 1
 
-    @note("base, body, housing, case, casing, cabinet, stand")
+    @note("base, body, housing / case / casing / cabinet / chassis / box, stand")
     solid base { todo }
-    @note("receiver, handset, hand set, phone, horn, earpiece")
+    @note(
+        "receiver / handset / hand set, horn, phone; of handle, grip, bar, earpiece, mouthpiece, ear piece, mouth piece, ear, cup"
+    )
     solid receiver { todo }
-    @note("dial, rotary dial, dial plate, dial disc, dial ring, rotary, disc, wheel, keypad")
+    @note(
+        "dial, rotary dial, dial plate / dial disc / dial disk / dial wheel, dial ring, rotary, disc / disk / wheel, keypad"
+    )
     solid dial { todo }
     param finger_count = 10 in 1..60
     for i in 0..<finger_count {
-        @note("finger, dial hole, digit / number, hole, key / button")
+        @note("finger / finger hole, dial hole, digit / number / numeral, hole, key / button")
         solid finger[i] { todo }
     }
 

@@ -4,11 +4,15 @@ assembly lighthouse {
     var pieces = 1
     var symmetry = 1
 
-    @note("tower, shaft, column, trunk, wall, body")
+    @note(
+        "tower, shaft, column / trunk, wall / body; of band, stripe, section, segment, storey, tier"
+    )
     solid tower { todo }
-    @note("lantern, lantern room, lamp room, light room, lamp, light, glass, beacon")
+    @note(
+        "lantern / lantern room / lantern house, lamp room / light room / lamp house, lamp, light, glass, beacon"
+    )
     solid lantern { todo }
-    @note("roof, dome, cupola, cap, cone")
+    @note("roof, dome / cupola / canopy, cap / cone")
     solid roof { todo }
 
     assert tower.height >= 1.2 * tower.width, "the tower is taller than wide"

@@ -5,14 +5,16 @@ assembly bicycle {
 
     param wheel_count = 2 in 1..20
     for i in 0..<wheel_count {
-        @note("wheel, tyre / tire, rim")
+        @note("wheel, tyre / tire, rim; not steering wheel, chain wheel, gear wheel")
         solid wheel[i] { todo }
     }
-    @note("frame, main frame, chassis, main triangle")
+    @note("frame, chassis, main triangle; of tube, stay, fork")
     solid frame { todo }
-    @note("saddle, seat")
+    @note("saddle / seat")
     solid saddle { todo }
-    @note("handlebar, handle bar, steering bar, bar, handle, steering, stem, grip")
+    @note(
+        "handlebar / handle bar / steering bar, bar, handle, steering, stem, grip; not cross bar, top bar"
+    )
     solid handlebar { todo }
 
     assert len(wheel) == 2, "there are two wheels"

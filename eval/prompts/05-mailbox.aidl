@@ -3,7 +3,7 @@ assembly mailbox {
     solid whole { todo }
     var pieces = 1
 
-    @note("box, body, housing, container, case, shell, mailbox")
+    @note("box / mailbox / letterbox, body, housing / container / case / shell")
     solid box { todo }
     param post_count = 1 in 0..9
     for i in 0..<post_count {
@@ -17,15 +17,15 @@ assembly mailbox {
     }
     param slot_count = 1 in 0..9
     for i in 0..<slot_count {
-        @note("slot / door, opening / mouth / flap / hatch")
+        @note("slot / door / letter slot, opening / mouth / flap / hatch")
         solid slot[i] { todo }
     }
 
     assert len(post) + len(flag) + len(slot) >= 1, "there is a post, a flag, or a slot or door"
     for p in post {
         assert box.center_y >= p.center_y, "the box is up on its post"
-        assert clearance(p, box) <= 0.01 * whole.height, "the post carries the box"
-        assert p.width <= 0.5 * box.width, "the post is slimmer than the box"
+        assert clearance(p, box) <= 0.05 * whole.height, "the post carries the box"
+        assert area(p) <= 0.5 * box.width * p.height, "the post is slimmer than the box"
     }
     for f in flag {
         assert clearance(f, box) <= 0.03 * whole.height, "the flag is fixed to the box"

@@ -3,13 +3,13 @@ assembly house {
     solid whole { todo }
     var pieces = 1
 
-    @note("wall, house body, main body, body, building, facade, house")
+    @note("wall, body, building / facade, house")
     solid wall { todo }
-    @note("roof")
+    @note("roof, gable")
     solid roof { todo }
-    @note("chimney, chimney stack, smokestack")
+    @note("chimney / chimney stack / smokestack / smoke stack, stack / flue")
     solid chimney { todo }
-    @note("door, front door, entrance")
+    @note("door, doorway / door hole / door opening, entrance")
     solid door { todo }
     param window_count = 2 in 0..60
     for i in 0..<window_count {
@@ -20,7 +20,7 @@ assembly house {
     assert roof.center_y >= wall.center_y and roof.top >= wall.top,
         "the roof is on top of the walls"
     assert roof.width >= 0.95 * wall.width, "the roof covers the walls"
-    assert clearance(roof, wall) <= 0.01 * whole.height, "the roof lies on the walls"
+    assert clearance(roof, wall) <= 0.08 * whole.height, "the roof lies on the walls"
     assert chimney.left >= roof.left and chimney.right <= roof.right,
         "the chimney is over the roof, not beside it"
     assert clearance(chimney, roof) <= 0.01 * whole.height, "the chimney stands on the roof"

@@ -4,9 +4,9 @@ assembly coffee_mug {
     var pieces = 1
     var openings = 1
 
-    @note("cup, body, vessel, mug, wall, cylinder, container")
+    @note("cup / mug, body / vessel, wall / cylinder / container")
     solid cup { todo }
-    @note("handle, grip, ear, loop")
+    @note("handle, grip, ear / loop")
     solid handle { todo }
 
     assert cup.height >= 0.6 * cup.width and cup.height <= 2.5 * cup.width,

@@ -3,7 +3,7 @@ assembly sailing_boat {
     solid whole { todo }
     var pieces = 1
 
-    @note("hull, boat hull, boat body, body, boat")
+    @note("hull, body, boat")
     solid hull { todo }
     @note("mast, pole")
     solid mast { todo }
@@ -14,9 +14,10 @@ assembly sailing_boat {
     }
 
     assert hull.width >= 1.5 * hull.height, "the hull is long and low"
-    assert mast.height >= 4 * mast.width, "the mast is slim and upright"
+    assert mast.height >= 2 * mast.width and area(mast) <= 0.25 * mast.height * mast.height,
+        "the mast is slim and upright"
     assert mast.left >= hull.left and mast.right <= hull.right, "the mast is on the boat"
-    assert clearance(mast, hull) <= 0.01 * whole.height, "the mast stands on the hull"
+    assert clearance(mast, hull) <= 0.05 * whole.height, "the mast stands on the hull"
     assert min([clearance(s, mast) for s in sail]) <= 0.02 * whole.width, "a sail is on the mast"
     for s in sail {
         assert clearance(s, mast) <= 0.12 * whole.width, "no sail is far off the mast"

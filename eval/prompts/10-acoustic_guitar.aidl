@@ -3,20 +3,20 @@ assembly acoustic_guitar {
     solid whole { todo }
     var pieces = 1
 
-    @note("body, soundbox, sound box, guitar body")
+    @note("body, soundbox / sound box, top; of bout, waist")
     solid body { todo }
-    @note("neck, fretboard, fingerboard")
+    @note("neck, fretboard / fingerboard")
     solid neck { todo }
-    @note("head, headstock, peghead, head stock")
+    @note("head / headstock / peghead / head stock")
     solid head { todo }
-    @note("sound hole, soundhole, hole, rosette")
+    @note("sound hole / soundhole, hole, rosette")
     solid sound_hole { todo }
 
     assert max(neck.width, neck.height) >= 3 * min(neck.width, neck.height),
         "the neck is long and slim"
-    assert clearance(neck, body) <= 0.01 * max(whole.width, whole.height),
+    assert clearance(neck, body) <= 0.03 * max(whole.width, whole.height),
         "the neck is joined to the body"
-    assert clearance(head, neck) <= 0.01 * max(whole.width, whole.height),
+    assert clearance(head, neck) <= 0.03 * max(whole.width, whole.height),
         "the head is joined to the neck"
     assert hypot(head.center_x - body.center_x, head.center_y - body.center_y) >= hypot(
         neck.center_x - body.center_x, neck.center_y - body.center_y

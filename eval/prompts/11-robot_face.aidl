@@ -3,15 +3,21 @@ assembly robot_face {
     solid whole { todo }
     var symmetry = 1
 
-    @note("head, face, skull, plate")
+    @note("head, face, skull / plate")
     solid head { todo }
     param eye_count = 2 in 1..9
     for i in 0..<eye_count {
-        @note("eye")
+        @note("eye, eye socket")
         solid eye[i] { todo }
     }
-    @note("mouth, grille, speaker, grill")
+    @note("mouth, grille / grill / speaker")
     solid mouth { todo }
+
+    param ear_count = 2 in 0..9
+    for i in 0..<ear_count {
+        @note("ear")
+        solid ear[i] { todo }
+    }
 
     assert len(eye) == 2, "there are two eyes"
     assert abs(eye[0].width - eye[-1].width) <= 0.1 * eye[0].width, "the eyes are of like size"
@@ -25,5 +31,11 @@ assembly robot_face {
     assert no_overlap(eye[0], eye[-1]), "the eyes are apart"
     assert inside(mouth, head) and abs(mouth.center_x - head.center_x) <= 0.1 * head.width,
         "the mouth is in the middle of the face"
+    for e in ear {
+        assert abs(e.height - ear[0].height) <= 0.1 * e.height and abs(
+            e.center_y - ear[0].center_y
+        ) <= 0.1 * head.height,
+            "the ears are alike and level"
+    }
     assert symmetry >= 0.8, "left and right are alike"
 }

@@ -6,15 +6,17 @@ assembly scissors {
 
     param blade_count = 2 in 1..9
     for i in 0..<blade_count {
-        @note("blade")
+        @note("blade, edge / cutting edge; of half, arm, lever")
         solid blade[i] { todo }
     }
     param handle_count = 2 in 1..9
     for i in 0..<handle_count {
-        @note("handle, grip, loop / ring / bow")
+        @note(
+            "handle / grip, loop / ring / bow / eye, finger / finger hole / finger ring / finger loop"
+        )
         solid handle[i] { todo }
     }
-    @note("pivot, screw, rivet, hinge, pin, bolt, pivot hole, joint")
+    @note("pivot, screw / rivet / hinge / pin / bolt, pivot hole, joint / bore / axis")
     solid pivot { todo }
 
     assert len(blade) == 2, "there are two blades"

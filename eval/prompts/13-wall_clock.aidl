@@ -2,16 +2,16 @@
 assembly wall_clock {
     solid whole { todo }
 
-    @note("face, dial, clock face, disc, disk, plate, case, body, frame")
+    @note("face / dial, disc / disk / plate, case / body / frame / rim")
     solid face { todo }
     param hand_count = 2 in 1..9
     for i in 0..<hand_count {
-        @note("hand, pointer, needle")
+        @note("hand / pointer / needle")
         solid hand[i] { todo }
     }
     param mark_count = 12 in 1..120
     for i in 0..<mark_count {
-        @note("mark / marker / tick, numeral / number / digit, hour, index")
+        @note("mark / marker / tick / hour mark, numeral / number / digit, hour, index")
         solid mark[i] { todo }
     }
 

@@ -7,12 +7,12 @@ assembly chess_rook {
 
     param base_count = 1 in 0..9
     for i in 0..<base_count {
-        @note("base, foot, plinth, pedestal")
+        @note("base, foot / plinth / pedestal")
         solid base[i] { todo }
     }
     param top_count = 1 in 0..20
     for i in 0..<top_count {
-        @note("crown, head, battlement / parapet / crenellation, turret, top")
+        @note("crown, head, battlement / parapet / crenellation / merlon, turret, top")
         solid top[i] { todo }
     }
 

@@ -2,14 +2,14 @@
 assembly door {
     solid whole { todo }
 
-    @note("leaf, slab, door, door leaf, door slab, door panel, body")
+    @note("leaf / slab, door, door panel, body / board")
     solid door { todo }
     param panel_count = 4 in 1..24
     for i in 0..<panel_count {
-        @note("panel, inset / recess; not door panel")
+        @note("panel, inset / recess / field; not door panel")
         solid panel[i] { todo }
     }
-    @note("handle, knob, lever, doorknob, door knob, latch")
+    @note("handle, knob / doorknob / lever, latch")
     solid handle { todo }
 
     assert door.height in 1.5 * door.width..4 * door.width, "the door has the proportions of one"

@@ -5,12 +5,12 @@ assembly tractor {
 
     param wheel_count = 2 in 1..20
     for i in 0..<wheel_count {
-        @note("wheel, tyre / tire; not steering wheel")
+        @note("wheel, tyre / tire, rim; not steering wheel")
         solid wheel[i] { todo }
     }
-    @note("body, chassis, hood, bonnet, engine hood, engine, main body, frame")
+    @note("body, chassis, hood / bonnet, engine, frame")
     solid body { todo }
-    @note("cab, cabin, canopy, cockpit, driver cab")
+    @note("cab / cabin, canopy / cockpit, seat")
     solid cab { todo }
 
     assert len(wheel) == 2, "there are two wheels to be seen"

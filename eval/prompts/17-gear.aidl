@@ -7,7 +7,9 @@ assembly gear {
 
     param hole_count = 4 in 0..60
     for i in 0..<hole_count {
-        @note("mounting hole / mount hole / bolt hole / screw hole, mount, bolt / screw, hole")
+        @note(
+            "mounting hole / mount hole / bolt hole / screw hole, mount / mounting, bolt / screw, hole; not center hole, centre hole, shaft hole, axle hole"
+        )
         solid hole[i] { todo }
     }
 

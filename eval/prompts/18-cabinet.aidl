@@ -2,7 +2,9 @@
 assembly cabinet {
     solid whole { todo }
 
-    @note("cabinet, carcass, carcase, case, corpus, body, frame, outer, shell, chest, box")
+    @note(
+        "cabinet / carcass / carcase / corpus, case / body / chest, frame / outer / shell / box; of side, board, panel, shelf"
+    )
     solid cabinet { todo }
     param drawer_count = 3 in 1..24
     for i in 0..<drawer_count {
@@ -11,11 +13,20 @@ assembly cabinet {
     }
     param handle_count = 3 in 0..120
     for i in 0..<handle_count {
-        @note("handle, knob, pull, grip")
+        @note("handle / knob / pull / grip")
         solid handle[i] { todo }
     }
 
+    param foot_count = 2 in 0..12
+    for i in 0..<foot_count {
+        @note("foot / leg / feet, plinth / base / kick / toe kick")
+        solid foot[i] { todo }
+    }
+
     assert len(drawer) >= 2, "there are several drawers"
+    for f in foot {
+        assert clearance(f, cabinet) <= 0.02 * whole.height, "the feet carry the cabinet"
+    }
     for d in drawer { assert inside(d, cabinet), "the drawers are in the cabinet" }
     for i in 0..<len(drawer) {
         for j in i + 1..<len(drawer) {

@@ -111,8 +111,9 @@ def minus(a: Vec, b: Vec) -> Vec:
 
 
 def _lerp(ev: Evaluator, a: Any, b: Any, t: Any) -> Any:
-    way = arithmetic("-", ev.point(b), ev.point(a))
-    return arithmetic("+", ev.point(a), arithmetic("*", way, ev.number(t)))
+    if not (isinstance(a, Num) and isinstance(b, Num)):
+        a, b = ev.point(a), ev.point(b)
+    return arithmetic("+", a, arithmetic("*", arithmetic("-", b, a), ev.number(t)))
 
 
 def _unit(ev: Evaluator, v: Any) -> Any:

@@ -96,6 +96,14 @@ def test_wrong_program_leaves_the_old_drawing(aidl: Aidl, folder: Path) -> None:
     assert (folder / "wrong.svg").read_text() == "old"
 
 
+def test_an_error_after_solving_is_not_called_solved(aidl: Aidl, folder: Path) -> None:
+    (folder / "round.aidl").write_text("solid plate { c = circle(radius: 20); fillet(c, 3) }")
+    result = aidl("compile", "round.aidl")
+    assert result.code == 1
+    assert "`c` has no corners" in result.err
+    assert "round.aidl: errors after solving, nothing written" in result.err.splitlines()[-1]
+
+
 def test_unsolved_program_is_drawn_only_if_asked(aidl: Aidl, folder: Path) -> None:
     assert aidl("compile", "unsolvable.aidl").code == 1
     assert not (folder / "unsolvable.svg").exists()

@@ -109,7 +109,7 @@ WHEELS = read(
             for i in 0..<wheel_count {
                 @note("wheel, tyre / tire; not steering wheel") solid wheel[i] { todo }
             }
-            @note("body, box") solid body { todo }
+            @note("body, box; of plank") solid body { todo }
             param bell_count = 1 in 0..9
             for i in 0..<bell_count { @note("bell") solid bell[i] { todo } }
             assert len(wheel) == 2, "two wheels"
@@ -139,6 +139,24 @@ CARTS = {
     "parts of parts": f"solid all {{ {BODY} left_wheel_rim = {LEFT} right_wheel_rim = {RIGHT}"
     " left_wheel_hub = circle(center: (-10, 5), radius: 1)"
     " right_wheel_hub = circle(center: (10, 5), radius: 1) }",
+    "what an outline is made of": f"solid all {{ {BODY} rear_wheel = {LEFT} front_wheel = {RIGHT}"
+    " hub = circle(center: (10, 5), radius: 1) cart = cut(union(body, rear_wheel, front_wheel), hub) }",
+    "what is put together with others": f"solid all {{ b = {BODY[7:]} rear_wheel = {LEFT}"
+    f" front_wheel = {RIGHT} body = union(b, rear_wheel, front_wheel) }}",
+    "what is cut out": "solid all { sheet = rectangle(center: origin, width: 90, height: 70)"
+    f" wheel_1 = {LEFT} wheel_2 = {RIGHT} {BODY} rest = cut(sheet, wheel_1, wheel_2, body) }}",
+    "copies of what is made of others": f"solid all {{ {BODY} wheel_rim = {LEFT}"
+    " wheel_hub = circle(center: (-10, 5), radius: 1) half = cut(wheel_rim, wheel_hub)"
+    " other = mirror(half, about: y_axis) cart = union(half, other) }",
+    "an outline that has another's name": f"solid all {{ {BODY} wheel_outline = {LEFT}"
+    " bore = circle(center: (-10, 5), radius: 1) rear = cut(wheel_outline, bore)"
+    f" wheel = {RIGHT} ring_of_wheel = circle(center: (0, 8), radius: 9) }}",
+    "halves": "solid back_body { b = rectangle(center: (-10, 8), width: 20, height: 5) }"
+    " solid front_body { b = rectangle(center: (10, 8), width: 20, height: 5) }"
+    f" solid wheels {{ front = {LEFT} rear = {RIGHT} }}",
+    "what it is made of": "for i in 0..3 { solid plank[i] {"
+    " b = rectangle(center: (10 * i - 15, 8), width: 10, height: 5) } }"
+    f" solid wheels {{ front = {LEFT} rear = {RIGHT} }}",
     "a part that holds the others": f"solid body {{ {BODY} solid wheel_1 {{ r = {LEFT} }}"
     f" solid wheel_2 {{ r = {RIGHT} }} }}",
     "names of the prompt itself": f"param pieces = 7 fn area(x) = 3 fn len(x) = 9 let whole = 5"
@@ -182,6 +200,45 @@ def test_of_too_many_none_is_measured() -> None:
         "two wheels": "6 of `wheel` were found, and 4 at most are looked at",
         "wheels of 10 mm": "6 of `wheel` were found, and 4 at most are looked at",
     }
+
+
+def test_what_lies_apart_is_another_part() -> None:
+    bodies = "for i in 0..1 { solid body[i] { b = rectangle(center: (50 * i, 8), width: 40, height: 5) } }"
+    wheels = f"solid wheels {{ front = {LEFT} rear = {RIGHT} }}"
+    assert unmet(WHEELS, f"assembly cart {{ {bodies} {wheels} }}") == {
+        "one piece": "here 2 == 1",
+    }
+
+
+def test_what_is_inside_material_is_not_to_be_seen() -> None:
+    sheet = "sheet = rectangle(center: (0, 5), width: 90, height: 70)"
+    buried = {
+        "two wheels": "`cart.wheel_1` is inside other material and is not to be seen",
+        "wheels of 10 mm": "`cart.wheel_1` is inside other material and is not to be seen",
+        "a body of 200 mm²": "`cart.body` is inside other material and is not to be seen",
+        "bells in the body": "`cart.body` is inside other material and is not to be seen",
+    }
+    assert unmet(WHEELS, f"solid cart {{ {sheet} {BODY} wheel_1 = {LEFT} wheel_2 = {RIGHT} }}") == buried
+    filled = f"patch = {sheet[8:]} rest = cut(sheet, body, wheel_1, wheel_2)"
+    assert (
+        unmet(WHEELS, f"solid cart {{ {sheet} {BODY} wheel_1 = {LEFT} wheel_2 = {RIGHT} {filled} }}")
+        == buried
+    )
+
+
+def test_the_edges_of_a_shape_stand_for_what_is_between_them() -> None:
+    text = """
+        solid home {
+            body = house(center: origin, width: 100, height: 120, roof_height: 45)
+            chimney = rectangle(center: (28, 50), width: 12, height: 40)
+            door = rectangle(center: (0, -42), width: 20, height: 36)
+            front = cut(union(body, chimney), door)
+        }"""
+    assert unmet(PROMPTS["house"], text) == {}
+    assert list(unmet(PROMPTS["house"], text.replace("(28, 50)", "(28, 150)"))) == [
+        "the chimney stands on the roof",
+        "the parts hold together",
+    ]
 
 
 def test_strokes_cover_no_area() -> None:
@@ -235,6 +292,14 @@ def test_an_empty_drawing_has_no_measures(measure: str) -> None:
     [
         ("assembly a { }", "a.aidl: the comment before the root is to say what is asked for"),
         ("/// a\nassembly a { solid lid { todo } }", "a.aidl: `lid` has no `@note` of the words it goes by"),
+        (
+            '/// a\nassembly a { @note("lid; nor cap") solid lid { todo } }',
+            "a.aidl: in the `@note` of `lid`, `nor cap` is neither `not …` nor `of …`",
+        ),
+        (
+            '/// a\nassembly a { @note("lid;") solid lid { todo } }',
+            "a.aidl: in the `@note` of `lid`, `` is neither `not …` nor `of …`",
+        ),
         (
             "/// a\nassembly a { param lid_count = 0 in 0..9 }",
             "a.aidl: `lid_count` counts no role, or is 0 as written",

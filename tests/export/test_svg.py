@@ -86,6 +86,26 @@ def test_colors():
     assert path.attrib["fill"] == "#ff0000"
 
 
+@pytest.mark.parametrize(("fill", "ink"), [("ivory", "#2f3b4a"), ("#102030", "#b4bfcc")])
+def test_strokes_that_take_the_colour_of_what_they_lie_on_are_drawn_in_another(fill: str, ink: str):
+    on = structure("drawing", "on", primitive("l", Line((1, 1), (9, 9))))
+    beside = structure("drawing", "beside", primitive("l", Line((20, 0), (30, 0))))
+    colored = structure("drawing", "colored", primitive("l", Line((1, 9), (9, 1))), color=("red",))
+    found = groups(
+        written(structure("solid", "s", rectangle("r", 0, 0, 10, 10), on, beside, colored, color=(fill,)))
+    )
+    strokes = [found[f"s.{name}"][0].attrib["stroke"] for name in ("on", "beside", "colored")]
+    assert strokes == [ink, fill, "red"]
+
+
+def test_what_lies_on_another_colour_keeps_its_own():
+    mark = structure("drawing", "mark", primitive("l", Line((1, 1), (9, 9))))
+    below = structure("solid", "below", rectangle("r", 0, 0, 4, 4), mark, color=("navy",))
+    above = structure("solid", "above", rectangle("r", 0, 0, 10, 10), color=("gold",))
+    (path,) = groups(written(structure("assembly", "a", below, above)))["a.below.mark"]
+    assert path.attrib["stroke"] == "navy"
+
+
 def test_path_commands():
     assert loop_path(Loop((Circle((0, 0), 2),), reversed=True)) == "M2 0A2 2 0 0 1 -2 0A2 2 0 0 1 2 0Z"
     assert open_path([arc((0, 0), 2, 0, 90)]) == "M2 0A2 2 0 0 0 0 -2"

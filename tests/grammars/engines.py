@@ -93,5 +93,6 @@ def all_programs() -> dict[str, str]:
 
 
 def syntax_errors(text: str) -> list[str]:
-    """The codes of the errors of the parser."""
-    return [d.code for d in parse(SourceFile("", text)).diagnostics if d.is_error]
+    """The codes of the errors of the parser, E0125 aside: the grammar knows no lines."""
+    found = parse(SourceFile("", text)).diagnostics
+    return [d.code for d in found if d.is_error and d.code != "E0125"]

@@ -476,18 +476,18 @@ def test_package_that_is_not_installed(kind: str, monkeypatch: pytest.MonkeyPatc
     assert told.hints == ("pip install 'aidl-lang[models]'",)
 
 
-def test_options_become_connection_and_sampling() -> None:
+def test_options_become_connection_and_sampling(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("aidl_lang.llm.providers.connect", lambda said: said)
     parser = argparse.ArgumentParser()
     options.add_provider(parser)
-    said = "--provider openai --model m --base-url http://x/v1 --timeout 30 --price 2.5/10"
+    who = "--provider openai --model m --base-url http://x/v1 --timeout 30 --price 2.5/10"
     drawn = "--seed 3 --temperature 0.5 --max-tokens 9"
-    arguments = parser.parse_args(f"{said} {drawn}".split())
-    assert options.connection(arguments) == Connection(
-        "openai", "m", "http://x/v1", timeout=30, price=Price(2.5, 10)
-    )
+    arguments = parser.parse_args(f"{who} {drawn}".split())
+    said = Connection("openai", "m", "http://x/v1", timeout=30, price=Price(2.5, 10))
+    assert options.provider(arguments) == said
     assert options.sampling(arguments) == Sampling(3, 0.5, 9)
     plain = parser.parse_args([])
-    assert (options.connection(plain), options.sampling(plain)) == (Connection(), Sampling())
+    assert (options.provider(plain), options.sampling(plain)) == (Connection(), Sampling())
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,7 @@
-"""A real small language model on loopback, behind llama.cpp's own server. Only when AIDL_TEST_MODEL names its folder."""
+"""A real small language model on loopback, behind llama.cpp's own server.
+
+The tests are there only when AIDL_TEST_MODEL names the folder that `install.py` has filled.
+"""
 
 from __future__ import annotations
 
@@ -18,8 +21,9 @@ from tests.model.install import Installed
 FOLDER = os.environ.get("AIDL_TEST_MODEL", "")
 collect_ignore_glob = [] if FOLDER else ["test_*.py"]
 
-CONTEXT = 8192
-"""All that the model was trained for: the guide, one request and a short reply."""
+CONTEXT = 2048
+THREADS = 1
+"""More of them wait for each other as soon as anything else runs on the machine."""
 
 
 @pytest.fixture(scope="session")
@@ -35,7 +39,7 @@ def address(installed: Installed, tmp_path_factory: pytest.TempPathFactory) -> I
         port = probe.getsockname()[1]
     log = tmp_path_factory.mktemp("server") / "log"
     command = [installed.server, "-m", installed.model, "--host", "127.0.0.1", "--port", port]
-    options = ["-c", CONTEXT, "-np", 1, "-t", 2, "--offline"]
+    options = ["-c", CONTEXT, "-np", 1, "-t", THREADS, "-a", "smollm2-135m", "--offline"]
     with log.open("w") as file:
         process = subprocess.Popen([*map(str, command + options)], stdout=file, stderr=file)
     try:

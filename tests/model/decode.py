@@ -1,7 +1,8 @@
 """Replies of a model that llguidance keeps to a grammar, token by token.
 
-Run by the Python of the small model's folder. Standard input is JSON: `model` (a file), `grammar` (Lark's notation),
-`messages`, `seeds` and `max_tokens`; standard output a list of `text` and `finish_reason`, one for each seed.
+Run by the Python of the small model's folder. Standard input is JSON: `model` (a file), `grammar` (in Lark's
+notation), `messages`, `seeds` and `max_tokens`; standard output a list of `text` and `finish_reason`, one for
+each seed.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class Mask:
 
 def main() -> None:
     asked: dict[str, Any] = json.load(sys.stdin)
-    model = llama_cpp.Llama(asked["model"], n_ctx=2048, n_threads=2, verbose=False)
+    model = llama_cpp.Llama(asked["model"], n_ctx=2048, n_threads=1, n_threads_batch=1, verbose=False)
     tokenizer = lltokenizer_from_vocab(model._model.vocab)
     matcher = LLMatcher(tokenizer, asked["grammar"])
     replies = []

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import os
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -35,6 +37,37 @@ def test_a_broken_cache_is_made_anew(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "tables.pickle"
     path.write_bytes(content)
     assert tables._read(path) is None
+
+
+def _without_rules() -> object:
+    """Tables as a version of the code with other fields would have left them."""
+    known = copy.copy(tables.load_tables())
+    del known.__dict__["rules"]
+    return known
+
+
+@pytest.mark.parametrize("other", [tables.Rule("<a>", 1, None, 0, (0,)), [], _without_rules()])
+def test_a_cache_of_something_else_is_made_anew(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, other: object
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    path = tables.cache_path(resource("grammar/aidl.lark").read_text(encoding="utf-8"))
+    path.parent.mkdir()
+    path.write_bytes(pickle.dumps(other))
+    assert tables.load_tables.__wrapped__().rules == tables.load_tables().rules
+    read = tables._read(path)
+    assert read is not None
+    assert read.rules == tables.load_tables().rules
+
+
+def test_the_name_of_the_cache_depends_on_the_code_that_reads_it(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    before = tables.cache_path("a")
+    edited = tmp_path / "tables.py"
+    edited.write_bytes(Path(tables.__file__).read_bytes() + b"# edited")
+    monkeypatch.setattr(tables, "__file__", str(edited))
+    assert tables.cache_path("a") != before
 
 
 def test_a_folder_that_cannot_be_written_is_tolerated(tmp_path: Path) -> None:

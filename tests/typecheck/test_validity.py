@@ -138,8 +138,6 @@ CASES = {
         param n = 3
         hole h {
             rim = circle(radius: 4)
-            if n > 2 {
-            }
         }
         if n > 2 { prefer h.rim.radius == plate.height weight 3 }
         """,

@@ -149,8 +149,15 @@ def _replaced(key: Key, replace: Callable[[Key], Key | None]) -> Key:
 
 
 def shape(key: Key) -> Key:
-    """A key without its numbers."""
-    return _replaced(key, lambda part: ("number",) if _is_number(part) else None)
+    """A key without its numbers; what they are added to stays."""
+    return _replaced(key, _without_numbers)
+
+
+def _without_numbers(key: Key) -> Key | None:
+    if key[:1] in (("+",), ("-",)) and len(key) == 3:
+        rest = [part for part in key[1:] if isinstance(part, tuple) and not _is_number(part)]
+        return shape(rest[0]) if len(rest) == 1 else None
+    return ("number",) if _is_number(key) else None
 
 
 def _is_number(key: Key) -> bool:

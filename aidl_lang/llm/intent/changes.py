@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from aidl_lang.llm.intent.canonical import Key, Path, shape, translated
-from aidl_lang.llm.intent.inventory import STATED, Inventory, Item, Kind
+from aidl_lang import ast
+from aidl_lang.llm.intent.canonical import Key, Path, names_in, shape, translated
+from aidl_lang.llm.intent.inventory import STATED, Inventory, Item, Kind, unnumbered
 from aidl_lang.llm.intent.matching import match_things
 
 
@@ -17,6 +18,7 @@ class Fate(StrEnum):
     REWRITTEN = "rewritten"  # another statement about the same things
     MOVED = "moved"  # the same name in another structure
     RENAMED = "renamed"
+    FEWER = "fewer"  # a loop or a list makes less of them
     WEAKENED = "weakened"  # it was asked for, and is wished for or only checked
     GONE = "gone"
 
@@ -46,15 +48,19 @@ def compare(before: Inventory, after: Inventory) -> Changes:
         elif item.kind is Kind.PARAM:
             fates[item] = _of_param(item, after, paths)
         else:
-            fates[item] = _of_thing(item, after, paths)
+            fates[item] = _of_thing(item, before, after, paths)
     return Changes(before, after, paths, fates)
 
 
-def _of_thing(item: Item, after: Inventory, paths: Mapping[Path, Path]) -> tuple[Fate, Item | None]:
+def _of_thing(
+    item: Item, before: Inventory, after: Inventory, paths: Mapping[Path, Path]
+) -> tuple[Fate, Item | None]:
     path = paths.get(item.thing)
     if path is None:
         return Fate.GONE, None
     other = after.things[path]
+    if _are_fewer(item, before, other, after):
+        return Fate.FEWER, other
     home = paths.get(item.home, item.home)
     name = item.thing[len(item.home)]
     if other.home != home:
@@ -62,6 +68,26 @@ def _of_thing(item: Item, after: Inventory, paths: Mapping[Path, Path]) -> tuple
     if other.thing[len(other.home)] != name:
         return Fate.RENAMED, other
     return (Fate.SAME if other.key == translated(item.key, paths) else Fate.CHANGED), other
+
+
+def _are_fewer(item: Item, before: Inventory, other: Item, after: Inventory) -> bool:
+    """Whether there are fewer of something in each of what holds it, and no param decides over that."""
+    many, few = before.counts[unnumbered(item.thing)], after.counts[unnumbered(other.thing)]
+    if not 0 < few < many or item.thing[-1].startswith("["):
+        return False
+    homes = before.counts[unnumbered(item.home)], after.counts[unnumbered(other.home)]
+    return homes[0] <= homes[1] and not (_decides(item) & before.knobs or _decides(other) & after.knobs)
+
+
+def _decides(item: Item) -> frozenset[str]:
+    """The names in what decides how many there are of something."""
+    made: Key = ()
+    match item.node:
+        case ast.Assign(indices=(), value=ast.Comprehension()):
+            made = (item.key[1], item.key[3])
+        case ast.Assign(indices=(), value=ast.Call()):
+            made = item.key
+    return names_in((item.context, made))
 
 
 def _of_param(item: Item, after: Inventory, paths: Mapping[Path, Path]) -> tuple[Fate, Item | None]:

@@ -15,24 +15,29 @@ class Loss:
     """Something that an earlier program meant to have and the present one lacks.
 
     item        what it was, and `inventory` that of the program that had it
-    attempt     the number of the attempt in which it was seen last, from 1
-    fate        gone, weakened to a wish or a check, or rewritten to something that says less
+    fate        gone, fewer, weakened to a wish or a check, or rewritten to something that says less
     now         what stands in its place, if anything does
     finding     whether it would fit again, and with what it conflicts
     dependents  for structures and geometry: what spoke of them and went with them
+    counts      of what is fewer now: how many there were, and how many there are
     """
 
     item: Item
     inventory: Inventory
-    attempt: int
     fate: Fate
     now: Item | None = None
     finding: Finding = UNTRIED
     dependents: tuple[Item, ...] = ()
+    counts: tuple[int, int] = (0, 0)
 
     @property
     def kind(self) -> Kind:
         return self.item.kind
+
+    @property
+    def is_doubtful(self) -> bool:
+        """It may well be meant: asking for it once is enough."""
+        return self.fate is Fate.FEWER
 
     @property
     def path(self) -> str:

@@ -4,29 +4,24 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from aidl_lang import ast
 from aidl_lang.diagnostics import Diagnostic
-from aidl_lang.llm.intent.canonical import Key, Path
-from aidl_lang.llm.intent.changes import Changes
+from aidl_lang.llm.intent.changes import Changes, Fate
 from aidl_lang.llm.intent.inventory import Inventory, Item, Kind
-from aidl_lang.llm.intent.placing import PutBack, put_back
+from aidl_lang.llm.intent.placing import put_back
 from aidl_lang.pipeline import Compiled, Settings, compile
-from aidl_lang.resolving.resolution import Resolution
-from aidl_lang.solved import SolvedGeometry, SolvedModel
+from aidl_lang.solved import ConstraintReport
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.world import World
 
 _SECONDS = 5.0
 """For solving once with something put back."""
 _PATIENCE = 30.0
-"""Seconds after which nothing more is tried."""
-_SAME = 1e-6
-"""How far a value may move, relative to the size of the drawing, and still count as unmoved."""
-_FAILED, _TIMED_OUT, _REPEATED = "E0604", "E0603", "N0602"
+"""Seconds of processor time after which nothing more is tried."""
+_FAILED, _TIMED_OUT = "E0604", "E0603"
 _UNSOLVED = frozenset({"E0601", "E0602", "E0605"})
 _CONTACTS = frozenset({"W0705", "W0736"})
 """Remarks on parts that touch nothing; what brings them about does not fit."""
@@ -37,9 +32,10 @@ class State(StrEnum):
 
     UNTRIED = "untried"  # the program has errors, or there was too much to try
     HOMELESS = "homeless"  # what it speaks of, or the place for it, is not there any more
-    IMPLIED = "implied"  # it holds, and takes no freedom: other words say it
+    IMPLIED = "implied"  # other words say it
     FITS = "fits"
     CONFLICTS = "conflicts"
+    MENDED = "mended"  # it was in a conflict, and what is in its place was changed to hold
 
 
 @dataclass(frozen=True)
@@ -67,12 +63,16 @@ class Trial:
 
 
 class Prober:
-    """Tries losses in one program: at most so many times, and no more after some time."""
+    """Tries losses in one program: at most so many times, and no more after some time. `clashed` are items
+    that a conflict has been about.
+    """
 
-    def __init__(self, name: str, world: World | None, settings: Settings, most: int) -> None:
+    def __init__(
+        self, name: str, world: World | None, settings: Settings, most: int, clashed: Collection[Item]
+    ) -> None:
         seconds = min(settings.solving.seconds, _SECONDS)
-        self.name, self.world, self.left = name, world, most
-        self.end = time.monotonic() + _PATIENCE
+        self.name, self.world, self.left, self.clashed = name, world, most, clashed
+        self.end = time.thread_time() + _PATIENCE
         self.settings = replace(settings, solving=replace(settings.solving, seconds=seconds))
 
     def compiled(self, source: SourceFile) -> Compiled:
@@ -80,10 +80,12 @@ class Prober:
         self.left -= 1
         return compile(source, self.world, settings=self.settings)
 
-    def tried(self, item: Item, changes: Changes, base: Compiled | None) -> Trial:
-        """What comes of putting an item back into the later program, which came out as `base`."""
+    def tried(self, item: Item, changes: Changes, base: Compiled | None, is_first: bool = False) -> Trial:
+        """What comes of putting an item back into the later program, which came out as `base`. If more is to
+        follow, as constraints of a structure, it may touch nothing yet.
+        """
         here = changes.after.source
-        is_over = self.left <= 0 or time.monotonic() > self.end
+        is_over = self.left <= 0 or time.thread_time() > self.end
         if is_over or base is None or not stands(base):
             return Trial(UNTRIED, here)
         edit = put_back(item, changes)
@@ -91,17 +93,27 @@ class Prober:
             return Trial(Finding(State.HOMELESS), here)
         source = SourceFile(self.name, edit.text)
         result = self.compiled(source)
-        new = list(_new_errors((*base.diagnostics, *_contacts(changes)), result))
+        new = [d for d in new_errors(changes.before, base, result) if not is_first or d.is_error]
         if any(d.code == _TIMED_OUT for d in new):
             self.left = 0  # each further trial would take as long
             return Trial(UNTRIED, here)
         if result.model is None:
             return Trial(Finding(State.HOMELESS), here)
+        own = Span(source, edit.start, edit.end)
+        stated = _stated_in(result, own)
+        fate, now = changes.fates[item]
         if new:
             solving = [d for d in new if d.code in _UNSOLVED]
-            reason = "" if solving else new[0].message
-            return Trial(Finding(State.CONFLICTS, tuple(_parties(solving, source, edit)), reason), here)
-        implied = _is_implied(item, edit, base, result, changes.before)
+            parties = tuple(_parties(solving, own, result))
+            if (
+                fate is Fate.REWRITTEN
+                and now
+                and item in self.clashed
+                and _is_mended(stated, now, parties, base)
+            ):
+                return Trial(Finding(State.MENDED), here)
+            return Trial(Finding(State.CONFLICTS, parties, "" if solving else new[0].message), here)
+        implied = _is_implied(stated, item, fate, own, result)
         return Trial(Finding(State.IMPLIED if implied else State.FITS), source, result)
 
 
@@ -112,13 +124,12 @@ def stands(compiled: Compiled | None) -> bool:
     return not any(d.is_error and d.code != _FAILED for d in compiled.diagnostics)
 
 
-def _contacts(changes: Changes) -> Iterator[Diagnostic]:
-    """What touched nothing when what was lost was still there."""
-    return (d for d in changes.before.diagnostics if d.code in _CONTACTS)
-
-
-def _new_errors(before: Iterable[Diagnostic], result: Compiled) -> Iterator[Diagnostic]:
-    known = Counter(_mark(d) for d in before)
+def new_errors(before: Inventory, base: Compiled, result: Compiled) -> Iterator[Diagnostic]:
+    """Errors of a result that its base did not have, and parts that touch nothing, but for those that touched
+    nothing `before` either.
+    """
+    contacts = (d for d in before.diagnostics if d.code in _CONTACTS)
+    known = Counter(_mark(d) for d in (*base.diagnostics, *contacts))
     for d in result.diagnostics:
         if d.is_error or d.code in _CONTACTS:
             mark = _mark(d)
@@ -132,96 +143,41 @@ def _mark(d: Diagnostic) -> tuple[str, str]:
     return d.code, d.message.split("`")[1] if d.code in _CONTACTS else d.message
 
 
-def _parties(errors: list[Diagnostic], source: SourceFile, edit: PutBack) -> Iterable[str]:
-    """The statements named in a conflict as they are written, but for the one that was put back."""
-    own = Span(source, edit.start, edit.end)
+def _parties(errors: list[Diagnostic], own: Span, result: Compiled) -> Iterable[str]:
+    """The constraints named in a conflict as they are written, but for the one that was put back."""
     spans = [span for d in errors for span in (d.span, *(label.span for label in d.secondary)) if span]
-    others = (span for span in spans if not span.overlaps(own))
+    others = (span for span in spans if not span.overlaps(own) and _stated_in(result, span))
     return dict.fromkeys(span.one_line for span in sorted(others, key=lambda span: span.start))
 
 
-# --- What follows from the rest ------------------------------------------------------------------------
-
-
-def _is_implied(item: Item, edit: PutBack, base: Compiled, result: Compiled, before: Inventory) -> bool:
-    """Whether the program says as much without an item: nothing moves when it is put back, and nothing is
-    less free. An inequality takes no freedom, and a structure that nothing speaks of has none: there the
-    solver has to say what follows from what.
+def _is_implied(
+    stated: Sequence[ConstraintReport], item: Item, fate: Fate, own: Span, result: Compiled
+) -> bool:
+    """Whether the program says as much without an item. An inequality that is simply gone counts as lost even
+    if sizes and parameters happen to keep it now; what came in its place may say more.
     """
-    if item.kind not in (Kind.CONSTRAINT, Kind.ROTATION):
+    if item.kind is not Kind.CONSTRAINT and not (item.kind is Kind.ROTATION and stated):
         return False
-    assert base.model is not None
-    assert result.model is not None
-    if base.model.degrees != result.model.degrees or not _unmoved(base.model, result.model):
-        return False
-    return _is_repeated(edit, base, result) or (
-        _is_at_home(item, before.things) and _is_exact(item, before.resolution)
-    )
+    return (fate is Fate.REWRITTEN or _is_exact(stated)) and result.follows(own)
 
 
-def _is_repeated(edit: PutBack, base: Compiled, result: Compiled) -> bool:
-    """Whether the solver says that it follows from others, or another from it."""
-    known = {d.message for d in base.diagnostics}
-    for d in result.diagnostics:
-        if d.code == _REPEATED and d.message not in known:
-            spans = [d.span, *(label.span for label in d.secondary)]
-            if any(span and span.start < edit.end and edit.start < span.end for span in spans):
-                return True
-    return False
-
-
-def _is_at_home(item: Item, things: Mapping[Path, Item]) -> bool:
-    """Whether it speaks of geometry of its own structure alone. What speaks of another structure may be all
-    that keeps that one where it happens to stand.
+def _is_mended(stated: Sequence[ConstraintReport], now: Item, parties: Sequence[str], base: Compiled) -> bool:
+    """Whether what came in the place of something that was in a conflict asks for as much: an equation for
+    an equation, or what is no opposite for an inequality.
     """
-    spoken_of = [things.get(path) for path in item.things]
-    return all(thing and thing.kind is Kind.GEOMETRY and thing.home == item.home for thing in spoken_of)
+    heirs = _stated_in(base, now.span)
+    if _is_exact(stated):
+        return bool(heirs) and _is_exact(heirs)
+    return now.text not in parties
 
 
-def _is_exact(item: Item, resolution: Resolution) -> bool:
-    """Whether a statement is made of equations alone."""
-    seen: set[ast.Node] = set()
-    stack: list[ast.Node] = [item.node]
-    while stack:
-        for node in ast.walk(stack.pop()):
-            if isinstance(node, ast.Membership):
-                return False
-            if isinstance(node, ast.Comparison) and set(node.operators) != {"=="}:
-                return False
-            for signature in resolution.candidates.get(node, ()) if isinstance(node, ast.Call) else ():
-                body = signature.node
-                if isinstance(body, ast.ConstraintDefinition) and body not in seen:
-                    seen.add(body)
-                    resolution.scope_of(body)
-                    stack.append(body.body)
-    return True
+def _stated_in(compiled: Compiled, span: Span) -> list[ConstraintReport]:
+    constraints = compiled.model.constraints if compiled.model is not None else ()
+    text, start, end = span.source.text, span.start, span.end
+    return [
+        c for c in constraints if c.span.start < end and start < c.span.end and c.span.source.text == text
+    ]
 
 
-def _unmoved(a: SolvedModel, b: SolvedModel) -> bool:
-    first, second = dict(_values(a)), dict(_values(b))
-    size = max([1.0, *map(abs, first.values())])
-    return first.keys() == second.keys() and all(
-        abs(value - second[key]) <= _SAME * size for key, value in first.items()
-    )
-
-
-def _values(model: SolvedModel) -> Iterator[tuple[Key, float]]:
-    """Every number of a drawing, by where it stands."""
-    for structure in model.root.walk():
-        frame = structure.frame
-        for name, value in (("x", frame.x), ("y", frame.y), ("rotation", frame.rotation)):
-            yield (structure.path, name), value
-        for number, geometry in enumerate(structure.geometry):
-            for part_number, part in enumerate(geometry.walk()):
-                yield from _numbers((structure.path, number, part_number), part)
-
-
-def _numbers(place: Key, geometry: SolvedGeometry) -> Iterator[tuple[Key, float]]:
-    for name, value in geometry.values.items():
-        stack: list[tuple[Key, object]] = [((*place, name), value)]
-        while stack:
-            key, each = stack.pop()
-            if isinstance(each, float | int):
-                yield key, float(each)
-            elif isinstance(each, tuple):
-                stack += [((*key, i), inner) for i, inner in enumerate(each)]
+def _is_exact(stated: Iterable[ConstraintReport]) -> bool:
+    return all(report.exact for report in stated)

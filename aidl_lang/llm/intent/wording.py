@@ -21,9 +21,12 @@ _TOLD = 12
 
 def phrase(loss: Loss) -> str:
     """One loss in a sentence without its full stop."""
+    if loss.fate is Fate.FEWER:
+        many, few = loss.counts
+        return f"{many} `{dotted(loss.item.thing)}` became {few}: unless fewer are meant, make as many again"
     words = f"{named(loss.item, loss.inventory)} {_fate(loss)}"
     if loss.dependents:
-        words += f", and with it {_listed([quoted(item.text) for item in loss.dependents])}"
+        words += f", and with it {_listed([quoted(item.text) for item in loss.dependents], _TOLD)}"
     reason = _reason(loss)
     return f"{words}: {reason}" if reason else words
 
@@ -84,7 +87,8 @@ def _fate(loss: Loss) -> str:
     if loss.fate is Fate.WEAKENED and now is not None:
         return "is only checked now, by an `assert`" if now.kind is Kind.ASSERT else "became a wish"
     if loss.fate is Fate.REWRITTEN and now is not None:
-        return f"was replaced by {quoted(now.text)}, which says less"
+        less = "otherwise" if now.text in loss.finding.parties else "less"
+        return f"was replaced by {quoted(now.text)}, which says {less}"
     return "is gone"
 
 
@@ -102,15 +106,18 @@ def _reason(loss: Loss) -> str:
             why = f" ({finding.reason})" if finding.reason else ""
             return f"as it was it does not fit any more{why}; say it in another way"
         case State.FITS:
+            clashing = [quoted(item.text) for item in loss.dependents if item.clashes]
+            if clashing:
+                return f"put it back, but say {_listed(clashing, _TOLD)} in a way that holds"
             return "it fits as it was; put it back"
         case State.HOMELESS if not is_thing:
             return "what it speaks of is not there any more; say it of what is there now"
     return ""
 
 
-def _listed(names: Iterable[str]) -> str:
+def _listed(names: Iterable[str], most: int = _NAMED) -> str:
     """`a`; `a and b`; `a, b and 3 more`"""
     known = list(names)
-    if len(known) > _NAMED:
-        known = [*known[: _NAMED - 1], f"{len(known) - _NAMED + 1} more"]
+    if len(known) > most:
+        known = [*known[: most - 1], f"{len(known) - most + 1} more"]
     return " and ".join(filter(None, [", ".join(known[:-1]), *known[-1:]]))

@@ -1,0 +1,124 @@
+"""Which definition a call means: the overloads of its name, and the one that its arguments fit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+from aidl_lang import ast
+from aidl_lang.binding import select
+from aidl_lang.building.scopes import Candidate, Scope
+from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.builtins import OUTLINES, SIGNATURES, is_word
+from aidl_lang.names import find, nearest
+from aidl_lang.types import ANY, Binding, Given, Mismatch, Signature, Type, with_article
+from aidl_lang.values import Namespace, Text, Value, kind_of, type_of
+
+
+class Site:
+    """A call as it stands in the text, with what follows from the overloads of its name.
+
+    nodes          its arguments
+    words          for each of them, the text it is if it is a bare word
+    instantiates   whether an overload is a template
+    makes_outline  whether the overloads are those of an outline made of others
+    """
+
+    def __init__(self, node: ast.Call, signatures: list[Signature]) -> None:
+        self.signatures = signatures
+        self.nodes = tuple(a.value for a in node.arguments)
+        self.words = tuple(
+            Text(a.value.span.text) if is_word(a, signatures) else None for a in node.arguments
+        )
+        self.instantiates = any(s.kind is ast.Structure for s in signatures)
+        self.makes_outline = bool(signatures) and signatures[0].name in OUTLINES
+        self._names = tuple(a.name.text if a.name else None for a in node.arguments)
+        self._meanings: dict[tuple[Type, ...], Binding | list[Mismatch]] = {}
+        self._last: tuple[tuple[Type, ...] | None, Binding | list[Mismatch]] = (None, [])
+
+    def meaning(self, values: Sequence[Value]) -> Binding | list[Mismatch]:
+        """Which overload is meant. Types decide, so what was chosen once holds whenever they come again."""
+        kinds = tuple(map(type_of, values))
+        before, found = self._last
+        if kinds == before:  # mostly, and types are slow to hash
+            return found
+        known = self._meanings.get(kinds)
+        if known is None:
+            if len(self._meanings) >= _MOST_MEANINGS:
+                self._meanings.clear()
+            names = (None,) * (len(kinds) - len(self._names)) + self._names
+            given = [Given(name, kind) for name, kind in zip(names, kinds, strict=True)]
+            known = self._meanings[kinds] = select(self.signatures, given)
+        self._last = kinds, known
+        return known
+
+
+def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) -> Site:
+    """What is known of a call whose name has these overloads; a body that runs again defines them anew."""
+    signatures = [c.signature for c in candidates]
+    known = it.sites.get(node)
+    if known is None or known.signatures != signatures:
+        is_standard = node.span.source in it.library_sources and all(s.standard for s in signatures)
+        made = _standard_site(node, tuple(signatures)) if is_standard else Site(node, signatures)
+        known = it.sites[node] = made
+    return known
+
+
+@lru_cache(maxsize=4096)
+def _standard_site(node: ast.Call, signatures: tuple[Signature, ...]) -> Site:
+    """A call that the library makes of its own, which is the same for all programs."""
+    return Site(node, list(signatures))
+
+
+_MOST_MEANINGS = 100  # of one call; lists of every length are types of their own
+
+
+def find_candidates(it: Interpreter, name: str, scope: Scope, receiver: Value | None) -> list[Candidate]:
+    """The callables of a name: as written, else spelled alike."""
+    if isinstance(receiver, Namespace):
+        inner = receiver.values.get("")
+        return inner.candidates(name) if isinstance(inner, Scope) else []
+    if found := scope.candidates(name):
+        return found
+    alike = find(name, _callable_names(it, scope))
+    return scope.candidates(alike) if alike else []
+
+
+def _callable_names(it: Interpreter, scope: Scope) -> dict[str, None]:
+    return scope.callable_names(it.program.library.callables) | dict.fromkeys(SIGNATURES)
+
+
+def unknown_callable(it: Interpreter, node: ast.Call, env: Env) -> None:
+    like = nearest(node.callee.text, _callable_names(it, env.scope), 3)
+    hints = [f"did you mean {' or '.join(f'`{n}`' for n in like)}?"] if like else []
+    it.report("E0203", f"there is no `{node.callee.text}(…)`", node.callee, hints=hints)
+
+
+def no_overload(
+    it: Interpreter,
+    node: ast.Call,
+    misses: Sequence[Mismatch],
+    nodes: Sequence[ast.Node],
+    values: Sequence[Value],
+) -> None:
+    if node in it.program.rejected:
+        return  # the checker has said so
+    name = node.callee.text
+    if it.place(node) is not node.span:
+        # What the library asks of a pair of things is told of the author's call, in the author's words.
+        things = [v for v in values if not isinstance(v, Text | bool)]
+        pairs = [[kind for _, kind, _ in m.signature.parameters] for m in misses]
+        known = dict.fromkeys(
+            " and ".join(map(with_article, kinds[:2])) for kinds in pairs if ANY not in kinds
+        )
+        hints = [f"it takes {', '.join(list(known)[:8])}"] if known else []
+        it.refuse(node, f"it does not go with {' and '.join(map(kind_of, things))}", hints)
+        return
+    closest = max(misses, key=lambda m: m.argument is not None)
+    at = nodes[closest.argument] if len(misses) == 1 and closest.argument is not None else node
+    if len(misses) == 1:
+        message, hints = f"`{name}` {closest.reason}", [f"it is called as `{closest.signature}`"]
+    else:
+        message = f"no `{name}` takes these arguments"
+        hints = [f"`{m.signature}`: {m.reason}" for m in misses]
+    it.report("E0311", message, at, hints=hints)

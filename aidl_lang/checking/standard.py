@@ -1,0 +1,94 @@
+"""What is known of the library's own definitions. They see nothing of a program, so it is found out once."""
+
+from __future__ import annotations
+
+import threading
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from aidl_lang import ast
+from aidl_lang.checking.facts import Fact
+from aidl_lang.checking.named import of_symbol
+from aidl_lang.library import Library
+from aidl_lang.names import fold
+from aidl_lang.resolving.symbols import Scope
+from aidl_lang.source import SourceFile, Span
+
+if TYPE_CHECKING:
+    from aidl_lang.checking.infer import Inference
+
+CONSTANT = frozenset({"len", "written"})
+"""What gives constants even of unknowns."""
+
+_EMPTY = ast.Module(SourceFile("empty", ""), (), (), span=Span(SourceFile("empty", ""), 0, 0))
+
+
+def body_of(check: Inference, definition: ast.Node) -> Scope:
+    """The scope of the body of a structure or a definition."""
+    if check.is_standard(definition):
+        return _body(check.resolution.library, definition)
+    return check.resolution.scope_of(definition)
+
+
+def part(check: Inference, definition: ast.Node, key: str) -> Fact:
+    """What is known of a name that a body declares."""
+    if check.is_standard(definition):
+        return _part(check.resolution.library, definition, key)
+    return of_symbol(check, body_of(check, definition).values[key])
+
+
+def result(check: Inference, definition: ast.FunctionDefinition) -> tuple[Fact, bool]:
+    """What is known of the expression of a function, and whether what it gives depends on its arguments as
+    they are solved, not only as written.
+    """
+    if check.is_standard(definition):
+        return _result(check.resolution.library, definition)
+    before, check.homes = check.homes, body_of(check, definition).homes
+    try:
+        return check.fact(definition.value), _reads_arguments(definition)
+    finally:
+        check.homes = before
+
+
+def _reads_arguments(definition: ast.FunctionDefinition) -> bool:
+    names = {parameter.name.text for parameter in definition.parameters}
+    stack: list[ast.Node] = [definition.value]
+    while stack:
+        match stack.pop():
+            case ast.Name(text) if text in names:
+                return True
+            case ast.Call(callee=callee) if fold(callee.text) in CONSTANT:
+                pass
+            case node:
+                stack.extend(ast.children(node))
+    return False
+
+
+@lru_cache(maxsize=1024)
+def _body(library: Library, definition: ast.Node) -> Scope:
+    with _ONE_AT_A_TIME:
+        return body_of(_alone(library, definition), definition)
+
+
+@lru_cache(maxsize=4096)
+def _part(library: Library, definition: ast.Node, key: str) -> Fact:
+    with _ONE_AT_A_TIME:
+        return part(_alone(library, definition), definition, key)
+
+
+@lru_cache(maxsize=1024)
+def _result(library: Library, definition: ast.FunctionDefinition) -> tuple[Fact, bool]:
+    with _ONE_AT_A_TIME:
+        return result(_alone(library, definition), definition)
+
+
+_ONE_AT_A_TIME = threading.Lock()  # an inference is not to be asked by two threads
+
+
+@lru_cache(maxsize=1024)
+def _alone(library: Library, definition: ast.Node) -> Inference:
+    """What finds out about one definition: for it, the library is the program."""
+    from aidl_lang.checking.infer import Inference  # which asks this module
+    from aidl_lang.resolve import resolve
+
+    return Inference(resolve(_EMPTY, None, library), standard=())

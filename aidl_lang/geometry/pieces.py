@@ -1,0 +1,198 @@
+"""Solids that fall into pieces which nothing joins, though no hole cut them apart.
+
+Pieces that are alike are a pattern and meant, as are letters, and what a single geometry consists of.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.geometry.bodies import Bodies, Mass
+from aidl_lang.geometry.contacts import Contact, Solid
+from aidl_lang.geometry.distance import region_distance
+from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.faces import OwnFace
+from aidl_lang.geometry.measures import region_bounds
+from aidl_lang.geometry.nearness import near_pairs
+from aidl_lang.geometry.notes import UNNOTICED, listed, marked_detached, short
+from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.sections import Section, boxes_meet, intersection, is_nothing, union
+from aidl_lang.geometry.trace import trace_all
+from aidl_lang.solved import SolvedStructure
+
+_PATTERN = 4
+"""So many pieces of one area, or of one definition, are a pattern."""
+_MOST = 3
+"""Loose pieces of a solid that are told."""
+_LETTERING = "text"
+
+
+@dataclass(frozen=True)
+class _Piece:
+    section: Section
+    region: Region
+    box: Bounds
+    faces: tuple[OwnFace, ...]
+
+    def meets(self, section: Section, region: Region) -> bool:
+        if boxes_meet(self.section, section) and not is_nothing(intersection(self.section, section)):
+            return True
+        return self.gap(region) <= UNNOTICED
+
+    def gap(self, region: Region) -> float:
+        closest = region_distance(self.region, region)
+        return closest[0] if closest else 0.0
+
+
+def loose_piece_notes(
+    root: SolvedStructure,
+    walk: Bodies,
+    masses: Sequence[Mass],
+    solids: Sequence[Solid],
+    pairs: Sequence[Contact],
+) -> Iterator[Diagnostic]:
+    """A warning for pieces of a solid that touch neither the rest of it nor what touches that. A solid that
+    is the whole program is a drawing without parts, in which gaps are as good as lines.
+    """
+    free = marked_detached(root)
+    known = {solid.path: solid for solid in solids}
+    for mass in masses:
+        solid = mass.structure
+        if solid is not root and solid.kind == "solid" and solid.path not in free:
+            pieces = _pieces(walk, mass)
+            groups = _groups(pieces, known[solid.path], known, pairs) if len(pieces) > 1 else []
+            yield from _notes(solid, groups)
+
+
+def _pieces(walk: Bodies, mass: Mass) -> list[_Piece]:
+    """What the geometry of a solid, and of those in it, covers before anything is cut out."""
+    faces = [f for s in _material(mass.structure) for f in walk.faces.get(s.path, ())]
+    if len(faces) < 2:
+        return []
+    sections = union([*(f.section for f in faces), *(v.section for v in mass.voids)]).decompose()
+    if len(sections) < 2:
+        return []
+    if len({_area(section) for section in sections}) == 1:
+        return []  # all alike
+    of: list[list[OwnFace]] = [[] for _ in sections]
+    count = len(sections)
+    for i, j in sorted(near_pairs([s.bounds() for s in (*sections, *(f.section for f in faces))], 0.0)):
+        if i < count <= j and not is_nothing(intersection(sections[i], faces[j - count].section)):
+            of[i].append(faces[j - count])
+    traced = trace_all(walk.network, sections)
+    return [
+        _Piece(section, outline.region, region_bounds(outline.region), tuple(own))
+        for section, outline, own in zip(sections, traced, of, strict=True)
+    ]
+
+
+def _material(structure: SolvedStructure) -> Iterator[SolvedStructure]:
+    yield structure
+    for child in structure.structures:
+        if child.kind in ("solid", "assembly"):
+            yield from _material(child)
+
+
+def _area(section: Section) -> str:
+    """To six digits, so that pieces of one size compare equal."""
+    return f"{section.area():.6g}"
+
+
+def _groups(
+    pieces: Sequence[_Piece], own: Solid, known: dict[str, Solid], pairs: Sequence[Contact]
+) -> list[list[_Piece]]:
+    """Pieces that hold together, directly or by other bodies; the largest group first."""
+    joined = _Joined()
+    for contact in pairs:
+        if contact.relation != "apart" or (contact.gap or 0.0) <= UNNOTICED:
+            if own.path not in (contact.a, contact.b):
+                joined.join(contact.a, contact.b)
+                continue
+            other = known[contact.b if contact.a == own.path else contact.a]
+            for number, piece in enumerate(pieces):
+                if piece.meets(other.section, other.region):
+                    joined.join(number, other.path)
+    for i, j in near_pairs([piece.box for piece in pieces], UNNOTICED):
+        if pieces[i].gap(pieces[j].region) <= UNNOTICED:
+            joined.join(i, j)
+    of: dict[int, int] = {}
+    for number, piece in enumerate(pieces):
+        for face in piece.faces:
+            joined.join(number, of.setdefault(id(face), number))
+    groups: dict[object, list[_Piece]] = {}
+    for number, piece in enumerate(pieces):
+        groups.setdefault(joined.root(number), []).append(piece)
+    return sorted(groups.values(), key=lambda group: -sum(p.section.area() for p in group))
+
+
+class _Joined:
+    """Which of any things hang together."""
+
+    def __init__(self) -> None:
+        self._parent: dict[object, object] = {}
+
+    def root(self, thing: object) -> object:
+        while (above := self._parent.get(thing, thing)) != thing:
+            thing = above
+        return thing
+
+    def join(self, one: object, other: object) -> None:
+        self._parent[self.root(one)] = self.root(other)
+
+
+def _notes(solid: SolvedStructure, groups: Sequence[Sequence[_Piece]]) -> Iterator[Diagnostic]:
+    alike = Counter(trait for group in groups for piece in group for trait in _traits(piece))
+    loose = [group for group in groups[1:] if not all(_is_meant(piece, alike) for piece in group)]
+    for group in loose[:_MOST]:
+        yield _note(solid, group, [piece for other in groups if other is not group for piece in other])
+
+
+def _traits(piece: _Piece) -> Iterator[object]:
+    """By what pieces are alike: their area, and the place where they are written, in a loop."""
+    yield _area(piece.section)
+    yield from {g.span for f in piece.faces for g in f.geometries if g.span}
+
+
+def _is_meant(piece: _Piece, alike: Counter[object]) -> bool:
+    lettering = all(g.type == _LETTERING for f in piece.faces for g in f.geometries)
+    return lettering or any(alike[trait] >= _PATTERN for trait in _traits(piece))
+
+
+def _note(solid: SolvedStructure, group: Sequence[_Piece], rest: Sequence[_Piece]) -> Diagnostic:
+    gap, nearest = math.inf, rest[0]
+    for bound, piece, other in sorted(
+        ((_between(p.box, q.box), p, q) for p in group for q in rest), key=lambda found: found[0]
+    ):
+        if bound >= gap:
+            break
+        if (found := piece.gap(other.region)) < gap:
+            gap, nearest = found, other
+    names, beside = _names(solid, group), _names(solid, [nearest])
+    first = group[0].faces[0].geometries[0]
+    touches = "touch" if len(names) > 1 else "touches"
+    return Diagnostic(
+        "W0712",
+        f"{listed(names)} {touches} nothing else of solid `{solid.path}`; the nearest, {listed(beside)}, "
+        f"{'are' if len(beside) > 1 else 'is'} {short(gap)} mm away",
+        first.span or solid.span,
+        "a piece of its own",
+        hints=(
+            "to join them, let them meet: end one on the other, or say `gap: 0`, `touching(…)`",
+            "if they are parts of their own, make each a `solid`",
+            f"if the gap is meant, say so: `@detached` before `{solid.name}`",
+        ),
+    )
+
+
+def _between(a: Bounds, b: Bounds) -> float:
+    """The distance of two boxes."""
+    return math.hypot(max(0.0, a[0] - b[2], b[0] - a[2]), max(0.0, a[1] - b[3], b[1] - a[3]))
+
+
+def _names(solid: SolvedStructure, pieces: Iterable[_Piece]) -> list[str]:
+    found = [g.path.removeprefix(f"{solid.path}.") for p in pieces for f in p.faces for g in f.geometries]
+    return list(dict.fromkeys(found))
