@@ -61,6 +61,12 @@ class Unknown:
         return f"{self.holder.path}.{self.field}"
 
     @property
+    def is_size(self) -> bool:
+        """Whether half of it is something else: not for an angle, nor a coordinate of the way to a point."""
+        is_offset = bool(self.since) and self.field.endswith((".dx", ".dy"))
+        return not self.angular and not (is_offset and "_to." not in self.field)
+
+    @property
     def told(self) -> str:
         """What it is, for people: not all that is unknown has a name in the program."""
         if self.since:

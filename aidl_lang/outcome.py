@@ -59,10 +59,10 @@ def _change_note(change: Change) -> Diagnostic | None:
 
 
 def _distortion(change: Change) -> str:
-    """What became of a size that is hardly meant; "" for one that is little off, and for an angle, which is
-    written as a direction to start from and has no half.
+    """What became of a size that is hardly meant; "" for one that is little off, and for angles and offsets,
+    of which half says nothing.
     """
-    share = 1.0 if change.angular or change.written == 0.0 else change.solved / change.written
+    share = change.solved / change.written if change.is_size and change.written else 1.0
     if share < 0.0:
         return "turned around"
     if share < 0.5 - _TOLERANCE:

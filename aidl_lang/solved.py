@@ -167,14 +167,14 @@ class ConstraintReport:
 
 @dataclass(frozen=True)
 class Change:
-    """A kept size that had to change. `told` is what it is, for people; `angular`: it counts in degrees."""
+    """A kept size that had to change. `told`: what it is, for people; `is_size`: no angle or offset."""
 
     path: str
     written: float
     solved: float
     span: Span | None
     told: str = ""
-    angular: bool = False
+    is_size: bool = True
 
 
 @dataclass(frozen=True)

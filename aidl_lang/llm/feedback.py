@@ -9,6 +9,7 @@ from itertools import groupby
 
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.freedom import sentences
+from aidl_lang.llm.intent.probing import CONTACTS
 from aidl_lang.pipeline import Compiled
 from aidl_lang.render import compact
 from aidl_lang.solved import SolvedModel, SolvedStructure
@@ -18,21 +19,20 @@ STAGES = ("syntax", "types", "validity", "solve", "asserts", "contacts", "done")
 
 _STAGE_OF = {"01": "syntax", "02": "types", "03": "types", "06": "solve", "08": "validity"}
 _ASSERT = "E0604"
-_CONTACTS = ("W0705", "W0736")
 _MOST = 12
 """Motions and boxes that are told."""
 
 
 def stage_of(diagnostics: Iterable[Diagnostic]) -> str:
     """The first stage that fails; remarks on parts that touch nothing fail `contacts`."""
-    failing = {_stage(d) for d in diagnostics if d.is_error or d.code in _CONTACTS}
+    failing = {_stage(d) for d in diagnostics if d.is_error or d.code in CONTACTS}
     return next((stage for stage in STAGES if stage in failing), "done")
 
 
 def _stage(diagnostic: Diagnostic) -> str:
     if diagnostic.code == _ASSERT:
         return "asserts"
-    if diagnostic.code in _CONTACTS:
+    if diagnostic.code in CONTACTS:
         return "contacts"
     return _STAGE_OF.get(diagnostic.code[1:3], "validity")
 

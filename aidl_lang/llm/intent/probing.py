@@ -23,7 +23,7 @@ _PATIENCE = 30.0
 """Seconds of processor time after which nothing more is tried."""
 _FAILED, _TIMED_OUT = "E0604", "E0603"
 _UNSOLVED = frozenset({"E0601", "E0602", "E0605"})
-_CONTACTS = frozenset({"W0705", "W0736"})
+CONTACTS = frozenset({"W0705", "W0712", "W0736"})
 """Remarks on parts that touch nothing; what brings them about does not fit."""
 
 
@@ -128,10 +128,10 @@ def new_errors(before: Inventory, base: Compiled, result: Compiled) -> Iterator[
     """Errors of a result that its base did not have, and parts that touch nothing, but for those that touched
     nothing `before` either.
     """
-    contacts = (d for d in before.diagnostics if d.code in _CONTACTS)
+    contacts = (d for d in before.diagnostics if d.code in CONTACTS)
     known = Counter(_mark(d) for d in (*base.diagnostics, *contacts))
     for d in result.diagnostics:
-        if d.is_error or d.code in _CONTACTS:
+        if d.is_error or d.code in CONTACTS:
             mark = _mark(d)
             if not known[mark]:
                 yield d
@@ -140,7 +140,7 @@ def new_errors(before: Inventory, base: Compiled, result: Compiled) -> Iterator[
 
 def _mark(d: Diagnostic) -> tuple[str, str]:
     """What a diagnostic says; of contacts, of which part, as the distance may change."""
-    return d.code, d.message.split("`")[1] if d.code in _CONTACTS else d.message
+    return d.code, d.message.split("`")[1] if d.code in CONTACTS else d.message
 
 
 def _parties(errors: list[Diagnostic], own: Span, result: Compiled) -> Iterable[str]:
