@@ -410,6 +410,18 @@ Statement: TypeAlias = (
     | Todo
 )
 
+DEFINITIONS = (
+    Import,
+    Param,
+    Let,
+    Alias,
+    FunctionDefinition,
+    ShapeDefinition,
+    ConstraintDefinition,
+    Todo,
+)
+"""What may stand beside the one structure of a file without making an assembly around both."""
+
 Callable: TypeAlias = FunctionDefinition | ShapeDefinition | ConstraintDefinition | Structure
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
@@ -75,7 +76,7 @@ class Findings:
     left_out: int = 0
 
 
-class Result:
+class Result(ABC):
     """What every result has in common: a dataclass that is read as `text`, or as `data` with its pictures."""
 
     @property
@@ -84,9 +85,9 @@ class Result:
         return ()
 
     @property
+    @abstractmethod
     def text(self) -> str:
         """The whole for a reader."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True, kw_only=True)

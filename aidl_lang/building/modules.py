@@ -24,7 +24,7 @@ def run_module(it: Interpreter, library: Scope) -> Structure:
     statements = module.statements
     scope = _file_scope(it, module, library, {})
     roots = [s for s in statements if isinstance(s, ast.Structure) and s.parameters is None]
-    loose = [s for s in statements if not isinstance(s, (*_DEFINITIONS, ast.Structure))]
+    loose = [s for s in statements if not isinstance(s, (*ast.DEFINITIONS, ast.Structure))]
     if len(roots) == 1 and not loose:
         it.root = root = Structure("assembly", "", None, None)
         hoist_values(scope, statements, root)
@@ -49,18 +49,6 @@ def run_module(it: Interpreter, library: Scope) -> Structure:
     for constraint in hidden_constraints(it):
         it.add_constraint(constraint)
     return root
-
-
-_DEFINITIONS = (
-    ast.Import,
-    ast.Param,
-    ast.Let,
-    ast.Alias,
-    ast.FunctionDefinition,
-    ast.ShapeDefinition,
-    ast.ConstraintDefinition,
-    ast.Todo,
-)
 
 
 def _register_params(it: Interpreter, scope: Scope) -> None:

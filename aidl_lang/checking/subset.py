@@ -18,19 +18,6 @@ from aidl_lang.source import Span
 from aidl_lang.types import AnyType, StructureType, TruthType, Type
 from aidl_lang.variants import FORBIDDEN, Construct, Variant, instead, speaks_of_absent
 
-_BESIDE = (
-    ast.Import,
-    ast.Param,
-    ast.Let,
-    ast.Alias,
-    ast.FunctionDefinition,
-    ast.ShapeDefinition,
-    ast.ConstraintDefinition,
-    ast.Structure,
-    ast.Todo,
-)
-"""What may stand beside a structure at file level without making an assembly around both."""
-
 _WHOLE = frozenset({"E0406", "E0408"})
 """Codes that speak of a whole statement: what else is wrong inside it goes with it."""
 
@@ -79,7 +66,7 @@ class _Walker:
         roots = [s for s in module.statements if isinstance(s, ast.Structure) and s.parameters is None]
         if roots and module is self.infer.resolution.main:
             self.root = roots[0]
-            beside = (s for s in module.statements if not isinstance(s, _BESIDE))
+            beside = (s for s in module.statements if not isinstance(s, (*ast.DEFINITIONS, ast.Structure)))
             if (first := next(beside, None)) is not None:
                 self._report(Construct.LOOSE, first.span, self.root.name.text)
         stack: list[ast.Node] = list(module.statements)

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aidl_lang.cli.options import add_provider, provider, sampling
+from aidl_lang.cli.options import add_provider, count_to, provider, sampling
 from aidl_lang.cli.report import UseError, say, show
 
 if TYPE_CHECKING:
@@ -34,15 +34,25 @@ def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
         "--variants", nargs="+", choices=_VARIANTS, default=list(_VARIANTS), help="default: all"
     )
     parser.add_argument(
-        "--runs", type=_count, default=3, metavar="N", help="of each prompt in each variant (default: 3)"
+        "--runs",
+        type=count_to(10_000),
+        default=3,
+        metavar="N",
+        help="of each prompt in each variant (default: 3)",
     )
     parser.add_argument(
-        "--attempts", type=_count, default=5, metavar="N", help="replies in a conversation (default: 5)"
+        "--attempts",
+        type=count_to(10_000),
+        default=5,
+        metavar="N",
+        help="replies in a conversation (default: 5)",
     )
-    parser.add_argument("--jobs", type=_count, default=4, metavar="N", help="at a time (default: 4)")
+    parser.add_argument(
+        "--jobs", type=count_to(10_000), default=4, metavar="N", help="at a time (default: 4)"
+    )
     parser.add_argument(
         "--time-limit",
-        type=_count,
+        type=count_to(10_000),
         default=60,
         metavar="SECONDS",
         help="for judging a program, for drawing and for editing it (default: 60)",
@@ -159,9 +169,3 @@ def _came(done: Done) -> str:
     results = done.record.get("requirements", ())
     met = sum(result["status"] == "met" for result in results)
     return f"valid {after}{lost}" + (f", {met}/{len(results)} requirements" if results else "")
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal() or not 1 <= int(text) <= 10_000:
-        raise argparse.ArgumentTypeError(f"expected a number from 1 to 10000, not `{text}`")
-    return int(text)

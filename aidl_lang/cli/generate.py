@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.cli import files
-from aidl_lang.cli.options import add_provider, provider, sampling
+from aidl_lang.cli.options import add_provider, count_to, provider, sampling
 from aidl_lang.cli.report import UseError, say, show
 
 if TYPE_CHECKING:
@@ -41,10 +41,14 @@ def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
     parser.add_argument("--edit", metavar="FILE", help="change this program instead of writing a new one")
     parser.add_argument("--image", metavar="FILE", help="a picture of what is meant (PNG, JPEG, WebP, GIF)")
     parser.add_argument(
-        "--attempts", type=_count, default=5, metavar="N", help="replies to ask for at most (default: 5)"
+        "--attempts",
+        type=count_to(100),
+        default=5,
+        metavar="N",
+        help="replies to ask for at most (default: 5)",
     )
     parser.add_argument(
-        "--runs", type=_count, default=1, metavar="N", help="conversations to have; the best is kept"
+        "--runs", type=count_to(100), default=1, metavar="N", help="conversations to have; the best is kept"
     )
     parser.add_argument(
         "--transcript", metavar="FILE", help="where to write the conversation (default: beside the program)"
@@ -76,11 +80,12 @@ class _Places:
     drawings: tuple[str, ...]
     transcript: str | None
 
-    def of_run(self, name: str, number: int) -> str:
-        """`phone.run-3.aidl` beside `phone.aidl`"""
-        path = Path(name)
-        stem, dot, rest = path.name.partition(".")
-        return str(path.with_name(f"{stem}.run-{number}{dot}{rest}"))
+
+def _of_run(name: str, number: int) -> str:
+    """`phone.run-3.aidl` beside `phone.aidl`"""
+    path = Path(name)
+    stem, dot, rest = path.name.partition(".")
+    return str(path.with_name(f"{stem}.run-{number}{dot}{rest}"))
 
 
 def _places(arguments: argparse.Namespace) -> _Places:
@@ -158,7 +163,7 @@ class _Run:
         self._save(done)
         say(f"{self._name}{_outcome(done, time.perf_counter() - start)}")
         if self.arguments.runs > 1 and self.places.program and done.verdict is not None:
-            name = self.places.of_run(self.places.program, self.number + 1)
+            name = _of_run(self.places.program, self.number + 1)
             files.write(name, done.verdict.program.encode())
         return done
 
@@ -191,7 +196,7 @@ class _Run:
             return
         name = self.places.transcript
         if self.arguments.runs > 1:
-            name = self.places.of_run(name, self.number + 1)
+            name = _of_run(name, self.number + 1)
         document = to_dict(generation, self.provider.name, self.language.name)
         files.write(name, json.dumps(document, indent=1, ensure_ascii=False).encode() + b"\n")
 
@@ -296,9 +301,3 @@ def _draw(places: _Places, program: str, arguments: argparse.Namespace) -> None:
 def _beginning(text: str) -> str:
     line = re.sub(r"\s+", " ", text.strip())
     return repr(line if len(line) <= 80 else line[:79] + "…")
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal() or not 1 <= int(text) <= 100:
-        raise argparse.ArgumentTypeError(f"expected a number from 1 to 100, not `{text}`")
-    return int(text)

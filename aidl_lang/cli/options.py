@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from aidl_lang.cli import sizes
@@ -140,7 +141,7 @@ def add_provider(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument("--seed", type=int, metavar="N", help="of the reply, for servers that have one")
     group.add_argument("--temperature", type=_temperature, metavar="T", help="0 is the least random")
-    group.add_argument("--max-tokens", type=_positive, metavar="N", help="of one reply")
+    group.add_argument("--max-tokens", type=count_to(1_000_000), metavar="N", help="of one reply")
     group.add_argument(
         "--constrain",
         type=_server,
@@ -245,10 +246,15 @@ def _temperature(text: str) -> float:
     return value
 
 
-def _positive(text: str) -> int:
-    if not text.isdecimal() or not 1 <= int(text) <= 1_000_000:
-        raise argparse.ArgumentTypeError(f"expected a number from 1 to 1000000, not `{text}`")
-    return int(text)
+def count_to(most: int) -> Callable[[str], int]:
+    """Reads a whole number from 1 to `most`."""
+
+    def read(text: str) -> int:
+        if not text.isdecimal() or not 1 <= int(text) <= most:
+            raise argparse.ArgumentTypeError(f"expected a number from 1 to {most}, not `{text}`")
+        return int(text)
+
+    return read
 
 
 def _seconds(text: str) -> float:

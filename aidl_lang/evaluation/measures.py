@@ -13,6 +13,7 @@ from aidl_lang.evaluation.whole import pieces
 from aidl_lang.export import Options
 from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.region import Region
+from aidl_lang.llm.aidl import counted
 from aidl_lang.source import SourceFile
 
 OPENSCAD = "openscad"
@@ -38,13 +39,7 @@ def _draw_aidl(program: str, prompt: Prompt) -> Drawn:
     model, drawing = compiled.model, compiled.drawing
     if model is None or drawing is None:
         raise ValueError("the program was judged valid, and is not")
-    numbers: dict[str, float] = {
-        "structures": sum(1 for _ in model.root.walk()),
-        "constraints": len(model.constraints),
-        "detached": _detached(united(*(body.region for body in drawing.bodies))),
-    }
-    if model.degrees is not None:
-        numbers["degrees"] = model.degrees
+    numbers = counted(model) | {"detached": _detached(united(*(body.region for body in drawing.bodies)))}
     png = compiled.export(".png", Options(pixels=shapes.PIXELS))
     return Drawn(png, numbers, examine(prompt, source, compiled))
 

@@ -15,6 +15,7 @@ from aidl_lang.llm.messages import Image
 from aidl_lang.mending import mend
 from aidl_lang.pipeline import Compiled
 from aidl_lang.reference.guide import guide
+from aidl_lang.solved import SolvedModel
 from aidl_lang.source import SourceFile
 from aidl_lang.variants import Variant
 from aidl_lang.world import World
@@ -193,14 +194,15 @@ def _picture(compiled: Compiled) -> bytes:
 
 
 def _numbers(compiled: Compiled) -> dict[str, float]:
-    model = compiled.model
-    if model is None:
+    if compiled.model is None:
         return {}
+    return counted(compiled.model) | {"detached": sum(d.code == "W0705" for d in compiled.diagnostics)}
+
+
+def counted(model: SolvedModel) -> dict[str, float]:
+    """How many structures and constraints a model has, and how many degrees of freedom if that is known."""
     found: dict[str, float] = {
         "structures": sum(1 for _ in model.root.walk()),
         "constraints": len(model.constraints),
-        "detached": sum(d.code == "W0705" for d in compiled.diagnostics),
     }
-    if model.degrees is not None:
-        found["degrees"] = model.degrees
-    return found
+    return found if model.degrees is None else found | {"degrees": model.degrees}
