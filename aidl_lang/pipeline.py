@@ -7,20 +7,22 @@ from __future__ import annotations
 
 import gc
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang import library as library_module
 from aidl_lang import parser
 from aidl_lang.building.state import DEFAULT_LIMITS, Limits
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.checking.subset import adapted
 from aidl_lang.diagnostics import Diagnostic, has_errors, ordered
 from aidl_lang.interp import Interpretation, interpret
-from aidl_lang.model import Knob
+from aidl_lang.model import Knob, Model
 from aidl_lang.printer import format_module
 from aidl_lang.resolve import resolve
 from aidl_lang.resolving.symbols import SymbolKind
@@ -78,6 +80,9 @@ class Compiled:
     """What tells, for a program that does not solve, the constraints that do not hold together."""
     follows: Callable[[Span], bool] = field(default=lambda span: False, repr=False)
     """What tells, for a program that solves, whether what is stated in a place follows from the rest."""
+    built: Model | None = field(default=None, repr=False)
+    """The structure tree with its expressions, of which `evaluate` tells the solved values."""
+    evaluate: Evaluator | None = field(default=None, repr=False)
 
     @property
     def ok(self) -> bool:
@@ -107,6 +112,7 @@ class _Stopwatch:
 
     @contextmanager
     def __call__(self, stage: str) -> Iterator[None]:
+        checkpoint()
         start = time.perf_counter()
         try:
             yield
@@ -114,33 +120,47 @@ class _Stopwatch:
             self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - start
 
 
-@contextmanager
-def _working() -> Iterator[None]:
-    """What a run needs of the interpreter: room for nested programs, and no pauses to look for cycles in a
-    heap that only grows until the run ends.
+class _Working:
+    """What runs need of the interpreter: room for nested programs, and no pauses to look for cycles in a heap
+    that only grows until the run ends. Several threads may run at once; the last to leave tidies up.
     """
-    recursion, collecting = sys.getrecursionlimit(), gc.isenabled()
-    sys.setrecursionlimit(max(recursion, _RECURSION))
-    gc.disable()
-    try:
-        yield
-    finally:
-        sys.setrecursionlimit(recursion)
-        if collecting:
-            gc.enable()
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._running = 0
+        self._before = (0, False)
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if not self._running:
+                self._before = sys.getrecursionlimit(), gc.isenabled()
+                sys.setrecursionlimit(max(self._before[0], _RECURSION))
+                gc.disable()
+            self._running += 1
+
+    def __exit__(self, *_: object) -> None:
+        with self._lock:
+            self._running -= 1
+            if not self._running:
+                recursion, collecting = self._before
+                sys.setrecursionlimit(recursion)
+                if collecting:
+                    gc.enable()
 
 
-def front(
-    source: SourceFile, world: World | None = None, settings: Settings = Settings()
-) -> tuple[Program, list[Diagnostic]]:
-    """Text → Program: parsed, resolved and type-checked."""
-    with _working():
+_working = _Working()
+
+
+Front: TypeAlias = tuple[Program, list[Diagnostic]]
+
+
+def front(source: SourceFile, world: World | None = None, settings: Settings = Settings()) -> Front:
+    """Text → Program: parsed, resolved and type-checked. What `compile` can go on from."""
+    with _working:
         return _front(source, world, settings, _Stopwatch())
 
 
-def _front(
-    source: SourceFile, world: World | None, settings: Settings, watch: _Stopwatch
-) -> tuple[Program, list[Diagnostic]]:
+def _front(source: SourceFile, world: World | None, settings: Settings, watch: _Stopwatch) -> Front:
     with watch("parse"):
         parsed = parser.parse(source, settings.text)
     with watch("library"):
@@ -161,9 +181,11 @@ def _build(
     params: Mapping[str, str | float | bool],
     settings: Settings,
     watch: _Stopwatch,
+    checked: Front | None = None,
 ) -> tuple[Interpretation, list[Diagnostic]]:
     """Text → Model, with every diagnostic that does not need solving."""
-    program, static = _front(source, world, settings, watch)
+    program, found = checked or _front(source, world, settings, watch)
+    static = list(found)
     with watch("interpret"):
         built = interpret(program, params, settings.building)
     static += [violation.diagnostic(built.written) for violation in program.violations]
@@ -199,7 +221,7 @@ def _sizes(built: Interpretation, evaluator: Evaluator) -> Callable[[SolvedModel
     def sizes(solved: SolvedModel) -> tuple[Dimension, ...]:
         from aidl_lang.dimensions import sizes
 
-        with _working():
+        with _working:
             return sizes(built.model, solved, evaluator)
 
     return sizes
@@ -211,7 +233,7 @@ def _conflicts(lowered: Lowered, solution: Solution) -> Callable[[], tuple[Confl
     def conflicts() -> tuple[Conflict, ...]:
         from aidl_lang.failures import conflicts
 
-        with _working():
+        with _working:
             return conflicts(lowered, solution)
 
     return conflicts
@@ -227,13 +249,13 @@ def check(
     source: SourceFile, world: World | None = None, settings: Settings = Settings()
 ) -> list[Diagnostic]:
     """Everything that can be said of a program without solving it."""
-    with _working():
+    with _working:
         return _build(source, world, {}, settings, _Stopwatch())[1]
 
 
 def formatted(source: SourceFile, world: World | None = None) -> tuple[str | None, list[Diagnostic]]:
     """The canonical form of a program, names spelled as they are defined; None if it does not parse."""
-    with _working():
+    with _working:
         parsed = parser.parse(source)
         if has_errors(parsed.diagnostics):
             return None, parsed.diagnostics
@@ -246,7 +268,7 @@ def knobs(
     source: SourceFile, world: World | None = None, settings: Settings = Settings()
 ) -> tuple[tuple[Knob, ...], list[Diagnostic]]:
     """The `param`s of a program in order of writing."""
-    with _working():
+    with _working:
         built, diagnostics = _build(source, world, {}, settings, _Stopwatch())
     return tuple(built.model.knobs), diagnostics
 
@@ -258,14 +280,17 @@ def compile(
     settings: Settings = Settings(),
     show: Sequence[str] = (),
     memory: Memory | None = None,
+    checked: Front | None = None,
 ) -> Compiled:
     """Run the whole road. A program that is wrong, or does not solve, says so in `diagnostics`.
 
-    With a `memory` of the last run, structures that no change since then concerns are not solved again.
+    With a `memory` of the last run, structures that no change since then concerns are not solved again; with
+    what `front` gave for this very program, it is not checked again. Raises Cancelled where the run is given
+    up (see `cancelling`).
     """
     watch = _Stopwatch()
-    with _working():
-        built, diagnostics = _build(source, world, params or {}, settings, watch)
+    with _working:
+        built, diagnostics = _build(source, world, params or {}, settings, watch, checked)
         known = tuple(built.model.knobs)
         if has_errors(diagnostics):
             return Compiled("wrong", diagnostics, watch.seconds, known)
@@ -322,7 +347,20 @@ def _finish(
         stages,
         _conflicts(lowered, solution),
         partial(follows, lowered, solution),
+        built.model,
+        evaluator,
     )
 
 
-__all__ = ["Compiled", "Knob", "Memory", "Settings", "check", "compile", "formatted", "front", "knobs"]
+__all__ = [
+    "Compiled",
+    "Front",
+    "Knob",
+    "Memory",
+    "Settings",
+    "check",
+    "compile",
+    "formatted",
+    "front",
+    "knobs",
+]

@@ -50,6 +50,7 @@ class Program:
                  after building (`Violation.diagnostic`)
     rejected     calls that were reported as fitting nothing; building need not say it again
     diagnostics  everything else that resolving and checking found, in text order
+    inference    what is known of the expressions, for those who ask about one later
     """
 
     main: ast.Module
@@ -58,6 +59,7 @@ class Program:
     resolution: Resolution
     violations: tuple[Violation, ...]
     diagnostics: tuple[Diagnostic, ...]
+    inference: Inference
     rejected: frozenset[ast.Call] = frozenset()
 
 
@@ -80,6 +82,7 @@ def check(resolution: Resolution, variant: Variant = Variant.FULL) -> Program:
         resolution=resolution,
         violations=tuple(violations),
         diagnostics=tuple(ordered([*resolution.diagnostics, *inference.diagnostics])),
+        inference=inference,
         rejected=frozenset(inference.rejected),
     )
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.building.scopes import Scope
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.diagnostics import Diagnostic, Fix, Label
 from aidl_lang.expression import Unknown
 from aidl_lang.model import Assertion, Comparison, Constraint, Geometry, Knob, Structure
@@ -175,6 +176,7 @@ class Interpreter:
 
     def check_time(self, node: ast.Node) -> None:
         """Called wherever a program may go on for long."""
+        checkpoint()
         if time.monotonic() > self.deadline:
             self._stop(node, f"building this program takes more than {self.limits.seconds:g} seconds")
 

@@ -53,6 +53,7 @@ def call(check: Inference, node: ast.Call) -> Fact:
         no_overload(check, node, nodes, given, [o for o in found if isinstance(o, Mismatch)])
         return UNKNOWN
     fits.sort(key=lambda b: b.cost)
+    check.fits[node] = fits
     check_habits(check, node, nodes, fits[0])
     _serve(check, fits, nodes, facts)
     _spell(check, node, nodes, fits)

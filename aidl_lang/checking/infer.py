@@ -20,6 +20,7 @@ from aidl_lang.source import SourceFile, Span
 from aidl_lang.types import (
     ANY,
     AnyType,
+    Binding,
     GeometryType,
     ListType,
     NumberType,
@@ -39,6 +40,7 @@ _DEEPEST = 120
 class Inference:
     """Facts about the expressions of one program, and the diagnostics that finding them gave.
 
+    `fits` has the overloads that each call may mean, best first.
     Nothing is said of what stands in `standard`, the library, and what is known of that is found out apart.
     """
 
@@ -47,6 +49,7 @@ class Inference:
         self.facts: dict[ast.Node, Fact] = {}
         self.diagnostics: list[Diagnostic] = []
         self.rejected: list[ast.Call] = []
+        self.fits: dict[ast.Call, list[Binding]] = {}
         self.homes: tuple[ast.Node, ...] = (resolution.main,)
         self._standard = frozenset(resolution.library.sources if standard is None else standard)
         self.running: set[ast.Node] = set()

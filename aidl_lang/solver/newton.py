@@ -18,6 +18,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.solver.linear import Matrix, damped_steps, with_slacks
 from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.quadratic import nearest
@@ -89,6 +90,7 @@ class Clock:
 
     @property
     def expired(self) -> bool:
+        checkpoint()
         return time.thread_time() - self.start > self.seconds
 
     @property

@@ -1,0 +1,5 @@
+"""What an editor asks of a program, one file for each kind of question.
+
+Every answer is a pure function of a `View`: one text of a program with all that is known of it. Places are
+offsets in code points and spans; what a protocol makes of them is not decided here.
+"""

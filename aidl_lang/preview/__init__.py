@@ -1,0 +1,1 @@
+"""`aidl preview`: the preview pane on localhost, beside any editor."""
