@@ -221,7 +221,7 @@ def inches(t: Trouble) -> Problem | None:
     token, before = t.token, t.before
     if before is None:
         return None
-    if token.kind in (UNKNOWN, "STRING") and token.text[0] == '"' and before.kind == "NUMBER" and t.touches:
+    if token.kind in (UNKNOWN, "STRING") and token.text[0] == '"' and _has_no_unit(before) and t.touches:
         rest = tokenize(t.source, token.start + 1, token.end).tokens[:-1]
         span = Span(t.source, before.start, token.start + 1)
         inch = Token("NUMBER", before.text + "in", before.start, token.start + 1)
@@ -229,7 +229,7 @@ def inches(t: Trouble) -> Problem | None:
         problem = Diagnostic("E0105", f"inches are written `{inch.text}`", span, fix=fix)
         return Problem(problem, Repair(t.position - 1, t.position + 1, (inch, *rest)))
     number = t.tokens[t.position - 2]
-    if t.position < 2 or before.kind != "in" or number.kind != "NUMBER" or token.kind not in _ENDS:
+    if t.position < 2 or before.kind != "in" or not _has_no_unit(number) or token.kind not in _ENDS:
         return None
     gap = Span(t.source, number.end, before.start)
     return Problem(
@@ -242,6 +242,11 @@ def inches(t: Trouble) -> Problem | None:
         ),
         Repair(t.position - 2, t.position, (Token("NUMBER", number.text + "in", number.start, before.end),)),
     )
+
+
+def _has_no_unit(token: Token) -> bool:
+    """Whether a token is a number to which a unit could be added."""
+    return token.kind == "NUMBER" and token.text[-1].isdigit()
 
 
 _ENDS = frozenset([")", "]", "}", ",", ";", "+", "-", "*", "/", "==", "<=", ">=", END])

@@ -53,6 +53,7 @@ PAGES = [
         ("let a = 5inches", "E0105", (1, 9), "`inches` is not a unit; did you mean `5in`?"),
         ("let a = 1.2.3", "E0105", (1, 9), "`1.2.3` is not a number"),
         ("let a = 5 mm", "E0106", (1, 9), "a unit touches its number: `5mm`"),
+        ("param w = 170mm in", "E0103", (1, 17), "expected a value after `in`"),
         (
             'assert a > 3, "no\n',
             "E0107",

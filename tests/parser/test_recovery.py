@@ -86,6 +86,11 @@ def test_a_word_that_is_reserved_is_told_once() -> None:
     assert len(diagnostic.fix.edits) == 4
 
 
+def test_a_number_with_a_unit_is_given_no_second_one() -> None:
+    assert codes('let a = 5mm"') == ["E0107", "E0101"]
+    assert codes('let a = 5°"') == ["E0107", "E0101"]
+
+
 def test_limits() -> None:
     assert codes("x" * 2_000_001) == ["E0801"]
     assert codes("let a = " + "(" * 100_000) == ["E0802"]

@@ -1,0 +1,38 @@
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from aidl_lang.ide.project import Project
+from aidl_lang.ide.view import View, look, run
+from aidl_lang.ide.workspace import Workspace
+
+EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*.aidl"))
+
+
+def cursor(marked: str) -> tuple[str, int]:
+    """A text without the `¦` in it, and where that was."""
+    offset = marked.index("¦")
+    return marked.replace("¦", "", 1), offset
+
+
+def opened(files: Mapping[str, str], folder: Path = Path("/project")) -> Project:
+    """A project whose files are all open in the editor."""
+    return Project(Workspace(open={folder / name: text for name, text in files.items()}))
+
+
+def seen(text: str, *, solved: bool = False, **files: str) -> View:
+    """A program, with others beside it, as an editor sees it."""
+    project = opened({"part.aidl": text, **{f"{name}.aidl": other for name, other in files.items()}})
+    view = look(Path("/project/part.aidl"), text, project.workspace.world(Path("/project/part.aidl")))
+    return run(view) if solved else view
+
+
+@pytest.fixture(params=EXAMPLES, ids=lambda path: path.stem)
+def example(request: pytest.FixtureRequest) -> View:
+    """Each example, checked and not solved."""
+    path: Path = request.param
+    workspace = Workspace([path.parent])
+    return look(path, path.read_text("utf-8"), workspace.world(path))

@@ -1,0 +1,191 @@
+"""Outline, colours, folds, selections and the canonical form, of whole and of broken programs."""
+
+from __future__ import annotations
+
+import random
+from itertools import pairwise
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from aidl_lang import pipeline
+from aidl_lang.diagnostics import Edit
+from aidl_lang.ide.folding import folds
+from aidl_lang.ide.formatting import format_document, format_range
+from aidl_lang.ide.selection import selections
+from aidl_lang.ide.semantic_tokens import MODIFIERS, TYPES, Colored, semantic_tokens
+from aidl_lang.ide.symbols import Entry, outline, search
+from aidl_lang.ide.view import View
+
+from .conftest import EXAMPLES, opened, seen
+
+PART = """\
+import "other.aidl" as other
+/// A plate.
+/// With holes.
+param width = 60mm in 20..200
+fn double(x) = 2 * x
+@color("red")
+solid plate {
+    body = rectangle(
+        center: origin,
+        width: width,
+        height: double(4)
+    )
+    for i in 0..2 {
+        hole h[i] { rim = circle(center: (10 * i, 0), radius: 2) }
+    }
+    w = washer(8)
+    /* a block
+       of words */
+    constrain body.center.x == 0
+}
+solid washer(outer = 20) { rim = circle(center: origin, radius: outer / 2) }
+"""
+
+
+def apply(text: str, edits: list[Edit]) -> str:
+    for edit in sorted(edits, key=lambda e: -e.span.start):
+        text = text[: edit.span.start] + edit.replacement + text[edit.span.end :]
+    return text
+
+
+def test_the_outline_has_what_is_declared() -> None:
+    def flat(entries: list[Entry] | tuple[Entry, ...]) -> list[object]:
+        return [(str(e.kind), e.name, e.detail, *flat(e.children)) for e in entries]
+
+    assert flat(outline(seen(PART, other="param a = 1"))) == [
+        ("imported file", "other", '"other.aidl"'),
+        ("param", "width", "60mm"),
+        ("function", "double", "2 * x"),
+        (
+            "structure",
+            "plate",
+            "solid",
+            ("geometry", "body", "rectangle"),
+            ("structure", "h[i]", "hole", ("geometry", "rim", "circle")),
+            ("structure", "w", "washer"),
+        ),
+        ("template", "washer", "solid", ("geometry", "rim", "circle")),
+    ]
+
+
+def test_things_are_found_by_some_of_their_letters() -> None:
+    project = opened({"part.aidl": PART, "other.aidl": "param outer_width = 1\nparam Breadth = 2"})
+    names = [(f.path.name, f.container, f.entry.name) for f in search(project, "width")]
+    assert names == [("part.aidl", "", "width"), ("other.aidl", "", "outer_width")]
+    assert [f.entry.name for f in search(project, "rm")] == ["rim", "rim"]
+    assert search(project, "xyzzy") == []
+
+
+def colored(view: View) -> list[tuple[str, str]]:
+    return [(c.span.text, c.type) for c in semantic_tokens(view)]
+
+
+def test_words_have_the_colour_of_what_they_mean() -> None:
+    found = colored(seen(PART, other="param a = 1"))
+    for expected in (
+        ("other", "namespace"),
+        ("/// A plate.", "comment"),
+        ("60mm", "number"),
+        ("double", "function"),
+        ("x", "parameter"),
+        ("color", "decorator"),
+        ('"red"', "string"),
+        ("solid", "keyword"),
+        ("plate", "class"),
+        ("rectangle", "type"),
+        ("center", "parameter"),
+        ("==", "operator"),
+        ("/* a block", "comment"),
+        ("       of words */", "comment"),
+    ):
+        assert expected in found
+    marked = {c.span.text: c for c in semantic_tokens(seen(PART)) if c.span.text in ("rectangle", "double")}
+    assert "defaultLibrary" in marked["rectangle"].modifiers
+    assert "defaultLibrary" not in marked["double"].modifiers
+
+
+def assert_in_order(tokens: list[Colored]) -> None:
+    for before, after in pairwise(tokens):
+        assert before.span.end <= after.span.start
+    for token in tokens:
+        assert token.span.text
+        assert "\n" not in token.span.text
+        assert token.type in TYPES
+        assert token.modifiers <= set(MODIFIERS)
+
+
+def test_folds_stay_where_brackets_are_missing() -> None:
+    view = seen(PART.replace("solid washer", "solid washer { ( ] }\nsolid x"))
+    found = {(f.start, f.end, f.kind) for f in folds(view)}
+    assert {(2, 3, "comment"), (7, 19, "region"), (8, 11, "region"), (17, 18, "comment")} <= found
+
+
+def test_folds_of_a_program() -> None:
+    assert [(f.start, f.end, f.kind) for f in folds(seen(PART))] == [
+        (2, 3, "comment"),
+        (7, 19, "region"),
+        (8, 11, "region"),
+        (13, 14, "region"),
+        (17, 18, "comment"),
+    ]
+
+
+def test_a_selection_grows_from_a_word_to_the_file() -> None:
+    view = seen(PART)
+    grown = [s.one_line for s in selections(view, PART.index("double(4)"))]
+    assert grown[:3] == ["double", "double(4)", "height: double(4)"]
+    assert grown[-1] == " ".join(PART.split())
+
+
+def test_the_canonical_form_comes_in_small_edits() -> None:
+    text = PART.replace("param width = 60mm", "param   width=60mm").replace("fn double(x)", "fn double( x )")
+    view = seen(text, other="param a = 1")
+    edits = format_document(view)
+    assert [e.span.line for e in edits] == [4, 8]  # the call fits in one line
+    expected, _ = pipeline.formatted(view.source, view.world)
+    assert apply(text, edits) == expected
+    line = text.index("fn double")
+    assert apply(text, format_range(view, view.span(line, line))) == text.replace("( x )", "(x)").replace(
+        "param   width=60mm", "param width = 60mm"
+    )
+    assert format_range(view, view.span(text.index("solid washer"), len(text))) == []
+
+
+def test_a_program_that_does_not_parse_is_not_formatted() -> None:
+    assert format_document(seen("solid a {  x = = 3 }")) == []
+
+
+def check_everything(view: View, at: int) -> None:
+    text = view.source.text
+    assert_in_order(semantic_tokens(view))
+    lines = text.count("\n") + 1
+    for fold in folds(view):
+        assert 1 <= fold.start < fold.end <= lines
+    grown = selections(view, at)
+    for inner, outer in pairwise(grown):
+        assert outer.start <= inner.start <= inner.end <= outer.end
+    for entry in outline(view):
+        assert entry.span.start <= entry.name_span.start <= entry.name_span.end <= entry.span.end
+    edits = format_document(view)
+    if edits:
+        assert apply(text, edits) == pipeline.formatted(view.source, view.world)[0]
+
+
+def test_examples(example: View) -> None:
+    for at in range(0, len(example.source.text), 97):
+        check_everything(example, at)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.sampled_from(EXAMPLES), st.integers(0, 10**6))
+def test_what_is_broken_is_answered_too(path: object, seed: int) -> None:
+    assert path in EXAMPLES
+    chance = random.Random(seed)
+    text = path.read_text("utf-8")  # type: ignore[attr-defined]
+    for _ in range(chance.randint(1, 4)):
+        at = chance.randrange(len(text) + 1)
+        put = chance.choice(["", "{", "}", '"', "\U0001d518", "\r\n", "(", "= =", "/*", "\u2028", "@"])
+        text = text[:at] + put + text[at + chance.randint(0, 3) :]
+    check_everything(seen(text), chance.randrange(len(text) + 1))
