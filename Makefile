@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-model lint format reference bench bench-check bench-regions bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test test-model lint format reference colours bench bench-check bench-regions bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -35,6 +35,9 @@ format: $(READY) ## put all Python code into its canonical form
 
 reference: $(READY) ## write docs/reference, docs/guide.md and llms.txt anew from the library
 	$(BIN)/python -m aidl_lang.reference .
+
+colours: $(READY) ## write the grammars, words and snippets for editors anew
+	$(BIN)/python -m aidl_lang.highlighting .
 
 bench: $(READY) ## measure the command and the stages
 	$(BIN)/python benchmarks/run.py

@@ -53,7 +53,9 @@ class Fix:
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """What is wrong, where, why and what to do about it. The headline must stand alone."""
+    """What is wrong, where, why and what to do about it. The headline must stand alone. `points` are the
+    places in the drawing that it is about, in mm.
+    """
 
     code: str
     message: str
@@ -62,6 +64,7 @@ class Diagnostic:
     secondary: tuple[Label, ...] = ()
     hints: tuple[str, ...] = ()
     fix: Fix | None = None
+    points: tuple[tuple[float, float], ...] = ()
 
     @property
     def severity(self) -> Severity:

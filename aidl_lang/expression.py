@@ -99,8 +99,9 @@ class Lazy(Protocol):
 
 
 class Expression:
-    """One node. `payload` is an `Unknown`, a `Lazy`, or a measurement for the ops that need one; `is_open`
-    tells that a lazy or a measurement is in it, so that no graph is searched for what few have.
+    """One node. `payload` is an `Unknown`, a `Lazy`, or a measurement for the ops that need one, and of a
+    constant that stands in the text as a number, where; `is_open` tells that a lazy or a measurement is in
+    it, so that no graph is searched for what few have.
     """
 
     __slots__ = ("args", "is_open", "op", "payload", "value")
@@ -130,6 +131,11 @@ class Expression:
 
 def constant(value: float) -> Expression:
     return Expression("constant", (), float(value))
+
+
+def literal(value: float, written: object) -> Expression:
+    """A constant that is `written` as a number in the text; what is computed from it no longer is."""
+    return Expression("constant", (), value, payload=written)
 
 
 ZERO = constant(0.0)

@@ -54,7 +54,7 @@ def interpret(
             copier.finish()
     except Stop:
         root = it.root or Structure("assembly", "model", None, None)
-    model = Model(root, it.constraints, it.assertions, it.unknowns, it.knobs, it.readings)
+    model = Model(root, it.constraints, it.assertions, it.unknowns, it.knobs, it.readings, it.literals)
     return Interpretation(model, it.diagnostics, it.written)
 
 

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
+from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
 from aidl_lang.lettering import Glyph
@@ -414,6 +415,27 @@ class Assertion:
     """the shape that asks this of its arguments"""
 
 
+@record(eq=False)
+class Literal:
+    """A number that stands in the text, and what the solver is to find in its place.
+
+    node    the number, with its sign if there is one
+    became  of which the solved value is read, in the frame that the number is written in
+    holder  what it is a number of, `field` its name there (`end.x`)
+    dimension is what it has there, also where the number is bare; None where nothing says
+    """
+
+    node: ast.Number | ast.Unary
+    became: Expression
+    holder: Geometry | Structure
+    field: str
+    dimension: MaybeDimension
+
+    @property
+    def path(self) -> str:
+        return f"{self.holder.path}.{self.field}"
+
+
 @dataclass(frozen=True)
 class Knob:
     """A `param` as seen from outside: what may be set with `-D path=value` or a slider."""
@@ -434,6 +456,8 @@ class Model:
     """
     unknowns    in order of creation
     readings    choices among the meanings of ambiguous calls, by place, for the report
+    literals    numbers of the text, and of the library's, that are first guesses or kept sizes; one for each
+                use
     """
 
     root: Structure
@@ -442,3 +466,4 @@ class Model:
     unknowns: list[Unknown]
     knobs: list[Knob]
     readings: list[tuple[Span, str]] = field(default_factory=list)
+    literals: list[Literal] = field(default_factory=list)

@@ -52,6 +52,16 @@ def parse(source: SourceFile, limits: Limits = DEFAULT_LIMITS) -> Parsed:
     return Parsed(parsed.module, ordered(parsed.diagnostics + joined))
 
 
+def standing_before(source: SourceFile, offset: int, limits: Limits = DEFAULT_LIMITS) -> Automaton:
+    """The automaton when it has read what stands before an offset, mended where that is broken: it tells what
+    may come next there.
+    """
+    tokens = tokenize(source, 0, offset)
+    reader = _Reader(source, Builder(source, tokens.docs), tokens, limits)
+    reader.run(to_end=False)
+    return reader.automaton
+
+
 def _read(source: SourceFile, limits: Limits) -> tuple[Parsed, list[Token]]:
     """What `parse` gives, warnings aside, and the tokens it came from."""
     everything = Span(source, 0, len(source.text))
@@ -91,11 +101,14 @@ class _Reader:
         self.may_be_deep = False
         self.passed_braces: list[int] = []  # for each `{` passed over, how many blocks were open around it
 
-    def run(self) -> tuple[ast.Statement, ...]:
+    def run(self, *, to_end: bool = True) -> tuple[ast.Statement, ...]:
+        """The statements of the text; none where it is not read `to_end`, so that more could follow."""
         automaton, tokens, limits = self.automaton, self.tokens, self.limits
         position = 0
         while True:
             token = tokens[position]
+            if token.kind == END and not to_end:
+                return ()
             if self.passed_braces and token.kind == "}" and self._ends_passed_block():
                 token = tokens[position] = Token(";", "", token.start, token.end)
             if not automaton.feed(token):

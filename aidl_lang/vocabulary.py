@@ -59,6 +59,7 @@ class Vocabulary:
     control, imports, word_operators, truths
     clauses         stand inside a statement: `at`, `step`
     statements      the words of the classes above that may begin a statement
+    reserved        those that are never names
 
     Signs: comparisons, arithmetic, logic, ranges, assignments, brackets, punctuation, attribute_signs.
 
@@ -93,6 +94,7 @@ class Vocabulary:
     clauses: tuple[str, ...]
     word_operators: tuple[str, ...]
     truths: tuple[str, ...]
+    reserved: tuple[str, ...]
     statements: tuple[str, ...]
     comparisons: tuple[str, ...]
     arithmetic: tuple[str, ...]
@@ -171,6 +173,7 @@ def vocabulary() -> Vocabulary:
         **{name: _present(listed, signs) for name, listed in _SIGNS.items()},
         **named,
         statements=tuple(word for members in keywords.values() for word in members if word in starts),
+        reserved=tuple(sorted(tables.reserved)),
         kinds=KINDS,
         kind_words=tuple(KIND_OF_WORD),
         attributes=builtins.ATTRIBUTES,

@@ -23,8 +23,12 @@ _NAMED = 12
 
 def edit_of(knob: Knob, source: SourceFile, value: float | str | bool) -> Edit:
     """The edit that makes a value the default. Raises RefusalError where it cannot be one."""
-    node = _declaration(knob, source)
-    return Edit(node.value.span, _written(knob, node.value, value))
+    return edit_at(knob, _declaration(knob, source), value)
+
+
+def edit_at(knob: Knob, declared: ast.Param, value: float | str | bool) -> Edit:
+    """The same where the declaration is at hand."""
+    return Edit(declared.value.span, _written(knob, declared.value, value))
 
 
 def find(known: tuple[Knob, ...], name: str) -> Knob:

@@ -35,7 +35,7 @@ def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attr
             s.attributes["color" if name == "colour" else name] = tuple(values)
 
 
-_ORIENTATIONS = ("top", "front", "side")
+ORIENTATIONS = ("top", "front", "side")
 
 
 def _fits(it: Interpreter, name: str, values: Sequence[Value], attribute: ast.Attribute) -> bool:
@@ -44,7 +44,7 @@ def _fits(it: Interpreter, name: str, values: Sequence[Value], attribute: ast.At
         return False
     wanted = ""
     match name, *values:
-        case ("orientation", Text(word)) if word in _ORIENTATIONS:
+        case ("orientation", Text(word)) if word in ORIENTATIONS:
             pass
         case ("orientation", *_):
             wanted = "one of `top`, `front` and `side`, as in `@orientation(front)`"

@@ -15,18 +15,23 @@ from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.model import Geometry, Structure, common_ancestor
 from aidl_lang.source import Span
 from aidl_lang.units import LENGTH, PLAIN
-from aidl_lang.values import ListVal, Nothing, Num, PointVal, Value, kind_of, length, number
+from aidl_lang.values import ListVal, Nothing, Num, PointVal, Value, kind_of, length
 
 
 def as_written(value: Value) -> Value:
     """A value out of reach, read as the numbers it has at the first guesses."""
     match value:
-        case Num(expression, dimension, _):
-            return number(expression.value, dimension)
+        case Num():
+            return _guessed(value)
         case PointVal(x, y):
-            return PointVal(number(x.value, x.dimension), number(y.value, y.dimension))
+            return PointVal(_guessed(x), _guessed(y))
         case _:
             return value
+
+
+def _guessed(value: Num) -> Num:
+    expression = value.expression
+    return Num(expression if expression.is_constant else ex.constant(expression.value), value.dimension)
 
 
 def may_read(it: Interpreter, owner: Structure, node: ast.Node, env: Env) -> bool:

@@ -68,6 +68,7 @@ def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: Ma
             dimension=dimension,
             kept=value.status is Status.NUMBER,
         )
+        it.became(value, expression, holder, name, dimension)
     return Num(expression, dimension, Status.REFERENCE)
 
 
@@ -79,6 +80,7 @@ def turn(it: Interpreter, value: Num, holder: Geometry, name: str, rotatable: bo
     made = it.unknown(value.value, holder, name, owner=holder.owner, dimension=ANGLE)
     assert isinstance(made.payload, ex.Unknown)
     made.payload.locked = made.payload.exact = not rotatable
+    it.became(value, made, holder, name, ANGLE)
     return Num(made, ANGLE, Status.REFERENCE)
 
 
@@ -108,6 +110,7 @@ def positions(
             made = point(x, y)
         if _is_literal(at):
             before = (at, made, name)
+        it.became_point(at, made, holder, name)
         placed.append(made)
     return placed
 
@@ -190,7 +193,7 @@ def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
     x, y = (
         solvable(it, n, g.span)
         if n.status >= Status.FIXED
-        else it.unknown(n.value, g, axis, owner=g.owner, dimension=LENGTH)
+        else it.became(n, it.unknown(n.value, g, axis, owner=g.owner, dimension=LENGTH), g, axis)
         for n, axis in ((at.x, "x"), (at.y, "y"))
     )
     return point(x, y)
@@ -218,6 +221,7 @@ def _size(it: Interpreter, g: Geometry, a: Arguments, name: str, dimension: Mayb
 
 
 def _line(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
+    end = None
     if "end" in a:
         start, end = _written(a, "start"), _written(a, "end")
         if not (_is_literal(start) and _is_literal(end) and _apart(start, end)):
@@ -226,8 +230,10 @@ def _line(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
         a = dict(zip(("start", "length", "angle"), (start, *_way(start, end)), strict=True))
     g.fields = _points(it, g, a, ("start",))
     reach, angle = _size(it, g, a, "length"), _size(it, g, a, "angle", ANGLE)
-    end = polar(g.fields["start"], reach.expression, angle.expression)
-    g.fields |= {"end": end, "length": reach, "angle": angle}
+    made = polar(g.fields["start"], reach.expression, angle.expression)
+    if end is not None:
+        it.became_point(end, made, g, "end")
+    g.fields |= {"end": made, "length": reach, "angle": angle}
 
 
 def _circle(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
@@ -241,9 +247,11 @@ def _circle(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     g.clockwise = a.get("clockwise") is True
-    a = _by_angles_if_round(a)
+    written, a = a, _by_angles_if_round(a)
     if "start_angle" in a:
         _arc_by_angles(it, g, a)
+        for name in ("start", "end") if a is not written else ():
+            it.became_point(_written(written, name), _written(g.fields, name), g, name)
     elif "radius" in a:
         _arc_by_radius(it, g, a)
     else:

@@ -53,9 +53,9 @@ def _number(it: Interpreter, node: ast.Number, env: Env) -> Value:
     if not math.isfinite(node.value):
         return _undefined(it, node)
     if node.unit is None:
-        return number(node.value)
+        return Num(ex.literal(node.value, node))
     factor, dimension = UNITS[node.unit]
-    return number(node.value * factor, dimension)
+    return Num(ex.literal(node.value * factor, node), dimension)
 
 
 def _point(it: Interpreter, node: ast.Point, env: Env) -> Value:
@@ -202,6 +202,9 @@ def _unary(it: Interpreter, node: ast.Unary, env: Env) -> Value:
     value = evaluate(it, node.operand, env)
     if node.operator == "not":
         return negation(it, value, node)
+    if isinstance(node.operand, ast.Number) and isinstance(value, Num):
+        signed = -value.value if node.operator == "-" else value.value
+        return Num(ex.literal(signed, node), value.dimension)
     if isinstance(value, Nothing) or node.operator == "+":
         return value
     if isinstance(value, PointVal):

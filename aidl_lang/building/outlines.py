@@ -20,7 +20,7 @@ from aidl_lang.values import NOTHING, ListVal, Num, PointVal, Status, Text, Valu
 Arguments = Mapping[str, Value]
 Function = Callable[[Interpreter, Arguments, ast.Call, Env], Value]
 
-_WORDS: Mapping[str, tuple[str, ...]] = {
+CORNER_WORDS: Mapping[str, tuple[str, ...]] = {
     "corners": ("sharp", "round"),
     "joins": ("round", "sharp"),
     "caps": ("round", "butt", "square"),
@@ -80,7 +80,7 @@ def _too_few(it: Interpreter, kind: str, node: ast.Call) -> Value:
 
 
 def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> str | None:
-    allowed = _WORDS[name]
+    allowed = CORNER_WORDS[name]
     if value is None:
         return allowed[0]
     written = value.value if isinstance(value, Text) else ""

@@ -15,12 +15,12 @@ from aidl_lang.building.scopes import Scope
 from aidl_lang.cancelling import checkpoint
 from aidl_lang.diagnostics import Diagnostic, Fix, Label
 from aidl_lang.expression import Unknown
-from aidl_lang.model import Assertion, Comparison, Constraint, Geometry, Knob, Structure
+from aidl_lang.model import Assertion, Comparison, Constraint, Geometry, Knob, Literal, Structure
 from aidl_lang.records import record
 from aidl_lang.source import Span
 from aidl_lang.typecheck import Program
 from aidl_lang.types import Binding, Signature
-from aidl_lang.units import ANGLE, MaybeDimension
+from aidl_lang.units import ANGLE, LENGTH, MaybeDimension
 from aidl_lang.values import Num, PointVal, Value
 
 if TYPE_CHECKING:
@@ -94,6 +94,7 @@ class Interpreter:
     assertions: list[Assertion] = field(default_factory=list)
     knobs: list[Knob] = field(default_factory=list)
     readings: list[tuple[Span, str]] = field(default_factory=list)
+    literals: list[Literal] = field(default_factory=list)
     pending: dict[Structure, list[tuple[ast.Statement, Scope]]] = field(default_factory=dict)
     written: dict[ast.Node, tuple[float, float] | float] = field(default_factory=dict)
     watched: frozenset[ast.Node] = frozenset()
@@ -232,6 +233,27 @@ class Interpreter:
         made = Unknown(guess, owner, holder, name, kept, dimension == ANGLE, frame_of, cell, since=since)
         self.unknowns.append(made)
         return ex.unknown(made)
+
+    def became(
+        self,
+        written: Num,
+        made: ex.Expression,
+        holder: Geometry | Structure,
+        name: str,
+        dimension: MaybeDimension = LENGTH,
+    ) -> ex.Expression:
+        """`made`, after keeping that it stands for a number of the text, if `written` is one."""
+        node = written.expression.payload
+        if isinstance(node, (ast.Number, ast.Unary)) and made.op != "constant":
+            self.literals.append(Literal(node, made, holder, name, dimension))
+        return made
+
+    def became_point(
+        self, written: PointVal, made: PointVal, holder: Geometry | Structure, name: str
+    ) -> None:
+        """The same for both coordinates of a point."""
+        self.became(written.x, made.x.expression, holder, f"{name}.x")
+        self.became(written.y, made.y.expression, holder, f"{name}.y")
 
     def watch(self, node: ast.Node, value: Value) -> None:
         """Keep the written value of an expression that breaks a rule of validity, for its fix."""

@@ -121,6 +121,7 @@ def _var(it: Interpreter, node: ast.Var, scope: Scope, here: Structure) -> None:
         it.report("E0504", f"`{node.value.span.one_line}` has no value at the first guesses", node.value)
     made = it.unknown(found.value, holder, node.name.text, owner=here, dimension=found.dimension)
     assert isinstance(made.payload, ex.Unknown)
+    it.became(found, made, holder, node.name.text, found.dimension)
     var = VarBinding(Num(made, found.dimension, Status.REFERENCE), made.payload)
     declare(it, scope, node.name, (), var, node)
 

@@ -76,7 +76,8 @@ def instantiate(
         around = _around(template.scope, definition.name.text, structure)
         body = Scope(around, structure, labels=scope.labels)
         structure.scope = body
-        read_attributes(it, structure, (*definition.attributes, *node.attributes), body)
+        read_attributes(it, structure, definition.attributes, body)
+        read_attributes(it, structure, node.attributes, scope)  # which stand outside the template
         own_names(body, structure)
         for parameter, (key, kind, _) in zip(
             definition.parameters or (), template.signature.parameters, strict=True
@@ -157,12 +158,13 @@ def _place(
     x, y = (
         solvable(it, n, s.span)
         if n.status >= Status.FIXED
-        else it.unknown(n.value, s, axis, owner=s.parent, dimension=LENGTH, frame_of=s)
+        else it.became(n, it.unknown(n.value, s, axis, owner=s.parent, dimension=LENGTH, frame_of=s), s, axis)
         for n, axis in ((at.x, "x"), (at.y, "y"))
     )
     rotation = solvable(it, turn, s.span) if turn is not None else ex.ZERO
     if turn is not None and turn.status is Status.GUESS:
         rotation = it.unknown(turn.value, s, "rotation", owner=s.parent, dimension=ANGLE, frame_of=s)
+        it.became(turn, rotation, s, "rotation", ANGLE)
     s.frame = Frame(x, y, rotation)
 
 

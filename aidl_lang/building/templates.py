@@ -61,6 +61,7 @@ def _tie(it: Interpreter, binding: PassedBinding, here: Structure) -> Value:
             made = it.unknown(
                 number.value, here, binding.name, owner=here, dimension=number.dimension, kept=True, cell=True
             )
+            it.became(number, made, here, binding.name, number.dimension)
             return Num(made, number.dimension, Status.NUMBER)
         case PointVal() as point if here is not binding.instance and not _refers(point):
             return point

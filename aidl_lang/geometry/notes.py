@@ -134,7 +134,14 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
         hints.insert(0, "a face needs a closed outline that is not flat: look at its sizes and its points")
     span = gap[0][0].span if gap else finding.curves[0][0].span
     return Diagnostic(
-        "W0702", message, span or s.span, "its end is open" if gap else "", secondary, tuple(hints), fix
+        "W0702",
+        message,
+        span or s.span,
+        "its end is open" if gap else "",
+        secondary,
+        tuple(hints),
+        fix,
+        tuple(p for _, p, _ in gap or ()),
     )
 
 
@@ -207,6 +214,7 @@ def gap_note(gap: Gap) -> Diagnostic:
         (Label(gap.kept.geometry.span, "to this end"),) if gap.kept.geometry.span and not itself else (),
         (hint,),
         None if round_ else _join_fix(s, f"{one} == {other}"),
+        (moved[1], kept[1]),
     )
 
 

@@ -127,7 +127,7 @@ def no_corner(f: Finish, leaves: Leaves, near: float) -> Diagnostic:
     if corners:
         hints.append(f"the nearest corners are at {', '.join(at(c.at) for c in corners[:3])}")
     hints.append("a corner is a point that is the end of two curves: `plate.top_left`, `profile.corner[2]`")
-    return Diagnostic("E0335", message, f.span, label, hints=tuple(hints))
+    return Diagnostic("E0335", message, f.span, label, hints=tuple(hints), points=(f.at,))
 
 
 def twice(f: Finish, earlier: Finish, corner: Corner, told: SolvedStructure) -> Diagnostic:
@@ -138,6 +138,7 @@ def twice(f: Finish, earlier: Finish, corner: Corner, told: SolvedStructure) -> 
         f"a second {f.kind}",
         (Label(earlier.span, f"finished here already, by `{earlier.text}`"),),
         ("keep one of them; to treat corners differently, name them one by one",),
+        points=(corner.at,),
     )
 
 
@@ -164,7 +165,8 @@ def too_large(
                 f"the {f.kind} of {corner} does not fit: {what} {size}, and {edges} have room for {most}"
             )
             hint = f"the largest {what} that fits is {most}"
-        return Diagnostic("E0518", message, f.span, "too large", hints=(hint,))
+        points = (failure.work.corner.at,)
+        return Diagnostic("E0518", message, f.span, "too large", hints=(hint,), points=points)
     other = reasons[next(k for k, w in enumerate(works) if w is failure.other)]
     edge = local(told, leaves[failure.number][0])
     a, b = at(failure.other.corner.at), at(failure.work.corner.at)
@@ -180,4 +182,5 @@ def too_large(
         "too large",
         labels,
         (hint,),
+        points=(failure.other.corner.at, failure.work.corner.at),
     )

@@ -84,14 +84,14 @@ def _comment_class(text: str) -> str:
 
 
 @cache
-def _fixed_classes() -> dict[str, str]:
+def fixed_classes() -> dict[str, str]:
     """Words and signs of the grammar with their classes."""
     words = vocabulary()
     return {word: kind for name, kind in _KEYWORD_CLASSES.items() for word in getattr(words, name)}
 
 
 @cache
-def _called() -> dict[str, str]:
+def called() -> dict[str, str]:
     """Names that may be called, with the class of the call."""
     return {name: _CALL_CLASSES[kind] for name, kind in vocabulary().named().items() if kind in _CALL_CLASSES}
 
@@ -146,7 +146,7 @@ class _Reader:
         elif token.kind == UNKNOWN:
             yield Piece(start, end, "unknown")
         else:
-            yield Piece(start, end, _fixed_classes()[token.kind])
+            yield Piece(start, end, fixed_classes()[token.kind])
 
     def _number(self, token: Token) -> Iterator[Piece]:
         unit = next((u for u in _units() if token.text.endswith(u)), "")
@@ -191,7 +191,7 @@ class _Reader:
             return "name.function"
         if before == "NAME" and self._is_kind(place - 1):
             return "name.template"
-        return _called().get(name) or ("call.member" if before == "." else "call")
+        return called().get(name) or ("call.member" if before == "." else "call")
 
     def _name(self, place: int) -> str:
         before, after = self._kind(place - 1), self._kind(place + 1)

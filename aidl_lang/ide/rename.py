@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from aidl_lang.diagnostics import Edit
+from aidl_lang.ide.edits import applied
 from aidl_lang.ide.meaning import Mention, Place, mention_at, mentions, place_of
 from aidl_lang.ide.project import Project
 from aidl_lang.ide.references import Occurrence, references
@@ -90,7 +91,7 @@ def _require_same_meaning(
             before[occurrence.path] = other
     changed = Workspace(open=dict(project.workspace.open))
     for path, each in edits.items():
-        changed.open[path] = _edited(before[path].source.text, each)
+        changed.open[path] = applied(before[path].source.text, each)
     for path, old in before.items():
         try:
             text = changed.text(path)
@@ -131,9 +132,3 @@ def _moved(place: Place, edits: Mapping[Path, tuple[Edit, ...]]) -> Place:
         len(e.replacement) - (e.span.end - e.span.start) for e in edits.get(path, ()) if e.span.end <= offset
     )
     return path, offset + grown
-
-
-def _edited(text: str, edits: tuple[Edit, ...]) -> str:
-    for edit in sorted(edits, key=lambda e: -e.span.start):
-        text = text[: edit.span.start] + edit.replacement + text[edit.span.end :]
-    return text

@@ -94,6 +94,7 @@ def test_reads_and_prints(written: str, canonical: str) -> None:
     ("written", "count"),
     [
         ("let a = b if c { d = e }", 2),
+        ("constrain a.x = b.x if c { d.x == e.x }", 2),
         ("let a = b if c then_d else e", 0),
         ("x = f(a) if c { } else { } y = 3", 3),
         ("a = b (c + d) / 2 == e", 0),

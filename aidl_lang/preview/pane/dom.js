@@ -55,6 +55,17 @@ export function part(id, type) {
 }
 
 /**
+ * Text in which what is between backticks is code.
+ * @param {string} text
+ * @returns {(Node | string)[]}
+ */
+export function quoted(text) {
+  const parts = text.split("`");
+  if (parts.length % 2 === 0) return [text];
+  return parts.map((part, k) => (k % 2 ? el("code", {}, part) : part)).filter((part) => part !== "");
+}
+
+/**
  * A picture from the sheet of symbols in index.html.
  * @param {string} name
  */

@@ -8,7 +8,7 @@ const LINE_HEIGHT = 16;
 
 /**
  * @typedef {object} Listener
- * @property {(event: PointerEvent) => void} click the first of clicks that follow each other
+ * @property {(event: MouseEvent) => void} click the first of clicks that follow each other
  * @property {() => void} doubleClick
  * @property {(event: PointerEvent) => void} move no button is pressed
  * @property {() => void} leave
@@ -35,7 +35,7 @@ export function watch(stage, view, listener) {
   stage.addEventListener("pointermove", (event) => {
     const before = down.get(event.pointerId);
     if (!before) return listener.move(event);
-    travelled += Math.abs(event.clientX - before.clientX) + Math.abs(event.clientY - before.clientY);
+    travelled = Math.max(travelled, Math.hypot(event.clientX - before.clientX, event.clientY - before.clientY));
     const [other] = [...down].filter(([id]) => id !== event.pointerId).map(([, pointer]) => pointer);
     if (other) pinch(before, event, other);
     else if (travelled > CLICK) {
@@ -62,14 +62,15 @@ export function watch(stage, view, listener) {
 
   /** @param {PointerEvent} event */
   function release(event) {
-    const wasDown = down.delete(event.pointerId);
-    if (down.size) return;
-    stage.classList.remove("panning");
-    if (wasDown && event.type === "pointerup" && event.button === 0 && travelled <= CLICK) listener.click(event);
+    down.delete(event.pointerId);
+    if (!down.size) stage.classList.remove("panning");
   }
   stage.addEventListener("pointerup", release);
   stage.addEventListener("pointercancel", release);
   stage.addEventListener("pointerleave", () => listener.leave());
+  stage.addEventListener("click", (event) => {
+    if (travelled <= CLICK && event.detail === 1) listener.click(event);
+  });
   stage.addEventListener("dblclick", () => listener.doubleClick());
 
   stage.addEventListener(

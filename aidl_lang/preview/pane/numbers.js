@@ -14,6 +14,16 @@ export function shown(value, digits = 2) {
 }
 
 /**
+ * So many digits after the point, a true minus sign.
+ * @param {number} value
+ * @param {number} digits
+ */
+export function fixed(value, digits) {
+  const text = value.toFixed(digits);
+  return (/[1-9]/.test(text) ? text : text.replace("-", "")).replace("-", MINUS);
+}
+
+/**
  * The least of 1, 2, 5, 10, 20, … (and 0.5, 0.2, …) that is not below a length.
  * @param {number} length above 0
  */

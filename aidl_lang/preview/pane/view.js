@@ -91,13 +91,11 @@ export class View {
   }
 
   /**
-   * The middle of what is in sight stays in the middle.
+   * The upper left stays where it is.
    * @param {number} width of the window in pixels
    * @param {number} height
    */
   resize(width, height) {
-    this.x += (width - this.width) / 2;
-    this.y += (height - this.height) / 2;
     this.width = width;
     this.height = height;
     this.changed();

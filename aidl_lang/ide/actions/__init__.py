@@ -1,0 +1,26 @@
+"""What an editor offers to do to a program at a place: fixes, and changes that keep what it draws.
+
+Each action is found cheaply and carried out when it is chosen; those that could go wrong try the changed
+program first, and refuse where it would not be what was promised.
+"""
+
+from __future__ import annotations
+
+from aidl_lang.ide.actions.action import Action, CannotActError
+from aidl_lang.ide.actions.constraining import missing_constraints
+from aidl_lang.ide.actions.extracting import extractions
+from aidl_lang.ide.actions.fixes import fixes
+from aidl_lang.ide.actions.naming import namings
+from aidl_lang.ide.view import View
+
+__all__ = ["Action", "CannotActError", "actions"]
+
+
+def actions(view: View, start: int, end: int) -> list[Action]:
+    """What can be done at a selection of the text, or at the cursor where both ends are the same."""
+    return [
+        *fixes(view, start, end),
+        *missing_constraints(view, start),
+        *namings(view, start, end),
+        *extractions(view, start),
+    ]

@@ -1,0 +1,54 @@
+"""An offer to change a program."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from aidl_lang.diagnostics import Diagnostic, Edit
+from aidl_lang.ide.edits import applied
+from aidl_lang.ide.view import View, look, run
+from aidl_lang.source import SourceFile
+
+
+class CannotActError(Exception):
+    """Why an action that was offered cannot be carried out."""
+
+
+@dataclass(frozen=True)
+class Action:
+    """
+    kind    `quickfix`, `refactor.extract`, `refactor.rewrite` or `source.fixAll`, as editors sort them
+    make    the edits; raises CannotActError
+    mends   the diagnostic that it is for
+    """
+
+    title: str
+    kind: str
+    make: Callable[[], Sequence[Edit]]
+    mends: Diagnostic | None = None
+    is_preferred: bool = False
+
+
+def tried(view: View, edits: Sequence[Edit]) -> View:
+    """The program after some edits, solved."""
+    changed = look(view.path, applied(view.source.text, edits), view.world)
+    return run(changed, params=view.params)
+
+
+def drawn_alike(one: View, other: View) -> bool:
+    """Whether two programs solve and draw the same picture."""
+    outcomes = [view.outcome for view in (one, other)]
+    if any(outcome is None or not outcome.ok for outcome in outcomes):
+        return False
+    first, second = (outcome.export(".svg") for outcome in outcomes if outcome is not None)
+    return first == second
+
+
+def first_error(view: View) -> str:
+    """What is wrong with a program, in one sentence."""
+    return next((d.message for d in view.diagnostics if d.is_error), "the drawing would change")
+
+
+def is_here(source: SourceFile, edits: Sequence[Edit]) -> bool:
+    return all(edit.span.source is source for edit in edits)

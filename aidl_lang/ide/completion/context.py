@@ -1,0 +1,379 @@
+"""What is wanted at a place, and which names may be used there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import cached_property
+
+from aidl_lang import ast
+from aidl_lang.builtins import COPYING, DERIVING, MATH, PATTERNS
+from aidl_lang.checking.facts import Fact, Place
+from aidl_lang.checking.named import of_symbol
+from aidl_lang.ide.overloads import Reading, readings
+from aidl_lang.ide.site import PLACEHOLDER, Site
+from aidl_lang.ide.view import View
+from aidl_lang.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind
+from aidl_lang.types import (
+    ANY,
+    AnyType,
+    GeometryType,
+    ListType,
+    NumberType,
+    PointType,
+    RangeType,
+    TextType,
+    TruthType,
+    Type,
+    accepts,
+)
+from aidl_lang.units import ANGLE, LENGTH
+from aidl_lang.vocabulary import vocabulary
+
+_WHOLE = NumberType(None, whole=True)
+_NUMBER = NumberType(LENGTH)
+_ATTRIBUTES: dict[str, Type] = {"thickness": NumberType(LENGTH), "elevation": NumberType(LENGTH)}
+
+
+class Use(Enum):
+    """What an expression may read, by the statement that it stands in (language reference: validity)."""
+
+    GEOMETRY = "its own structure, above"
+    DERIVING = "its own structure, above, and what is around"
+    CONSTRAINT = "what is in its structure"
+    CHECK = "everything"
+    CONSTANT = "constants"
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Types of which one is wanted, the likelier first; none where anything may stand. `name` is the
+    parameter that it is for.
+    """
+
+    types: tuple[Type, ...] = ()
+    name: str = ""
+
+    def distance(self, given: Type) -> int | None:
+        """How far a type is from what is wanted; None if it does not fit. What is not known may fit."""
+        if isinstance(given, AnyType):
+            return _PERHAPS
+        found = [d for kind in self.types if (d := accepts(kind, given)) is not None]
+        return min(found) if found else None if self.types else 0
+
+
+_PERHAPS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """A name that may be used, and what is known of it."""
+
+    name: str
+    symbol: Symbol
+    fact: Fact
+
+    @property
+    def is_unknown(self) -> bool:
+        return bool(self.fact.reads)
+
+
+@dataclass(frozen=True, eq=False)
+class Context:
+    """`call` is the call that the place is an argument of, with the number of the argument, the receiver
+    counted.
+    """
+
+    site: Site
+    view: View
+    scope: Scope
+    path: tuple[ast.Node, ...]
+    call: tuple[ast.Call, int] | None = field(default=None)
+
+    @cached_property
+    def statement(self) -> ast.Node | None:
+        """The statement that the place is in."""
+        return next((n for n in reversed(self.path) if isinstance(n, _STATEMENTS)), None)
+
+    @cached_property
+    def home(self) -> ast.Node:
+        """The structure or other definition whose body the place is in, or the file."""
+        return self.scope.homes[-1]
+
+    @cached_property
+    def in_items(self) -> bool:
+        """Whether the place is among constraints."""
+        return any(isinstance(n, ast.Constrain | ast.ConstraintDefinition) for n in self.path)
+
+    @cached_property
+    def use(self) -> Use:
+        match self.statement:
+            case ast.Assert():
+                return Use.CHECK
+            case ast.Let() | ast.FunctionDefinition():
+                return Use.CHECK
+            case ast.Param() | ast.Parameter() | ast.If() | ast.For() if not self.in_items:
+                return Use.CONSTANT
+            case _ if self.in_items or isinstance(self.statement, _DEMANDS):
+                return Use.CONSTRAINT
+            case _:
+                return Use.DERIVING if self._derives else Use.GEOMETRY
+
+    @property
+    def _derives(self) -> bool:
+        """Whether the place is an argument of something that takes geometry from around: `mirror(…)`."""
+        if self.call is None:
+            return False
+        return self.call[0].callee.text in DERIVING | PATTERNS | COPYING
+
+    @cached_property
+    def readings(self) -> list[Reading]:
+        """The overloads of the call around that what it is given so far leaves possible."""
+        if self.call is None:
+            return []
+        found = readings(self.view.program, self.scope, self.call[0])
+        return [r for r in found if r.fits] or found
+
+    @cached_property
+    def wanted(self) -> Wanted:
+        return _wanted(self, self.path)
+
+    @cached_property
+    def values(self) -> list[Known]:
+        """The names of values that may be used here, the nearest scope first."""
+        check = self.view.program.inference
+        check.homes = self.scope.homes
+        found = []
+        helpers = _helpers()
+        for name, symbol in self.scope.visible().items():
+            if name == PLACEHOLDER or name in MATH:
+                continue
+            if symbol.kind is SymbolKind.BUILTIN and (name in helpers or not self._is_here(name)):
+                continue
+            if self._is_ahead(symbol):
+                continue
+            known = Known(name, symbol, of_symbol(check, symbol))
+            if self.may_read(known):
+                found.append(known)
+        return found
+
+    def _is_here(self, name: str) -> bool:
+        """Whether a name that every structure has is one here: there is none beside structures."""
+        return name not in vocabulary().everywhere or any(
+            isinstance(home, ast.Structure) for home in self.scope.homes
+        )
+
+    def _is_ahead(self, symbol: Symbol) -> bool:
+        """Whether a name is that of the statement itself, or is made below where that counts."""
+        start = self.site.spot.start
+        nodes = [n for n in symbol.nodes if n.span.source is self.view.source]
+        if symbol.kind in (SymbolKind.ARGUMENT, SymbolKind.LOOP) or symbol.scope is None or not nodes:
+            return False
+        if any(n.span.start <= start < n.span.end and not isinstance(n, ast.Structure) for n in nodes):
+            return True
+        is_ordered = self.use in (Use.GEOMETRY, Use.DERIVING)
+        is_own = symbol.scope.homes == self.scope.homes and symbol.kind in UNKNOWNS and not symbol.is_array
+        return is_ordered and is_own and start < nodes[0].span.end
+
+    def may_read(self, known: Known) -> bool:
+        """Whether what a name stands for may be read here."""
+        reads = known.fact.reads
+        match self.use:
+            case Use.CHECK:
+                return True
+            case Use.CONSTANT:
+                return not reads
+            case Use.CONSTRAINT:
+                return all(p.holder is self.home for p in reads)
+            case Use.GEOMETRY:
+                own = all(p == Place(self.home) for p in reads)
+                return own and known.name != "self" and known.symbol is not self.scope.own_name
+            case Use.DERIVING:
+                return all(
+                    p.holder in self.scope.homes and (not p.below or p.holder is self.home) for p in reads
+                )
+
+    def callables(self) -> Iterator[tuple[str, Symbol | None]]:
+        """The names of this program, and of what it imports, that can be called here, the nearest first; with
+        the alias where it is one.
+        """
+        seen: set[str] = set()
+        outermost = self.view.resolution.library_scope
+        for scope in self.scope.chain():
+            if scope is outermost:
+                return
+            for name in (*scope.callables, *scope.aliases):
+                if name not in seen and name != PLACEHOLDER:
+                    seen.add(name)
+                    yield name, scope.aliases.get(name)
+
+
+def context_of(site: Site) -> Context | None:
+    """None where the place is in no program."""
+    if site.view is None or site.scope is None:
+        return None
+    return Context(site, site.view, site.scope, site.path, _call_around(site.view, site.path))
+
+
+def _call_around(view: View, path: tuple[ast.Node, ...]) -> tuple[ast.Call, int] | None:
+    """The call of whose arguments the innermost node, or an operation that ends in it, is one."""
+    for number in range(len(path) - 1, 0, -1):
+        node, above = path[number], path[number - 1]
+        if isinstance(above, ast.Argument):
+            continue
+        if isinstance(above, ast.Call) and isinstance(node, ast.Argument):
+            before = int(above.receiver is not None and not _names_file(view, above.receiver))
+            return above, before + above.arguments.index(node)
+        if not isinstance(above, ast.Unary | ast.Binary | ast.Conditional | ast.List | ast.Point):
+            return None
+    return None
+
+
+def _names_file(view: View, node: ast.Expression) -> bool:
+    symbol = view.resolution.uses.get(node)
+    return symbol is not None and symbol.kind is SymbolKind.NAMESPACE
+
+
+_DEMANDS = ast.Constrain | ast.ExpressionStatement | ast.Prefer | ast.Equation
+_STATEMENTS = (
+    ast.Structure,
+    ast.Param,
+    ast.Var,
+    ast.Let,
+    ast.Assign,
+    ast.ExpressionStatement,
+    ast.Constrain,
+    ast.Equation,
+    ast.Prefer,
+    ast.Assert,
+    ast.For,
+    ast.If,
+    ast.Import,
+    ast.FunctionDefinition,
+    ast.ShapeDefinition,
+    ast.ConstraintDefinition,
+    ast.Alias,
+    ast.Parameter,
+)
+
+
+def _helpers() -> frozenset[str]:
+    return frozenset(vocabulary().helpers)
+
+
+# --- What is wanted --------------------------------------------------------------------------------
+
+
+def _wanted(context: Context, path: tuple[ast.Node, ...]) -> Wanted:
+    """What the last node of a path is wanted to be, by what stands around it."""
+    if len(path) < 2:
+        return Wanted()
+    node, above = path[-1], path[-2]
+    match above:
+        case ast.Argument() | ast.Unary(operator="-" | "+"):
+            return _of_argument(context) if isinstance(above, ast.Argument) else _wanted(context, path[:-1])
+        case ast.Binary(operator="+" | "-", left=left, right=right):
+            other = context.view.program.inference.fact(right if node is left else left).type
+            return _alike(other) if not isinstance(other, AnyType) else _wanted(context, path[:-1])
+        case ast.Binary(operator="and" | "or") | ast.Unary():
+            return Wanted((TruthType(),))
+        case ast.Binary():
+            return Wanted((_NUMBER, NumberType(None)))
+        case ast.Comparison(operands=operands):
+            return _compared(context, node, operands)
+        case ast.Equation(left=left, right=right):
+            return _compared(context, node, (left, right))
+        case ast.Conditional(test=test):
+            return Wanted((TruthType(),)) if node is test else _wanted(context, path[:-1])
+        case ast.List():
+            return _member_of(_wanted(context, path[:-1]))
+        case _:
+            return _of_place(node, above, path)
+
+
+def _of_place(node: ast.Node, above: ast.Node, path: tuple[ast.Node, ...]) -> Wanted:
+    """What a statement, or another fixed place, wants."""
+    match above:
+        case ast.Point():
+            return Wanted((NumberType(LENGTH),))
+        case ast.Placement(at=at):
+            return Wanted((PointType() if node is at else NumberType(ANGLE),))
+        case ast.Membership(container=container) | ast.Param(domain=container) if node is container:
+            return Wanted((RangeType(), ListType(ANY)))
+        case ast.Range() | ast.Membership():
+            return Wanted((_NUMBER, _WHOLE))
+        case ast.For() | ast.Comprehension(iterable=_) if node is above.iterable:
+            return Wanted((ListType(ANY), RangeType()))
+        case ast.Index(index=index) if node is index:
+            return Wanted((_WHOLE,))
+        case ast.Structure() | ast.Assign() if node in above.indices:
+            return Wanted((_WHOLE,))
+        case ast.If(test=test) | ast.Assert(test=test) | ast.Prefer(value=test) if node is test:
+            return Wanted((TruthType(),))
+        case ast.Assert():
+            return Wanted((TextType(),))
+        case ast.Prefer():
+            return Wanted((NumberType(None),))
+        case ast.ExpressionStatement():
+            return Wanted((TruthType(),))
+        case ast.Parameter(type=ast.Identifier(word)):
+            from aidl_lang.types import type_named
+
+            kind = type_named(word)
+            return Wanted((kind,)) if kind is not None else Wanted()
+        case _:
+            return Wanted()
+
+
+def _of_argument(context: Context) -> Wanted:
+    """What the parameters want that an argument may be for, by all overloads that are possible."""
+    if context.call is None:
+        return _of_attribute(context)
+    number = context.call[1]
+    kinds: dict[Type, None] = {}
+    name = ""
+    for reading in context.readings:
+        taken = reading.taken[number] if number < len(reading.taken) else None
+        kind = reading.type_of(taken) if taken is not None else None
+        if kind is None or taken is None:
+            continue
+        name = name or taken
+        positional = context.call[0].arguments[number - len(reading.taken)].name is None
+        if isinstance(kind, ListType) and positional:
+            kinds[kind.element] = None
+        kinds[kind] = None
+    return Wanted(() if ANY in kinds and len(kinds) == 1 else tuple(kinds), name)
+
+
+def _of_attribute(context: Context) -> Wanted:
+    attribute = next((n for n in reversed(context.path) if isinstance(n, ast.Attribute)), None)
+    if attribute is None:
+        return Wanted()
+    return Wanted((_ATTRIBUTES.get(attribute.name.text, TextType()),), f"@{attribute.name.text}")
+
+
+def _compared(context: Context, node: ast.Node, operands: tuple[ast.Expression, ...]) -> Wanted:
+    """What goes with the other sides of a comparison."""
+    facts = [context.view.program.inference.fact(o) for o in operands if o is not node]
+    known = next((f.type for f in facts if not isinstance(f.type, AnyType)), None)
+    return _alike(known) if known is not None else Wanted()
+
+
+def _alike(kind: Type) -> Wanted:
+    """What may be compared with, or added to, something of a type."""
+    match kind:
+        case NumberType(dimension):
+            return Wanted((NumberType(dimension), NumberType(None)))
+        case GeometryType("line"):
+            return Wanted((NumberType(LENGTH), kind))
+        case _:
+            return Wanted((kind,))
+
+
+def _member_of(wanted: Wanted) -> Wanted:
+    elements = [kind.element for kind in wanted.types if isinstance(kind, ListType)]
+    known = tuple(kind for kind in elements if not isinstance(kind, AnyType))
+    if not elements and PointType() in wanted.types:
+        known = (NumberType(LENGTH),)
+    return Wanted(known, wanted.name)

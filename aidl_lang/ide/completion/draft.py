@@ -1,0 +1,67 @@
+"""Entries before they are ranked and given their place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+
+from aidl_lang.ide.completion.item import MOST, Completion, Edit
+from aidl_lang.names import fold
+from aidl_lang.source import Span
+
+
+def _nothing() -> str:
+    return ""
+
+
+@dataclass(frozen=True)
+class Draft:
+    """`tier` is how likely it is, 0 the likeliest; of those that are alike the first drafted comes first."""
+
+    label: str
+    kind: str
+    tier: float
+    text: str = ""
+    detail: str = ""
+    is_snippet: bool = False
+    extra: tuple[Edit, ...] = ()
+    describe: Callable[[], str] = field(default=_nothing, repr=False)
+
+
+def ranked(drafts: Iterable[Draft], span: Span, prefix: str) -> list[Completion]:
+    """The likeliest first, each label once; those that the prefix may be the beginning of a spelling of."""
+    chosen: dict[tuple[str, str], Draft] = {}
+    for draft in sorted(drafts, key=lambda d: d.tier):
+        chosen.setdefault((draft.label, draft.text), draft)
+    wanted = fold(prefix)
+    fitting = [d for d in chosen.values() if _is_spelling(wanted, fold(d.label))]
+    return [
+        Completion(d.label, d.kind, d.text or d.label, span, d.detail, d.is_snippet, rank, d.extra, d.describe)
+        for rank, d in enumerate(_cut(fitting))
+    ]
+
+
+def _cut(drafts: Sequence[Draft]) -> Sequence[Draft]:
+    return drafts[:MOST]
+
+
+def _is_spelling(letters: str, word: str) -> bool:
+    """Whether the letters stand in a word in this order."""
+    rest = iter(word)
+    return all(letter in rest for letter in letters)
+
+
+def escaped(text: str) -> str:
+    """Text as it stands in a snippet."""
+    for sign in ("\\", "$", "}"):
+        text = text.replace(sign, "\\" + sign)
+    return text
+
+
+def stop(number: int, proposed: str) -> str:
+    return f"${{{number}:{escaped(proposed)}}}"
+
+
+def choice(number: int, names: Sequence[str]) -> str:
+    """A place where one of some names is filled in; the first is proposed."""
+    return f"${{{number}|{','.join(names)}|}}" if len(names) > 1 else stop(number, names[0])

@@ -1,0 +1,68 @@
+"""One thing that may be written at a place."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from aidl_lang.source import Span
+
+MOST = 200
+"""Entries of a list. One that has so many may have left out others: it is to be asked for anew as the word
+grows.
+"""
+
+_STOP = re.compile(r"\$\{\d+:([^}]*)\}|\$\{\d+\|([^,|]*)[^|]*\|\}|\$\d+")
+
+
+@dataclass(frozen=True)
+class Edit:
+    """Text in the place of a span."""
+
+    span: Span
+    text: str
+
+
+def _nothing() -> str:
+    return ""
+
+
+@dataclass(frozen=True)
+class Completion:
+    """
+    label    what is shown, and what is compared with what has been typed
+    kind     what it is: `keyword`, `kind`, `snippet`, `unit`, `attribute`, `color`, `type`, `file`, `word`,
+             `argument`, `param`, `let`, `var`, `loop variable`, `parameter`, `geometry`, `structure`, `field`,
+             `method`, `function`, `shape`, `constraint`, `template`, `imported file`, `built-in name`
+    detail   its type, or how it is called, in a few words
+    text     what is written in the place of `span`; as a snippet it has places to fill in: `${1:name}`,
+             `${1|a,b|}`, `$0`
+    rank     its place in the list, 0 for the best
+    extra    edits elsewhere that it needs, as an import
+    describe makes its documentation in Markdown; not cheap for a whole list
+    """
+
+    label: str
+    kind: str
+    text: str
+    span: Span
+    detail: str = ""
+    is_snippet: bool = False
+    rank: int = 0
+    extra: tuple[Edit, ...] = ()
+    describe: Callable[[], str] = field(default=_nothing, repr=False, compare=False)
+
+    @property
+    def documentation(self) -> str:
+        return self.describe()
+
+    @property
+    def plain(self) -> str:
+        """The text without places to fill in, each as it is proposed."""
+        return plain(self.text) if self.is_snippet else self.text
+
+
+def plain(snippet: str) -> str:
+    """The text that a snippet gives if nothing is filled in."""
+    return _STOP.sub(lambda m: m[1] or m[2] or "", snippet)

@@ -1,0 +1,184 @@
+"""How statements begin, and the words that go on with one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+from aidl_lang import ast
+from aidl_lang.ide.completion import names
+from aidl_lang.ide.completion.constraints import constraints
+from aidl_lang.ide.completion.context import Context
+from aidl_lang.ide.completion.draft import Draft
+from aidl_lang.ide.describing import of_entry
+from aidl_lang.ide.site import Site
+from aidl_lang.kinds import KINDS
+from aidl_lang.reference.collect import reference
+from aidl_lang.vocabulary import vocabulary
+
+_BLOCK = " {\n    $0\n}"
+_SNIPPETS = {
+    "param": "param ${1:width} = ${2:80mm} in ${3:20}..${4:200}",
+    "var": "var ${1:gap} = ${2:5}",
+    "let": "let ${1:name} = $0",
+    "constrain": "constrain" + _BLOCK,
+    "prefer": "prefer $0",
+    "assert": 'assert ${1:test}, "${2:why}"',
+    "for": "for ${1:i} in ${2:0}..${3:9}" + _BLOCK,
+    "if": "if ${1:test}" + _BLOCK,
+    "else": "else" + _BLOCK,
+    "fn": "fn ${1:name}(${2:x}) = $0",
+    "shape": "shape ${1:name}(${2:center: point = (0, 0)})" + _BLOCK,
+    "constraint": "constraint ${1:name}(${2:a: box}, ${3:b: box})" + _BLOCK,
+    "template": "template ${1:solid} ${2:name}()" + _BLOCK,
+    "alias": "alias ${1:name} = ${2:target}",
+    "import": 'import "${1:file.aidl}"',
+    "construction": "construction ${1:name} = $0",
+    "todo": "todo",
+}
+_IN_ITEMS = ("let", "for", "if", "prefer", "constrain")
+_AT_TOP = ("import",)
+_CLAUSES = {"weight": "weight ${1:2}", "step": "step ${1:5}", "rotated": "rotated ${1:45deg}", "at": "at (${1:0}, ${2:0})"}
+_TEMPLATE = "${2:name}"
+_STATEMENTS, _KINDS, _OPERATIONS, _SHAPES, _NAMES, _LOW = 2.0, 1.0, 4.0, 5.0, 3.0, 6.0
+
+
+def statements(context: Context) -> Iterator[Draft]:
+    """What may be stated here: definitions in a body, constraints among constraints."""
+    site = context.site
+    if context.in_items:
+        yield from constraints(context)
+        yield from names.values(context)
+        yield from _keywords(site, 4.0)
+        yield from _calls(context, vocabulary().functions, 7.0)
+        return
+    yield from kinds(site, _KINDS)
+    yield from _keywords(site, _STATEMENTS)
+    for draft in names.values(context):
+        yield _later(draft, _NAMES)
+    yield from _operations(context)
+    yield from _shapes(context)
+    yield from constraints(context, behind=_LOW)
+
+
+def _later(draft: Draft, tier: float) -> Draft:
+    from dataclasses import replace
+
+    return replace(draft, tier=tier + draft.tier / 100)
+
+
+def kinds(site: Site, tier: float) -> Iterator[Draft]:
+    """Structures; by the word alone where a name stands already."""
+    if not site.takes("NAME", "NAME", "{"):
+        return
+    is_named = site.following.lstrip(" \t")[:1].isidentifier()
+    for number, kind in enumerate(KINDS):
+        text = kind if is_named else f"{kind} ${{1:name}}" + _BLOCK
+        yield Draft(
+            kind, "kind", tier + number / 10, text, "structure", not is_named, describe=partial(_word, kind)
+        )
+
+
+def _keywords(site: Site, tier: float) -> Iterator[Draft]:
+    words = vocabulary()
+    is_top = site.automaton.open_blocks() == 0
+    among = _IN_ITEMS if not site.takes("todo") else words.statements
+    for number, word in enumerate(among):
+        if site.takes(word) and (is_top or word not in _AT_TOP):
+            yield _statement(site, word, tier + number / 100)
+
+
+def _statement(site: Site, word: str, tier: float) -> Draft:
+    """A statement with places to fill in; the word alone where it goes on already."""
+    rest = site.following.partition("\n")[0].strip()
+    text = word if rest else _SNIPPETS.get(word, word)
+    return Draft(word, "keyword", tier, text, is_snippet="$" in text, describe=partial(_word, word))
+
+
+def _operations(context: Context) -> Iterator[Draft]:
+    """Statements that change what was made: `fillet(…)`, `move(…)`, `union(…)`."""
+    yield from _calls(context, vocabulary().operations, _OPERATIONS)
+
+
+def _calls(context: Context, found: tuple[str, ...], tier: float) -> Iterator[Draft]:
+    for name in found:
+        called = context.scope.called(name)
+        entry = reference().entries.get(name)
+        if called is not None and (entry is None or entry.topic != "path"):
+            yield names.call(context, name, called[1], tier)
+
+
+def _shapes(context: Context) -> Iterator[Draft]:
+    """Geometry under a new name: `name = circle(…)`."""
+    words = vocabulary()
+    own = [name for name, _ in context.callables()]
+    if context.site.following.startswith("("):
+        return
+    for name in (*own, *words.primitives, *words.shapes, *words.templates):
+        called = context.scope.called(name)
+        if called is None or all(
+            s.kind in (ast.ConstraintDefinition, ast.FunctionDefinition) and not s.standard for s in called[1]
+        ):
+            continue
+        draft = names.call(context, name, called[1], _SHAPES - 0.5 * (name in own))
+        yield Draft(
+            name,
+            draft.kind,
+            draft.tier,
+            f"${{1:name}} = {name}($2)",
+            draft.detail,
+            is_snippet=True,
+            describe=draft.describe,
+        )
+
+
+# --- Words that go on ------------------------------------------------------------------------------
+
+
+def clauses(site: Site) -> Iterator[Draft]:
+    """The words that may go on with the statement under way: `at`, `in`, `step`, `and`, …"""
+    words = vocabulary()
+    operand = not site.may_end and site.takes("NUMBER")
+    for number, word in enumerate((*words.clauses, "else", "if", *words.word_operators, "as", "from", "then")):
+        if _goes_on(site, word, operand=operand):
+            text = _CLAUSES.get(word, _BLOCK_ELSE if word == "else" and _ends_block(site) else word)
+            yield Draft(
+                word, "keyword", number / 100, text, is_snippet="$" in text, describe=partial(_word, word)
+            )
+
+
+_BLOCK_ELSE = _SNIPPETS["else"]
+
+
+def _ends_block(site: Site) -> bool:
+    return site.spot.before is not None and site.spot.before.kind == "}"
+
+
+def _goes_on(site: Site, word: str, *, operand: bool) -> bool:
+    if word in ("as", "from", "then"):
+        return _soft(site, word)
+    if word == "if":  # behind a value, not as a statement of its own
+        return not operand and not site.automaton.between_statements and site.takes("if", "NAME", "else", "NAME")
+    return site.takes(word)
+
+
+def _soft(site: Site, word: str) -> bool:
+    """Whether a word that is a name elsewhere is a word of the grammar here."""
+    match word:
+        case "as":
+            return site.takes("as", "NAME", ";") and not site.automaton.between_statements
+        case "from":
+            return site.takes("from", "STRING") and not site.takes("NAME")
+        case _:
+            return site.takes(word) and not site.takes("NAME")
+
+
+def truths(site: Site) -> Iterator[Draft]:
+    for word in ("true", "false"):
+        if site.takes(word):
+            yield Draft(word, "keyword", 5.0, describe=partial(_word, word))
+
+
+def _word(word: str) -> str:
+    entry = reference().entries.get(word)
+    return of_entry(entry) if entry is not None else ""

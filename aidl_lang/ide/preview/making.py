@@ -1,0 +1,58 @@
+"""A preview of a view: the picture and all that is said of it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+
+from aidl_lang.ide.preview.elements import Elements, elements
+from aidl_lang.ide.preview.picture import svg_of
+from aidl_lang.ide.preview.problems import conflicts, problems
+from aidl_lang.ide.preview.sliders import sliders
+from aidl_lang.ide.preview.values import LAYERS, Preview, Way
+from aidl_lang.ide.preview.ways import ways
+from aidl_lang.ide.view import SETTINGS, View, run
+from aidl_lang.pipeline import Memory, Settings
+
+_NOWHERE = (0.0, 0.0, 0.0, 0.0)
+
+
+def preview(view: View, show: Collection[str] = (), *, tried: bool = False) -> Preview:
+    """What there is to see of a program that was run, with some of LAYERS over it.
+
+    A program that does not draw shows the last one that did, and its own problems.
+    """
+    assert view.outcome is not None, "the view was not run"
+    found = elements(view)
+    drawn = view.drawn
+    has_picture = drawn is not None and drawn.model is not None and drawn.drawing is not None
+    return Preview(
+        status=view.outcome.status,
+        stale=has_picture and view.is_stale,
+        tried=tried,
+        seconds=sum(view.outcome.timings.values()),
+        svg=svg_of(drawn, found, set(show) & set(LAYERS)) if drawn is not None and has_picture else None,
+        box=drawn.drawing.box if drawn is not None and drawn.drawing is not None else _NOWHERE,
+        elements=found.values,
+        knobs=tuple(sliders(view)),
+        handles=(),
+        problems=tuple(problems(view, found)),
+        conflicts=tuple(conflicts(view, found)),
+        ways=tuple(_ways(view, found)),
+        degrees=view.outcome.model.degrees if view.outcome.model is not None else None,
+    )
+
+
+def _ways(view: View, found: Elements) -> Iterator[Way]:
+    """What can still move; of an earlier text nobody can tell."""
+    if view.outcome is not None and not view.is_stale:
+        yield from ways(view.outcome, found)
+
+
+def tried(
+    view: View,
+    knobs: Mapping[str, float | str | bool],
+    memory: Memory | None = None,
+    settings: Settings = SETTINGS,
+) -> View:
+    """The view as it would be with other values of some params. Raises Cancelled as `run` does."""
+    return run(view, view, memory, {**(view.params or {}), **knobs}, settings)

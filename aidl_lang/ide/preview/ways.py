@@ -1,0 +1,197 @@
+"""What can still move, as arrows and arcs on the drawing.
+
+A motion of the model says how fast each unknown changes. The velocities of points follow by changing the
+unknowns a very little and evaluating their places again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from aidl_lang.expression import Evaluator, Expression, Unknown
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.ide.preview.elements import Elements, box_of
+from aidl_lang.ide.preview.values import Arrow, Turn, Way
+from aidl_lang.lower import seen
+from aidl_lang.model import Model, convert
+from aidl_lang.pipeline import Compiled
+from aidl_lang.solved import Motion
+
+MOST = 40
+"""Motions that are told."""
+MOST_THINGS = 8
+"""Things of one motion that get arrows of their own."""
+LENGTH = 0.14
+"""Of an arrow, relative to the drawing."""
+_ARC = 70.0
+"""Degrees of the arc of a turn about a near place."""
+_NUDGE = 1e-6
+"""How far the fastest number goes, relative to the drawing."""
+_SLOW = 1e-3
+"""Part of the greatest speed below which a point stays where it is."""
+
+
+def ways(outcome: Compiled, elements: Elements) -> Iterator[Way]:
+    """The motions of a solved model."""
+    model = outcome.model
+    if model is None or outcome.built is None or outcome.evaluate is None or outcome.drawing is None:
+        return
+    motions = model.motions[:MOST]
+    if not motions:
+        return
+    flow = _Flow(outcome.built, outcome.evaluate, outcome.drawing.size)
+    for motion in motions:
+        numbers = elements.all_near(motion.things)
+        moving = flow.velocities(motion)
+        arrows, turns = list[Arrow](), list[Turn]()
+        for number in numbers[:MOST_THINGS]:
+            thing = _thing(flow, moving, elements, number)
+            if thing is not None:
+                arrows += thing.arrows(motion.kind)
+                turns += thing.turns(motion.kind)
+        yield Way(motion.words, tuple(numbers), tuple(arrows), tuple(turns))
+
+
+class _Flow:
+    """All points of a model with their paths, and how they move."""
+
+    def __init__(self, model: Model, evaluate: Evaluator, size: float) -> None:
+        self.evaluate, self.size = evaluate, size
+        self.points: list[tuple[str, Expression, Expression]] = []
+        for structure in model.root.walk():
+            for _, path, numbers in seen(structure):
+                if len(numbers) == 2:
+                    self.points.append((path, *convert(*numbers, structure, model.root)))
+        self.places = [(evaluate(x), evaluate(y)) for _, x, y in self.points]
+        self.unknowns: dict[str, list[Unknown]] = defaultdict(list)
+        for unknown in model.unknowns:
+            self.unknowns[unknown.path].append(unknown)
+
+    def velocities(self, motion: Motion) -> list[Vec]:
+        """Of each point, in mm for a nudge."""
+        fastest = max((abs(rate) for rate in motion.moves.values()), default=0.0)
+        if not fastest or not math.isfinite(fastest):
+            return [(0.0, 0.0)] * len(self.points)
+        step = _NUDGE * self.size / fastest
+        values = dict(self.evaluate.values)
+        for path, rate in motion.moves.items():
+            for unknown in self.unknowns[path]:
+                values[unknown] = values.get(unknown, unknown.guess) + step * rate
+        nudged = Evaluator(values, self.evaluate.measure)
+        return [
+            (nudged(x) - at[0], nudged(y) - at[1])
+            for (_, x, y), at in zip(self.points, self.places, strict=True)
+        ]
+
+
+@dataclass(frozen=True)
+class _Thing:
+    """Some points that move, of one thing with a box. `velocity` is their mean; `spin` radians, about the
+    `middle`, in the same time.
+    """
+
+    box: Bounds
+    places: Sequence[Vec]
+    velocities: Sequence[Vec]
+    size: float
+    fastest: float
+
+    @property
+    def center(self) -> Vec:
+        return (self.box[0] + self.box[2]) / 2, (self.box[1] + self.box[3]) / 2
+
+    @property
+    def middle(self) -> Vec:
+        return _mean(self.places)
+
+    @property
+    def velocity(self) -> Vec:
+        return _mean(self.velocities)
+
+    @property
+    def spin(self) -> float:
+        x, y = self.middle
+        u, v = self.velocity
+        turning = spread = 0.0
+        for (px, py), (vx, vy) in zip(self.places, self.velocities, strict=True):
+            turning += (px - x) * (vy - v) - (py - y) * (vx - u)
+            spread += (px - x) ** 2 + (py - y) ** 2
+        return turning / spread if spread > 1e-12 * self.size**2 else 0.0
+
+    @property
+    def is_turning(self) -> bool:
+        """Whether it turns rather than shifts."""
+        reach = math.hypot(self.box[2] - self.box[0], self.box[3] - self.box[1]) / 2
+        return abs(self.spin) * reach > math.hypot(*self.velocity)
+
+    def arrows(self, kind: str) -> Iterator[Arrow]:
+        """One for what slides; for what grows, from its ends outwards."""
+        if kind == "turn" or (kind == "together" and self.is_turning):
+            return
+        if kind in ("slide", "together") and math.hypot(*self.velocity) > _SLOW * self.fastest:
+            yield self._arrow(self.center, self.velocity)
+            return
+        moving = sorted(
+            zip(self.velocities, self.places, strict=True), key=lambda each: -math.hypot(*each[0])
+        )
+        if not moving or math.hypot(*moving[0][0]) <= _SLOW * self.fastest:
+            return
+        (first, at), others = moving[0], moving[1:]
+        yield self._arrow(at, first)
+        for velocity, place in others:
+            if _dot(velocity, first) < -0.5 * math.hypot(*velocity) * math.hypot(*first) < 0:
+                yield self._arrow(place, velocity)
+                return
+
+    def turns(self, kind: str) -> Iterator[Turn]:
+        spin = self.spin
+        if not spin or not (kind == "turn" or (kind == "together" and self.is_turning)):
+            return
+        (x, y), (u, v) = self.middle, self.velocity
+        pole = x - v / spin, y + u / spin
+        away = self.center[0] - pole[0], self.center[1] - pole[1]
+        reach = max(self.box[2] - self.box[0], self.box[3] - self.box[1]) / 2
+        distance = math.hypot(*away)
+        if distance <= reach:  # about a place in it: around all of it
+            radius, sweep, towards = max(0.7 * reach, 0.05 * self.size), _ARC, 90.0
+        else:
+            radius, sweep = distance, min(_ARC, math.degrees(1.5 * LENGTH * self.size / distance))
+            towards = math.degrees(math.atan2(away[1], away[0]))
+        sweep = math.copysign(sweep, spin)
+        yield Turn(pole, radius, towards - sweep / 2, sweep)
+
+    def _arrow(self, at: Vec, velocity: Vec) -> Arrow:
+        speed = math.hypot(*velocity)
+        length = LENGTH * self.size / speed
+        return Arrow(at, (at[0] + length * velocity[0], at[1] + length * velocity[1]))
+
+
+def _thing(flow: _Flow, moving: Sequence[Vec], elements: Elements, number: int) -> _Thing | None:
+    """What an element is in a motion; None where it has no points or is nowhere."""
+    drawn = elements.drawn[number]
+    inside = f"{drawn.element.path}."
+    own = [
+        (place, velocity)
+        for (path, *_), place, velocity in zip(flow.points, flow.places, moving, strict=True)
+        if path == drawn.element.path or path.startswith(inside)
+    ]
+    own = [each for each in own if all(map(math.isfinite, (*each[0], *each[1])))]
+    if not own:
+        return None
+    places, velocities = [place for place, _ in own], [velocity for _, velocity in own]
+    fastest = max((math.hypot(*v) for v in moving if all(map(math.isfinite, v))), default=0.0)
+    box = box_of(drawn.model) or union_bounds([(*place, *place) for place in places])
+    return _Thing(box, places, velocities, flow.size, fastest)
+
+
+def _mean(vectors: Sequence[Vec]) -> Vec:
+    return sum(v[0] for v in vectors) / len(vectors), sum(v[1] for v in vectors) / len(vectors)
+
+
+def _dot(a: Vec, b: Vec) -> float:
+    return a[0] * b[0] + a[1] * b[1]

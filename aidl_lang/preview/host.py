@@ -1,0 +1,215 @@
+"""The host of the pages that show a program: brings them pictures, and carries out what they ask for."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Callable
+from functools import partial
+from typing import TypeAlias
+
+from aidl_lang.agents.workspace import RefusalError
+from aidl_lang.cancelling import Cancelled
+from aidl_lang.ide.preview import Preview
+from aidl_lang.ide.preview.protocol import Json
+from aidl_lang.preview import messages
+from aidl_lang.preview.messages import ApplyFix, Cancel, Drag, Export, Ready, SetKnob, Show
+from aidl_lang.preview.program import CannotError, Program
+from aidl_lang.preview.worker import Job, Worker
+
+Then: TypeAlias = Callable[[], None]
+"""What is left to do in the event loop."""
+
+
+class Page:
+    """One page that is open. What it has not taken yet waits; of pictures only the newest."""
+
+    def __init__(self) -> None:
+        self.show: frozenset[str] = frozenset()
+        self.shown: tuple[Preview, int] | None = None
+        """what it was sent last, and of which version"""
+        self.is_owed = False
+        """whether it waits for a picture even if the text stays as it is"""
+        self._waiting: list[tuple[bool, str]] = []
+        self._news = asyncio.Event()
+
+    def post(self, text: str, *, is_picture: bool = False) -> None:
+        if is_picture:
+            self._waiting = [each for each in self._waiting if not each[0]]
+        self._waiting.append((is_picture, text))
+        self._news.set()
+
+    def tell(self, message: Json) -> None:
+        self.post(json.dumps(message))
+
+    async def next(self) -> str:
+        """The next message for it."""
+        while not self._waiting:
+            self._news.clear()
+            await self._news.wait()
+        return self._waiting.pop(0)[1]
+
+
+class Host:
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        self.pages: list[Page] = []
+        self._worker = Worker(Job(self._refreshed, partial(self._tell_all, {"type": "busy"}), self._trouble))
+        self._trouble_told = ""
+
+    async def run(self) -> None:
+        """Works until it is cancelled."""
+        self._worker.refresh()
+        await self._worker.run()
+
+    def changed(self) -> None:
+        """A file has changed, or may have."""
+        self._worker.refresh()
+
+    def join(self) -> Page:
+        page = Page()
+        self.pages.append(page)
+        return page
+
+    def leave(self, page: Page) -> None:
+        self.pages.remove(page)
+        self._worker.forget(page)
+
+    # --- The text
+
+    def _refreshed(self) -> Then:
+        is_new, trouble = False, ""
+        try:
+            is_new = self.program.refresh()
+        except CannotError as reason:
+            if self.program.view is None:
+                raise
+            trouble = str(reason)
+        pages = [page for page in tuple(self.pages) if is_new or page.is_owed]
+        pictures = {show: self._picture(show) for show in {page.show for page in pages}}
+        return partial(self._show_all, pages, pictures, trouble)
+
+    def _picture(self, show: frozenset[str]) -> tuple[Preview, int, str]:
+        preview, message = self.program.picture(self.program.current, show)
+        return preview, self.program.version, json.dumps(message)
+
+    def _show_all(
+        self, pages: list[Page], pictures: dict[frozenset[str], tuple[Preview, int, str]], trouble: str
+    ) -> None:
+        for page in pages:
+            if page.show in pictures:  # else it has just asked for others
+                self._show(page, *pictures[page.show])
+        self._tell_trouble(trouble)
+
+    def _show(self, page: Page, preview: Preview, version: int, text: str) -> None:
+        page.shown, page.is_owed = (preview, version), False
+        page.post(text, is_picture=True)
+
+    def _trouble(self, error: BaseException) -> None:
+        if not isinstance(error, Cancelled):
+            self._tell_trouble(_told(error))
+
+    def _tell_trouble(self, message: str) -> None:
+        """That the file cannot be read is told once, not at each look at it."""
+        if message and message != self._trouble_told:
+            self._tell_all({"type": "error", "message": message})
+        self._trouble_told = message
+
+    def _tell_all(self, message: Json) -> None:
+        for page in self.pages:
+            page.tell(message)
+
+    # --- What pages ask for
+
+    def hear(self, page: Page, text: str) -> None:
+        """Take a message; the answer comes when there is one."""
+        match messages.read(text):
+            case Ready() | Cancel():
+                self._worker.forget(page)
+                self._owe(page)
+            case Show(layers):
+                page.show = layers
+                self._owe(page)
+            case SetKnob(path, value, final):
+                if final:
+                    self._order(page, lambda: self.program.set_knob(path, value))
+                else:
+                    self._attempt(page, lambda: self._tried_knob(page, path, value))
+            case Drag(handle, to, final):
+                if final:
+                    self._order(page, lambda: self.program.drop(handle, to))
+                else:
+                    self._attempt(page, lambda: self._dragged(page, handle, to))
+            case ApplyFix(problem, fix):
+                self._order(page, partial(self._fix, page.shown, problem, fix))
+            case Export(name):
+                self._worker.order(self._job(page, lambda: self._exported(page, name)))
+            case None:
+                pass
+
+    def _owe(self, page: Page) -> None:
+        page.is_owed = True
+        self._worker.ask()
+
+    def _job(self, page: Page, do: Callable[[], Then]) -> Job:
+        return Job(do, partial(page.tell, {"type": "busy"}), partial(self._refused, page))
+
+    def _attempt(self, page: Page, do: Callable[[], Then]) -> None:
+        self._worker.attempt(page, self._job(page, do))
+
+    def _order(self, page: Page, edit: Callable[[], None]) -> None:
+        """An edit, after which the page gets the picture of the text."""
+
+        def do() -> Then:
+            edit()
+            return partial(self._edited, page)
+
+        self._worker.forget(page)
+        self._worker.order(self._job(page, do))
+
+    def _edited(self, page: Page) -> None:
+        page.is_owed = True
+        self._worker.refresh()
+
+    def _refused(self, page: Page, error: BaseException) -> None:
+        """An attempt that was given up is followed by the picture of the text."""
+        if not isinstance(error, Cancelled):
+            page.tell({"type": "error", "message": _told(error)})
+        self._owe(page)
+
+    # --- In the thread of the worker
+
+    def _tried_knob(self, page: Page, path: str, value: float | str | bool) -> Then:
+        view = self.program.with_knob(path, value)
+        preview, message = self.program.picture(view, page.show, is_tried=True)
+        return partial(self._show, page, preview, self.program.version, json.dumps(message))
+
+    def _dragged(self, page: Page, handle: str, to: tuple[float, float]) -> Then:
+        view = self.program.dragged(handle, to)
+        preview, message = self.program.picture(view, page.show, is_tried=True)
+        return partial(self._show, page, preview, self.program.version, json.dumps(message))
+
+    def _fix(self, shown: tuple[Preview, int] | None, problem: int, fix: int) -> None:
+        preview, version = shown or (None, -1)
+        if preview is None or version != self.program.version:
+            raise CannotError("the text has changed meanwhile")
+        if not (0 <= problem < len(preview.problems) and 0 <= fix < len(preview.problems[problem].fixes)):
+            raise CannotError("there is no such fix")
+        self.program.edit(preview.problems[problem].fixes[fix].edits)
+
+    def _exported(self, page: Page, name: str) -> Then:
+        return partial(page.tell, self.program.export(name, page.show))
+
+
+def _told(error: BaseException) -> str:
+    """What ended a job, for people. Raises what nobody foresaw, to be told by the event loop."""
+    match error:
+        case CannotError():
+            return str(error)
+        case RefusalError(diagnostics=(first, *_)):
+            return "; ".join([first.message, *first.hints[:1]])
+        case _:
+            asyncio.get_running_loop().call_exception_handler(
+                {"message": "the preview failed at something", "exception": error}
+            )
+            return "this did not work; the terminal says more"

@@ -1,0 +1,333 @@
+/** The sliders and fields for the params of a program.
+ * @import { Knob, Preview, Value } from "./protocol.js"
+ */
+
+import { el, icon, quoted, set } from "./dom.js";
+import { shown } from "./numbers.js";
+import { Scale } from "./scales.js";
+
+/**
+ * @typedef {object} Listener
+ * @property {(knob: Knob, value: Value) => void} attempt show what it would look like
+ * @property {(knob: Knob, value: Value) => void} write it into the text
+ * @property {() => void} cancel forget what was tried
+ */
+
+/**
+ * A field of the page for one knob.
+ * @typedef {object} Control
+ * @property {Element[]} elements
+ * @property {(value: Value) => void} show
+ */
+
+export class Knobs {
+  /** @type {Map<string, Row>} */
+  #rows = new Map();
+
+  /**
+   * @param {HTMLElement} list
+   * @param {Listener} listener
+   */
+  constructor(list, listener) {
+    this.list = list;
+    /** @type {Listener} */
+    this.listener = {
+      ...listener,
+      attempt: (knob, value) => {
+        for (const row of this.#rows.values()) if (row.knob.path !== knob.path) row.restore();
+        listener.attempt(knob, value);
+      },
+    };
+  }
+
+  /** @param {Preview} preview */
+  show({ knobs, tried }) {
+    /** @type {Map<string, Row>} */
+    const rows = new Map();
+    for (const knob of knobs) {
+      const before = this.#rows.get(knob.path);
+      const row = before?.fits(knob) ? before : new Row(knob, this.listener);
+      if (!tried) row.settle(knob);
+      rows.set(knob.path, row);
+    }
+    this.#rows = rows;
+    const wanted = [...rows.values()].map((row) => row.element);
+    if (wanted.length !== this.list.children.length || wanted.some((row, k) => row !== this.list.children[k])) {
+      this.list.replaceChildren(...wanted); // only when they changed, since it takes the focus away
+    }
+  }
+
+  /** The values in the text again. */
+  restore() {
+    for (const row of this.#rows.values()) row.restore();
+  }
+}
+
+/** One knob: its name, its field, and the way back to the value in the text. */
+class Row {
+  #isTrying = false;
+  #byKey = false;
+
+  /**
+   * @param {Knob} knob
+   * @param {Listener} listener
+   */
+  constructor(knob, listener) {
+    this.knob = knob;
+    this.listener = listener;
+    /** The value in the text. */
+    this.written = knob.value;
+    this.value = knob.value;
+    this.looks = looksOf(knob);
+    const id = `knob-${(count += 1)}`;
+    this.reset = el("button", { type: "button", class: "tool small", "aria-label": `Reset ${knob.name}`, title: "Back to the value in the text" }, icon("reset"));
+    this.reset.addEventListener("click", () => this.cancel());
+    this.control = controlOf(this, id);
+    const owner = knob.path.slice(0, -knob.name.length);
+    const name = el("label", { for: id, title: knob.path }, el("span", { class: "owner" }, owner.endsWith(".") ? owner : ""), knob.name);
+    this.element = el("div", { class: `knob ${knob.kind}`, title: knob.doc || null });
+    this.element.append(el("div", { class: "head" }, name, this.reset), el("div", { class: "field" }, ...this.control.elements));
+    if (knob.doc) this.element.append(el("p", { class: "doc" }, ...quoted(knob.doc)));
+    if (!isWritable(knob)) {
+      this.element.append(el("p", { class: "doc" }, "Can be tried here, but its value in the text cannot be changed."));
+    }
+    this.element.addEventListener("keydown", (event) => {
+      this.#byKey = event.key !== "Escape";
+      if (this.#byKey || !this.#isTrying) return;
+      event.stopPropagation();
+      this.isIgnored = this.isSlid;
+      this.cancel();
+    });
+    for (const end of ["keyup", "focusout"]) {
+      this.element.addEventListener(end, () => {
+        this.#byKey = false;
+        if (this.#isTrying && this.isSlid) this.finish();
+      });
+    }
+    this.#update();
+  }
+
+  /** Whether the value is being changed by a slider, which has no end but that of the key or the pointer. */
+  isSlid = false;
+  /** Whether the pointer still slides after Escape. */
+  isIgnored = false;
+
+  /** @param {Knob} knob */
+  fits(knob) {
+    return looksOf(knob) === this.looks;
+  }
+
+  /**
+   * The value that the text has now.
+   * @param {Knob} knob
+   */
+  settle(knob) {
+    this.knob = knob;
+    this.written = knob.value;
+    if (!this.#isTrying) this.restore();
+    this.#update();
+  }
+
+  restore() {
+    this.#isTrying = this.isSlid = false;
+    this.value = this.written;
+    this.control.show(this.value);
+    this.#update();
+  }
+
+  /** @param {Value} value */
+  attempt(value) {
+    if (value === this.value) return;
+    this.value = value;
+    this.#isTrying = true;
+    this.#update();
+    this.listener.attempt(this.knob, value);
+  }
+
+  /**
+   * A value that was chosen at once.
+   * @param {Value} value
+   */
+  choose(value) {
+    if (isWritable(this.knob)) this.value = value;
+    else this.attempt(value);
+    this.finish();
+  }
+
+  /** The slider or field was let go. */
+  finish() {
+    if (this.isSlid && this.#byKey) return; // until the key is let go
+    const wasTrying = this.#isTrying;
+    this.#isTrying = this.isSlid = false;
+    if (!isWritable(this.knob)) return;
+    if (this.value !== this.written) this.listener.write(this.knob, this.value);
+    else if (wasTrying) this.listener.cancel();
+    this.#update();
+  }
+
+  cancel() {
+    this.restore();
+    this.listener.cancel();
+  }
+
+  #update() {
+    const isOther = this.value !== this.written;
+    this.reset.hidden = !isOther;
+    this.element.classList.toggle("tried", isOther);
+  }
+}
+
+let count = 0;
+
+/** @param {Knob} knob */
+function isWritable(knob) {
+  return knob.editable && knob.range !== null;
+}
+
+/**
+ * What a row must be made anew for.
+ * @param {Knob} knob
+ */
+function looksOf({ path, name, kind, unit, low, high, step, choices, doc, editable, range }) {
+  return JSON.stringify([path, name, kind, unit, low, high, step, choices, doc, editable, range === null]);
+}
+
+/**
+ * @param {Row} row
+ * @param {string} id
+ * @returns {Control}
+ */
+function controlOf(row, id) {
+  switch (row.knob.kind) {
+    case "number":
+      return number(row, id);
+    case "choice":
+      return choice(row, id);
+    case "truth":
+      return truth(row, id);
+    default:
+      return text(row, id);
+  }
+}
+
+/**
+ * @param {Row} row
+ * @param {string} id
+ * @returns {Control}
+ */
+function number(row, id) {
+  const { knob } = row;
+  let scale = new Scale(knob, Number(knob.value));
+  const slider = el("input", { type: "range", step: "any", "aria-label": knob.name });
+  const field = el("input", { type: "text", inputmode: "decimal", id, size: "6", autocomplete: "off" });
+  const unit = el("span", { class: "unit" }, knob.unit === "deg" ? "°" : knob.unit);
+  const bounds = [knob.low, knob.high].map((bound) => (bound === null ? "…" : shown(bound, 6)));
+  field.title = knob.low === null && knob.high === null ? "" : `${bounds.join(" to ")}`;
+
+  /** @param {number} value */
+  function fill(value) {
+    const { start, end } = scale;
+    const share = end > start ? (Math.min(Math.max(value, start), end) - start) / (end - start) : 0;
+    slider.style.setProperty("--share", `${share * 100}%`);
+    set(slider, { "aria-valuetext": `${value} ${knob.unit}`.trim() });
+  }
+
+  /** @param {Value} value */
+  function show(value) {
+    if (value === row.written && !(Number(value) >= scale.start && Number(value) <= scale.end)) {
+      scale = new Scale(knob, Number(value));
+    }
+    set(slider, { min: `${scale.start}`, max: `${scale.end}` });
+    slider.value = String(value);
+    field.value = plain(Number(value));
+    fill(Number(value));
+  }
+
+  slider.addEventListener("pointerdown", () => void (row.isIgnored = false));
+  slider.addEventListener("input", () => {
+    if (row.isIgnored) return show(row.value);
+    const value = scale.onSlider(slider.valueAsNumber);
+    row.isSlid = true;
+    field.value = plain(value);
+    fill(value);
+    row.attempt(value);
+  });
+  slider.addEventListener("keydown", (event) => {
+    const ways = /** @type {Record<string, number>} */ ({ ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 });
+    const way = ways[event.key];
+    if (way === undefined) return;
+    row.isIgnored = false;
+    event.preventDefault(); // without a step of its own the browser would take a hundredth of the way
+    slider.value = String(scale.onSlider(Number(row.value) + way * scale.step));
+    slider.dispatchEvent(new Event("input"));
+  });
+  slider.addEventListener("change", () => {
+    slider.value = String(row.value);
+    row.finish();
+  });
+  field.addEventListener("change", () => {
+    const typed = Number(field.value.trim().replace(",", ".").replace("\u2212", "-"));
+    const isNumber = field.value.trim() !== "" && Number.isFinite(typed);
+    const value = isNumber ? scale.typed(typed) : Number(row.value);
+    show(value);
+    row.choose(value);
+  });
+  show(knob.value);
+  const measure = el("span", { class: knob.unit ? "measure with-unit" : "measure" }, field, unit);
+  return { elements: [slider, measure], show };
+}
+
+/**
+ * Without the noise of binary fractions, as one types it.
+ * @param {number} value
+ */
+function plain(value) {
+  return String(Number(value.toPrecision(7)));
+}
+
+/**
+ * @param {Row} row
+ * @param {string} id
+ * @returns {Control}
+ */
+function choice(row, id) {
+  const { choices, unit } = row.knob;
+  const select = el("select", { id });
+  choices.forEach((value, k) => select.append(el("option", { value: `${k}` }, unit ? `${value} ${unit}` : String(value))));
+  select.addEventListener("change", () => {
+    const value = choices[select.selectedIndex];
+    if (value !== undefined) row.choose(value);
+  });
+  const show = (/** @type {Value} */ value) => void (select.selectedIndex = choices.indexOf(value));
+  show(row.knob.value);
+  return { elements: [select], show };
+}
+
+/**
+ * @param {Row} row
+ * @param {string} id
+ * @returns {Control}
+ */
+function truth(row, id) {
+  const box = el("input", { type: "checkbox", id, role: "switch" });
+  box.addEventListener("change", () => row.choose(box.checked));
+  const show = (/** @type {Value} */ value) => void (box.checked = value === true);
+  show(row.knob.value);
+  return { elements: [box], show };
+}
+
+/**
+ * @param {Row} row
+ * @param {string} id
+ * @returns {Control}
+ */
+function text(row, id) {
+  const field = el("input", { type: "text", id, autocomplete: "off", spellcheck: "false" });
+  field.addEventListener("input", () => row.attempt(field.value));
+  field.addEventListener("change", () => row.finish());
+  const show = (/** @type {Value} */ value) => {
+    if (field.value !== String(value)) field.value = String(value);
+  };
+  show(row.knob.value);
+  return { elements: [field], show };
+}

@@ -1,0 +1,14 @@
+[
+  (block)
+  (constraint_block)
+  (parameters)
+  (arguments)
+  (list)
+  (block_comment)
+] @fold
+
+(doc_comment)+ @fold
+
+(line_comment)+ @fold
+
+(import_statement)+ @fold

@@ -1,0 +1,186 @@
+; Made by `make colours`; do not edit.
+
+(line_comment) @comment.line
+
+(doc_comment) @comment.line.documentation
+
+(block_comment) @comment.block
+
+(number) @constant.numeric
+
+(unit) @type.builtin
+
+[(unknown_unit) (ellipsis)] @error
+
+(string) @string
+
+(escape_sequence) @constant.character.escape
+
+[(true) (false)] @constant.builtin.boolean
+
+(todo_statement) @keyword
+
+["param" "var" "let" "fn" "shape" "constraint" "alias"] @keyword.storage.type
+
+["constrain" "prefer" "assert"] @keyword
+
+["construction" "template"] @keyword.storage.modifier
+
+["for"] @keyword.control.repeat
+
+["if" "else" "then"] @keyword.control.conditional
+
+["import" "from" "as"] @keyword.control.import
+
+["at" "rotated" "in" "step" "weight"] @keyword
+
+["and" "or" "not"] @keyword.operator
+
+["==" "!=" "<=" ">=" "<" ">"] @operator
+
+["+" "-" "*" "/" "%" "^" "**"] @operator
+
+["!" "&&" "||"] @operator
+
+[".." "..<"] @operator
+
+["="] @operator
+
+["(" ")" "[" "]" "{" "}"] @punctuation.bracket
+
+["," ";" ":" "."] @punctuation.delimiter
+
+["@"] @attribute
+
+(identifier) @variable
+
+((identifier) @variable.builtin
+  (#any-of? @variable.builtin
+    "self" "origin" "x_axis" "y_axis"))
+
+((identifier) @constant.builtin
+  (#any-of? @constant.builtin
+    "pi"))
+
+((member_expression object: (identifier) @namespace)
+  (#any-of? @namespace
+    "math" "np" "numpy"))
+
+(member_expression property: (identifier) @variable.other.member)
+
+(named_argument name: (identifier) @variable.parameter)
+
+(call_expression function: (identifier) @function)
+
+(call_expression function: (member_expression property: (identifier) @function.method))
+
+((call_expression function: [(identifier) @constructor (member_expression property: (identifier) @constructor)])
+  (#any-of? @constructor
+    "point" "line" "arc" "circle" "bezier" "ellipse" "square" "rectangle" "frame" "rounded_rectangle"
+    "chamfered_rectangle" "trapezoid" "right_trapezoid" "parallelogram" "rhombus" "kite" "triangle"
+    "right_triangle" "equilateral_triangle" "polygon" "polyline" "regular_polygon" "pentagon" "hexagon"
+    "octagon" "star" "ring" "sector" "segment" "semicircle" "quarter_circle" "ring_sector" "slot"
+    "arc_slot" "tapered_slot" "d_shape" "double_d" "keyhole" "lens" "crescent" "reuleaux" "arrow"
+    "double_arrow" "house" "drop" "heart" "egg" "squircle" "l_shape" "t_shape" "u_shape" "h_shape"
+    "i_shape" "z_shape" "cross_shape" "chevron" "path" "rectilinear_polygon" "spline" "text"
+    "line_through" "finger_panel" "finger_edge" "finger_slots" "t_slot" "dogbone_rectangle"
+    "corner_relief" "living_hinge" "clearance_hole" "tap_hole" "counterbore" "countersink" "hex_pocket"
+    "bearing_seat" "gear" "internal_gear" "rack" "screw_hole" "bolt_circle" "hole_rectangle"
+    "motor_mount" "vesa_mount" "raspberry_pi_mount" "angle_profile" "annular_sector" "annulus"
+    "beveled_rectangle" "bolt_hole" "bolt_pattern" "box_panel" "capsule" "captive_nut" "chamfered_rect"
+    "channel_profile" "circular_sector" "circular_segment" "corner_holes" "curved_slot" "d_hole"
+    "d_shaft" "diamond" "disc" "disk" "donut" "double_d_shape" "doughnut" "four_holes" "h_profile"
+    "half_circle" "half_disc" "hex" "i_beam" "i_profile" "isosceles_triangle" "kerf_bend" "l_profile"
+    "lattice_hinge" "lettering" "lune" "moon" "nema_mount" "ngon" "nut_pocket" "nut_trap" "oblong"
+    "obround" "oval" "pie" "pie_slice" "pill" "plus" "plus_shape" "point2" "point2d" "pt" "quadrant"
+    "rect" "reuleaux_triangle" "right_angled_triangle" "ring_gear" "round_rect" "round_rectangle"
+    "rounded_rect" "spur_gear" "stadium" "superellipse" "t_profile" "tapped_hole" "teardrop"
+    "through_hole" "trapezium" "two_headed_arrow" "u_profile" "vesica" "vesica_piscis" "wedge"
+    "z_profile"))
+
+((call_expression function: [(identifier) @function.builtin (member_expression property: (identifier) @function.builtin)])
+  (#any-of? @function.builtin
+    "fillet" "chamfer" "offset" "shell" "thick" "hull" "union" "intersect" "cut" "difference" "clip"
+    "mirror" "copy" "move" "rotate" "scale" "linear_array" "grid" "polar_array" "fixed" "guess" "written"
+    "nearest" "area" "perimeter" "overlaps" "sin" "cos" "tan" "asin" "acos" "atan" "atan2" "sqrt" "abs"
+    "hypot" "min" "max" "sum" "floor" "ceil" "round" "len" "range" "enumerate" "zip" "reversed" "str"
+    "record" "choice" "line_to" "line_by" "right" "left" "up" "down" "forward" "horizontal_to"
+    "vertical_to" "polyline_to" "arc_to" "arc_by" "tangent_arc_to" "bezier_to" "quadratic_to" "close"
+    "move_to" "distance" "horizontal_distance" "vertical_distance" "gap" "angle" "length" "radius"
+    "diameter" "between" "anchor" "vertical_through" "horizontal_through" "clearance" "screw"
+    "clearance_diameter" "nema" "bearing" "mesh_angle" "polar" "norm" "dot" "cross" "unit" "lerp"
+    "turned" "vector" "direction" "radians" "circumcenter" "anchor_point" "anchored" "angle_between"
+    "dist" "distance_x" "distance_y" "fix" "ground" "grounded" "horizontal_axis" "lock"
+    "outline_distance" "point_between" "translate" "vec" "vec2" "vec2d" "vector2" "vector2d"
+    "vertical_axis" "x_distance" "y_distance"))
+
+((call_expression function: [(identifier) @function.builtin (member_expression property: (identifier) @function.builtin)])
+  (#any-of? @function.builtin
+    "mirror_of" "coincident" "on_segment" "concentric" "midpoint" "horizontal" "vertical" "parallel"
+    "perpendicular" "collinear" "equal" "equal_length" "equal_radius" "tangent" "symmetric" "same_width"
+    "same_height" "same_size" "meshes" "above" "below" "left_of" "right_of" "beside" "on_top_of"
+    "stacked_on" "inside" "contains" "centered_in" "centered_horizontally" "centered_vertically"
+    "centered_between" "touching" "no_overlap" "overlapping" "on_circle" "at_corners" "spread"
+    "align_left" "align_right" "align_top" "align_bottom" "align_center_x" "align_center_y" "flush" "row"
+    "column" "evenly_spaced" "wider" "narrower" "taller" "shorter" "abuts" "adjacent" "adjacent_to"
+    "align" "align_bottoms" "align_centers_x" "align_centers_y" "align_centre_x" "align_centre_y"
+    "align_horizontal_centers" "align_lefts" "align_rights" "align_tops" "align_vertical_centers"
+    "aligned" "alongside" "apart" "around_circle" "at_midpoint" "at_right_angle" "atop" "beneath"
+    "between_ends" "bolt_circle_of" "bottom_aligned" "center_horizontally" "center_in" "center_inside"
+    "center_vertically" "centered" "centered_at" "centered_inside" "centered_on" "centered_x"
+    "centered_y" "centre_horizontally" "centre_inside" "centre_vertically" "centred" "centred_between"
+    "centred_horizontally" "centred_in" "centred_inside" "centred_vertically" "coaxial" "coincide"
+    "colinear" "congruent" "contained_in" "distribute" "distribute_evenly" "distribute_in" "encloses"
+    "equal_diameter" "equal_gaps" "equal_height" "equal_heights" "equal_lengths" "equal_radii"
+    "equal_size" "equal_sizes" "equal_spacing" "equal_width" "equal_widths" "equally_spaced" "equals"
+    "equidistant" "even_spacing" "evenly_distributed" "fits_in" "flush_with" "halfway_between"
+    "higher_than" "in_a_column" "in_a_row" "in_column" "in_corners" "in_row" "inside_of" "intersecting"
+    "left_aligned" "left_from" "left_to_right" "level" "lies_upon" "lower_than" "mesh" "midpoint_of"
+    "mirror_image" "mirror_image_of" "mirror_symmetric" "mirrored_from" "narrower_than" "next_to"
+    "no_overlaps" "non_overlapping" "normal" "normal_to" "not_overlapping" "on" "on_bolt_circle"
+    "on_span" "on_top" "orthogonal" "over" "overlap" "parallel_to" "point_on" "point_on_circle"
+    "point_on_curve" "point_on_line" "rests_on" "right_aligned" "right_angle" "right_from" "same"
+    "same_center" "same_centers" "same_centre" "same_diameter" "same_length" "same_line" "same_point"
+    "same_radius" "separate" "shorter_than" "side_by_side" "sits_on" "smooth" "spread_inside"
+    "spread_out" "square_to" "stack" "stack_on" "stacked" "stands_on" "surrounds" "symmetric_about"
+    "symmetrical" "symmetry" "taller_than" "tangent_to" "tangential" "to_corners" "to_left_of"
+    "to_right_of" "to_the_left_of" "to_the_right_of" "top_aligned" "top_to_bottom" "touch" "under"
+    "underneath" "upright" "wider_than" "within" "within_ends"))
+
+(structure kind: (identifier) @keyword.storage.type)
+
+(structure name: (identifier) @type)
+
+(structure name: (identifier) @type parameters: (parameters))
+
+(attribute name: (identifier) @attribute)
+
+(parameter name: (identifier) @variable.parameter)
+
+(parameter type: (identifier) @type)
+
+(function_definition name: (identifier) @function)
+
+(shape_definition name: (identifier) @function)
+
+(constraint_definition name: (identifier) @function)
+
+(param_declaration name: (identifier) @variable)
+
+(var_declaration name: (identifier) @variable)
+
+(let_declaration name: (identifier) @variable)
+
+(alias_declaration name: (identifier) @variable)
+
+(import_statement name: (identifier) @variable)
+
+(import_statement alias: (identifier) @variable)
+
+(variables (identifier) @variable)
+
+(assignment target: (identifier) @variable)
+
+(assignment target: (index_expression object: (identifier) @variable))
+
+(assignment target: (index_expression object: (index_expression object: (identifier) @variable)))

@@ -1,0 +1,16 @@
+[
+  (block)
+  (constraint_block)
+  (parameters)
+  (arguments)
+  (parenthesized_expression)
+  (point)
+  (list)
+  (subscript)
+] @indent
+
+[
+  "}"
+  ")"
+  "]"
+] @outdent

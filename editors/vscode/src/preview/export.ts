@@ -1,0 +1,55 @@
+/** Files made of a drawing. */
+
+import * as vscode from "vscode";
+
+import type { Ask, Format } from "./protocol";
+
+const FORMATS: Record<Format, string> = {
+  svg: "Scalable picture",
+  dxf: "Outlines with true arcs, for cutters and CAD",
+  pdf: "Pages to print, to scale",
+  png: "Picture of pixels",
+  step: "Solids for CAD",
+  stl: "Mesh for printers",
+  "3mf": "Mesh with parts and colours, for printers",
+};
+
+/** Undefined: the reader thought better of it. */
+export async function chooseFormat(): Promise<Format | undefined> {
+  const picked = await vscode.window.showQuickPick(
+    Object.entries(FORMATS).map(([format, detail]) => ({
+      label: format.toUpperCase(),
+      description: detail,
+      format: format as Format,
+    })),
+    { title: "Export the drawing as", matchOnDescription: true },
+  );
+  return picked?.format;
+}
+
+/** Has the server draw the program and saves that where the reader says. Rejects with what went wrong. */
+export async function exportDrawing(
+  ask: Ask,
+  document: vscode.Uri,
+  format: string,
+  layers: readonly string[],
+): Promise<void> {
+  const { name, data } = await vscode.window.withProgress(
+    { location: vscode.ProgressLocation.Window, title: `AIDL: draws ${format.toUpperCase()}` },
+    () => ask("aidl/export", { uri: document.toString(), format, show: [...layers] }),
+  );
+  const folder = document.scheme === "file" ? vscode.Uri.joinPath(document, "..") : firstFolder();
+  const target = await vscode.window.showSaveDialog({
+    ...(folder === undefined ? {} : { defaultUri: vscode.Uri.joinPath(folder, name) }),
+    filters: { [format.toUpperCase()]: [format] },
+    saveLabel: "Export",
+  });
+  if (target === undefined) return;
+  await vscode.workspace.fs.writeFile(target, Buffer.from(data, "base64"));
+  const open = "Open";
+  void vscode.window.showInformationMessage(`Exported ${vscode.workspace.asRelativePath(target)}`, open).then((answer) => {
+    if (answer === open) void vscode.commands.executeCommand("vscode.open", target);
+  });
+}
+
+const firstFolder = (): vscode.Uri | undefined => vscode.workspace.workspaceFolders?.[0]?.uri;

@@ -1,0 +1,381 @@
+"""The tree-sitter grammar takes what the parser takes, refuses what it refuses, and finds the same spans."""
+
+from __future__ import annotations
+
+import ast as python
+import json
+import os
+import random
+import re
+import shutil
+import subprocess
+import unicodedata
+from collections import Counter
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+from tree_sitter import Node
+
+from aidl_lang import ast
+from aidl_lang.parser import parse as read
+from aidl_lang.source import SourceFile
+from aidl_lang.syntax.tables import load_tables
+from aidl_lang.syntax.tokens import END, Token, tokenize
+from aidl_lang.vocabulary import vocabulary
+from tests.documents import ROOT, programs
+from tests.editors.trees import FOLDER, beyond, nodes, parse, refused
+from tests.property.test_hostile import HOSTILE
+
+NOT_OF_SYNTAX = frozenset(["E0125", "E0801", "E0802", "E0803"])
+"""Errors of the parser that no grammar tells: of lines, and of what is too much."""
+
+
+def errors(text: str) -> list[str]:
+    """The codes of the parser's errors that are of the syntax."""
+    found = {d.code for d in read(SourceFile("", text)).diagnostics if d.is_error}
+    return sorted(found - NOT_OF_SYNTAX)
+
+
+# --- The corpus -----------------------------------------------------------------------------------
+
+
+@cache
+def whole_programs() -> dict[str, str]:
+    """What the project itself has written as programs that are read."""
+    folders = ("examples", "stdlib", "eval/prompts")
+    files = [path for folder in folders for path in sorted((ROOT / folder).rglob("*.aidl"))]
+    return {str(path.relative_to(ROOT)): path.read_text("utf-8") for path in files}
+
+
+@cache
+def specified() -> dict[str, str]:
+    """The programs of `tests/spec` that are read."""
+    found = [block for page in sorted((ROOT / "tests/spec").glob("*.md")) for block in programs(page)]
+    return {block.place: block.text for block in found if not errors(block.text)}
+
+
+@cache
+def all_programs() -> dict[str, str]:
+    """These, those of the documentation and of the tests, good and bad, by their places."""
+    found = dict(whole_programs())
+    for path in sorted((ROOT / "tests").rglob("*.aidl")):
+        found[str(path.relative_to(ROOT))] = path.read_text("utf-8")
+    for page in [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md")), *sorted(ROOT.glob("tests/**/*.md"))]:
+        found |= {block.place: block.text for block in programs(page)}
+    found |= {f"hostile {name}": text for name, text in HOSTILE.items()}
+    for path in [
+        *sorted((ROOT / "tests/parser").glob("*.py")),
+        *sorted((ROOT / "tests/printer").glob("*.py")),
+    ]:
+        found |= {f"{path.name}:{n} {text[:20]!r}": text for n, text in _texts(path)}
+    return found
+
+
+def _texts(path: Path) -> Iterator[tuple[int, str]]:
+    """The texts in a module of tests: mostly programs, many of them broken."""
+    for node in python.walk(python.parse(path.read_text("utf-8"))):
+        if isinstance(node, python.Constant) and isinstance(node.value, str):
+            yield node.lineno, node.value
+
+
+def test_every_program_of_the_project_is_read_without_an_error() -> None:
+    assert len(whole_programs()) > 50
+    bad = {
+        place: [(n.type, n.start_point) for n in nodes(tree) if n.is_error or n.is_missing]
+        for place, text in whole_programs().items()
+        if (tree := parse(text)).root_node.has_error or refused(tree)
+    }
+    assert bad == {}
+
+
+def test_every_program_is_taken_or_refused_as_by_the_parser() -> None:
+    assert len(all_programs()) > 1500
+    verdicts = {place: (refused(parse(text)), errors(text)) for place, text in all_programs().items()}
+    different = {place: said for place, said in verdicts.items() if bool(said[0]) != bool(said[1])}
+    assert different == {}
+    assert sum(1 for reason, _ in verdicts.values() if reason) > 150
+
+
+# --- Mutants --------------------------------------------------------------------------------------
+
+WORDS = [*sorted(load_tables().literals), "x", "5", "5mm", '"s"', "solid", "f(", "range", "(1, 2)", "a.b"]
+
+
+def mutant(rng: random.Random, text: str) -> str:
+    """The text with a few tokens left out, doubled, swapped, exchanged or put in, some without a blank."""
+    for _ in range(rng.choice([1, 1, 1, 2, 3])):
+        tokens = [t for t in tokenize(SourceFile("", text)).tokens if t.kind != END]
+        if len(tokens) < 3:
+            return text
+        at = rng.randrange(len(tokens) - 1)
+        text = _changed(rng, text, tokens, tokens[at], tokens[at + 1])
+    return text
+
+
+def _changed(rng: random.Random, text: str, tokens: list[Token], one: Token, two: Token) -> str:
+    before, behind, other = text[: one.start], text[one.end :], rng.choice(tokens)
+    alike = rng.choice([t for t in tokens if t.kind == one.kind])
+    match rng.randrange(12):
+        case 0:
+            return before + behind
+        case 1:
+            return f"{before}{one.text} {text[one.start :]}"
+        case 2:
+            return before + two.text + text[one.end : two.start] + one.text + text[two.end :]
+        case 3:
+            return f"{before}{rng.choice(WORDS)} {text[one.start :]}"
+        case 4:
+            return before + rng.choice(WORDS) + behind
+        case 5:
+            return before + other.text + behind
+        case 6:
+            blank = rng.choice([" ", "\n", "/* c */", "// d\n", "\t", "\r\n", "\ufeff"])
+            return before + blank + text[one.start :]
+        case 7:
+            return before + other.text + text[one.start :]
+        case 8:
+            at = rng.randrange(len(text))
+            return text[:at] + text[at + 1 :]
+        case _:
+            return before + alike.text + behind
+
+
+def mutants(count: int) -> Iterator[str]:
+    rng = random.Random(2)
+    texts = sorted(text for text in whole_programs().values() if len(text) < 4000)
+    texts += specified().values()
+    for _ in range(count):
+        yield mutant(rng, rng.choice(texts))
+
+
+def test_mutants_are_taken_or_refused_as_by_the_parser() -> None:
+    verdicts = Counter[str]()
+    different = []
+    for text in mutants(1500):
+        tree, codes = parse(text), errors(text)
+        if bool(refused(tree)) == bool(codes):
+            verdicts["refused" if codes else "taken"] += 1
+        elif reason := beyond(tree):
+            verdicts[reason] += 1
+        else:
+            different.append((refused(tree), codes, text))
+    assert different == []
+    assert verdicts["taken"] > 400
+    assert verdicts["refused"] > 800
+    assert sum(verdicts.values()) - verdicts["taken"] - verdicts["refused"] <= 1, verdicts
+
+
+@pytest.mark.parametrize(
+    ("text", "why", "taken"),
+    [
+        ("let x = (1and 2)", "a word that touches a number", False),
+        ("param x = 5mmin 1..9", "a word that touches a number", False),
+        ("let x = 5/* c */mm", "a comment between two tokens that touch elsewhere", True),
+        ("a.x == 60\n/* c */b.x == 3", "a comment between two tokens that touch elsewhere", False),
+        ("let x = f/* c */(3)", "a comment between two tokens that touch elsewhere", True),
+        ("let x = 'a\n/* c */'", "a comment between two tokens that touch elsewhere", True),
+        ("let x = if a then(b) else c", "`then(` is a call", True),
+        ("alias a = b(c).d == 3", "a call in the place of a name", True),
+        ('import "a" as b(c).d == 3', "a call in the place of a name", True),
+    ],
+)
+def test_where_the_grammar_knows_too_little(text: str, why: str, taken: bool) -> None:
+    """White space and comments stand between any two tokens, and what a token is depends on its place: this
+    is how tree-sitter reads. So these few are judged otherwise than by the parser.
+    """
+    tree = parse(text)
+    assert beyond(tree) == why
+    assert (refused(tree) is None, not errors(text)) == (taken, not taken)
+
+
+def test_lines_are_left_to_the_parser() -> None:
+    text = "a.x == b.x\n[a, b].above(c)\n"
+    assert [d.code for d in read(SourceFile("", text)).diagnostics] == ["E0125"]
+    assert refused(parse(text)) is None
+
+
+def test_the_letters_of_names_are_those_of_the_parser() -> None:
+    """All that this Python's version of Unicode has."""
+    pattern = re.compile(load_tables().patterns["NAME"])
+    letters = [
+        char
+        for char in map(chr, range(0x80, 0x110000))
+        if unicodedata.category(char) not in ("Cn", "Co", "Cs") and char != "\ufeff"
+    ]
+    for before in ("", "x"):
+        good = [char for char in letters if pattern.fullmatch(before + char)]
+        assert len(good) > 100_000
+        tree = parse("\n".join(f"let {before}{char} = 1" for char in good))
+        assert [n.text for n in nodes(tree) if n.is_error or n.is_missing] == []
+        bad = set(letters).difference(good)
+        assert len(bad) > 5_000
+        assert [char for char in bad if not parse(f"let {before}{char} = 1").root_node.has_error] == []
+
+
+# --- Words ----------------------------------------------------------------------------------------
+
+
+def test_words_and_signs_are_those_of_the_language() -> None:
+    grammar = json.loads((FOLDER / "src/grammar.json").read_text("utf-8"))
+    reserved = {member["value"] for member in grammar["reserved"]["global"]}
+    assert reserved == load_tables().reserved
+    units = set(_strings(grammar["rules"].pop("unit")))
+    assert units == set(vocabulary().units)
+    quotes_and_slips = {'"', "'", "..."}
+    assert set(_strings(grammar["rules"])) - quotes_and_slips == set(vocabulary().signs) | set(
+        vocabulary().keywords
+    )
+
+
+def _strings(rule: object) -> Iterator[str]:
+    """The fixed texts in a rule of `grammar.json`."""
+    if isinstance(rule, dict):
+        if rule.get("type") == "STRING":
+            yield rule["value"]
+        if rule.get("type") != "ALIAS" or rule["named"]:
+            rule = list(rule.values())
+        else:
+            rule = [rule["content"]]
+    if isinstance(rule, list):
+        for member in rule:
+            yield from _strings(member)
+
+
+# --- Spans ----------------------------------------------------------------------------------------
+
+NODES: dict[type[ast.Node], str] = {
+    ast.Structure: "structure",
+    ast.Assign: "assignment",
+    ast.Param: "param_declaration",
+    ast.Var: "var_declaration",
+    ast.Let: "let_declaration",
+    ast.FunctionDefinition: "function_definition",
+    ast.ShapeDefinition: "shape_definition",
+    ast.ConstraintDefinition: "constraint_definition",
+    ast.Alias: "alias_declaration",
+    ast.Import: "import_statement",
+    ast.Prefer: "prefer_statement",
+    ast.Assert: "assert_statement",
+    ast.Equation: "equation",
+    ast.If: "if_statement",
+    ast.Parameter: "parameter",
+    ast.Attribute: "attribute",
+    ast.Placement: "placement",
+    ast.Call: "call_expression",
+    ast.Member: "member_expression",
+    ast.Comparison: "comparison_expression",
+    ast.Conditional: "conditional_expression",
+    ast.Range: "range_expression",
+    ast.Point: "point",
+    ast.Number: "number",
+    ast.String: "string",
+}
+
+
+def test_spans_are_those_of_the_parser() -> None:
+    seen = Counter[str]()
+    for place, text in {**whole_programs(), **specified()}.items():
+        ends = [0]
+        for char in text:
+            ends.append(ends[-1] + len(char.encode()))
+        mine = Counter(_spans(read(SourceFile(place, text)).module, ends))
+        wanted = set(NODES.values())
+        theirs = Counter(
+            (n.type, n.start_byte, n.end_byte)
+            for n in nodes(parse(text))
+            if n.type in wanted and not is_method(n)
+        )
+        assert mine == theirs, place
+        seen.update(kind for kind, _, _ in mine)
+    assert set(seen) == set(NODES.values())
+    assert seen["structure"] > 100
+    assert seen["param_declaration"] > 60
+
+
+def is_method(node: Node) -> bool:
+    """Whether it is the `a.b` of `a.b()`, which is no value of its own."""
+    call = node.parent
+    return (
+        call is not None and call.type == "call_expression" and call.child_by_field_name("function") == node
+    )
+
+
+def _spans(module: ast.Module, ends: list[int]) -> Iterator[tuple[str, int, int]]:
+    stack: list[ast.Node] = [module]
+    while stack:
+        node = stack.pop()
+        stack += ast.children(node)
+        if kind := NODES.get(type(node)):
+            yield kind, ends[node.span.start], ends[node.span.end]
+
+
+# --- The grammar's own tests ----------------------------------------------------------------------
+
+_CASE = re.compile(
+    r"^={20,}\n(?P<name>[^\n]+)\n(?P<error>:error\n)?={20,}\n(?P<text>.*?)^-{20,}\n(?P<tree>.*?)(?=^={20,}\n|\Z)",
+    re.MULTILINE | re.DOTALL,
+)
+
+
+def _cases() -> list[object]:
+    found = []
+    for path in sorted((FOLDER / "test/corpus").glob("*.txt")):
+        text = path.read_bytes().decode()
+        cases = list(_CASE.finditer(text))
+        assert "".join(case[0] for case in cases) == text, path.name
+        found += [pytest.param(case, id=f"{path.stem}: {case['name']}") for case in cases]
+    assert len(found) > 40
+    return found
+
+
+@pytest.mark.parametrize("case", _cases())
+def test_corpus(case: re.Match[str]) -> None:
+    tree = parse(case["text"].removesuffix("\n"))
+    if case["error"]:
+        assert tree.root_node.has_error
+    else:
+        assert str(tree.root_node) == " ".join(case["tree"].split()).replace(" )", ")")
+        assert not tree.root_node.has_error
+    if not beyond(tree):
+        assert bool(refused(tree)) == bool(errors(case["text"]))
+
+
+def test_every_kind_of_node_has_a_case() -> None:
+    """All nodes with names, but for those that only group others."""
+    kinds = json.loads((FOLDER / "src/node-types.json").read_text("utf-8"))
+    named = {kind["type"] for kind in kinds if kind["named"] and "subtypes" not in kind}
+    cases = "".join(path.read_text("utf-8") for path in (FOLDER / "test/corpus").glob("*.txt"))
+    assert {name for name in named if f"({name}" not in cases} == set()
+
+
+# --- What an editor does --------------------------------------------------------------------------
+
+
+def test_a_program_being_written_keeps_the_statements_that_are_complete() -> None:
+    text = (ROOT / "examples/telephone.aidl").read_text("utf-8")
+    params = [n for n in nodes(parse(text)) if n.type == "param_declaration"]
+    for end in range(0, len(text), 97):
+        kept = {n.text for n in nodes(parse(text[:end])) if n.type == "param_declaration"}
+        assert {n.text for n in params if n.end_byte < end} <= kept
+
+
+# --- The generated parser -------------------------------------------------------------------------
+
+GENERATOR = os.environ.get("TREE_SITTER") or shutil.which("tree-sitter")
+VERSION = "tree-sitter 0.27"
+
+
+@pytest.mark.skipif(GENERATOR is None, reason="tree-sitter is neither on PATH nor named by TREE_SITTER")
+def test_the_parser_is_made_of_the_grammar(tmp_path: Path) -> None:
+    assert GENERATOR is not None
+    version = subprocess.run([GENERATOR, "--version"], check=True, capture_output=True, text=True).stdout
+    if not version.startswith(VERSION):
+        pytest.skip(f"the parser was made by {VERSION}, not {version.strip()}")
+    subprocess.run([GENERATOR, "generate", "--output", str(tmp_path)], check=True, cwd=FOLDER)
+    committed = {p.relative_to(FOLDER / "src"): p for p in (FOLDER / "src").rglob("*") if p.is_file()}
+    made = {p.relative_to(tmp_path): p for p in tmp_path.rglob("*") if p.is_file()}
+    assert set(made) == set(committed)
+    different = [name for name in made if made[name].read_bytes() != committed[name].read_bytes()]
+    assert different == [], "run `tree-sitter generate` in editors/tree-sitter-aidl"

@@ -1,0 +1,163 @@
+"""VS Code in a browser, driven as a person would: keys, pointer, and what can be seen."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from playwright.sync_api import FrameLocator, Locator, Page, expect
+
+from tests.editors.vscode.install import Installed
+
+AIDL = Path(sys.executable).with_name("aidl")
+SETTINGS = {
+    "telemetry.telemetryLevel": "off",
+    "extensions.autoCheckUpdates": False,
+    "workbench.startupEditor": "none",
+    "workbench.tips.enabled": False,
+    "editor.minimap.enabled": False,
+    "explorer.autoReveal": False,
+}
+PATIENCE = 30_000
+"""ms that something may take to be seen; only a failure takes so long."""
+
+
+@contextmanager
+def served(installed: Installed, vsix: Path, folder: Path) -> Iterator[tuple[str, Path]]:
+    """VS Code with the extension, on a port of this machine: the address, and the folder that is open in it.
+    Its `.venv` has `aidl`, which is nowhere on the PATH.
+    """
+    workspace, data = folder / "parts", folder / "data"
+    programs = workspace / ".venv" / "bin"
+    programs.mkdir(parents=True)
+    (programs / "aidl").symlink_to(AIDL)
+    settings = data / "data" / "Machine" / "settings.json"
+    settings.parent.mkdir(parents=True)
+    settings.write_text(json.dumps(SETTINGS))
+    command = ["node", str(installed.server), "--accept-server-license-terms", "--force-disable-user-env"]
+    command += ["--server-data-dir", str(data), "--extensions-dir", str(folder / "extensions")]
+    environment = {**os.environ, "PATH": path_without_aidl()}
+    subprocess.run(
+        [*command, "--install-extension", str(vsix)], check=True, capture_output=True, env=environment
+    )
+    port = free_port()
+    command += ["--host", "127.0.0.1", "--port", str(port), "--without-connection-token"]
+    with (folder / "server.log").open("wb") as log:
+        server = subprocess.Popen(command, stdout=log, stderr=log, env=environment)
+    try:
+        wait_for(f"http://127.0.0.1:{port}/", server)
+        yield f"http://127.0.0.1:{port}/?folder={workspace}", workspace
+    finally:
+        server.terminate()
+        server.wait(20)
+
+
+def path_without_aidl() -> str:
+    folders = os.environ["PATH"].split(os.pathsep)
+    return os.pathsep.join(folder for folder in folders if not shutil.which("aidl", path=folder))
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def wait_for(address: str, server: subprocess.Popen[bytes]) -> None:
+    end = time.monotonic() + PATIENCE / 1000
+    while True:
+        try:
+            urllib.request.urlopen(address).close()
+            return
+        except OSError:
+            if server.poll() is not None or time.monotonic() > end:
+                raise
+            time.sleep(0.1)
+
+
+class Window:
+    """
+    page    what the browser shows
+    folder  the one that is open in VS Code
+    """
+
+    def __init__(self, page: Page, folder: Path) -> None:
+        self.page, self.folder = page, folder
+
+    def load(self, address: str) -> None:
+        self.page.goto(address)
+        self.page.wait_for_selector(".monaco-workbench .explorer-folders-view", timeout=PATIENCE)
+
+    @property
+    def editor(self) -> Locator:
+        return self.page.locator(".editor-instance .monaco-editor").first
+
+    @property
+    def status(self) -> Locator:
+        return self.page.locator("[id='aidl.aidl.aidl.status']")
+
+    @property
+    def pane(self) -> FrameLocator:
+        """The page of the preview that is in front."""
+        return self.page.frame_locator("iframe.webview.ready").frame_locator("#active-frame")
+
+    def open(self, name: str, text: str) -> Path:
+        """Write a program and open it; the caret is at its beginning."""
+        file = self.folder / name
+        file.write_text(text)
+        self.page.keyboard.press("Control+O")
+        field = self.page.locator(".quick-input-widget input.input")
+        field.fill(str(file))
+        self.page.locator(".quick-input-list .monaco-list-row", has_text=name).wait_for(timeout=PATIENCE)
+        field.press("Enter")
+        expect(self.page.locator(f".tab.active[data-resource-name='{name}']")).to_be_visible(timeout=PATIENCE)
+        self.page.wait_for_selector(".editor-instance .monaco-editor .view-line", timeout=PATIENCE)
+        return file
+
+    def run(self, command: str) -> None:
+        """Take a command from the palette, by its full title."""
+        self.page.keyboard.press("F1")
+        field = self.page.locator(".quick-input-widget input.input")
+        field.fill(f">{command}")
+        row = self.page.locator(".quick-input-list .monaco-list-row.focused", has_text=command)
+        row.wait_for(timeout=PATIENCE)
+        field.press("Enter")
+
+    def caret(self, line: int, column: int) -> None:
+        """From 1, as an editor counts."""
+        self.page.keyboard.press("Control+G")
+        field = self.page.locator(".quick-input-widget input.input")
+        field.fill(f":{line}:{column}")
+        field.press("Enter")
+        field.wait_for(state="hidden", timeout=PATIENCE)
+        expect(self.page.locator("#status\\.editor\\.selection")).to_contain_text(f"Ln {line}, Col {column}")
+
+    def saved(self, file: Path) -> str:
+        """What the editor has, by way of the file."""
+        self.page.keyboard.press("Control+S")
+        expect(self.page.locator(".tab.active")).not_to_have_class(re.compile(r"\bdirty\b"))
+        return file.read_text()
+
+    def preview(self) -> FrameLocator:
+        """Open the preview beside the text and wait for its picture."""
+        self.page.keyboard.press("Control+K")
+        self.page.keyboard.press("v")
+        self.pane.locator("#world [data-element]").first.wait_for(state="attached", timeout=PATIENCE)
+        return self.pane
+
+    def close_all(self) -> None:
+        self.run("View: Close All Editors")
+        dismiss = self.page.get_by_role("button", name="Don't Save")
+        if dismiss.is_visible():
+            dismiss.click()
+        expect(self.page.locator(".tab")).to_have_count(0)

@@ -1,0 +1,256 @@
+"""What an editor offers to do, carried out on the text and looked at in what the text draws then."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from aidl_lang import pipeline
+from aidl_lang.ide.actions import Action, CannotActError, actions
+from aidl_lang.ide.edits import applied, between
+from aidl_lang.ide.view import View, look, run
+
+from .conftest import EXAMPLES, cursor, opened, seen
+
+
+def offered(marked: str) -> tuple[View, list[Action]]:
+    text, offset = cursor(marked)
+    view = seen(text, solved=True)
+    return view, actions(view, offset, offset)
+
+
+def done(marked: str, title: str) -> str:
+    """The text after the one action whose title begins so."""
+    view, found = offered(marked)
+    (action,) = [a for a in found if a.title.startswith(title)]
+    return applied(view.source.text, action.make())
+
+
+def compiled(text: str) -> pipeline.Compiled:
+    outcome = seen(text, solved=True).outcome
+    assert outcome is not None
+    return outcome
+
+
+# --- Fixes -----------------------------------------------------------------------------------------
+
+
+def test_a_fix_is_offered_where_its_mistake_is() -> None:
+    marked = "solid a {\n    c = circle(center: origin, radius: 4)\n    constrain c.radus¦ == 5\n}\n"
+    view, found = offered(marked)
+    fix = next(a for a in found if a.kind == "quickfix")
+    assert fix.mends is not None
+    assert fix.mends.fix is not None
+    assert applied(view.source.text, fix.make()) == view.source.text.replace("radus", "radius")
+    elsewhere = actions(view, 0, 0)
+    assert [a.title for a in elsewhere if a.kind == "quickfix"] == []
+    assert [a.title for a in elsewhere if a.kind == "source.fixAll"] == ["Apply all fixes"]
+
+
+def test_all_fixes_are_applied_at_once() -> None:
+    marked = "solid a {¦\n    c = circle(centre: origin, radus: 4)\n    constrain c.diamter == 5\n}\n"
+    text = done(marked, "Apply")
+    assert compiled(text).ok
+
+
+def test_each_constraint_of_a_conflict_can_give_way() -> None:
+    marked = """\
+solid a {
+    c = circle(center: origin, radius: 4)
+    constrain {
+        c.radius == 5
+        c.radius ¦== 6
+    }
+}
+"""
+    view, found = offered(marked)
+    texts = [applied(view.source.text, a.make()) for a in found if a.kind == "quickfix"]
+    assert len(texts) >= 2
+    for text in texts:
+        assert compiled(text).status == "solved"
+
+
+# --- Naming a number --------------------------------------------------------------------------------
+
+DISK = """\
+solid disk {
+    rim = circle(center: origin, radius: 16)
+    constrain rim.radius >= 3
+}
+"""
+
+
+def test_a_number_becomes_a_param_with_a_range() -> None:
+    text = done(DISK.replace("16", "1¦6"), "Name this number")
+    assert (
+        text
+        == """\
+solid disk {
+    param rim_radius = 16 in 8..32
+
+    rim = circle(center: origin, radius: rim_radius)
+    constrain rim.radius >= 3
+}
+"""
+    )
+    outcome = compiled(text)
+    assert outcome.ok
+    assert [(k.path, k.value) for k in outcome.knobs] == [("rim_radius", 16)]
+    assert outcome.export(".svg") == compiled(DISK).export(".svg")
+
+
+def test_it_stands_with_the_other_params_and_has_a_name_of_its_own() -> None:
+    before = DISK.replace("rim = ", "param rim_radius = 2in\n    let k = 3\n    rim = ")
+    text = done(before.replace("radius: 16", "radius: 1.5¦in"), "Name this number")
+    assert "    param rim_radius = 2in\n    param rim_radius_2 = 1.5in in 0.75in..3in\n    let k" in text
+    assert compiled(text).ok
+
+
+def test_a_number_in_a_template_is_named_for_the_file() -> None:
+    before = (
+        "/// A peg.\nsolid peg() { rim = circle(center: origin, radius: 4¦) }\nassembly a { p = peg() }\n"
+    )
+    text = done(before, "Name this number")
+    assert text.startswith("param rim_radius = 4 in 2..8\n\n/// A peg.\nsolid peg() {")
+    assert compiled(text).ok
+
+
+def test_a_number_that_must_give_way_cannot_become_exact() -> None:
+    marked = DISK.replace("radius: 16", "radius: 1¦6").replace(">= 3", "== 17")
+    _, found = offered(marked)
+    (action,) = [a for a in found if a.title.startswith("Name")]
+    with pytest.raises(CannotActError, match="exact"):
+        action.make()
+
+
+def test_no_name_is_offered_for_what_has_one() -> None:
+    _, found = offered("param width = 6¦0 in 20..90\nsolid a { c = circle(center: origin, radius: width) }\n")
+    assert found == []
+
+
+# --- Templates --------------------------------------------------------------------------------------
+
+TOWER = """\
+let thick = 3
+/// A tower.
+assembly tower {
+    param width = 40
+    for i in 0..2 {
+        @color("red")
+        solid floor[i] {
+            body = rectangle(center: fixed((0, 12 * i)), width: width, height: thick)
+            hole door { rim = circle(center: fixed((i, 12 * i)), radius: 1) }
+        }
+    }
+    @thickness(2)
+    solid roof {
+        cone = triangle((-20, 30), (20, 30), (0, 50))
+    } // on top
+}
+"""
+
+
+def test_a_structure_of_a_loop_becomes_a_template_with_what_it_uses() -> None:
+    marked = TOWER.replace("solid floor", "solid fl¦oor")
+    text = done(marked, "Extract `floor`")
+    assert "solid floor_solid(i, width) {\n    body = rectangle" in text
+    assert '        @color("red")\n        floor[i] = floor_solid(i: i, width: width)\n' in text
+    assert text.index("floor_solid(i, width)") < text.index("/// A tower.")
+    assert compiled(text).export(".svg") == compiled(TOWER).export(".svg")
+
+
+def test_attributes_and_comments_stay_where_they_are() -> None:
+    text = done(TOWER.replace("solid roof", "solid¦ roof"), "Extract `roof`")
+    assert "    @thickness(2)\n    roof = roof_solid() // on top\n" in text
+    assert compiled(text).ok
+
+
+def test_the_root_and_a_template_are_not_extracted() -> None:
+    assert not any(a.title.startswith("Extract") for a in offered(TOWER.replace("tower {", "tow¦er {"))[1])
+    marked = "solid peg¦(d = 3) { c = circle(center: origin, radius: d) }\nassembly a { p = peg() }\n"
+    assert not any(a.title.startswith("Extract") for a in offered(marked)[1])
+
+
+def test_what_needs_a_function_from_around_it_is_left() -> None:
+    text = TOWER.replace("    for i in", "    fn up(n) = 12 * n\n    for i in").replace(
+        "(0, 12 * i)", "(0, up(i))"
+    )
+    _, found = offered(text.replace("solid floor", "solid fl¦oor"))
+    (action,) = [a for a in found if a.title.startswith("Extract")]
+    with pytest.raises(CannotActError, match="`floor` uses `up`"):
+        action.make()
+
+
+# --- The missing constraint --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_what_is_said_to_be_missing_takes_a_freedom_away(path: object) -> None:
+    assert path in EXAMPLES
+    text = path.read_text("utf-8")  # type: ignore[attr-defined]
+    project = opened({"part.aidl": text})
+    first = next(iter(project.workspace.open))
+    view = run(look(first, text, project.workspace.world(first)))
+    outcome = view.outcome
+    assert outcome is not None
+    assert outcome.model is not None
+    end = view.module.statements[-1].span.end - 1
+    tried = 0
+    for action in actions(view, end, end):
+        if not action.title.startswith("Add the missing"):
+            continue
+        try:
+            changed = compiled(applied(text, action.make()))
+        except CannotActError:
+            continue
+        tried += 1
+        assert changed.ok
+        assert changed.model is not None
+        assert (changed.model.degrees or 0) < (outcome.model.degrees or 0)
+    if path.stem in ("handset", "wrench"):  # type: ignore[attr-defined]
+        assert tried >= 3
+
+
+def test_what_is_in_line_is_kept_in_line() -> None:
+    marked = """\
+assembly a {
+    plate = rectangle(center: fixed((0, 0)), width: 40, height: 20)
+    solid knob { body = circle(center: (0, 30), radius: 4) }
+    constrain {
+        knob.center.y >= plate.top.start.y¦
+    }
+}
+"""
+    view, found = offered(marked)
+    titles = [a.title for a in found if a.title.startswith("Add")]
+    assert "Add the missing constraint: `knob.center.x == plate.center.x`" in titles
+    for action in found:
+        if action.title.startswith("Add"):
+            text = applied(view.source.text, action.make())
+            assert "        knob.center.y >= plate.top.start.y\n        " in text
+            assert compiled(text).ok
+
+
+def test_nothing_is_missing_where_nothing_moves_or_nothing_is_known() -> None:
+    view, found = offered("solid a { c = circle(center: fixed((0, 0)), radius: 4)¦ }\n")
+    assert not any(a.title.startswith("Add") for a in found)
+    unsolved = replace(view, outcome=None)
+    assert not any(a.title.startswith("Add") for a in actions(unsolved, 20, 20))
+
+
+# --- Anywhere ---------------------------------------------------------------------------------------
+
+
+def test_every_place_of_the_examples_is_answered(example: View) -> None:
+    view = run(example)
+    for at in range(0, len(view.source.text) + 1, 7):
+        for action in actions(view, at, min(at + 3, len(view.source.text))):
+            assert action.title
+            assert action.kind in ("quickfix", "refactor.extract", "refactor.rewrite", "source.fixAll")
+
+
+def test_edits_between_two_texts_make_one_of_the_other() -> None:
+    view = seen(TOWER)
+    other = TOWER.replace("let thick", "let thin\nlet thick").replace("    } // on top\n", "    }\n")
+    assert applied(TOWER, between(view.source, other)) == other

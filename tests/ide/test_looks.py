@@ -1,0 +1,99 @@
+"""Colour pickers, and what is said above structures."""
+
+from __future__ import annotations
+
+import pytest
+
+from aidl_lang.diagnostics import Edit
+from aidl_lang.ide.colors import as_bytes, colors, spellings
+from aidl_lang.ide.edits import applied
+from aidl_lang.ide.lenses import lenses
+from aidl_lang.ide.view import View, run
+
+from .conftest import seen
+
+COLORED = """\
+@color("crimson") solid a { c = circle(center: origin, radius: 9) }
+@color(navy) solid b { c = circle(center: origin, radius: 8) }
+@colour(255, 128, 0) solid c { c = circle(center: origin, radius: 7) }
+@color("#0f0") solid d { c = circle(center: origin, radius: 6) }
+@color("nonesuch") solid e { c = circle(center: origin, radius: 5) }
+@note("red") solid f { c = circle(center: origin, radius: 4) }
+"""
+
+
+def test_colours_are_read_as_they_are_drawn() -> None:
+    found = [(c.span.text, c.rgb) for c in colors(seen(COLORED))]
+    assert found == [
+        ('"crimson"', (220, 20, 60)),
+        ("navy", (0, 0, 128)),
+        ("255, 128, 0", (255, 128, 0)),
+        ('"#0f0"', (0, 255, 0)),
+    ]
+
+
+@pytest.mark.parametrize("wanted", [(1, 2, 3), (255, 0, 0), (0, 0, 0)])
+def test_whatever_is_picked_is_what_is_drawn(wanted: tuple[int, int, int]) -> None:
+    view = seen(COLORED)
+    for number, color in enumerate(colors(view)):
+        for spelling in spellings(view, color.span, wanted):
+            text = applied(view.source.text, [Edit(color.span, spelling)])
+            assert colors(seen(text))[number].rgb == wanted
+
+
+def test_parts_from_0_to_1_become_bytes() -> None:
+    assert as_bytes((0.0, 0.5, 1.0)) == (0, 128, 255)
+    assert as_bytes((-1.0, 2.0, 1 / 255)) == (0, 255, 1)
+
+
+def titles(text: str) -> list[tuple[str, str]]:
+    return [(lens.span.text, lens.title) for lens in lenses(seen(text, solved=True))]
+
+
+def test_a_structure_says_what_in_it_can_move() -> None:
+    text = """\
+assembly a {
+    solid plate { body = rectangle(center: fixed((0, 0)), width: 40, height: 20) }
+    solid knob {
+        body = circle(center: (0, 30), radius: 4)
+        eye = circle(center: (0, 30), radius: 1)
+        constrain eye.center.y == body.center.y
+    }
+    for i in 0..1 { hole h[i] { c = circle(center: fixed((20 * i - 10, 0)), radius: 3) } }
+    constrain knob.body.center.y == 30
+}
+"""
+    assert titles(text) == [
+        (
+            "a",
+            "solved, 2 degrees of freedom · 1 constraint · "
+            "knob.body can slide left–right, knob.eye can slide left–right",
+        ),
+        ("plate", "fully constrained"),
+        ("knob", "1 constraint · body can slide left–right, eye can slide left–right"),
+        ("h", "2 times · fully constrained"),
+    ]
+
+
+def test_constraints_that_do_not_hold_are_counted() -> None:
+    text = (
+        "solid a {\n c = circle(center: origin, radius: 4)\n constrain { c.radius == 5, c.radius == 6 }\n}\n"
+    )
+    ((name, title),) = titles(text)
+    assert name == "a"
+    assert "not met" in title
+
+
+def test_nothing_is_said_of_a_text_that_was_not_solved() -> None:
+    assert lenses(seen("solid a { c = circle(center: origin, radius: 4) }")) == []
+    assert titles("solid a { c = circle(radius: ) }") == []
+
+
+def test_examples(example: View) -> None:
+    view = run(example)
+    assert view.outcome is not None
+    assert view.outcome.model is not None
+    said = lenses(view)
+    assert any(lens.title.startswith("solved") for lens in said)
+    paths = {path for lens in said for path in lens.paths}
+    assert paths <= {s.path for s in view.outcome.model.root.walk()}

@@ -1,0 +1,109 @@
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Locator, Page, sync_playwright
+
+from tests.preview.messages import picture
+from tests.preview.scripted import ScriptedHost
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+ARGUMENTS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+]
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    if CHROMIUM is None:
+        pytest.skip("there is no Chromium")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        yield browser
+        browser.close()
+
+
+@dataclass
+class Pane:
+    """The pane in a browser, and the host that it talks to."""
+
+    page: Page
+    host: ScriptedHost
+    complaints: list[str] = field(default_factory=list)
+    """What the browser has to say: errors, and what the Content-Security-Policy stopped."""
+
+    def shows(self, **changes: Any) -> None:
+        """Send a picture and wait until it is shown."""
+        message = picture(**changes)
+        self.host.say(message)
+        shown = "([uri, version]) => JSON.stringify([uri, version]) === document.body.dataset.shown"
+        self.page.wait_for_function(shown, arg=[message["uri"], message["version"]])
+
+    def at(self, x: float, y: float) -> tuple[float, float]:
+        """Where on the page a point of the drawing is, as the browser has it."""
+        a, d, e, f = self.page.evaluate(
+            "() => { const m = document.querySelector('.drawing').getScreenCTM(); return [m.a, m.d, m.e, m.f] }"
+        )
+        return a * x + e, -d * y + f
+
+    @property
+    def scale(self) -> float:
+        """Pixels for a millimetre."""
+        return self.at(1, 0)[0] - self.at(0, 0)[0]
+
+    def move(self, x: float, y: float, steps: int = 1) -> None:
+        """The pointer to a point of the drawing."""
+        self.page.mouse.move(*self.at(x, y), steps=steps)
+
+    def find(self, selector: str) -> Locator:
+        return self.page.locator(selector)
+
+
+@pytest.fixture
+def host() -> Iterator[ScriptedHost]:
+    with ScriptedHost() as host:
+        yield host
+
+
+@pytest.fixture
+def open_pane(browser: Browser, host: ScriptedHost) -> Iterator[Callable[..., Pane]]:
+    """What opens the pane, its first picture shown; `looks` are those of `Browser.new_context`."""
+    opened = []
+
+    def open_pane(host: ScriptedHost = host, script: str = "", **looks: Any) -> Pane:
+        looks = {"viewport": {"width": 1200, "height": 800}, **looks}
+        context = browser.new_context(**looks)
+        opened.append(context)
+        context.set_default_timeout(10_000)
+        if script:
+            context.add_init_script(script)
+        pane = Pane(context.new_page(), host)
+        pane.page.on("pageerror", lambda error: pane.complaints.append(str(error)))
+        pane.page.on(
+            "console", lambda line: line.type == "error" and pane.complaints.append(f"{line.text}")
+        )
+        pane.page.goto(host.url)
+        return pane
+
+    yield open_pane
+    for context in opened:
+        context.close()
+
+
+@pytest.fixture
+def pane(open_pane: Callable[..., Pane]) -> Iterator[Pane]:
+    """The pane with a plate in it; nothing that a test does may make the browser complain."""
+    pane = open_pane()
+    pane.host.hears("ready")
+    pane.shows()
+    yield pane
+    assert pane.complaints == []
