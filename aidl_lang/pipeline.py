@@ -215,14 +215,14 @@ def _completed(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
     return complete(model)
 
 
-def _sizes(built: Interpretation, evaluator: Evaluator) -> Callable[[SolvedModel], tuple[Dimension, ...]]:
+def _sizes(built: Model, evaluator: Evaluator) -> Callable[[SolvedModel], tuple[Dimension, ...]]:
     """What tells the sizes of a solved model, loaded when they are asked for."""
 
     def sizes(solved: SolvedModel) -> tuple[Dimension, ...]:
         from aidl_lang.dimensions import sizes
 
         with _working:
-            return sizes(built.model, solved, evaluator)
+            return sizes(built, solved, evaluator)
 
     return sizes
 
@@ -297,6 +297,36 @@ def compile(
         return _finish(built, diagnostics, settings, watch, known, frozenset(show), memory)
 
 
+def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled:
+    """An outcome with its parts where another solution of the same model has them, as while one is dragged.
+
+    What was said of the outcome stands as it was. Raises ValueError where nothing was built.
+    """
+    from aidl_lang.geometry.drawing import draw
+    from aidl_lang.readout import read_out
+    from aidl_lang.solver.analysis import analyse
+
+    if outcome.built is None:
+        raise ValueError("the program is wrong, so there is nothing to draw")
+    watch = _Stopwatch()
+    with _working:
+        with watch("freedom"):
+            freedom = analyse(lowered.problem, solution)
+        with watch("read out"):
+            model, evaluator = read_out(outcome.built, lowered, solution, freedom)
+        with watch("regions"):
+            model, _ = _completed(replace(model, size_up=_sizes(outcome.built, evaluator)))
+            drawing, _ = draw(model)
+    return replace(
+        outcome,
+        status=model.status,
+        timings=watch.seconds,
+        model=model,
+        drawing=drawing,
+        evaluate=evaluator,
+    )
+
+
 def _finish(
     built: Interpretation,
     diagnostics: list[Diagnostic],
@@ -323,7 +353,7 @@ def _finish(
     with watch("read out"):
         model, evaluator = read_out(built.model, lowered, solution, freedom)
     with watch("regions"):
-        model, wrong = _completed(replace(model, size_up=_sizes(built, evaluator)))
+        model, wrong = _completed(replace(model, size_up=_sizes(built.model, evaluator)))
         drawing, notes = draw(model)
         notes = [*wrong, *notes]
     with watch("asserts"):
@@ -363,4 +393,5 @@ __all__ = [
     "formatted",
     "front",
     "knobs",
+    "redrawn",
 ]

@@ -1,7 +1,7 @@
 """Beginnings of statements to be filled in, for editors.
 
-The bodies are in the syntax of the Language Server Protocol: `${1:text}` is a place to fill in, `$0` where the
-cursor rests in the end. With what is suggested at its places, each is a statement that the checker takes.
+The bodies are in the syntax of the Language Server Protocol: `${1:text}` is a place to fill in, `$0` where
+the cursor rests in the end. With what is suggested at its places, each is a statement that the checker takes.
 """
 
 from __future__ import annotations
@@ -40,11 +40,16 @@ SNIPPETS = (
         "a solid: material",
         "solid ${1:plate} {\n\t${2:outline} = rectangle(width: ${3:60}, height: ${4:40})\n\t$0\n}",
     ),
-    Snippet("hole", "a hole in what is around it", "hole ${1:bore} {\n\t${2:rim} = circle(radius: ${3:5})\n\t$0\n}"),
+    Snippet(
+        "hole",
+        "a hole in what is around it",
+        "hole ${1:bore} {\n\t${2:rim} = circle(radius: ${3:5})\n\t$0\n}",
+    ),
     Snippet(
         "assembly",
         "several solids, and how they lie to each other",
-        "assembly ${1:stand} {\n\tsolid ${2:foot} {\n\t\tbody = rectangle(width: ${3:60}, height: ${4:10})\n\t}\n"
+        "assembly ${1:stand} {\n"
+        "\tsolid ${2:foot} {\n\t\tbody = rectangle(width: ${3:60}, height: ${4:10})\n\t}\n"
         "\tsolid ${5:post} {\n\t\tbody = rectangle(width: ${6:8}, height: ${7:80})\n\t}\n\n"
         "\tconstrain {\n\t\t${5:post}.${8:stacked_on}(${2:foot})\n\t}\n\t$0\n}",
     ),
@@ -67,7 +72,9 @@ SNIPPETS = (
         "a parameter with a range in steps",
         "param ${1:count} = ${2:4} in ${3:2}..${4:12} step ${5:1}$0",
     ),
-    Snippet("choice", "a parameter with a few values", 'param ${1:bolt} = "${2:m5}" in ["${3:m4}", "${2:m5}"]$0'),
+    Snippet(
+        "choice", "a parameter with a few values", 'param ${1:bolt} = "${2:m5}" in ["${3:m4}", "${2:m5}"]$0'
+    ),
     Snippet("let", "a name for a value", "let ${1:wall} = ${2:3mm}$0"),
     Snippet("var", "an unknown", "var ${1:gap} = ${2:5mm}$0"),
     Snippet("constrain", "a block of constraints", "constrain {\n\t$0\n}"),
@@ -100,7 +107,9 @@ SNIPPETS = (
     Snippet("alias", "another name for a definition", "alias ${1:flat} = ${2:horizontal}$0", "file"),
     Snippet("import", "the definitions of another file", 'import "${1:parts.aidl}"$0', "file"),
     Snippet("importas", "another file under a name", 'import "${1:parts.aidl}" as ${2:parts}$0', "file"),
-    Snippet("importfrom", "some definitions of a file", 'import ${1:washer} from "${2:parts.aidl}"$0', "file"),
+    Snippet(
+        "importfrom", "some definitions of a file", 'import ${1:washer} from "${2:parts.aidl}"$0', "file"
+    ),
     Snippet("@color", "the colour", '@color("${1:crimson}")$0', "attribute"),
     Snippet("@layer", "the layer", '@layer("${1:cut}")$0', "attribute"),
     Snippet("@material", "the material", '@material("${1:birch plywood}")$0', "attribute"),

@@ -189,7 +189,9 @@ def vocabulary() -> Vocabulary:
 
 def unclaimed() -> frozenset[str]:
     """Words and signs of the grammar that no class has: empty unless somebody is changing the grammar."""
-    claimed = {word for classes in (_KEYWORDS, _SIGNS) for listed in classes.values() for word in listed.split()}
+    claimed = {
+        word for classes in (_KEYWORDS, _SIGNS) for listed in classes.values() for word in listed.split()
+    }
     return load_tables().literals - claimed
 
 

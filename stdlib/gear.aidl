@@ -266,17 +266,17 @@ constraint meshes(a: gear, b: gear, backlash: length = 0) {
     ) * (a.pitch_radius + b.pitch_radius) + backlash
     a.module == b.module
     a.pressure_angle == b.pressure_angle
-    (heading(b.center - a.center) - a.angle) * a.teeth + (heading(
-        a.center - b.center
-    ) - b.angle) * b.teeth == 180deg
+    let from_a = (heading(b.center - a.center) - a.angle) * a.teeth
+    let from_b = (heading(a.center - b.center) - b.angle) * b.teeth
+    from_a + from_b == nearest_turn(from_a + from_b)
 }
 constraint meshes(a: gear, b: internal_gear, backlash: length = 0) {
     distance(a.center, b.center) == b.pitch_radius - a.pitch_radius - backlash
     a.module == b.module
     a.pressure_angle == b.pressure_angle
-    (heading(a.center - b.center) - a.angle) * a.teeth - (heading(
-        a.center - b.center
-    ) - b.angle) * b.teeth == 180deg
+    let outward = heading(a.center - b.center)
+    let between = (outward - a.angle) * a.teeth - (outward - b.angle) * b.teeth
+    between == nearest_turn(between)
 }
 constraint meshes(a: internal_gear, b: gear, backlash: length = 0) {
     meshes(b, a, backlash: backlash)
@@ -291,7 +291,11 @@ constraint meshes(a: gear, b: rack, backlash: length = 0) {
 }
 constraint meshes(a: rack, b: gear, backlash: length = 0) { meshes(b, a, backlash: backlash) }
 
-fn heading(v: point) = atan2(v.y, v.x)
+// The direction of a way, counted on from the side to which it is written, so that it does not jump there.
+fn heading(v: point) = if written(v.x) >= 0mm then atan2(v.y, v.x) else atan2(-v.y, -v.x) + 180deg
+
+// The phase between two gears at which a tooth meets a gap, of all these the nearest to the one that is written.
+fn nearest_turn(phase: angle) = 180deg + 360deg * round((written(phase) - 180deg) / 360deg)
 
 // By how much profile shifts spread two gears: cosines of the pressure angle and of the working one, whose involute
 // (the tangent without the angle) is larger by shift * tan(pressure angle). Newton's steps find it.

@@ -243,17 +243,20 @@ class Interpreter:
         dimension: MaybeDimension = LENGTH,
     ) -> ex.Expression:
         """`made`, after keeping that it stands for a number of the text, if `written` is one."""
-        node = written.expression.payload
-        if isinstance(node, (ast.Number, ast.Unary)) and made.op != "constant":
-            self.literals.append(Literal(node, made, holder, name, dimension))
+        if written.expression.op == "constant" and made.op != "constant":
+            node = written.expression.payload
+            if isinstance(node, (ast.Number, ast.Unary)):
+                self.literals.append(Literal(node, made, holder, name, dimension))
         return made
 
     def became_point(
         self, written: PointVal, made: PointVal, holder: Geometry | Structure, name: str
     ) -> None:
         """The same for both coordinates of a point."""
-        self.became(written.x, made.x.expression, holder, f"{name}.x")
-        self.became(written.y, made.y.expression, holder, f"{name}.y")
+        if written.x.expression.op == "constant":
+            self.became(written.x, made.x.expression, holder, f"{name}.x")
+        if written.y.expression.op == "constant":
+            self.became(written.y, made.y.expression, holder, f"{name}.y")
 
     def watch(self, node: ast.Node, value: Value) -> None:
         """Keep the written value of an expression that breaks a rule of validity, for its fix."""

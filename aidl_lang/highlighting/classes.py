@@ -1,8 +1,8 @@
 """What each token of a text is, told from the tokens alone: for broken programs as well as for whole ones.
 
-All colourers follow this: the Pygments lexer uses it, and the grammars for editors are tested against it. What
-a name refers to is not asked. So a definition of the program's own that is called like one of the library is
-taken for that one.
+All colourers follow this: the Pygments lexer uses it, and the grammars for editors are tested against it.
+What a name refers to is not asked. So a definition of the program's own that is called like one of the
+library is taken for that one.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
 from typing import NamedTuple
 
 from aidl_lang.kinds import kind_of
@@ -107,8 +107,8 @@ def _plain_names() -> dict[str, str]:
 @dataclass
 class _Inside:
     """An open bracket. `role` is `parameters` of a definition, `arguments` of a call, `block`, `constraints`
-    (a block of them) or `group`; `header` is `names` where the variables of a `for`, or imported names, stand,
-    `values` behind the `in` of a `for`, else nothing.
+    (a block of them) or `group`; `header` is `names` where the variables of a `for`, or imported names,
+    stand, `values` behind the `in` of a `for`, else nothing.
     """
 
     role: str
@@ -241,14 +241,21 @@ class _Reader:
 
     def _closing(self, place: int) -> int:
         """Where what is opened here is closed, or what stops it before."""
-        depth = 0
-        while (kind := self._kind(place)) not in ("{", "}", END):
-            depth += kind in _OPENING
-            depth -= kind in (")", "]")
-            if depth <= 0:
-                break
-            place += 1
-        return place
+        return self._closings[place]
+
+    @cached_property
+    def _closings(self) -> dict[int, int]:
+        found: dict[int, int] = {}
+        opened: list[int] = []
+        for place, token in enumerate(self.tokens):
+            if token.kind in _OPENING:
+                opened.append(place)
+            elif token.kind in (")", "]") and opened:
+                found[opened.pop()] = place
+            elif token.kind in ("{", "}", END):
+                found.update(dict.fromkeys(opened, place))
+                opened.clear()
+        return found
 
     # --- What is open -----------------------------------------------------------------------------
 

@@ -11,7 +11,10 @@ from aidl_lang.snippets import SNIPPETS
 from aidl_lang.vocabulary import vocabulary
 
 _HEAD = "// Made by `make colours` from aidl_lang/vocabulary.py; do not edit.\n"
-_LISTS = ("kinds", "attributes", "units", "types", "everywhere", "modules", "constants", "statements", "clauses")
+_LISTS = (
+    *("kinds", "attributes", "units", "types", "everywhere", "constants"),
+    *("statements", "clauses", "keywords", "reserved"),
+)
 
 
 def words() -> str:
@@ -19,18 +22,10 @@ def words() -> str:
     with what they are for; `snippets`.
     """
     known = vocabulary()
-    lists = {
-        **{name: getattr(known, name) for name in _LISTS},
-        "kindWords": known.kind_words,
-        "bareWords": known.bare_words,
-        "keywords": known.keywords,
-        "reserved": known.reserved,
-    }
+    lists = {name: getattr(known, name) for name in _LISTS}
     entries = reference().entries
     about = {name: entry.doc.line for name, entry in entries.items() if name in known.named()}
-    snippets = [
-        {"prefix": s.prefix, "title": s.title, "body": s.body, "place": s.place} for s in SNIPPETS
-    ]
+    snippets = [{"prefix": s.prefix, "title": s.title, "body": s.body, "place": s.place} for s in SNIPPETS]
     parts = {
         "words: Record<string, readonly string[]>": lists,
         'calls: Record<string, "call.shape" | "call.constraint" | "call.function">': called(),

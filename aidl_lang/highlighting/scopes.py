@@ -17,7 +17,7 @@ SCOPES: Mapping[str, str] = {
     "keyword.control": "keyword.control",
     "keyword.import": "keyword.control.import",
     "keyword.clause": "keyword.other.clause",
-    "keyword.operator": "keyword.operator.word",
+    "keyword.operator": "keyword.operator.expression",
     "constant.truth": "constant.language.boolean",
     "operator.comparison": "keyword.operator.comparison",
     "operator.arithmetic": "keyword.operator.arithmetic",
@@ -73,7 +73,11 @@ def region(
     begin: str, end: str, *inside: str | Rule, begins: Sequence[str] = (), ends: Sequence[str] = ()
 ) -> Rule:
     """A rule for what lies between two patterns; a rule inside goes by the name it has in the repository."""
-    rule: Rule = {"begin": begin, "end": end, "patterns": [p if isinstance(p, dict) else include(p) for p in inside]}
+    rule: Rule = {
+        "begin": begin,
+        "end": end,
+        "patterns": [p if isinstance(p, dict) else include(p) for p in inside],
+    }
     if begins:
         rule["beginCaptures"] = _captures(begins)
     return rule | ({"endCaptures": _captures(ends)} if ends else {})

@@ -175,7 +175,10 @@ def _keywords() -> list[Rule]:
 def markdown() -> Rule:
     """What colours fenced blocks of AIDL in Markdown, as data for JSON."""
     fence = r"(^|\G)(\s*)(`{3,}|~{3,})\s*(?i:(aidl)(?=\s|$)[^`]*)$"
-    begins = {"3": {"name": "punctuation.definition.markdown"}, "4": {"name": "fenced_code.block.language.markdown"}}
+    begins = {
+        "3": {"name": "punctuation.definition.markdown"},
+        "4": {"name": "fenced_code.block.language.markdown"},
+    }
     block: Rule = {
         "name": "markup.fenced_code.block.markdown",
         "begin": fence,

@@ -63,13 +63,13 @@ def head(node: ast.Node) -> str:
             return f"{node.kind_word.text} {_target(node)}"
         case ast.Structure():
             return f"{node.kind_word.text} {written(node)}"
-        case ast.Parameter() | ast.Param() | ast.Let() | ast.Var() | ast.Assign() | ast.Alias() | ast.Import():
+        case (
+            ast.Parameter() | ast.Param() | ast.Let() | ast.Var() | ast.Assign() | ast.Alias() | ast.Import()
+        ):
             return _short(node.span.one_line)
         case ast.For():
             names = ", ".join(v.text for v in node.variables)
             return f"for {names} in {_short(node.iterable.span.one_line)}"
-        case ast.Comprehension():
-            return _short(node.span.one_line)
         case _:
             return _short(node.span.one_line)
 

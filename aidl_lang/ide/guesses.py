@@ -1,4 +1,4 @@
-"""Numbers of the text that the solver may change, beside what it found for them: first guesses and kept sizes."""
+"""Numbers of the text that the solver may change, first guesses and kept sizes, beside what it found."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from aidl_lang.ide.meaning import chosen
 from aidl_lang.ide.view import View
 from aidl_lang.model import Literal
 from aidl_lang.source import Span
-from aidl_lang.units import ANGLE, LENGTH, UNITS
+from aidl_lang.units import ANGLE, LENGTH, PLAIN, UNITS
 
 VISIBLE = 1e-4
 """The least difference that is worth telling, as a share of the number, or of one where it is smaller."""
@@ -101,7 +101,7 @@ def _guess(node: ast.Number | ast.Unary, uses: tuple[Literal, ...], named: bool,
         written=-number.value if is_negative else number.value,
         solved=_agreed([evaluate(use.became) / _factor(unit) for use in uses]),
         unit=unit,
-        measure=unit or _MEASURES.get(uses[0].dimension, ""),
+        measure=unit or _MEASURES.get(uses[0].dimension or PLAIN, ""),
         path=uses[0].path,
         is_kept=all(_is_kept(use.became) for use in uses),
         is_shared=named or len(uses) > 1,
@@ -149,8 +149,9 @@ def _named(view: View, node: ast.Node) -> Iterator[tuple[tuple[ast.Identifier, .
             yield (name,), value
         case ast.Assign(name=name, value=ast.Number() | ast.Unary() | ast.List() as value):
             yield (name,), value
-        case ast.For(variables=names, iterable=iterable) | ast.Comprehension(
-            variables=names, iterable=iterable
+        case (
+            ast.For(variables=names, iterable=iterable)
+            | ast.Comprehension(variables=names, iterable=iterable)
         ):
             yield names, iterable
         case ast.FunctionDefinition(parameters=parameters):

@@ -64,7 +64,9 @@ def _read(signature: Signature, words: Sequence[str | None], kinds: Sequence[Typ
     taken: list[str | None] = []
     cost = 0
     for word, kind in zip(words, kinds, strict=True):
-        name = next(positional, None) if word is None else meant(signature, word, {*named, *filter(None, taken)})
+        name = (
+            next(positional, None) if word is None else meant(signature, word, {*named, *filter(None, taken)})
+        )
         taken.append(name)
         if name is None and word is not None and (signature.takes_any or fold(word) in PAIRS):
             continue
@@ -84,9 +86,7 @@ def meant(signature: Signature, word: str, taken: set[str]) -> str | None:
     return open_names[0] if len(open_names) == 1 else None
 
 
-def _positional(
-    signature: Signature, words: Sequence[str | None], kinds: Sequence[Type]
-) -> list[str]:
+def _positional(signature: Signature, words: Sequence[str | None], kinds: Sequence[Type]) -> list[str]:
     """The parameters of the arguments without a name, in order."""
     names = [name for name, _, _ in signature.parameters]
     count = sum(word is None for word in words)

@@ -1,6 +1,6 @@
-"""Offsets in a text ↔ lines and characters as protocols count them: in UTF-16 units, unless agreed otherwise.
+r"""Offsets in a text ↔ lines and characters as protocols count them: in UTF-16 units, or as agreed.
 
-Lines end with `\\n`, `\\r\\n` or `\\r`. Lines and characters count from 0.
+Lines end with `\n`, `\r\n` or `\r`. Lines and characters count from 0.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Positions:
         return line, self._units(offset) - self._units(self._starts[line])
 
     def offset(self, line: int, character: int) -> int:
-        """The offset of a place; one beyond a line is taken to its end, one within a character to its start."""
+        """The offset of a place; beyond a line it is the end of it, within a character its start."""
         if line < 0:
             return 0
         if line >= self.lines:

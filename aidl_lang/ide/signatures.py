@@ -27,7 +27,7 @@ class ParameterHelp:
 
 @dataclass(frozen=True)
 class OverloadHelp:
-    """`active` is the number of the parameter that is being given; None where the overload has none for it."""
+    """`active` is the number of the parameter that is being given; None where there is none for it."""
 
     label: str
     about: str
@@ -101,7 +101,7 @@ def _place(reading: Reading) -> tuple[int, str, int]:
 
 
 def _best(ordered: list[Reading], argument: int) -> Reading:
-    """The overload that is meant: of those that fit alike, the first that has a parameter for the argument."""
+    """The overload that is meant: the first of those that fit alike and have a parameter for the argument."""
     alike = [r for r in ordered if r.cost == ordered[0].cost]
     having = [r for r in alike if _parameter(r, argument) is not None]
     return (having or alike)[0]
@@ -126,4 +126,3 @@ def _told(reading: Reading, argument: int) -> OverloadHelp:
     about = doc_of(signature)
     shown = joined([about.line, about.text, fenced(about.example) if about.example else ""])
     return OverloadHelp(label.text, shown, parameters, _parameter(reading, argument), reading.fits)
-

@@ -1,4 +1,4 @@
-"""A place in a text where something is being written: what stands around it, and what the grammar takes there.
+"""A place in a text where something is being written: what stands around it, and what the grammar takes.
 
 What is being written is seldom a program. So a name is put there in its stead, in the way that leaves the
 fewest mistakes, and the program is understood with it: what became of that name tells what is wanted.
@@ -22,8 +22,10 @@ from aidl_lang.syntax.automaton import Automaton
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import END, UNKNOWN, Token, Tokens, tokenize
 
-PLACEHOLDER = "_placeholder_"
-"""The name that stands for what is being written."""
+PLACEHOLDER = "_what_is_being_written_here_" + "_" * 40
+"""The name that stands for what is being written: too long to be a misspelling of another, for which many
+names would have to be compared.
+"""
 _CLOSERS = {"(": ")", "CALL": ")", "[": "]"}
 _DIGITS = re.compile(r"(\d+(\.\d+)?|\.\d+)([eE][+-]?\d+)?")
 
@@ -86,7 +88,9 @@ def _word_end(token: Token) -> int:
     """Where the word ends that a token is, or begins with; -1 if it is none."""
     if token.kind == "CALL":
         return token.start + len(token.text.rstrip("( \t"))
-    return token.end if token.kind == "NAME" or token.kind.isidentifier() and token.text == token.kind else -1
+    return (
+        token.end if token.kind == "NAME" or (token.kind.isidentifier() and token.text == token.kind) else -1
+    )
 
 
 def _literal(token: Token, before: Token | None, text: str, offset: int) -> Spot | None:

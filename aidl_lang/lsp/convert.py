@@ -19,7 +19,7 @@ START = types.Range(types.Position(0, 0), types.Position(0, 0))
 
 @dataclass(frozen=True, eq=False)
 class Converter:
-    """Converts for the view of the document `own`; `versions` are those of the open files when it was made."""
+    """Converts for the view of the document `own`; `versions` are those of the open files at that time."""
 
     view: View
     own: str

@@ -13,7 +13,7 @@ from pygls.exceptions import JsonRpcException
 
 from aidl_lang.lsp import wire
 from aidl_lang.lsp.lane import give_room
-from aidl_lang.lsp.requests import actions, appearance, hints, lifecycle, navigation, preview
+from aidl_lang.lsp.requests import actions, appearance, hints, lifecycle, navigation, preview, writing
 from aidl_lang.lsp.server import Server
 
 _RECURSION = 20_000
@@ -27,7 +27,7 @@ _LOST = 1
 def make() -> Server:
     """A server that knows all requests."""
     server = Server()
-    for theme in (lifecycle, navigation, appearance, actions, hints, preview):
+    for theme in (lifecycle, navigation, appearance, actions, hints, preview, writing):
         theme.register(server)
     return server
 

@@ -40,6 +40,7 @@ class Served:
             access_log=False,
             ws_max_size=LONGEST,
             ws_max_queue=8,
+            ws_per_message_deflate=False,
             proxy_headers=False,
             server_header=False,
             timeout_graceful_shutdown=_GRACE,

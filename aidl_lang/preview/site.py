@@ -63,7 +63,7 @@ async def _working(app: Starlette) -> AsyncIterator[None]:
     """The host works, and looks at the files, while the application runs."""
     host: Host = app.state.host
     async with AsyncExitStack() as stack:
-        for work in (host.run(), watch(host.program.path.parent, host.changed)):
+        for work in (host.run(), watch(host.program.path, host.changed)):
             stack.push_async_callback(_end, asyncio.create_task(work))
         yield
 
@@ -138,6 +138,9 @@ async def _socket(socket: WebSocket) -> None:
     finally:
         host.leave(page)
         sending.cancel()
+        await asyncio.wait([sending])
+        if not sending.cancelled():
+            sending.exception()  # it could send no more
 
 
 async def _send(socket: WebSocket, page: Page) -> None:

@@ -1,4 +1,4 @@
-"""Looking at the programs of a folder, on any system."""
+"""Looking out for changes of a program, and of what it may import."""
 
 from __future__ import annotations
 
@@ -13,20 +13,21 @@ _DEBOUNCE = 30
 """Milliseconds in which several changes count as one."""
 
 
-async def watch(folder: Path, changed: Callable[[], None]) -> None:
-    """Calls back whenever a program in the folder, or below it, has changed; until it is cancelled."""
+async def watch(file: Path, changed: Callable[[], None]) -> None:
+    """Calls back whenever a file, or a program beside it or below its folder, has changed; until it is
+    cancelled.
+    """
     try:
-        await _watch(folder, changed, polling=None)
+        await _watch(file, changed, polling=None)
     except (OSError, RuntimeError):  # the system watches no more files, or not this folder
-        await _watch(folder, changed, polling=True)
+        await _watch(file, changed, polling=True)
 
 
-async def _watch(folder: Path, changed: Callable[[], None], polling: bool | None) -> None:
+async def _watch(file: Path, changed: Callable[[], None], polling: bool | None) -> None:
+    def concerns(change: Change, path: str) -> bool:
+        return path.endswith(SUFFIX) or path == str(file)
+
     async for _ in awatch(
-        folder, watch_filter=_is_program, debounce=_DEBOUNCE, step=10, force_polling=polling
+        file.parent, watch_filter=concerns, debounce=_DEBOUNCE, step=10, force_polling=polling
     ):
         changed()
-
-
-def _is_program(change: Change, path: str) -> bool:
-    return path.endswith(SUFFIX)

@@ -144,7 +144,7 @@ def _changed(rng: random.Random, text: str, tokens: list[Token], one: Token, two
 
 def mutants(count: int) -> Iterator[str]:
     rng = random.Random(2)
-    texts = sorted(text for text in whole_programs().values() if len(text) < 4000)
+    texts = sorted(text for text in whole_programs().values() if len(text) < 3000)
     texts += specified().values()
     for _ in range(count):
         yield mutant(rng, rng.choice(texts))
@@ -153,7 +153,7 @@ def mutants(count: int) -> Iterator[str]:
 def test_mutants_are_taken_or_refused_as_by_the_parser() -> None:
     verdicts = Counter[str]()
     different = []
-    for text in mutants(1500):
+    for text in mutants(1000):
         tree, codes = parse(text), errors(text)
         if bool(refused(tree)) == bool(codes):
             verdicts["refused" if codes else "taken"] += 1
@@ -162,9 +162,9 @@ def test_mutants_are_taken_or_refused_as_by_the_parser() -> None:
         else:
             different.append((refused(tree), codes, text))
     assert different == []
-    assert verdicts["taken"] > 400
-    assert verdicts["refused"] > 800
-    assert sum(verdicts.values()) - verdicts["taken"] - verdicts["refused"] <= 1, verdicts
+    assert verdicts["taken"] > 250
+    assert verdicts["refused"] > 550
+    assert sum(verdicts.values()) - verdicts["taken"] - verdicts["refused"] <= 3, verdicts
 
 
 @pytest.mark.parametrize(
@@ -207,8 +207,7 @@ def test_the_letters_of_names_are_those_of_the_parser() -> None:
     for before in ("", "x"):
         good = [char for char in letters if pattern.fullmatch(before + char)]
         assert len(good) > 100_000
-        tree = parse("\n".join(f"let {before}{char} = 1" for char in good))
-        assert [n.text for n in nodes(tree) if n.is_error or n.is_missing] == []
+        assert not parse("\n".join(f"let {before}{char} = 1" for char in good)).root_node.has_error
         bad = set(letters).difference(good)
         assert len(bad) > 5_000
         assert [char for char in bad if not parse(f"let {before}{char} = 1").root_node.has_error] == []

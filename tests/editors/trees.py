@@ -56,21 +56,21 @@ def nodes(tree: Tree) -> Iterator[Node]:
         stack += node.children[::-1]
 
 
-def leaves(tree: Tree) -> list[Node]:
-    return [node for node in nodes(tree) if not node.child_count]
+def leaves(found: list[Node]) -> list[Node]:
+    return [node for node in found if not node.child_count]
 
 
 def refused(tree: Tree) -> str | None:
     """Why the text is no program, or None if it is one."""
     if tree.root_node.has_error:
         return "error"
-    for node in nodes(tree):
+    found = list(nodes(tree))
+    for node in found:
         if node.type in SLIPS:
             return node.type
         if node.type == "structure" and kind_of(_text(node.child_by_field_name("kind"))) is None:
             return "kind"
-    found = leaves(tree)
-    for name, after in pairwise(found):
+    for name, after in pairwise(leaves(found)):
         if (
             name.type == "identifier"
             and after.type == "("
@@ -82,8 +82,8 @@ def refused(tree: Tree) -> str | None:
 
 def beyond(tree: Tree) -> str | None:
     """What keeps the tree from telling whether the text is a program: all of it of tokens that touch."""
-    found = leaves(tree)
-    for node, after in pairwise(found):
+    found = list(nodes(tree))
+    for node, after in pairwise(leaves(found)):
         touch = node.end_byte == after.start_byte
         if node.type.endswith("_comment") and touch and _is_second_half(after):
             return "a comment between two tokens that touch elsewhere"
@@ -91,7 +91,7 @@ def beyond(tree: Tree) -> str | None:
             return "`then(` is a call"
         if touch and after.type == "(" and _ends_statement(node):
             return "a call in the place of a name"
-    for node in nodes(tree):
+    for node in found:
         if node.type == "unknown_unit" and _is_word(_text(node)):
             return "a word that touches a number"
     return None

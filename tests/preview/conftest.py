@@ -50,9 +50,8 @@ class Pane:
 
     def at(self, x: float, y: float) -> tuple[float, float]:
         """Where on the page a point of the drawing is, as the browser has it."""
-        a, d, e, f = self.page.evaluate(
-            "() => { const m = document.querySelector('.drawing').getScreenCTM(); return [m.a, m.d, m.e, m.f] }"
-        )
+        matrix = "one => { const m = one.getScreenCTM(); return [m.a, m.d, m.e, m.f] }"
+        a, d, e, f = self.page.eval_on_selector(".drawing", matrix)
         return a * x + e, -d * y + f
 
     @property
@@ -63,6 +62,14 @@ class Pane:
     def move(self, x: float, y: float, steps: int = 1) -> None:
         """The pointer to a point of the drawing."""
         self.page.mouse.move(*self.at(x, y), steps=steps)
+
+    def middle(self, selector: str) -> tuple[float, float]:
+        """Where on the page the middle of a shape is."""
+        box = (
+            "one => { const b = one.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2] }"
+        )
+        x, y = self.page.eval_on_selector(selector, box)
+        return x, y
 
     def find(self, selector: str) -> Locator:
         return self.page.locator(selector)
@@ -88,9 +95,7 @@ def open_pane(browser: Browser, host: ScriptedHost) -> Iterator[Callable[..., Pa
             context.add_init_script(script)
         pane = Pane(context.new_page(), host)
         pane.page.on("pageerror", lambda error: pane.complaints.append(str(error)))
-        pane.page.on(
-            "console", lambda line: line.type == "error" and pane.complaints.append(f"{line.text}")
-        )
+        pane.page.on("console", lambda line: line.type == "error" and pane.complaints.append(f"{line.text}"))
         pane.page.goto(host.url)
         return pane
 

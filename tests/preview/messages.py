@@ -1,4 +1,4 @@
-"""A picture as a host sends it: a plate of 100 × 60 mm with a hole of 20 mm in it, and all that can be said of it."""
+"""A picture as a host sends it, of a plate of 100 × 60 mm with a hole of 20 mm in it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A host of the preview pane that does what a test says: it serves the pane and talks to it by a WebSocket."""
+"""A host of the preview pane that does what a test says: it serves the pane and talks by a WebSocket."""
 
 from __future__ import annotations
 

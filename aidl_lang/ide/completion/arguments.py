@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import partial
 
 from aidl_lang import ast
 from aidl_lang.ide.completion.context import Context
-from aidl_lang.ide.completion.draft import Draft, escaped, stop
+from aidl_lang.ide.completion.draft import Draft, stop
 from aidl_lang.ide.completion.words import words_of
 from aidl_lang.ide.describing import is_public, of_parameter
 from aidl_lang.ide.overloads import Reading
@@ -16,6 +17,8 @@ from aidl_lang.types import ListType, NumberType, PointType, Signature, TextType
 from aidl_lang.units import ANGLE
 
 _NEEDED, _OPTIONAL = 0.2, 0.6
+_NAMED = re.compile(r"\s*(:|=(?!=))")
+_LONGEST_DEFAULT = 20
 
 
 def named_arguments(context: Context) -> Iterator[Draft]:
@@ -26,7 +29,7 @@ def named_arguments(context: Context) -> Iterator[Draft]:
     public = [r for r in context.readings if is_public(r.signature)] or context.readings
     for order, reading in enumerate(public):
         for place, (name, kind, is_optional) in enumerate(_open(reading, call[1])):
-            tier = (_OPTIONAL if is_optional else _NEEDED) + place / 100 + order / 1000
+            tier = (_OPTIONAL if is_optional else _NEEDED + order / 20) + place / 100
             yield _argument(context, reading.signature, name, kind, tier)
 
 
@@ -40,8 +43,7 @@ def _open(reading: Reading, number: int) -> list[tuple[str, Type, bool]]:
 
 def _argument(context: Context, signature: Signature, name: str, kind: Type, tier: float) -> Draft:
     default = _default(signature, name)
-    is_named = context.site.following.lstrip().startswith((":", "=")) and not context.site.following.lstrip(
-    ).startswith("==")
+    is_named = _NAMED.match(context.site.following) is not None
     text = name if is_named else f"{name}: {_proposed(signature, name, kind, default)}"
     return Draft(
         f"{name}:",
@@ -63,12 +65,10 @@ def _default(signature: Signature, name: str) -> str:
 
 def _proposed(signature: Signature, name: str, kind: Type, default: str) -> str:
     """A place to fill in, with a value that a parameter takes."""
-    node = signature.node
-    words = words_of(node, name) if node is not None and isinstance(kind, TextType) else ()
-    if words:
+    if isinstance(kind, TextType) and (words := words_of(signature, name)):
         listed = [word if word.isidentifier() else f'"{word}"' for word in words if word != "free"]
         return f"${{1|{','.join(listed)}|}}"
-    if default and len(default) < 20:
+    if default and len(default) < _LONGEST_DEFAULT:
         return stop(1, default)
     match kind:
         case NumberType(dimension, whole):
@@ -80,6 +80,6 @@ def _proposed(signature: Signature, name: str, kind: Type, default: str) -> str:
         case TruthType():
             return "${1|true,false|}"
         case ListType():
-            return f"[{stop(1, escaped(name))}]"
+            return f"[{stop(1, name)}]"
         case _:
             return stop(1, name)

@@ -8,7 +8,7 @@ from aidl_lang import ast
 from aidl_lang.ide.completion import names, words
 from aidl_lang.ide.completion.arguments import named_arguments
 from aidl_lang.ide.completion.constraints import constraints
-from aidl_lang.ide.completion.context import Context, Use, context_of
+from aidl_lang.ide.completion.context import CONDITION, Context, Use, context_of
 from aidl_lang.ide.completion.draft import Draft, ranked
 from aidl_lang.ide.completion.imports import importing
 from aidl_lang.ide.completion.item import Completion
@@ -18,8 +18,9 @@ from aidl_lang.ide.completion.words import Files
 from aidl_lang.ide.nodes import around
 from aidl_lang.ide.site import Site, Spot, Where, site_at, spot_at
 from aidl_lang.ide.view import View, look
+from aidl_lang.kinds import kind_of
 from aidl_lang.parser import standing_before
-from aidl_lang.types import TextType, TruthType
+from aidl_lang.types import TextType
 
 
 def complete(view: View, offset: int, files: Files | None = None) -> list[Completion]:
@@ -105,7 +106,7 @@ def _drafts(site: Site, files: Files | None) -> Iterator[Draft]:
         elif not site.may_end or site.takes("NAME", "NAME", "{"):
             yield from kinds(site, 1.0) if not site.automaton.between_statements else ()
         if kind != ".":
-            yield from clauses(site)
+            yield from clauses(site, is_condition=context is not None and context.wanted == CONDITION)
 
 
 def _of_import(site: Site, files: Files | None) -> Iterator[Draft]:
@@ -118,7 +119,10 @@ def _of_import(site: Site, files: Files | None) -> Iterator[Draft]:
 def _is_free(site: Site) -> bool:
     """Whether something can be proposed at all: not where a new name is given."""
     before = site.spot.before
-    return before is None or before.kind not in _NAMING
+    if before is None:
+        return True
+    is_head = before.kind == "NAME" and kind_of(before.text) is not None and site.takes("NAME", "{")
+    return before.kind not in _NAMING and not (is_head and not site.may_end)
 
 
 _NAMING = ("param", "var", "let", "fn", "shape", "constraint", "alias", "for", "as", "construction")
@@ -180,7 +184,7 @@ def _value(context: Context) -> Iterator[Draft]:
         yield from words.choices(context, is_quoted=False)
     if isinstance(above, ast.Index) and context.site.node is above.index:
         yield from indices(context, above)
-    is_demand = context.use is Use.CONSTRAINT and TruthType() in context.wanted.types
+    is_demand = context.use is Use.CONSTRAINT and context.wanted == CONDITION
     if is_demand:
         yield from constraints(context)
     yield from names.values(context)

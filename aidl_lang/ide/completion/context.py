@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
@@ -27,6 +27,7 @@ from aidl_lang.types import (
     TruthType,
     Type,
     accepts,
+    parameter_type,
 )
 from aidl_lang.units import ANGLE, LENGTH
 from aidl_lang.vocabulary import vocabulary
@@ -64,6 +65,8 @@ class Wanted:
 
 
 _PERHAPS = 3
+CONDITION = Wanted((TruthType(),))
+"""What begins with a value as often as not: `a.radius >= 3`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +92,7 @@ class Context:
     view: View
     scope: Scope
     path: tuple[ast.Node, ...]
-    call: tuple[ast.Call, int] | None = field(default=None)
+    call: tuple[ast.Call, int] | None
 
     @cached_property
     def statement(self) -> ast.Node | None:
@@ -145,11 +148,10 @@ class Context:
         check = self.view.program.inference
         check.homes = self.scope.homes
         found = []
-        helpers = _helpers()
         for name, symbol in self.scope.visible().items():
             if name == PLACEHOLDER or name in MATH:
-                continue
-            if symbol.kind is SymbolKind.BUILTIN and (name in helpers or not self._is_here(name)):
+                continue  # a module of another language is named by those who know it
+            if symbol.kind is SymbolKind.BUILTIN and not self._is_here(name):
                 continue
             if self._is_ahead(symbol):
                 continue
@@ -159,10 +161,10 @@ class Context:
         return found
 
     def _is_here(self, name: str) -> bool:
-        """Whether a name that every structure has is one here: there is none beside structures."""
-        return name not in vocabulary().everywhere or any(
-            isinstance(home, ast.Structure) for home in self.scope.homes
-        )
+        """Whether a built-in name is one for programs, and one of structures stands in one."""
+        words = vocabulary()
+        in_structure = any(isinstance(home, ast.Structure) for home in self.scope.homes)
+        return name in words.constants or (name in words.everywhere and in_structure)
 
     def _is_ahead(self, symbol: Symbol) -> bool:
         """Whether a name is that of the statement itself, or is made below where that counts."""
@@ -213,7 +215,10 @@ def context_of(site: Site) -> Context | None:
     """None where the place is in no program."""
     if site.view is None or site.scope is None:
         return None
-    return Context(site, site.view, site.scope, site.path, _call_around(site.view, site.path))
+    path = site.path
+    if isinstance(path[-1], ast.Identifier) and isinstance(path[-2], ast.Member | ast.Call):
+        path = path[:-1]  # the whole is what is wanted to be something
+    return Context(site, site.view, site.scope, path, _call_around(site.view, path))
 
 
 def _call_around(view: View, path: tuple[ast.Node, ...]) -> tuple[ast.Call, int] | None:
@@ -258,10 +263,6 @@ _STATEMENTS = (
 )
 
 
-def _helpers() -> frozenset[str]:
-    return frozenset(vocabulary().helpers)
-
-
 # --- What is wanted --------------------------------------------------------------------------------
 
 
@@ -277,7 +278,7 @@ def _wanted(context: Context, path: tuple[ast.Node, ...]) -> Wanted:
             other = context.view.program.inference.fact(right if node is left else left).type
             return _alike(other) if not isinstance(other, AnyType) else _wanted(context, path[:-1])
         case ast.Binary(operator="and" | "or") | ast.Unary():
-            return Wanted((TruthType(),))
+            return CONDITION
         case ast.Binary():
             return Wanted((_NUMBER, NumberType(None)))
         case ast.Comparison(operands=operands):
@@ -285,7 +286,7 @@ def _wanted(context: Context, path: tuple[ast.Node, ...]) -> Wanted:
         case ast.Equation(left=left, right=right):
             return _compared(context, node, (left, right))
         case ast.Conditional(test=test):
-            return Wanted((TruthType(),)) if node is test else _wanted(context, path[:-1])
+            return CONDITION if node is test else _wanted(context, path[:-1])
         case ast.List():
             return _member_of(_wanted(context, path[:-1]))
         case _:
@@ -305,25 +306,24 @@ def _of_place(node: ast.Node, above: ast.Node, path: tuple[ast.Node, ...]) -> Wa
             return Wanted((_NUMBER, _WHOLE))
         case ast.For() | ast.Comprehension(iterable=_) if node is above.iterable:
             return Wanted((ListType(ANY), RangeType()))
-        case ast.Index(index=index) if node is index:
-            return Wanted((_WHOLE,))
-        case ast.Structure() | ast.Assign() if node in above.indices:
+        case ast.Index() | ast.Structure() | ast.Assign() if _is_index(node, above):
             return Wanted((_WHOLE,))
         case ast.If(test=test) | ast.Assert(test=test) | ast.Prefer(value=test) if node is test:
-            return Wanted((TruthType(),))
+            return CONDITION
         case ast.Assert():
             return Wanted((TextType(),))
         case ast.Prefer():
             return Wanted((NumberType(None),))
         case ast.ExpressionStatement():
-            return Wanted((TruthType(),))
-        case ast.Parameter(type=ast.Identifier(word)):
-            from aidl_lang.types import type_named
-
-            kind = type_named(word)
-            return Wanted((kind,)) if kind is not None else Wanted()
+            return CONDITION
+        case ast.Parameter() if (kind := parameter_type(above)) is not None:
+            return Wanted((kind,))
         case _:
             return Wanted()
+
+
+def _is_index(node: ast.Node, above: ast.Index | ast.Structure | ast.Assign) -> bool:
+    return node is above.index if isinstance(above, ast.Index) else node in above.indices
 
 
 def _of_argument(context: Context) -> Wanted:

@@ -36,7 +36,9 @@ def ranked(drafts: Iterable[Draft], span: Span, prefix: str) -> list[Completion]
     wanted = fold(prefix)
     fitting = [d for d in chosen.values() if _is_spelling(wanted, fold(d.label))]
     return [
-        Completion(d.label, d.kind, d.text or d.label, span, d.detail, d.is_snippet, rank, d.extra, d.describe)
+        Completion(
+            d.label, d.kind, d.text or d.label, span, d.detail, d.is_snippet, rank, d.extra, d.describe
+        )
         for rank, d in enumerate(_cut(fitting))
     ]
 

@@ -88,8 +88,10 @@ def _import(context: Context, file: str, name: str) -> Edit:
     if imports:
         end = imports[-1].span.end
         return Edit(view.span(end, end), f"\n{statement}")
-    return Edit(view.span(0, 0), f"{statement}\n") if not _has_mark(view.source.text) else Edit(
-        view.span(1, 1), f"{statement}\n"
+    return (
+        Edit(view.span(0, 0), f"{statement}\n")
+        if not _has_mark(view.source.text)
+        else Edit(view.span(1, 1), f"{statement}\n")
     )
 
 

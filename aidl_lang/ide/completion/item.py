@@ -33,8 +33,7 @@ class Completion:
     """
     label    what is shown, and what is compared with what has been typed
     kind     what it is: `keyword`, `kind`, `snippet`, `unit`, `attribute`, `color`, `type`, `file`, `word`,
-             `argument`, `param`, `let`, `var`, `loop variable`, `parameter`, `geometry`, `structure`, `field`,
-             `method`, `function`, `shape`, `constraint`, `template`, `imported file`, `built-in name`
+             `argument`, `field`, `method`, or a `SymbolKind` in its words
     detail   its type, or how it is called, in a few words
     text     what is written in the place of `span`; as a snippet it has places to fill in: `${1:name}`,
              `${1|a,b|}`, `$0`

@@ -11,14 +11,16 @@ from aidl_lang.builtins import EDITS
 from aidl_lang.checking import fields
 from aidl_lang.checking.facts import Fact
 from aidl_lang.checking.members import member_of
+from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.standard import body_of
 from aidl_lang.ide.completion import names
-from aidl_lang.ide.completion.context import Context, Use
+from aidl_lang.ide.completion.context import CONDITION, Context, Known, Use
 from aidl_lang.ide.completion.draft import Draft
 from aidl_lang.ide.completion.fitting import forms, kind_of
 from aidl_lang.ide.describing import fenced, joined
 from aidl_lang.reference.signatures import parts
 from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind
+from aidl_lang.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.types import (
     AnyType,
     BoxType,
@@ -33,12 +35,12 @@ from aidl_lang.types import (
 )
 from aidl_lang.vocabulary import vocabulary
 
-_OWN, _FIELDS, _BOX, _METHODS, _UNFIT = 0.0, 1.0, 2.0, 3.0, 4.0
+_OWN, _FIELDS, _DEMANDS, _BOX, _METHODS, _UNFIT = 0.0, 1.0, 1.7, 2.0, 3.0, 4.0
 _MOST_INDICES = 12
 _SEEN = frozenset(
     (SymbolKind.PARAM, SymbolKind.LET, SymbolKind.VAR, SymbolKind.GEOMETRY, SymbolKind.STRUCTURE)
 ) | {SymbolKind.ARGUMENT}
-_INDEX = re.compile(r"\[(-?\d+)\]")
+_NUMBER = re.compile(r"-?\d+")
 
 
 def members(context: Context, value: ast.Expression) -> Iterator[Draft]:
@@ -67,9 +69,13 @@ def _of_file(context: Context, scope: Scope | None) -> Iterator[Draft]:
     check = context.view.program.inference
     for name, symbol in scope.values.items():
         if symbol.kind in (SymbolKind.PARAM, SymbolKind.LET):
-            known = names.Known(name, symbol, names.of_symbol(check, symbol))
+            known = Known(name, symbol, of_symbol(check, symbol))
             yield Draft(
-                name, str(symbol.kind), _OWN, detail=names.detail(known), describe=partial(names.about, symbol)
+                name,
+                str(symbol.kind),
+                _OWN,
+                detail=names.detail(known),
+                describe=partial(names.about, symbol),
             )
     for name in (*scope.callables, *scope.aliases):
         found = scope.called(name)
@@ -135,13 +141,14 @@ def _member(context: Context, base: Fact, name: str, tier: float, symbol: Symbol
     identifier = ast.Identifier(name, span=context.path[-1].span)
     nothing = ast.Name(name, span=context.path[-1].span)
     fact = member_of(check, base, ast.Member(nothing, identifier, span=context.path[-1].span))
-    if context.wanted.types and context.wanted.distance(fact.type) is None:
+    wanted = context.wanted
+    if wanted != CONDITION and wanted.distance(fact.type) is None:
         tier += _UNFIT if isinstance(fact.type, NumberType | PointType) else 0.5
     is_array = symbol is not None and symbol.is_array
     if symbol is None:
         return Draft(name, "field", tier, detail=str(fact.type), describe=partial(_field, name, fact))
     kind = "field" if symbol.kind is SymbolKind.ARGUMENT else str(symbol.kind)
-    known = names.Known(name, symbol, fact)
+    known = Known(name, symbol, fact)
     text = names.detail(known) if not is_array else str(fact.type)
     return Draft(name, kind, tier, detail=text, describe=partial(names.about, symbol))
 
@@ -175,7 +182,8 @@ def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
             continue
         if not is_demand and all(s.kind is ast.ConstraintDefinition for s in found[1]):
             continue
-        yield _method(context, name, found[1], _METHODS + 0.1 * distance + (name not in own) * 0.05)
+        tier = _DEMANDS if is_demand and found[1][0].kind is ast.ConstraintDefinition else _METHODS
+        yield _method(context, name, found[1], tier + 0.1 * distance + (name not in own) * 0.05)
 
 
 def _is_demand(context: Context) -> bool:
@@ -224,10 +232,12 @@ def indices(context: Context, index: ast.Index) -> Iterator[Draft]:
     name = index.value.span.one_line.rpartition(".")[2]
     found: set[int] = set()
     for structure in drawn.model.root.walk():
-        for member in (*structure.structures, *structure.geometry):
-            if member.name.startswith(f"{name}[") and (match := _INDEX.match(member.name[len(name) :])):
-                found.add(int(match[1]))
-    for number in sorted(found)[:_MOST_INDICES]:
-        yield Draft(str(number), "word", _FIELDS, detail=f"{name}[{number}]")
+        things: list[SolvedStructure | SolvedGeometry] = [*structure.structures, *structure.geometry]
+        for member in things:
+            array, _, index_text = member.name.partition("[")
+            if array == name and (number := _NUMBER.match(index_text)):
+                found.add(int(number[0]))
+    for place in sorted(found)[:_MOST_INDICES]:
+        yield Draft(str(place), "word", _FIELDS, detail=f"{name}[{place}]")
     if found:
         yield Draft("-1", "word", _BOX, detail=f"the last of {len(found)}")

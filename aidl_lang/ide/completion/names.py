@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import cache, partial
+from functools import partial
 
 from aidl_lang import ast
 from aidl_lang.checking import fields
@@ -21,13 +21,14 @@ from aidl_lang.types import (
     PointType,
     Signature,
     StructureType,
+    TruthType,
     Type,
 )
 from aidl_lang.vocabulary import vocabulary
 
-OWN, MAYBE, PARTS, CALLS, OTHERS, FAR, LAST = 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 9.0
-"""Tiers: values that fit, that may fit, that have parts which fit; callables that fit; the rest of what is
-declared; what hardly fits.
+MAKERS, OWN, MAYBE, PARTS, CALLS, OTHERS, FAR = 0.8, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0
+"""Tiers: what makes geometry where that is wanted; values that fit, that may fit, that have parts which fit;
+callables that fit; the rest of what is declared; what hardly fits.
 """
 _STEPS = "path"
 """The topic, and the shape, of what only the outline of a path is made of."""
@@ -135,12 +136,12 @@ def _belongs(context: Context, name: str) -> bool:
 def _call_tier(context: Context, signatures: Sequence[Signature], makes: bool) -> float:
     if makes:
         is_own = any(not s.standard for s in signatures)
-        is_maker = is_own or _makes(signatures[0])
-        return OWN + 0.5 * (not is_own) if is_maker else OTHERS
+        is_maker = is_own or _makes(context, signatures[0])
+        return MAKERS + 0.1 * (not is_own) if is_maker else OTHERS
     entry = reference().entries.get(signatures[0].name)
     if entry is not None and entry.topic == _STEPS and signatures[0].standard and entry.name != _STEPS:
         return OWN
-    kinds = {result_type(s) for s in signatures}
+    kinds = {result_type(context, s) for s in signatures}
     distances = [d for kind in kinds if (d := context.wanted.distance(kind)) is not None]
     if not distances:
         return FAR
@@ -149,11 +150,11 @@ def _call_tier(context: Context, signatures: Sequence[Signature], makes: bool) -
     return CALLS + 0.1 * min(distances) + 0.5 * (not certain) - 0.3 * is_own
 
 
-def _makes(signature: Signature) -> bool:
-    return isinstance(result_type(signature), GeometryType | StructureType) or signature.node is None
+def _makes(context: Context, signature: Signature) -> bool:
+    return isinstance(result_type(context, signature), GeometryType | StructureType) or signature.node is None
 
 
-def result_type(signature: Signature) -> Type:
+def result_type(context: Context, signature: Signature) -> Type:
     """What a callable gives, as far as that is the same for all arguments."""
     if signature.kind is None:
         return fields.RESULTS.get(signature.name, ANY)
@@ -161,25 +162,12 @@ def result_type(signature: Signature) -> Type:
         return GeometryType(signature.name)
     if signature.kind is ast.Structure:
         return StructureType()
-    if not signature.standard:
-        return ANY
-    return _library_result(signature)
-
-
-@cache
-def _library_result(signature: Signature) -> Type:
-    """Of a function of the library, of which there is one for all programs."""
-    from aidl_lang import library
-    from aidl_lang.checking.infer import Inference
-    from aidl_lang.resolve import resolve
-    from aidl_lang.source import SourceFile, Span
-
+    if signature.kind is ast.ConstraintDefinition:
+        return TruthType()
     node = signature.node
-    if not isinstance(node, ast.FunctionDefinition):
+    if not signature.standard or not isinstance(node, ast.FunctionDefinition):
         return ANY
-    nowhere = SourceFile("nowhere", "")
-    empty = ast.Module(nowhere, (), (), span=Span(nowhere, 0, 0))
-    return result(Inference(resolve(empty, None, library.load())), node)[0].type
+    return result(context.view.program.inference, node)[0].type
 
 
 def call(
@@ -197,11 +185,13 @@ def call(
     )
 
 
-def called(context: Context, name: str, signatures: Sequence[Signature], skipped: int = 0) -> tuple[str, bool]:
+def called(
+    context: Context, name: str, signatures: Sequence[Signature], skipped: int = 0
+) -> tuple[str, bool]:
     """How a call is written, and whether that is a snippet; where a `(` stands already, by the name alone."""
     if context.site.following.startswith("("):
         return name, False
-    if all(len(s.parameters) <= skipped and not s.takes_any for s in signatures):
+    if all(len(s.parameters) <= skipped and not (s.takes_any or s.gathers) for s in signatures):
         return f"{name}()", False
     return f"{name}($1)", True
 

@@ -20,26 +20,31 @@ _BLOCK = " {\n    $0\n}"
 _SNIPPETS = {
     "param": "param ${1:width} = ${2:80mm} in ${3:20}..${4:200}",
     "var": "var ${1:gap} = ${2:5}",
-    "let": "let ${1:name} = $0",
+    "let": "let ${1:name} = ${2:value}",
     "constrain": "constrain" + _BLOCK,
-    "prefer": "prefer $0",
+    "prefer": "prefer ${1:a} == ${2:b}",
     "assert": 'assert ${1:test}, "${2:why}"',
     "for": "for ${1:i} in ${2:0}..${3:9}" + _BLOCK,
     "if": "if ${1:test}" + _BLOCK,
     "else": "else" + _BLOCK,
-    "fn": "fn ${1:name}(${2:x}) = $0",
+    "fn": "fn ${1:name}(${2:x}) = ${3:x}",
     "shape": "shape ${1:name}(${2:center: point = (0, 0)})" + _BLOCK,
     "constraint": "constraint ${1:name}(${2:a: box}, ${3:b: box})" + _BLOCK,
     "template": "template ${1:solid} ${2:name}()" + _BLOCK,
     "alias": "alias ${1:name} = ${2:target}",
     "import": 'import "${1:file.aidl}"',
-    "construction": "construction ${1:name} = $0",
+    "construction": "construction ${1:axis} = line(${2:origin}, ${3:(0, 10)})",
     "todo": "todo",
 }
 _IN_ITEMS = ("let", "for", "if", "prefer", "constrain")
 _AT_TOP = ("import",)
-_CLAUSES = {"weight": "weight ${1:2}", "step": "step ${1:5}", "rotated": "rotated ${1:45deg}", "at": "at (${1:0}, ${2:0})"}
-_TEMPLATE = "${2:name}"
+_CLAUSES = {
+    "weight": "weight ${1:2}",
+    "step": "step ${1:5}",
+    "in": "in ${1:0}..${2:9}",
+    "rotated": "rotated ${1:45deg}",
+    "at": "at (${1:0}, ${2:0})",
+}
 _STATEMENTS, _KINDS, _OPERATIONS, _SHAPES, _NAMES, _LOW = 2.0, 1.0, 4.0, 5.0, 3.0, 6.0
 
 
@@ -135,30 +140,42 @@ def _shapes(context: Context) -> Iterator[Draft]:
 # --- Words that go on ------------------------------------------------------------------------------
 
 
-def clauses(site: Site) -> Iterator[Draft]:
+def clauses(site: Site, *, is_condition: bool = True) -> Iterator[Draft]:
     """The words that may go on with the statement under way: `at`, `in`, `step`, `and`, …"""
     words = vocabulary()
     operand = not site.may_end and site.takes("NUMBER")
-    for number, word in enumerate((*words.clauses, "else", "if", *words.word_operators, "as", "from", "then")):
-        if _goes_on(site, word, operand=operand):
+    for number, word in enumerate(
+        (*words.clauses, "else", "if", *words.word_operators, "as", "from", "then")
+    ):
+        if _goes_on(site, word, operand=operand, is_condition=is_condition):
             text = _CLAUSES.get(word, _BLOCK_ELSE if word == "else" and _ends_block(site) else word)
             yield Draft(
-                word, "keyword", number / 100, text, is_snippet="$" in text, describe=partial(_word, word)
+                word,
+                "keyword",
+                number / 100 + _NAMES_FIRST * operand,
+                text,
+                is_snippet="$" in text,
+                describe=partial(_word, word),
             )
 
 
 _BLOCK_ELSE = _SNIPPETS["else"]
+_NAMES_FIRST = 7.0
 
 
 def _ends_block(site: Site) -> bool:
     return site.spot.before is not None and site.spot.before.kind == "}"
 
 
-def _goes_on(site: Site, word: str, *, operand: bool) -> bool:
+def _goes_on(site: Site, word: str, *, operand: bool, is_condition: bool) -> bool:
     if word in ("as", "from", "then"):
         return _soft(site, word)
+    if word == "not":
+        return operand and is_condition and site.takes(word)
     if word == "if":  # behind a value, not as a statement of its own
-        return not operand and not site.automaton.between_statements and site.takes("if", "NAME", "else", "NAME")
+        return (
+            not operand and not site.automaton.between_statements and site.takes("if", "NAME", "else", "NAME")
+        )
     return site.takes(word)
 
 

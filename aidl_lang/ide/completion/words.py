@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 
 from aidl_lang import ast, library
@@ -20,7 +20,7 @@ from aidl_lang.ide.site import Site
 from aidl_lang.materials import densities
 from aidl_lang.names import fold
 from aidl_lang.reference.collect import reference
-from aidl_lang.types import PARAMETER_TYPES, NumberType, Signature, TextType
+from aidl_lang.types import PARAMETER_TYPES, AnyType, NumberType, Signature, TextType
 from aidl_lang.units import UNITS, Dimension
 from aidl_lang.vocabulary import vocabulary
 
@@ -92,7 +92,7 @@ def of_attribute(name: str, *, is_quoted: bool) -> Iterator[Draft]:
             listed = sorted(densities())
     for word in listed:
         bare = word.isidentifier() and name in WORDED
-        yield Draft(word, kind, 0.0, word if is_quoted or bare and kind == "word" else f'"{word}"')
+        yield Draft(word, kind, 0.0, word if is_quoted or (bare and kind == "word") else f'"{word}"')
 
 
 # --- Types -----------------------------------------------------------------------------------------
@@ -120,47 +120,54 @@ def choices(context: Context, *, is_quoted: bool) -> Iterator[Draft]:
     if context.call is None:
         return
     number = context.call[1]
-    for word in dict.fromkeys(w for reading in context.readings for w in _words(reading, number)):
+    found = dict.fromkeys(w for reading in context.readings for w in _words(reading, number))
+    for word in found:
         named = context.call[0].arguments[number - len(context.readings[0].taken)].name is not None
-        is_bare = named and word in vocabulary().bare_words
-        yield Draft(word, "word", 0.0, word if is_quoted or is_bare else f'"{word}"')
+        is_common = word in vocabulary().bare_words
+        text = word if is_quoted or (named and is_common) else f'"{word}"'
+        yield Draft(word, "word", 0.0 if is_common else 0.1, text)
 
 
 def _words(reading: Reading, number: int) -> Sequence[str]:
     name = reading.taken[number] if number < len(reading.taken) else None
-    if name is None:
-        return ()
-    if reading.signature.node is None:
-        kind = reading.type_of(name)
-        return CORNER_WORDS.get(name, ()) if isinstance(kind, TextType) else ()
-    return words_of(reading.signature.node, name)
+    return words_of(reading.signature, name) if name is not None else ()
 
 
-def words_of(node: ast.Callable, parameter: str, depth: int = _DEEPEST) -> Sequence[str]:
+@lru_cache(maxsize=1024)
+def words_of(signature: Signature, parameter: str, depth: int = _DEEPEST) -> Sequence[str]:
     """The words that a definition chooses among by one of its parameters, itself or in what it calls."""
+    kind = next((k for name, k, _ in signature.parameters if name == parameter), None)
+    if not isinstance(kind, TextType | AnyType):
+        return ()
+    node = signature.node
+    if node is None:
+        return CORNER_WORDS.get(parameter, ()) if isinstance(kind, TextType) else ()
     body = node.value if isinstance(node, ast.FunctionDefinition) else node.body
     for call in (n for n in ast.walk(body) if isinstance(n, ast.Call)):
         place = next((n for n, a in enumerate(call.arguments) if _is_name(a.value, parameter)), None)
         if place is None:
             continue
         if call.callee.text == "choice":
-            listed = call.arguments[-1].value
-            items = listed.items if isinstance(listed, ast.List) else ()
-            return [item.value for item in items if isinstance(item, ast.String)]
+            return _texts(call.arguments[-1].value)
         if depth and (found := _words_inside(call, place, depth)):
             return found
     return ()
 
 
+def _texts(node: ast.Expression) -> Sequence[str]:
+    items = node.items if isinstance(node, ast.List) else ()
+    return tuple(item.value for item in items if isinstance(item, ast.String))
+
+
 def _words_inside(call: ast.Call, place: int, depth: int) -> Sequence[str]:
+    """The words of the parameter of a call that gets the argument at a place."""
     word = call.arguments[place].name
     for signature in library.load().callables.get(call.callee.text, ()):
-        inner = signature.node
         number = place + (call.receiver is not None)
-        if inner is None or (word is None and number >= len(signature.parameters)):
+        if word is None and number >= len(signature.parameters):
             continue
         name = word.text if word is not None else signature.parameters[number][0]
-        if name in signature.by_fold.values() and (found := words_of(inner, name, depth - 1)):
+        if found := words_of(signature, name, depth - 1):
             return found
     return ()
 

@@ -1,4 +1,4 @@
-"""What is drawn, by number: structures, their geometry, and the parts of shapes that have names of their own."""
+"""What is drawn, by number: structures, their geometry, and the parts of shapes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from aidl_lang.ide.preview.places import Places
 from aidl_lang.ide.preview.values import Element
 from aidl_lang.ide.view import View
 from aidl_lang.remedies import short
-from aidl_lang.solved import SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.source import SourceFile, Span
 
 MOST_PARTS = 40
@@ -23,7 +23,7 @@ MOST_PARTS = 40
 
 @dataclass(frozen=True)
 class Drawn:
-    """An element with what it is in the model: `model` tells its curves, `owner` is the structure it is in."""
+    """An element, what it is in the model, and the structure that it is in."""
 
     element: Element
     model: SolvedStructure | SolvedGeometry
@@ -137,7 +137,8 @@ def point_of(geometry: SolvedGeometry) -> Vec | None:
 def box_of(thing: SolvedStructure | SolvedGeometry) -> Bounds | None:
     """The box of a structure, or of the curves of a geometry; None where there is none in finite numbers."""
     if isinstance(thing, SolvedStructure):
-        box = thing.box and (thing.box.left, thing.box.bottom, thing.box.right, thing.box.top)
+        own = thing.box
+        box = None if own is None else (own.left, own.bottom, own.right, own.top)
     else:
         boxes = [bounds(curve) for curve in curves_of(thing)]
         box = union_bounds(boxes) if boxes else None
@@ -184,28 +185,19 @@ def elements_at(view: View, offset: int) -> list[int]:
     """The elements that the text at an offset is about: those that it defines, or that it constrains."""
     found, place = elements(view), view.span(offset, offset)
     numbers = found.around(place)
-    inner = found.values[numbers[0]].span if numbers else None
-    constrained = _constrained(view, found, place)
-    if constrained is None or (inner is not None and _length(inner) < _length(constrained[0])):
-        return numbers
-    return constrained[1]
+    if any(found.values[k].kind == "geometry" for k in numbers):
+        return numbers  # what it shares with other geometry is a constraint, too
+    return _constrained(view, found, place) or numbers
 
 
-def _constrained(view: View, found: Elements, place: Span) -> tuple[Span, list[int]] | None:
-    """The smallest constraint around a place, and the elements that it relates."""
+def _constrained(view: View, found: Elements, place: Span) -> list[int]:
+    """The elements that the smallest constraint around a place relates."""
     if view.drawn is None or view.drawn.model is None:
-        return None
-    places, best = Places(view), None
+        return []
+    places, around = Places(view), list[tuple[int, ConstraintReport]]()
     for report in view.drawn.model.constraints:
         span = places.now(report.span)
-        if span is None or not (span.source is place.source and span.start <= place.start <= span.end):
-            continue
-        if best is None or _length(span) < _length(best[0]):
-            best = span, list[int]()
-        if span == best[0]:
-            best[1].extend(k for k in found.all_near(report.mentions) if k not in best[1])
-    return best
-
-
-def _length(span: Span) -> int:
-    return span.end - span.start
+        if span is not None and span.source is place.source and span.start <= place.start <= span.end:
+            around.append((span.end - span.start, report))
+    least = min((length for length, _ in around), default=0)
+    return found.all_near(path for length, r in around if length == least for path in r.mentions)

@@ -11,7 +11,7 @@ from aidl_lang.ide.preview.sliders import sliders
 from aidl_lang.ide.preview.values import LAYERS, Preview, Way
 from aidl_lang.ide.preview.ways import ways
 from aidl_lang.ide.view import SETTINGS, View, run
-from aidl_lang.pipeline import Memory, Settings
+from aidl_lang.pipeline import Compiled, Memory, Settings
 
 _NOWHERE = (0.0, 0.0, 0.0, 0.0)
 
@@ -24,7 +24,7 @@ def preview(view: View, show: Collection[str] = (), *, tried: bool = False) -> P
     assert view.outcome is not None, "the view was not run"
     found = elements(view)
     drawn = view.drawn
-    has_picture = drawn is not None and drawn.model is not None and drawn.drawing is not None
+    has_picture = drawn is not None and _is_anything_drawn(drawn)
     return Preview(
         status=view.outcome.status,
         stale=has_picture and view.is_stale,
@@ -40,6 +40,12 @@ def preview(view: View, show: Collection[str] = (), *, tried: bool = False) -> P
         ways=tuple(_ways(view, found)),
         degrees=view.outcome.model.degrees if view.outcome.model is not None else None,
     )
+
+
+def _is_anything_drawn(outcome: Compiled) -> bool:
+    if outcome.model is None or outcome.drawing is None:
+        return False
+    return bool(outcome.drawing.bodies or outcome.drawing.strokes or outcome.model.root.box)
 
 
 def _ways(view: View, found: Elements) -> Iterator[Way]:

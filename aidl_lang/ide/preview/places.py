@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from os.path import commonprefix
-
 from aidl_lang.ide.view import View
 from aidl_lang.source import SourceFile, Span
 
@@ -39,10 +37,8 @@ class _Shift:
             return
         # Offsets up to `same` stay; those from `rest` on count from the end.
         one, other = before.text, after.text
-        self.same = len(commonprefix((one, other)))
-        most = min(len(one), len(other)) - self.same
-        tail = len(commonprefix((one[len(one) - most :][::-1], other[len(other) - most :][::-1])))
-        self.rest = len(one) - tail
+        self.same = _alike(one, other)
+        self.rest = len(one) - _alike(one[self.same :][::-1], other[self.same :][::-1])
 
     def __call__(self, span: Span) -> Span | None:
         start, end = self._start(span.start), self._end(span.end)
@@ -61,3 +57,9 @@ class _Shift:
         if offset < self.rest:
             return None
         return offset + len(self.after.text) - len(self.before.text)
+
+
+def _alike(one: str, other: str) -> int:
+    """How many characters two texts begin alike with."""
+    pairs = zip(one, other, strict=False)
+    return next((k for k, (a, b) in enumerate(pairs) if a != b), min(len(one), len(other)))

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from aidl_lang.diagnostics import Diagnostic
-from aidl_lang.geometry.curves import Vec
 from aidl_lang.ide.preview.elements import Elements
 from aidl_lang.ide.preview.places import Places
 from aidl_lang.ide.preview.values import Conflict, Party, Problem
@@ -65,11 +64,12 @@ class _Finder:
     def about(self, found: Diagnostic) -> list[int]:
         """The elements that are written, or constrained, in the places that a diagnostic names.
 
-        Where several share a place, as the turns of a loop do, those whose paths the message quotes.
+        Where several share a place, as the turns of a loop do, those whose paths the message quotes before
+        it goes on to what is beside them.
         """
         spans = [s for s in (found.span, *(label.span for label in found.secondary)) if s is not None]
         here = [k for span in spans for k in self._at(span)]
-        quoted = set(_QUOTED.findall(found.message))
+        quoted = set(_QUOTED.findall(found.message.partition(";")[0]))
         named = [k for k in here if self.elements.values[k].path in quoted]
         return list(dict.fromkeys(named or here))
 

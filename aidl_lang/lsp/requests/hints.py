@@ -1,9 +1,10 @@
-"""What stands beside the text and comes of solving it: code lenses."""
+"""What stands beside the text and comes of solving it: inlay hints and code lenses."""
 
 from __future__ import annotations
 
 from lsprotocol import types
 
+from aidl_lang.ide.inlays import Inlay, InlayKind, inlays
 from aidl_lang.ide.lenses import lenses
 from aidl_lang.lsp.documents import Document
 from aidl_lang.lsp.server import Asked, Server
@@ -16,20 +17,23 @@ _OPEN_PREVIEW = "aidl.openPreview"
 
 def register(server: Server) -> None:
     answered = _Answered(server)
-    options = types.CodeLensOptions()
 
-    @server.answers_to(types.TEXT_DOCUMENT_CODE_LENS, options, patience=_PATIENCE)
+    @server.answers_to(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions(), patience=_PATIENCE)
     def lens(asked: Asked, params: types.CodeLensParams) -> list[types.CodeLens]:
         answered.note(asked)
         if not asked.settings.lenses:
             return []
-        return [
-            types.CodeLens(
-                asked.convert.range(each.span),
-                types.Command(each.title, _OPEN_PREVIEW, arguments=[asked.uri]),
-            )
-            for each in lenses(asked.view)
-        ]
+        made = []
+        for each in lenses(asked.view):
+            command = types.Command(each.title, _OPEN_PREVIEW, arguments=[asked.uri])
+            made.append(types.CodeLens(asked.convert.range(each.span), command))
+        return made
+
+    @server.answers_to(types.TEXT_DOCUMENT_INLAY_HINT, types.InlayHintOptions(), patience=_PATIENCE)
+    def inlay(asked: Asked, params: types.InlayHintParams) -> list[types.InlayHint]:
+        answered.note(asked)
+        found = inlays(asked.view, asked.convert.span(params.range))
+        return [_hint(each, asked) for each in found if _is_wanted(each, asked)]
 
 
 class _Answered:
@@ -53,3 +57,18 @@ class _Answered:
 
     def _closed(self, document: Document) -> None:
         self._told.pop(document.uri, None)
+
+
+def _is_wanted(inlay: Inlay, asked: Asked) -> bool:
+    settings = asked.settings
+    return settings.readings if inlay.kind is InlayKind.READING else settings.solved_values
+
+
+def _hint(inlay: Inlay, asked: Asked) -> types.InlayHint:
+    return types.InlayHint(
+        asked.convert.position(asked.view.source, inlay.offset),
+        inlay.text,
+        text_edits=asked.convert.edits(inlay.edits) or None,
+        tooltip=inlay.tooltip or None,
+        padding_left=True,
+    )

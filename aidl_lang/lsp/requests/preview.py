@@ -55,7 +55,7 @@ class Previews:
         }.items():
             server.feature(method)(_coroutine(answer))
         server.on_solved.append(self._solved)
-        server.on_closed.append(lambda document: self._shown.pop(document, None))
+        server.on_closed.append(self._closed)
 
     async def _open(self, given: Given) -> dict[str, Any] | None:
         document = self._document(given)
@@ -120,6 +120,9 @@ class Previews:
         except ExportError as reason:
             raise JsonRpcException(str(reason), FAILED) from None
         return {"name": document.path.stem + suffix, "data": base64.b64encode(data).decode("ascii")}
+
+    def _closed(self, document: Document) -> None:
+        self._shown.pop(document, None)
 
     def _solved(self, document: Document) -> None:
         if document.ran is None:

@@ -304,7 +304,8 @@ class Pane {
    * @param {Vec} at
    * @param {DOMRect} where
    */
-  tell({ hint }, at, where) {
+  tell({ hint, path }, at, where) {
+    this.pointing.hover(this.pointing.ownerOf(path));
     const words = [el("strong", {}, coordinates(at, this.view.scale)), el("span", {}, hint)];
     this.tooltip.show(words, where.right - 6, where.bottom - 6);
   }

@@ -47,6 +47,20 @@ export class Pointing {
     this.source.mark(this.#ranges(hovered), { scroll: true });
   }
 
+  /**
+   * The innermost element at a path or around it.
+   * @param {string} path
+   * @returns {number | null}
+   */
+  ownerOf(path) {
+    const names = path.split(/(?=[.[])/);
+    for (let count = names.length; count > 0; count--) {
+      const [found] = this.#indices([names.slice(0, count).join("")]);
+      if (found !== undefined) return found;
+    }
+    return null;
+  }
+
   /** @param {number | null} element */
   select(element) {
     this.choose(element === null ? [] : [element]);

@@ -22,7 +22,8 @@ function filled({ prefix, title, body }: (typeof snippets)[number]): Completion 
 }
 
 const inPlace = (...places: string[]) => snippets.filter(({ place }) => places.includes(place)).map(filled);
-const LIBRARY = Object.entries(calls).map((entry) => called(entry as [string, keyof typeof SORTS]));
+// Synonyms are understood, but not offered: nothing is said about them.
+const LIBRARY = Object.entries(calls).filter(([name]) => about[name]).map((entry) => called(entry as [string, keyof typeof SORTS]));
 const GIVEN = [...listed(words.everywhere!, "variable"), ...listed(words.constants!, "constant")];
 const STATEMENTS = [...listed(words.statements!, "keyword"), ...listed(words.clauses!, "keyword")];
 const BLOCK = [...inPlace("file", "block"), ...STATEMENTS, ...GIVEN, ...LIBRARY];

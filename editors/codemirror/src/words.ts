@@ -6,12 +6,9 @@ export const words: Record<string, readonly string[]> = {
   "units": ["mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°"],
   "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "bezier", "ellipse"],
   "everywhere": ["self", "origin", "x_axis", "y_axis"],
-  "modules": ["math", "np", "numpy"],
   "constants": ["pi"],
   "statements": ["param", "var", "let", "fn", "shape", "constraint", "alias", "constrain", "prefer", "assert", "todo", "construction", "template", "for", "if", "import"],
   "clauses": ["at", "rotated", "in", "step", "weight"],
-  "kindWords": ["assembly", "group", "model", "design", "product", "subassembly", "system", "mechanism", "solid", "part", "component", "body", "piece", "element", "hole", "cut", "cutout", "void", "pocket", "opening", "negative", "drawing", "sketch", "annotation", "engraving", "reference", "guide"],
-  "bareWords": ["both", "bottom", "butt", "center", "horizontal", "left", "middle", "miter", "right", "round", "sharp", "square", "top", "vertical", "x", "y"],
   "keywords": ["param", "var", "let", "fn", "shape", "constraint", "alias", "constrain", "prefer", "assert", "todo", "construction", "template", "for", "if", "else", "then", "import", "from", "as", "at", "rotated", "in", "step", "weight", "and", "or", "not", "true", "false", "True", "False"],
   "reserved": ["alias", "and", "assert", "at", "constrain", "constraint", "construction", "else", "false", "fn", "for", "if", "import", "in", "let", "not", "or", "param", "prefer", "rotated", "shape", "step", "template", "todo", "true", "var", "weight"],
 };

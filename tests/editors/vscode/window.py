@@ -27,6 +27,7 @@ SETTINGS = {
     "workbench.tips.enabled": False,
     "editor.minimap.enabled": False,
     "explorer.autoReveal": False,
+    "editor.stickyScroll.enabled": False,
 }
 PATIENCE = 30_000
 """ms that something may take to be seen; only a failure takes so long."""
@@ -116,37 +117,51 @@ class Window:
         file = self.folder / name
         file.write_text(text)
         self.page.keyboard.press("Control+O")
-        field = self.page.locator(".quick-input-widget input.input")
-        field.fill(str(file))
-        self.page.locator(".quick-input-list .monaco-list-row", has_text=name).wait_for(timeout=PATIENCE)
-        field.press("Enter")
-        expect(self.page.locator(f".tab.active[data-resource-name='{name}']")).to_be_visible(timeout=PATIENCE)
+        self.give(file)
+        expect(self.tab(name)).to_be_visible(timeout=PATIENCE)
         self.page.wait_for_selector(".editor-instance .monaco-editor .view-line", timeout=PATIENCE)
         return file
+
+    def tab(self, name: str) -> Locator:
+        return self.page.locator(f".tab.active[data-resource-name='{name}']")
+
+    def give(self, file: Path) -> None:
+        """Tell a dialog that asks for a file."""
+        expect(self.field).to_have_value(re.compile("^/.+"), timeout=PATIENCE)  # what it begins with
+        self.field.fill(str(file))
+        expect(self.page.locator(".quick-input-list .monaco-list-row.focused")).to_be_visible(
+            timeout=PATIENCE
+        )
+        self.field.press("Enter")
+        self.field.wait_for(state="hidden", timeout=PATIENCE)
 
     def run(self, command: str) -> None:
         """Take a command from the palette, by its full title."""
         self.page.keyboard.press("F1")
-        field = self.page.locator(".quick-input-widget input.input")
-        field.fill(f">{command}")
-        row = self.page.locator(".quick-input-list .monaco-list-row.focused", has_text=command)
-        row.wait_for(timeout=PATIENCE)
-        field.press("Enter")
+        self.field.fill(f">{command}")
+        named = f"[aria-label='{command}'], [aria-label^='{command},']"
+        self.page.locator(".quick-input-list .monaco-list-row").and_(self.page.locator(named)).click(
+            timeout=PATIENCE
+        )
+
+    @property
+    def field(self) -> Locator:
+        return self.page.locator(".quick-input-widget input.input")
 
     def caret(self, line: int, column: int) -> None:
         """From 1, as an editor counts."""
         self.page.keyboard.press("Control+G")
-        field = self.page.locator(".quick-input-widget input.input")
-        field.fill(f":{line}:{column}")
-        field.press("Enter")
-        field.wait_for(state="hidden", timeout=PATIENCE)
+        self.field.fill(f":{line}:{column}")
+        self.field.press("Enter")
+        self.field.wait_for(state="hidden", timeout=PATIENCE)
         expect(self.page.locator("#status\\.editor\\.selection")).to_contain_text(f"Ln {line}, Col {column}")
 
-    def saved(self, file: Path) -> str:
-        """What the editor has, by way of the file."""
-        self.page.keyboard.press("Control+S")
-        expect(self.page.locator(".tab.active")).not_to_have_class(re.compile(r"\bdirty\b"))
-        return file.read_text()
+    def text(self) -> str:
+        """What the editor shows, of a program so short that all of it is seen."""
+        lines = self.editor.locator(".view-line").evaluate_all(
+            "lines => lines.map(line => [parseFloat(line.style.top), line.textContent])"
+        )
+        return "\n".join(line.replace("\xa0", " ") for _, line in sorted(lines))
 
     def preview(self) -> FrameLocator:
         """Open the preview beside the text and wait for its picture."""

@@ -46,7 +46,7 @@ assembly gear_pair {
     constrain {
         distance(bar.body.start, bar.body.end) == distance(pinion.body.center, wheel.body.center)
         bar.body.start.y == bar.body.end.y
-        bar.below(wheel, gap: 5)
+        bar.top == wheel.body.center.y - wheel.body.outer_radius - 5mm
         bar.pivot[0].rim.center.x == pinion.body.center.x
     }
 

@@ -12,10 +12,3 @@
 
 (param_declaration
   name: (identifier) @name) @definition.constant
-
-(call_expression
-  function: (identifier) @name) @reference.call
-
-(call_expression
-  function: (member_expression
-    property: (identifier) @name)) @reference.call

@@ -1,0 +1,50 @@
+"""Ports of this machine that verbs serve on."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import socket
+
+from aidl_lang.cli.report import UseError
+
+LOCALHOST = "127.0.0.1"
+
+
+def port(text: str) -> int:
+    """The port that an option gives."""
+    if not (text.isascii() and text.isdecimal()) or int(text) > 65535:
+        raise argparse.ArgumentTypeError(f"expected a port from 0 to 65535, not `{text}`")
+    return int(text)
+
+
+def address(text: str) -> str:
+    """The address that an option gives: one that no other machine can reach."""
+    from ipaddress import ip_address
+
+    if text.lower() == "localhost":
+        return LOCALHOST
+    try:
+        is_here = ip_address(text).is_loopback
+    except ValueError:
+        is_here = False
+    if not is_here:
+        raise argparse.ArgumentTypeError(
+            f"expected an address of this machine alone, as {LOCALHOST} or ::1, not `{text}`"
+        )
+    return text
+
+
+def listener(host: str, port: int, code: str, hint: str) -> socket.socket:
+    """A socket that takes connections already. Raises UseError of a code where there can be none."""
+    found = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
+    if os.name == "posix":  # elsewhere this would let two servers have one port
+        found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        found.bind((host, port))
+        found.listen()  # so that who reads the address can connect at once
+    except OSError as error:
+        found.close()
+        why = (error.strerror or str(error)).lower()
+        raise UseError(code, f"port {port} cannot be served: {why}", hint) from None
+    return found

@@ -1,0 +1,311 @@
+"""Taking hold of a point of the drawing: what can be moved, where everything goes when it is, and how the text
+has to change for that.
+
+A point moves by what the text leaves open, in this order: first guesses, as the points of a sketch do; the
+sizes of what it is a point of; a `param`; and the place of the drawing as a whole, by first guesses again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from aidl_lang import pipeline
+from aidl_lang.diagnostics import Edit
+from aidl_lang.expression import Evaluator, Unknown
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.ide.draggable import Grip, grips, is_somewhere
+from aidl_lang.ide.guesses import Guess, guesses
+from aidl_lang.ide.knob_dragging import moved_by_params, turned
+from aidl_lang.ide.mobility import Ways, belongs, pull, values_at, ways
+from aidl_lang.ide.view import View
+from aidl_lang.ide.writing_back import Refusal, compiled, shortest
+from aidl_lang.lower import Lowered, lower
+from aidl_lang.pipeline import Compiled
+from aidl_lang.solver import Settings, Solution, Status, solve
+
+STEP = 0.1
+"""Millimetres to which numbers are rounded that dragging writes."""
+MOST_HANDLES = 60
+_MOST_GRIPS = 400
+"""Points of a model that are looked at; the outermost ones of a larger model."""
+_FARTHEST = 1e6
+"""Millimetres from the origin that a point may be dragged."""
+_WEIGHT = 1e4
+_DEAR = 1e-3
+"""How much shorter a change of a position is that counts as much as one of a size, while sizes are dragged."""
+_SECONDS = 1.0
+_FINE = 1e-6
+
+
+@dataclass(frozen=True)
+class Handle:
+    """A point that can be dragged.
+
+    at     in the root's frame, mm
+    moves  what changes in the text: `guess`, `size` or `param`
+    """
+
+    id: str
+    path: str
+    at: Vec
+    moves: str
+    hint: str
+
+
+@dataclass(frozen=True)
+class Dragged:
+    """What comes of dragging a point: `view` is the program as it is shown meanwhile, `at` where the point
+    came to. `edits` are tried, which takes longer than the rest.
+    """
+
+    view: View
+    at: Vec
+    _origin: View = field(repr=False)
+    _grip: Grip = field(repr=False)
+    _step: float = field(repr=False)
+    _settled: tuple[Edit, ...] | None = field(default=None, repr=False)
+
+    @cached_property
+    def edits(self) -> tuple[Edit, ...] | Refusal:
+        """What puts the point there for good: the numbers that changed by it, and nothing else."""
+        if self._settled is not None:
+            return self._settled
+        return _edits(self._origin, self)
+
+
+def handles(view: View, *, params: bool = True) -> list[Handle]:
+    """The points that can be dragged; without `params`, only those that this takes no further runs to tell."""
+    found = [*_by_numbers(view)]
+    if params and view.outcome is not None and view.outcome.built is not None:
+        taken = {handle.id for handle in found if not _is_slide(view, handle.id)}
+        known = moved_by_params(view, _grips(view))
+        by_param = [
+            Handle(grip.id, grip.path, at, "param", f"{_name(grip)}: drag to change {_listed(known[grip.id])}")
+            for grip, at in _places(view)
+            if grip.id in known and grip.id not in taken
+        ]
+        found = [h for h in found if h.id not in known or h.id in taken] + by_param
+    return _outermost(view, found)
+
+
+def drag(view: View, handle: str, to: Vec, step: float = STEP) -> Dragged | Refusal:
+    """The program with a point dragged towards a place, as near as it can come."""
+    if not (is_somewhere(to) and max(abs(to[0]), abs(to[1])) <= _FARTHEST):
+        return Refusal("that place is too far away")
+    if not (math.isfinite(step) and step > 0):
+        return Refusal("the step is a length")
+    found = next((h for h in handles(view) if h.id == handle), None)
+    grip = next((g for g in _grips(view) if g.id == handle), None)
+    if found is None or grip is None:
+        return Refusal("there is nothing to drag by this name")
+    if found.moves == "param":
+        turn = turned(view, grip, to, _grips_of)
+        if isinstance(turn, Refusal):
+            return turn
+        shown, at, edits = turn
+        return Dragged(shown, at, view, grip, step, edits)
+    return _pulled(view, grip, to, step, by_sizes=found.moves == "size")
+
+
+# --- What can be dragged -------------------------------------------------------------------------
+
+
+def _grips_of(view: View) -> dict[str, Grip]:
+    return {grip.id: grip for grip in _grips(view)}
+
+
+@lru_cache(maxsize=4)
+def _grips(view: View) -> tuple[Grip, ...]:
+    outcome = view.outcome
+    if outcome is None or outcome.built is None or outcome.status != "solved" or view.is_stale:
+        return ()
+    found = sorted(grips(outcome.built), key=lambda grip: grip.depth)
+    return tuple(found[:_MOST_GRIPS])
+
+
+def _places(view: View) -> Iterator[tuple[Grip, Vec]]:
+    outcome = view.outcome
+    if outcome is not None and outcome.evaluate is not None:
+        for grip in _grips(view):
+            at = grip.at(outcome.evaluate)
+            if is_somewhere(at):
+                yield grip, at
+
+
+@lru_cache(maxsize=4)
+def _ways(view: View) -> Ways:
+    outcome = view.outcome
+    if outcome is None or outcome.built is None or outcome.evaluate is None:
+        return Ways(frozenset(), frozenset(), frozenset())
+    found = [grip for grip, _ in _places(view)]
+    return ways(outcome.built, found, outcome.evaluate, _written(view))
+
+
+@lru_cache(maxsize=4)
+def _editable(view: View) -> tuple[Guess, ...]:
+    """The numbers that dragging may write."""
+    return tuple(guess for guess in guesses(view) if not guess.is_shared)
+
+
+def _written(view: View) -> frozenset[Unknown]:
+    return frozenset(u for guess in _editable(view) for u in guess.unknowns)
+
+
+def _by_numbers(view: View) -> Iterator[Handle]:
+    known = _ways(view)
+    for grip, at in _places(view):
+        name = _name(grip)
+        if grip.id in known.own:
+            yield Handle(grip.id, grip.path, at, "guess", f"{name}: drag to move")
+        elif grip.id in known.sizes:
+            yield Handle(grip.id, grip.path, at, "size", f"{name}: drag to change its size")
+        elif grip.id in known.whole:
+            yield Handle(grip.id, grip.path, at, "guess", f"{name}: drag to move the drawing")
+
+
+def _is_slide(view: View, handle: str) -> bool:
+    """Whether a point is moved by what moves everything."""
+    known = _ways(view)
+    return handle in known.whole and handle not in known.own and handle not in known.sizes
+
+
+def _outermost(view: View, found: list[Handle]) -> list[Handle]:
+    """One for each place, those of outer things before those of inner ones, and far ones before near ones."""
+    outcome = view.outcome
+    if outcome is None or outcome.model is None:
+        return []
+    depth = {grip.id: grip.depth for grip in _grips(view)}
+    box = outcome.model.root.box
+    middle = ((box.left + box.right) / 2, (box.bottom + box.top) / 2) if box is not None else (0.0, 0.0)
+    kinds = ("guess", "size", "param")
+    slides = {handle.id for handle in found if _is_slide(view, handle.id)}
+
+    def order(handle: Handle) -> tuple[float, ...]:
+        return handle.id in slides, kinds.index(handle.moves), depth[handle.id]
+
+    places: dict[tuple[float, float], Handle] = {}
+    for handle in sorted(found, key=order):
+        places.setdefault((round(handle.at[0], 5) + 0.0, round(handle.at[1], 5) + 0.0), handle)
+    kept = sorted(places.values(), key=lambda h: (depth[h.id], -math.dist(h.at, middle)))
+    return kept[:MOST_HANDLES]
+
+
+def _name(grip: Grip) -> str:
+    path = grip.path.partition(".")[2] or grip.path
+    return f"{path}.{grip.name}" if grip.name else path
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return " and ".join(f"`{name}`" for name in names)
+
+
+# --- Pulling -------------------------------------------------------------------------------------
+
+
+def _pulled(view: View, grip: Grip, to: Vec, step: float, *, by_sizes: bool) -> Dragged | Refusal:
+    outcome = view.outcome
+    if outcome is None or outcome.built is None or outcome.evaluate is None:
+        return Refusal("there is no drawing")
+    wish = pull(outcome.built, grip, *to, _WEIGHT)
+    lowered = lower(replace(outcome.built, constraints=[*outcome.built.constraints, wish]))
+    solution = _solved(lowered, outcome.evaluate, _sizes_near(view, grip) if by_sizes else frozenset())
+    if solution.status is not Status.SOLVED:
+        return Refusal(f"`{_name(grip)}` cannot go there: the constraints would not hold")
+    shown = pipeline.redrawn(outcome, lowered, solution)
+    assert shown.evaluate is not None
+    at = grip.at(shown.evaluate)
+    if not is_somewhere(at):
+        return Refusal(f"`{_name(grip)}` cannot go there")
+    return Dragged(replace(view, outcome=shown, drawn=shown), at, view, grip, step)
+
+
+def _sizes_near(view: View, grip: Grip) -> frozenset[Unknown]:
+    """The kept sizes of what a point is of, as far as the text says them."""
+    return frozenset(u for u in _written(view) if u.kept and belongs(u, grip))
+
+
+def _solved(lowered: Lowered, evaluate: Evaluator, sizes: frozenset[Unknown]) -> Solution:
+    """The solution that is nearest to the present one: everything at once, since everything holds as it is.
+
+    The `sizes` may change, and positions then only as far as they have to.
+    """
+    problem, at = lowered.problem, values_at(lowered, evaluate)
+    resized = np.array([u in sizes for u in lowered.unknowns], dtype=np.bool_)
+    width = len(at)
+    scale = np.where(resized | ~np.bool_(sizes), 1.0, _DEAR) * problem.scale
+    flat = replace(
+        problem,
+        initial=at,
+        scale=scale,
+        kept=problem.kept & ~resized,
+        group=np.zeros(width, dtype=np.int64),
+        frame_of=np.full(width, -1),
+        parent=np.array([-1]),
+        holder=np.zeros_like(problem.holder),
+        observables=(),
+    )
+    solution = solve(flat, Settings(tolerance=1e-10, seconds=_SECONDS))
+    guessed = np.array([u.guess for u in lowered.unknowns])
+    changed = np.flatnonzero(problem.kept & (np.abs(solution.values - guessed) > 1e-9 * problem.scale))
+    return replace(solution, changed=tuple(changed.tolist()))
+
+
+# --- Writing it into the text --------------------------------------------------------------------
+
+
+def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...] | Refusal:
+    """The fewest and shortest numbers for which the point comes to lie where it was shown."""
+    shown = dragged.view.outcome
+    assert shown is not None
+    changed = _changed(view, shown)
+    if not changed:
+        return Refusal("no number of the text would change by it")
+    everything = [
+        (g, v)
+        for g in _editable(view)
+        if shown.evaluate is not None and (v := g.valued(shown.evaluate)) is not None
+    ]
+    for numbers in (changed, everything):
+        for step in (dragged._step, _FINE):
+            edits = tuple(_written_as(view, numbers, step))
+            if edits and _comes_to(view, edits, dragged, 2 * max(step, _FINE * 10)):
+                return edits
+    return Refusal("no numbers in the text would hold it there")
+
+
+def _changed(view: View, shown: Compiled) -> list[tuple[Guess, float]]:
+    """The numbers that were solved to something else by the dragging, and to what."""
+    assert view.outcome is not None
+    assert view.outcome.evaluate is not None
+    assert shown.evaluate is not None
+    found = []
+    for guess in _editable(view):
+        before, after = guess.valued(view.outcome.evaluate), guess.valued(shown.evaluate)
+        if before is not None and after is not None and abs(after - before) * guess.factor > _FINE:
+            found.append((guess, after))
+    return found
+
+
+def _written_as(view: View, numbers: list[tuple[Guess, float]], step: float) -> Iterator[Edit]:
+    for guess, value in numbers:
+        text = shortest(value, step / 2 / guess.factor) + guess.unit
+        if text != guess.span.text:
+            yield Edit(guess.span, text)
+
+
+def _comes_to(view: View, edits: tuple[Edit, ...], dragged: Dragged, tolerance: float) -> bool:
+    """Whether the edited text solves, says nothing worse, and has the point where it was shown."""
+    again = compiled(view, edits)
+    assert again.outcome is not None
+    assert view.outcome is not None
+    grip = _grips_of(again).get(dragged._grip.id)
+    if grip is None or again.outcome.evaluate is None:
+        return False
+    errors = {d.code for d in again.outcome.diagnostics if d.is_error}
+    is_no_worse = errors <= {d.code for d in view.outcome.diagnostics}
+    return is_no_worse and math.dist(grip.at(again.outcome.evaluate), dragged.at) <= tolerance

@@ -1,0 +1,212 @@
+"""Writing solved values into the text in place of its first guesses, and the sizes that had to change.
+
+Nothing is proposed that was not tried: the edited text is solved again, and has to draw the same.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+
+from aidl_lang.diagnostics import Edit
+from aidl_lang.export.numbers import fixed
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.ide.edits import applied
+from aidl_lang.ide.guesses import VISIBLE, Guess, as_kept, guesses
+from aidl_lang.ide.view import View, look, run
+from aidl_lang.pipeline import Compiled
+from aidl_lang.solved import SolvedStructure
+from aidl_lang.source import Span
+
+SAME = 1e-6
+"""Millimetres by which two drawings may differ and still be the same."""
+_PRECISIONS = (VISIBLE / 2, 1e-7, 0.0)
+"""Errors of a number, as shares of it (or of one where it is smaller): each is tried where one before it was
+too coarse. With none, all digits are written.
+"""
+_MOST_DECIMALS = 15
+_MOST_TRIES = 8
+
+
+@dataclass(frozen=True)
+class Rewriting:
+    """Edits that write solved values into the text, tried: `view` is what comes of them."""
+
+    title: str
+    edits: tuple[Edit, ...]
+    view: View
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Why something that was asked for cannot be done."""
+
+    reason: str
+
+
+def can_write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> bool:
+    """Whether there is anything to write, which is known without trying."""
+    return bool(_targets(view, span, sizes))
+
+
+def write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> Rewriting | Refusal:
+    """The edits that write solved values as first guesses, in a part of the text or in all of it; with
+    `sizes`, the values of the kept sizes that had to change.
+    """
+    targets = _targets(view, span, sizes)
+    if not targets:
+        what = "kept size had to change" if sizes else "first guess was solved to something else"
+        return Refusal(f"no {what} here")
+    title = "Write changed sizes back" if sizes else "Write solved values back as first guesses"
+    for chosen in (targets, {g: v for g, v in targets.items() if not g.is_shared}):
+        if chosen and (found := _tried(view, chosen)) is not None:
+            return Rewriting(title, *found)
+    return Refusal("with the solved values written there, the program would not draw the same")
+
+
+def number_text(guess: Guess, value: float, precision: float = VISIBLE / 2) -> str:
+    """A value for a number of the text, with its unit: the shortest within a share of it."""
+    return shortest(value, precision * max(1.0, abs(value))) + guess.unit
+
+
+def shortest(value: float, tolerance: float) -> str:
+    """The decimal with the fewest places that is this near."""
+    for places in range(_MOST_DECIMALS):
+        if abs(round(value, places) - value) <= tolerance:
+            return fixed(value, places)
+    return fixed(value, _MOST_DECIMALS)
+
+
+# --- Choosing ------------------------------------------------------------------------------------
+
+
+def _targets(view: View, span: Span | None, sizes: bool) -> dict[Guess, float]:
+    """The numbers to write, and what."""
+    outcome, kept = view.outcome, as_kept(view)
+    if outcome is None or outcome.evaluate is None or kept is None:
+        return {}
+    found: dict[Guess, float] = {}
+    for guess in guesses(view):
+        if span is not None and not (span.start <= guess.span.start and guess.span.end <= span.end):
+            continue
+        # With the sizes as written, or else they would be written by the way, as the end of a line is.
+        value = guess.valued(outcome.evaluate if sizes else kept)
+        if value is None or not guess.is_off(value):
+            continue
+        if not sizes and guess.is_kept:
+            continue
+        if sizes and not _holds_changed_size(guess):
+            continue
+        found[guess] = value
+    return found
+
+
+def _holds_changed_size(guess: Guess) -> bool:
+    """Whether a number says a kept size, by itself or as the place of a further point of a geometry."""
+    return any(unknown.kept for unknown in guess.unknowns)
+
+
+# --- Trying --------------------------------------------------------------------------------------
+
+
+def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...], View] | None:
+    """The shortest numbers for which the program draws the same, and what it is then.
+
+    Where the drawing is free to slide as a whole, it may: a position that the text does not say still begins
+    where it did, and draws the rest along. The numbers follow until nothing moves any more.
+    """
+    assert view.outcome is not None
+    order = {guess.span: index for index, guess in enumerate(guesses(view))}
+    wanted, level = dict(targets), dict.fromkeys(targets, 0)
+    for _ in range(_MOST_TRIES):
+        edits = tuple(
+            Edit(guess.span, number_text(guess, value, _PRECISIONS[level[guess]]))
+            for guess, value in wanted.items()
+        )
+        again = compiled(view, edits)
+        assert again.outcome is not None
+        is_slid = is_same(view.outcome, again.outcome, slid=True)
+        moved = _moved(again, wanted, order)
+        if is_slid and (not moved or is_same(view.outcome, again.outcome)):
+            return (edits, again) if _is_no_worse(view.outcome, again.outcome) else None
+        if is_slid:
+            wanted |= moved
+            continue
+        coarse = [guess for guess in moved or wanted if level[guess] < len(_PRECISIONS) - 1]
+        if not coarse:
+            return None
+        level |= {guess: level[guess] + 1 for guess in coarse}
+    return None
+
+
+def compiled(view: View, edits: Sequence[Edit]) -> View:
+    """What the text is with edits made."""
+    text = applied(view.source.text, edits)
+    return run(look(view.path, text, view.world), params=view.params)
+
+
+def _moved(again: View, wanted: Mapping[Guess, float], order: Mapping[Span, int]) -> dict[Guess, float]:
+    """The numbers that are solved to something else than what was meant, and to what."""
+    now = guesses(again)
+    if len(now) != len(order):
+        return {}
+    found: dict[Guess, float] = {}
+    for guess, value in wanted.items():
+        solved = now[order[guess.span]].solved
+        if solved is not None and abs(solved - value) * guess.factor > SAME:
+            found[guess] = solved
+    return found
+
+
+def _is_no_worse(before: Compiled, after: Compiled) -> bool:
+    """Whether nothing is said of the program that was not said before."""
+    return {d.code for d in after.diagnostics} <= {d.code for d in before.diagnostics}
+
+
+# --- Comparing -----------------------------------------------------------------------------------
+
+
+def is_same(before: Compiled, after: Compiled, *, slid: bool = False) -> bool:
+    """Whether two outcomes draw the same, name by name; with `slid`, wherever the drawing as a whole lies."""
+    if before.model is None or after.model is None or before.status != after.status:
+        return False
+    one, other = (list(_drawn(model.root, slid)) for model in (before.model, after.model))
+    return len(one) == len(other) and all(
+        name == path and len(a) == len(b) and all(map(_is_near, a, b))
+        for (name, a), (path, b) in zip(one, other, strict=True)
+    )
+
+
+def _is_near(a: float, b: float) -> bool:
+    return abs(a - b) <= SAME or (math.isnan(a) and math.isnan(b))
+
+
+def _drawn(root: SolvedStructure, slid: bool) -> Iterator[tuple[str, list[float]]]:
+    """Everything that a drawing is made of: its path, and the numbers that define it."""
+    at = (root.box.left, root.box.bottom) if slid and root.box is not None else (0.0, 0.0)
+    for structure in root.walk():
+        box = structure.box
+        corners = [] if box is None else [(box.left, box.bottom), (box.right, box.top)]
+        yield structure.path, list(_numbers(corners, at))
+        for geometry in structure.drawn:
+            for part in geometry.walk():
+                place = part.values.get("at") if part.type == "point" else None
+                yield f"{part.path}: {part.type}", list(_numbers((part.curve, place), at))
+
+
+def _numbers(value: object, at: Vec) -> Iterator[float]:
+    """The numbers of a curve or a point; a pair is a place, which is seen from `at`."""
+    match value:
+        case (float() as x, float() as y):
+            yield from (x - at[0], y - at[1])
+        case float():
+            yield value
+        case tuple() | list():
+            for item in value:
+                yield from _numbers(item, at)
+        case _ if is_dataclass(value):
+            for field in fields(value):
+                yield from _numbers(getattr(value, field.name), at)
+        case _:
+            pass

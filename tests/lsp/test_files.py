@@ -1,0 +1,182 @@
+"""Several files: imports, what changes on disk, names in many of them, one file under several names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from lsprotocol import types
+
+from aidl_lang import pipeline
+from aidl_lang.source import SourceFile
+from aidl_lang.world import MemoryWorld
+from tests.lsp.editor import Editor
+
+pytestmark = pytest.mark.asyncio(loop_scope="module")
+
+SIZES = "let pitch = 12\nsolid bolt(size = 2) {\n    body = circle(center: (0, 0), radius: size)\n}\n"
+ONE = 'import bolt from "sizes.aidl"\nassembly one {\n    a = bolt(size: 3)\n}\n'
+TWO = """\
+import "sizes.aidl" as s
+
+assembly two {
+    b = s.bolt(size: 4) at (20, 0)
+    c = s.bolt(size: 5)
+}
+"""
+
+
+def written(folder: Path, **files: str) -> list[Path]:
+    paths = []
+    for name, text in files.items():
+        paths.append(folder / f"{name}.aidl")
+        paths[-1].write_text(text, "utf-8")
+    return paths
+
+
+def files_changed(editor: Editor, *paths: Path) -> None:
+    changes = [types.FileEvent(path.as_uri(), types.FileChangeType.Changed) for path in paths]
+    editor.workspace_did_change_watched_files(types.DidChangeWatchedFilesParams(changes))
+
+
+def join(editor: Editor, folder: Path) -> None:
+    event = types.WorkspaceFoldersChangeEvent([types.WorkspaceFolder(folder.as_uri(), "more")], [])
+    editor.workspace_did_change_workspace_folders(types.DidChangeWorkspaceFoldersParams(event))
+
+
+async def diagnosed(editor: Editor, uri: str, after: int) -> list[str]:
+    """The codes of what was told of a file later than some number of messages."""
+    told = await editor.until(lambda: [t for t in editor.told[after:] if t.uri == uri])
+    return [d.code for d in told[-1].diagnostics]
+
+
+async def test_programs_follow_what_they_import(editor: Editor, tmp_path: Path) -> None:
+    sizes, one = written(tmp_path, sizes=SIZES, one=ONE)
+    uri = editor.open(one)
+    assert await editor.found(uri) == []
+
+    after = len(editor.told)
+    sizes.write_text(SIZES.replace("bolt(size", "screw(size"), "utf-8")
+    files_changed(editor, sizes)
+    assert "E0213" in await diagnosed(editor, uri, after) or editor.told[-1].diagnostics
+
+    after = len(editor.told)  # what the editor has counts, not what is on disk
+    library = editor.open(sizes, SIZES)
+    assert await diagnosed(editor, uri, after) == []
+    after = len(editor.told)
+    editor.replace(library, "radius: size", "radius: sise")
+    codes = await diagnosed(editor, library, after)
+    assert codes
+    after = len(editor.told)
+    editor.replace(library, "sise", "size")
+    assert await diagnosed(editor, uri, after) == []
+    editor.close(library)
+    editor.close(uri)
+
+
+async def test_what_is_wrong_in_an_import_is_shown_there(editor: Editor, tmp_path: Path) -> None:
+    sizes, one = written(tmp_path, sizes=SIZES.replace("radius: size", "radius: sise"), one=ONE)
+    uri = editor.open(one)
+    await editor.found(uri)
+    there = [t for t in editor.told if t.uri == sizes.as_uri()]
+    assert there[-1].diagnostics[0].range.start.line == 2
+    after = len(editor.told)
+    sizes.write_text(SIZES, "utf-8")
+    files_changed(editor, sizes)
+    assert await diagnosed(editor, sizes.as_uri(), after) == []
+    editor.close(uri)
+
+
+async def test_a_missing_import_is_found_when_it_comes(editor: Editor, tmp_path: Path) -> None:
+    (one,) = written(tmp_path, one=ONE)
+    uri = editor.open(one)
+    assert await editor.found(uri)
+    after = len(editor.told)
+    files_changed(editor, *written(tmp_path, sizes=SIZES))
+    assert await diagnosed(editor, uri, after) == []
+    editor.close(uri)
+
+
+async def test_links_and_definitions_lead_to_other_files(editor: Editor, tmp_path: Path) -> None:
+    sizes, one = written(tmp_path, sizes=SIZES, one=ONE)
+    uri = editor.open(one)
+    (link,) = await editor.text_document_document_link_async(types.DocumentLinkParams(editor.document(uri)))
+    assert link.target == sizes.as_uri()
+    assert (link.range.start.character, link.range.end.character) == (18, 28)
+    (found,) = await editor.text_document_definition_async(
+        types.DefinitionParams(**editor.at(uri, "bolt(size: 3)", inside=2))
+    )
+    assert (found.uri, found.range.start.line) == (sizes.as_uri(), 1)
+    editor.close(uri)
+
+
+async def test_renaming_a_parameter_that_three_files_name(editor: Editor, tmp_path: Path) -> None:
+    files = {"sizes": SIZES, "one": ONE, "two": TWO}
+    join(editor, tmp_path)
+    uris = [editor.open(path) for path in written(tmp_path, **files)]
+    for uri in uris:
+        await editor.found(uri)
+    before = {uri: drawn(editor, uri) for uri in uris[1:]}
+    changes = await editor.text_document_rename_async(
+        types.RenameParams(new_name="thickness", **editor.at(uris[0], "size = 2"))
+    )
+    assert editor.apply(changes)
+    for uri, (name, text) in zip(uris, files.items(), strict=True):
+        changed = text.replace("radius: size", "radius: thickness")
+        changed = changed.replace("size:", "thickness:").replace("size = 2", "thickness = 2")
+        assert editor.texts[uri] == changed, name
+    assert {uri: drawn(editor, uri) for uri in uris[1:]} == before
+    for uri in uris:
+        assert [d for d in await editor.found(uri) if d.severity == types.DiagnosticSeverity.Error] == []
+        editor.close(uri)
+
+
+def drawn(editor: Editor, uri: str) -> bytes:
+    beside = MemoryWorld({Path(other).name: text for other, text in editor.texts.items()})
+    return pipeline.compile(SourceFile("a.aidl", editor.texts[uri]), beside).export(".svg")
+
+
+async def test_references_in_files_that_are_not_open(editor: Editor, tmp_path: Path) -> None:
+    sizes, *_ = written(tmp_path, sizes=SIZES, one=ONE, two=TWO)
+    join(editor, tmp_path)
+    uri = editor.open(sizes)
+    found = await editor.text_document_references_async(
+        types.ReferenceParams(types.ReferenceContext(False), **editor.at(uri, "bolt("))
+    )
+    lines = {(Path(each.uri).name, each.range.start.line) for each in found}
+    assert lines == {("one.aidl", 0), ("one.aidl", 2), ("two.aidl", 3), ("two.aidl", 4)}
+    editor.close(uri)
+
+
+async def test_one_file_under_two_names(editor: Editor, tmp_path: Path) -> None:
+    (one,) = written(tmp_path, **{"a b": "solid a { b = circle(radius: 3) }\n"})
+    (tmp_path / "link.aidl").symlink_to(one)
+    uri, twin = editor.open(one), editor.open(tmp_path / "link.aidl", "solid a { b = circle(raduis: 3) }\n")
+    assert await editor.found(uri) == []
+    assert [d.code for d in await editor.found(twin)] == ["E0324"]
+    spelled = uri.replace("%20", " ")
+    document = types.VersionedTextDocumentIdentifier(2, spelled)
+    whole = types.TextDocumentContentChangeWholeDocument("solid a { b = circle(radius: 3, x: 1) }\n")
+    editor.text_document_did_change(types.DidChangeTextDocumentParams(document, [whole]))
+    editor.versions[uri] = 2
+    assert await editor.found(uri) != []
+    for each in (twin, uri):
+        editor.close(each)
+        await editor.until(lambda each=each: not [t for t in editor.told if t.uri == each][-1].diagnostics)
+
+
+async def test_library_files_are_shown_and_not_run(editor: Editor) -> None:
+    uri = editor.open(
+        "untitled:asks", "solid a { b = trapezoid(center: (0, 0), bottom_width: 9, top_width: 3, height: 4) }"
+    )
+    (found,) = await editor.text_document_definition_async(
+        types.DefinitionParams(**editor.at(uri, "trapezoid"))
+    )
+    library = editor.open(Path(found.uri.removeprefix("file://")))
+    symbols = await editor.text_document_document_symbol_async(
+        types.DocumentSymbolParams(editor.document(library))
+    )
+    assert "trapezoid" in [each.name for each in symbols]
+    assert not [t for t in editor.told if t.uri == library]
+    for each in (library, uri):
+        editor.close(each)

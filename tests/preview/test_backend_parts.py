@@ -1,0 +1,271 @@
+"""Sliders, problems, conflicts and motions: checked against other runs of the program, and by hand."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import pytest
+
+from aidl_lang import pipeline
+from aidl_lang.agents.workspace import RefusalError
+from aidl_lang.ide.edits import applied
+from aidl_lang.ide.preview import preview, set_knob, tried
+from aidl_lang.ide.preview.values import Slider, Way
+from aidl_lang.ide.view import View, look, run
+from aidl_lang.ide.workspace import Workspace
+from aidl_lang.source import SourceFile
+from tests.preview.views import EXAMPLES, view_of
+
+KNOBS = """
+param width = 160mm in 100..240
+/// Teeth of the wheel.
+param teeth = 15 in 12..24
+param lean = -5.5deg in -10..10 step 0.5
+param bolt = "m5" in ["m4", "m5"]
+param marked = true
+param label = "x"
+param half = width / 2
+solid a { body = rectangle(width: width, height: half)
+    hole h { rim = circle(diameter: if marked then 2 * teeth else teeth) } }
+"""
+
+
+def knob(view: View, path: str) -> Slider:
+    return next(k for k in preview(view).knobs if k.path == path)
+
+
+def test_sliders_tell_all_of_a_param() -> None:
+    view = view_of(KNOBS)
+    assert [(k.path, k.kind, k.value, k.unit, k.editable) for k in preview(view).knobs] == [
+        ("width", "number", 160.0, "mm", True),
+        ("teeth", "number", 15.0, "", True),
+        ("lean", "number", -5.5, "deg", True),
+        ("bolt", "choice", "m5", "", True),
+        ("marked", "truth", True, "", True),
+        ("label", "text", "x", "", True),
+        ("half", "number", 80.0, "mm", False),
+    ]
+    teeth, lean = knob(view, "teeth"), knob(view, "lean")
+    assert (teeth.low, teeth.high, teeth.step, teeth.doc) == (12, 24, 1, "Teeth of the wheel.")
+    assert (lean.step, knob(view, "width").step) == (0.5, None)
+    spans = {k.path: k.span.text for k in preview(view).knobs if k.span is not None}
+    assert spans["lean"] == "-5.5deg"
+    assert spans["bolt"] == '"m5"'
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "written"),
+    [
+        ("width", 101.5, "101.5mm"),
+        ("teeth", 20, "20"),
+        ("lean", 7.5, "7.5deg"),
+        ("bolt", "m4", '"m4"'),
+        ("marked", False, "false"),
+        ("label", 'ä"\\😀', '"ä\\"\\\\😀"'),
+    ],
+)
+def test_a_value_is_written_and_nothing_else(path: str, value: float | str | bool, written: str) -> None:
+    view = view_of(KNOBS)
+    (edit,) = set_knob(view, path, value)
+    text = applied(KNOBS, [edit])
+    assert text == re.sub(rf'(param {path} = )(-?[\w.]+|"\w+")', lambda m: m[1] + written, KNOBS)
+    assert {k.path: k.value for k in pipeline.knobs(SourceFile("p", text))[0]}[path] == value
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("width", 99.0),
+        ("width", math.inf),
+        ("width", math.nan),
+        ("width", 1e30),
+        ("width", True),
+        ("width", "wide"),
+        ("bolt", "m6"),
+        ("bolt", 4),
+        ("marked", "yes"),
+        ("label", 3),
+        ("half", 50),
+        ("no such", 1),
+    ],
+)
+def test_what_does_not_fit_is_refused(path: str, value: float | str | bool) -> None:
+    with pytest.raises(RefusalError, match=r"\w"):
+        set_knob(view_of(KNOBS), path, value)
+
+
+def test_trying_a_value_is_writing_it() -> None:
+    view = view_of(KNOBS)
+    attempt = tried(view, {"width": 200, "teeth": 20})
+    made = preview(attempt, tried=True)
+    written = preview(view_of(KNOBS.replace("160mm", "200mm").replace("= 15", "= 20")))
+    assert (made.svg, made.box, made.tried) == (written.svg, written.box, True)
+    assert [k.value for k in made.knobs] == [k.value for k in written.knobs]
+    assert preview(tried(attempt, {"width": 160, "teeth": 15})).svg == preview(view).svg
+
+
+@pytest.mark.parametrize("values", [{"width": 5000}, {"width": "wide"}, {"nothing": 1}, {"width": math.nan}])
+def test_a_value_that_does_not_fit_shows_what_was(values: dict[str, float | str | bool]) -> None:
+    view = view_of(KNOBS)
+    made = preview(tried(view, values), tried=True)
+    assert made.svg == preview(view).svg
+    assert any(p.severity == "error" for p in made.problems) or made.stale is False
+
+
+def test_problems_name_elements_and_points() -> None:
+    view = view_of(
+        """
+        solid a {
+            one = line((0, 0), (10, 0))
+            two = line((10, 0), (10, 10))
+            three = line((10, 10), (1, 2))
+        }
+        """
+    )
+    made = preview(view)
+    (problem,) = [p for p in made.problems if p.code == "W0702"]
+    assert {made.elements[k].path for k in problem.elements} == {"a.one", "a.three"}
+    assert set(problem.points) == {(0, 0), (1, 2)}
+    assert [fix.title for fix in problem.fixes] == ["join the two ends"]
+
+
+def test_of_a_loop_the_turn_that_is_meant() -> None:
+    view = view_of(
+        """
+        assembly a {
+            for i in 0..2 { solid part[i] at (i * 10, 0) { body = circle(radius: if i == 2 then 2 else 5) } }
+        }
+        """
+    )
+    made = preview(view)
+    lonely = [p for p in made.problems if p.code == "W0705"]
+    assert [[made.elements[k].path for k in p.elements] for p in lonely] == [["a.part[2]"]]
+
+
+def test_conflicts_name_what_they_relate() -> None:
+    view = view_of(
+        """
+        assembly a {
+            solid one { body = rectangle(width: 10, height: 10) }
+            solid two { body = rectangle(width: 10, height: 10) }
+            constrain one.left == two.right + 3
+            constrain two.left >= one.right + 1
+        }
+        """
+    )
+    made = preview(view)
+    assert made.status != "solved"
+    (conflict,) = made.conflicts
+    assert [p.text for p in conflict.parties] == [
+        "one.left == two.right + 3",
+        "two.left >= one.right + 1",
+    ]
+    for party in conflict.parties:
+        paths = [made.elements[k].path for k in party.elements]
+        assert any(path.startswith("a.one") for path in paths)
+        assert any(path.startswith("a.two") for path in paths)
+        assert party.span.text == party.text
+
+
+# --- Motions ----------------------------------------------------------------------------------------
+
+
+def ways(text: str) -> dict[str, list[Way]]:
+    """By the path of what moves, joined by spaces."""
+    made = preview(view_of(text))
+    found: dict[str, list[Way]] = {}
+    for way in made.ways:
+        found.setdefault(" ".join(made.elements[k].path for k in way.elements), []).append(way)
+    return found
+
+
+def test_what_slides_has_an_arrow_that_way() -> None:
+    ((way,),) = ways(
+        """
+        assembly a {
+            solid rail { body = rectangle(center: fixed((0, 0)), width: 100, height: 10) }
+            solid car { body = rectangle(center: (20, 10), width: 20, height: 10) }
+            constrain { rail.center == (0, 0); car.bottom == rail.top }
+        }
+        """
+    ).values()
+    (arrow,) = way.arrows
+    assert arrow.start == pytest.approx((20, 10))
+    assert arrow.end == pytest.approx((20 + 0.14 * 100, 10))
+    assert not way.turns
+
+
+def test_what_slides_along_a_slope_has_an_arrow_along_it() -> None:
+    ((way,),) = ways(
+        """
+        solid a {
+            p = point((30, 40))
+            body = circle(center: (0, 0), radius: 60)
+            constrain { body.center == (0, 0); 3 * p.y == 4 * p.x }
+        }
+        """
+    ).values()
+    (arrow,) = way.arrows
+    assert arrow.start == pytest.approx((30, 40))
+    assert (arrow.end[1] - 40) / (arrow.end[0] - 30) == pytest.approx(4 / 3)
+
+
+def test_a_point_moves_from_where_it_is() -> None:
+    ((way,),) = ways(
+        "drawing a { hand = line(fixed((10, 5)), (40, 5)); constrain { hand.length == 30 } }"
+    ).values()
+    (arrow,) = way.arrows
+    assert arrow.start == pytest.approx((40, 5))
+    assert arrow.end[0] == pytest.approx(40, abs=1e-3)
+
+
+def test_what_turns_has_an_arc_about_what_holds_it() -> None:
+    ((way,),) = ways(
+        """
+        assembly a {
+            drawing hand { tip = line((0, 0), (30, 40)) }
+            solid hub { rim = circle(center: (0, 0), radius: 5) }
+            constrain { hub.center == (0, 0); hand.tip.start == (0, 0); hand.tip.length == 50 }
+        }
+        """
+    ).values()
+    (turn,) = way.turns
+    assert turn.center == pytest.approx((0, 0), abs=1e-5)
+    assert 10 < turn.radius < 60
+    assert 10 < abs(turn.sweep) < 360
+
+
+def test_what_grows_has_arrows_apart() -> None:
+    found = ways(
+        """
+        solid a {
+            body = rectangle(center: (0, 0), width: guess(40), height: 20)
+            constrain { body.center == (0, 0) }
+        }
+        """
+    )
+    arrows = [arrow for several in found.values() for way in several for arrow in way.arrows]
+    assert arrows
+    for arrow in arrows:
+        outwards = arrow.end[0] - arrow.start[0]
+        assert abs(outwards) > 1
+        assert arrow.end[1] == pytest.approx(arrow.start[1], abs=1e-6)
+
+
+def test_the_examples_have_arrows_in_finite_places() -> None:
+    for path in EXAMPLES:
+        view = run(look(path, path.read_text("utf-8"), Workspace().world(path)))
+        assert view.outcome is not None
+        assert view.outcome.model is not None
+        made = preview(view)
+        assert len(made.ways) == len(view.outcome.model.motions)
+        for way in made.ways:
+            numbers = [n for a in way.arrows for n in (*a.start, *a.end)]
+            numbers += [n for t in way.turns for n in (*t.center, t.radius, t.first, t.sweep)]
+            assert all(map(math.isfinite, numbers))
+            assert way.arrows or way.turns
+
+
+def test_what_holds_still_has_no_motion() -> None:
+    assert not ways("solid a { body = circle(center: (0, 0), radius: 5); constrain body.center == (0, 0) }")

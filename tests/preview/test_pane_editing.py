@@ -1,0 +1,326 @@
+"""The preview pane in Chromium: sliders, fields, and points that are dragged."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from playwright.sync_api import Locator, expect
+
+from tests.preview.conftest import Pane
+from tests.preview.messages import RIM, handle, knob, picture
+
+
+def slider(pane: Pane) -> Locator:
+    return pane.page.get_by_role("slider", name="width")
+
+
+def field(pane: Pane, name: str = "width") -> Locator:
+    return pane.page.get_by_role("textbox", name=name)
+
+
+def along(pane: Pane, value: float, low: float = 60, high: float = 200) -> tuple[float, float]:
+    """Where on the page the thumb is at a value; it is 14 pixels wide."""
+    box = slider(pane).bounding_box()
+    assert box is not None
+    return box["x"] + 7 + (value - low) / (high - low) * (box["width"] - 14), box["y"] + box["height"] / 2
+
+
+def knobs(pane: Pane) -> list[tuple[Any, bool]]:
+    return [(message["value"], message["final"]) for message in pane.host.of("knob")]
+
+
+def drags(pane: Pane) -> list[tuple[list[float], bool]]:
+    return [(message["to"], message["final"]) for message in pane.host.of("drag")]
+
+
+# Sliders
+
+
+def test_a_slider_asks_for_one_thing_at_a_time_and_next_for_the_newest(pane: Pane) -> None:
+    pane.page.mouse.move(*along(pane, 100))
+    pane.page.mouse.down()
+    for value in (110, 120, 130, 140):
+        pane.page.mouse.move(*along(pane, value), steps=3)
+    (first, final), *others = knobs(pane)
+    assert not others
+    assert not final
+    assert 100 < first < 112
+    expect(field(pane)).to_have_value("140")
+
+    pane.shows(tried=True, knobs=[knob(value=first)], box=[-60, -30, 60, 30])
+    expect(field(pane)).to_have_value("140")
+    expect(pane.find("#status")).to_contain_text("tried")
+    expect(pane.find("#status-size")).to_have_text("120 × 60 mm")
+    pane.host.hears("knob", 2)
+    assert knobs(pane)[1] == (140, False)
+    pane.page.mouse.move(*along(pane, 150))
+    assert len(knobs(pane)) == 2
+
+    pane.page.mouse.up()
+    pane.host.hears("knob", 3)
+    assert knobs(pane)[2:] == [(150, True)]
+    pane.shows(knobs=[knob(value=150)])
+    expect(field(pane)).to_have_value("150")
+    expect(pane.find("#status")).to_have_text("Solved")
+    assert pane.host.of("cancel") == []
+
+
+def test_a_late_answer_to_what_was_tried_is_not_shown(pane: Pane) -> None:
+    pane.page.mouse.move(*along(pane, 100))
+    pane.page.mouse.down()
+    pane.page.mouse.move(*along(pane, 120))
+    pane.page.mouse.up()
+    pane.host.wait(lambda: (120, True) in knobs(pane))
+    pane.host.say(picture(tried=True, degrees=77))
+    pane.shows(knobs=[knob(value=120)])
+    expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
+
+
+@pytest.mark.parametrize(("past", "bound"), [(400, 200), (-100, 60)])
+def test_a_slider_ends_at_the_bounds(pane: Pane, past: float, bound: float) -> None:
+    pane.page.mouse.move(*along(pane, 100))
+    pane.page.mouse.down()
+    pane.page.mouse.move(*along(pane, past))
+    pane.page.mouse.up()
+    pane.host.wait(lambda: (bound, True) in knobs(pane))
+    assert all(60 <= value <= 200 for value, _ in knobs(pane))
+
+
+def test_a_slider_by_keys_writes_when_the_key_is_let_go(pane: Pane) -> None:
+    slider(pane).focus()
+    pane.page.keyboard.down("ArrowRight")
+    pane.page.keyboard.down("ArrowRight")
+    assert pane.host.hears("knob")["final"] is False
+    assert not any(final for _, final in knobs(pane))
+    pane.page.keyboard.up("ArrowRight")
+    pane.host.wait(lambda: (101, True) in knobs(pane))  # two steps of half a millimetre
+    pane.shows(knobs=[knob(value=101)])
+    pane.page.keyboard.press("End")
+    pane.host.wait(lambda: (200, True) in knobs(pane))
+
+
+def test_escape_while_sliding_forgets_it(pane: Pane) -> None:
+    pane.page.mouse.move(*along(pane, 100))
+    pane.page.mouse.down()
+    pane.page.mouse.move(*along(pane, 150))
+    pane.host.hears("knob")
+    pane.shows(tried=True, degrees=5)
+    expect(pane.find("#status-freedom")).to_have_text("5 degrees of freedom")
+    pane.page.keyboard.press("Escape")
+    pane.host.hears("cancel")
+    expect(field(pane)).to_have_value("100")
+    expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
+    pane.page.mouse.move(*along(pane, 170))
+    pane.page.mouse.up()
+    expect(field(pane)).to_have_value("100")
+    assert not any(final for _, final in knobs(pane))
+
+
+@pytest.mark.parametrize(
+    ("typed", "sent"),
+    [("120", 120), ("1e9", 200), ("-5", 60), ("99,5", 99.5), (" 80.25 ", 80.25), ("abc", None), ("", None)],
+)
+def test_a_number_that_is_typed_stays_within_the_bounds(pane: Pane, typed: str, sent: float | None) -> None:
+    field(pane).fill(typed)
+    field(pane).press("Enter")
+    if sent is None:
+        expect(field(pane)).to_have_value("100")
+        assert knobs(pane) == []
+    else:
+        pane.host.hears("knob")
+        assert knobs(pane) == [(sent, True)]
+        expect(field(pane)).to_have_value(f"{sent:g}")
+
+
+def test_choices_truths_and_texts(pane: Pane) -> None:
+    pane.shows(
+        knobs=[
+            knob(path="bolt", name="bolt", kind="choice", value="m4", choices=["m4", "m5"], unit=""),
+            knob(path="size", name="size", kind="choice", value=4, choices=[4, 5, 6]),
+            knob(path="a.feet", name="feet", kind="truth", value=False, unit=""),
+            knob(path="label", name="label", kind="text", value="hello", unit=""),
+        ]
+    )
+    pane.page.get_by_label("bolt", exact=True).select_option("m5")
+    pane.page.get_by_label("size", exact=True).select_option("6 mm")
+    pane.page.get_by_role("switch", name="feet").check()
+    field(pane, "label").fill("it's")
+    field(pane, "label").press("Enter")
+    pane.host.wait(lambda: len([1 for _, final in knobs(pane) if final]) == 4)
+    assert [value for value, final in knobs(pane) if final] == ["m5", 6, True, "it's"]
+    assert [m["path"] for m in pane.host.of("knob") if m["final"]] == ["bolt", "size", "a.feet", "label"]
+
+
+@pytest.mark.parametrize("changes", [{"editable": False}, {"range": None, "uri": None}])
+def test_what_is_not_in_the_text_can_only_be_tried(pane: Pane, changes: dict[str, Any]) -> None:
+    pane.shows(knobs=[knob(**changes), knob(path="depth", name="depth")])
+    reset = pane.page.get_by_role("button", name="Reset width")
+    expect(reset).to_be_hidden()
+    pane.page.mouse.move(*along(pane, 100))
+    pane.page.mouse.down()
+    pane.page.mouse.move(*along(pane, 150))
+    pane.page.mouse.up()
+    pane.host.hears("knob")
+    pane.shows(tried=True, knobs=[knob(value=150, **changes), knob(path="depth", name="depth")], degrees=9)
+    expect(reset).to_be_visible()
+    assert knobs(pane) == [(150, False)]
+    reset.click()
+    pane.host.hears("cancel")
+    expect(field(pane)).to_have_value("100")
+    expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
+
+
+def test_what_the_host_refuses_is_taken_back(pane: Pane) -> None:
+    field(pane).fill("120")
+    field(pane).press("Enter")
+    pane.host.hears("knob")
+    pane.host.say({"type": "error", "message": "the file has changed"})
+    expect(pane.find(".toast")).to_be_visible()
+    expect(field(pane)).to_have_value("100")
+
+
+def test_a_picture_keeps_the_focus_and_what_is_being_typed(pane: Pane) -> None:
+    field(pane).focus()
+    pane.shows(knobs=[knob(), knob(path="depth", name="depth")])
+    pane.shows(knobs=[knob(), knob(path="depth", name="depth", value=70)])
+    expect(field(pane, "depth")).to_have_value("70")
+    field(pane, "depth").focus()
+    pane.shows(knobs=[knob(), knob(path="depth", name="depth", value=80)])
+    expect(field(pane, "depth")).to_be_focused()
+
+
+SCALES = [
+    (knob(), 100, {"start": 60, "end": 200, "step": 0.5}, [(100.3, 100.5), (1e3, 200)]),
+    (knob(step=25), 85, {"start": 60, "end": 200, "step": 25}, [(100, 110), (199, 200), (61, 60)]),
+    (knob(unit="", low=1, high=6), 3, {"start": 1, "end": 6, "step": 1}, [(2.4, 2)]),
+    (knob(unit="", low=0, high=1), 0.5, {"start": 0, "end": 1, "step": 0.005}, [(0.1234, 0.125)]),
+    (knob(low=None, high=None), 30, {"start": 0, "end": 60}, [(-9, 0)]),
+    (knob(low=None, high=None), -30, {"start": -60, "end": 0}, []),
+    (knob(low=None, high=None, unit="deg"), 0, {"start": 0, "end": 180}, []),
+    (knob(low=None, high=-5), -8, {"start": -21, "end": -5}, [(0, -5)]),
+    (knob(low=5, high=None), 8, {"start": 5, "end": 21}, []),
+    (knob(low=5, high=5), 5, {"start": 5, "end": 5}, [(7, 5)]),
+]
+
+
+@pytest.mark.parametrize(("knob", "value", "scale", "snaps"), SCALES)
+def test_scales(pane: Pane, knob: Any, value: float, scale: dict[str, float], snaps: list[Any]) -> None:
+    found = pane.page.evaluate(
+        """async ([knob, value, snaps]) => {
+            const { Scale } = await import("/scales.js");
+            const scale = new Scale(knob, value);
+            return [{ start: scale.start, end: scale.end, step: scale.step }, snaps.map(([to]) => scale.onSlider(to))];
+        }""",
+        [knob, value, snaps],
+    )
+    assert found[0] == {**found[0], **scale}
+    assert found[1] == [expected for _, expected in snaps]
+
+
+# Points
+
+
+def grab(pane: Pane, x: float, y: float) -> None:
+    """Take hold of a handle that is there."""
+    pane.page.get_by_role("button", name="Points", exact=True).click()
+    pane.move(x, y)
+    pane.page.mouse.down()
+
+
+def test_points_appear_when_their_element_is_pointed_at(pane: Pane) -> None:
+    dot = pane.find(".handle")
+    expect(dot).to_be_hidden()
+    pane.move(-40, 10)
+    expect(dot).to_be_visible()
+    pane.move(20, 5)  # on the point itself
+    expect(dot).to_be_visible()
+    assert pane.host.hears("hover", 2)["element"] == RIM
+    pane.move(-54, 0)
+    expect(dot).to_be_hidden()
+    pane.page.get_by_role("button", name="Points", exact=True).click()
+    expect(dot).to_be_visible()
+    pane.page.keyboard.press("p")
+    expect(dot).to_be_hidden()
+
+
+def test_a_dragged_point_tells_millimetres(pane: Pane) -> None:
+    grab(pane, 20, 5)
+    pane.move(22.2, 7.3, steps=2)
+    pane.move(30.4, -4.8, steps=2)
+    expect(pane.find("#tooltip")).to_contain_text("30.0, −5.0 mm" if pane.scale < 8 else "30.5, −5.0 mm")
+    pane.page.mouse.up()
+    pane.host.wait(lambda: any(final for _, final in drags(pane)))
+    assert [final for _, final in drags(pane)] == [False, True]
+    assert pane.scale < 8
+    assert drags(pane)[-1] == ([30, -5], True)
+    assert pane.host.of("drag")[-1]["id"] == "h0"
+    assert pane.host.of("goto") == []
+    middle = (
+        "one => { const r = one.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2] }"
+    )
+    assert pane.page.eval_on_selector(".handle .knot", middle) == pytest.approx(pane.at(30, -5), abs=0.6)
+
+
+def test_points_snap_finer_the_closer_one_looks(pane: Pane) -> None:
+    pane.move(20, 5)
+    pane.page.mouse.wheel(0, -300)
+    pane.page.mouse.wheel(0, -300)
+    pane.page.wait_for_function("() => document.querySelector('.drawing').getScreenCTM().a > 8")
+    grab(pane, 20, 5)
+    pane.move(22.2, 5.4, steps=2)
+    pane.page.mouse.up()
+    pane.host.wait(lambda: any(final for _, final in drags(pane)))
+    assert drags(pane)[-1][0] == [22, 5.5]
+
+
+def test_shift_lets_a_point_go_anywhere(pane: Pane) -> None:
+    grab(pane, 20, 5)
+    pane.page.keyboard.down("Shift")
+    pane.move(22.37, 5.42, steps=2)
+    pane.page.mouse.up()
+    pane.host.wait(lambda: any(final for _, final in drags(pane)))
+    to = drags(pane)[-1][0]
+    assert to == pytest.approx([22.37, 5.42], abs=0.1)
+    assert to != [22, 5]
+
+
+def test_escape_while_dragging_forgets_it(pane: Pane) -> None:
+    grab(pane, 20, 5)
+    pane.move(30, 5, steps=2)
+    pane.host.hears("drag")
+    pane.page.keyboard.press("Escape")
+    pane.host.hears("cancel")
+    pane.move(35, 5)
+    pane.page.mouse.up()
+    expect(pane.find(".handle.dragged")).to_have_count(0)
+    assert all(not final for _, final in drags(pane))
+
+
+def test_a_point_moves_by_keys(pane: Pane) -> None:
+    pane.page.get_by_role("button", name="Points", exact=True).click()
+    view = pane.at(0, 0)
+    pane.page.get_by_role("button", name="Drag: center of rim").focus()
+    pane.page.keyboard.down("ArrowUp")
+    pane.page.keyboard.down("ArrowUp")
+    pane.page.keyboard.up("ArrowUp")
+    pane.host.wait(lambda: drags(pane)[-1:] == [([20, 7], True)])
+    assert pane.at(0, 0) == view
+
+
+def test_kinds_of_points_look_different(pane: Pane) -> None:
+    kinds = ["guess", "param", "size"]
+    pane.shows(handles=[handle(id=kind, moves=kind, at=[10 * k, 0]) for k, kind in enumerate(kinds)])
+    pane.page.get_by_role("button", name="Points", exact=True).click()
+    shapes = pane.page.eval_on_selector_all(
+        ".handle .knot", "all => all.map(one => [one.localName, getComputedStyle(one).stroke])"
+    )
+    assert [shape for shape, _ in shapes] == ["circle", "path", "rect"]
+    assert len({color for _, color in shapes}) == 3
+
+
+def test_a_stale_picture_has_no_points(pane: Pane) -> None:
+    pane.page.get_by_role("button", name="Points", exact=True).click()
+    expect(pane.find(".handle")).to_have_count(1)
+    pane.shows(stale=True, status="wrong")
+    expect(pane.find(".handle")).to_have_count(0)

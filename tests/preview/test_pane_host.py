@@ -1,0 +1,214 @@
+"""The preview pane in Chromium: connections, menus, VS Code, themes, and use without a mouse."""
+
+from __future__ import annotations
+
+import base64
+import json
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.preview.conftest import Pane
+from tests.preview.messages import URI, picture, problem
+
+CODE = """
+window.sent = [];
+window.kept = JSON.parse(sessionStorage.getItem("kept") ?? "null") ?? undefined;
+window.acquireVsCodeApi = () => ({
+    postMessage: message => window.sent.push(message),
+    getState: () => window.kept,
+    setState: state => sessionStorage.setItem("kept", JSON.stringify(window.kept = state)),
+});
+"""
+
+
+# Connections
+
+
+def test_a_lost_connection_is_told_and_made_again(open_pane) -> None:
+    pane = open_pane()
+    pane.host.hears("ready")
+    pane.shows()
+    pane.page.clock.install(time=0)
+    pane.page.clock.pause_at(1000)
+    pane.host.is_away = True
+    pane.host.drop()
+    banner = pane.find("#disconnected")
+    for wait in ("0.5", "1", "2", "4", "8", "10", "10"):
+        expect(banner).to_contain_text(f"in {wait} s")
+        attempts = pane.host.requests.count("/socket")
+        pane.page.clock.fast_forward(int(float(wait) * 1000) - 50)
+        assert pane.host.requests.count("/socket") == attempts
+        pane.page.clock.fast_forward(50)
+        pane.host.wait(lambda attempts=attempts: pane.host.requests.count("/socket") == attempts + 1)
+    assert "grayscale" in pane.page.evaluate(
+        "() => getComputedStyle(document.getElementById('world')).filter"
+    )
+    expect(pane.find("#status")).to_have_text("Not connected")
+    expect(banner).to_contain_text("in 10 s")
+    pane.host.is_away = False
+    pane.page.get_by_role("button", name="Connect now").click()
+    pane.host.hears("ready", 2)
+    expect(banner).to_be_hidden()
+    pane.shows()
+    expect(pane.find("#status")).to_have_text("Solved")
+    assert pane.page.evaluate("() => getComputedStyle(document.getElementById('world')).filter") == "none"
+
+
+def test_layers_are_asked_for_again_after_a_lost_connection(pane: Pane) -> None:
+    pane.page.get_by_role("button", name="Layers").click()
+    pane.page.get_by_label("Dimensions").check()
+    assert pane.host.hears("show") == {"type": "show", "layers": ["dimensions"]}
+    pane.page.get_by_label("Names").check()
+    assert pane.host.hears("show", 2) == {"type": "show", "layers": ["names", "dimensions"]}
+    pane.host.drop()
+    pane.host.hears("ready", 2)
+    assert pane.host.hears("show", 3)["layers"] == ["names", "dimensions"]
+    pane.page.reload()
+    assert pane.host.hears("show", 4)["layers"] == ["names", "dimensions"]
+
+
+@pytest.mark.parametrize("text", ["", "null", "7", "[]", "{", '{"type":"unknown"}', '{"no":"type"}'])
+def test_what_is_no_message_is_passed_over(pane: Pane, text: str) -> None:
+    assert pane.host._connection is not None
+    pane.host._connection.send(text)
+    pane.shows(degrees=7)
+    expect(pane.find("#status-freedom")).to_have_text("7 degrees of freedom")
+
+
+def test_files_are_asked_for_and_saved(pane: Pane) -> None:
+    formats = ["svg", "pdf", "png", "dxf", "step", "stl", "3mf"]
+    for count, name in enumerate(formats, 1):
+        pane.page.get_by_role("button", name="Export").click()
+        pane.find("#export-menu").get_by_role("button").nth(count - 1).click()
+        assert pane.host.hears("export", count) == {"type": "export", "format": name}
+    content = bytes(range(256)) * 3
+    with pane.page.expect_download() as saved:
+        pane.host.say({"type": "export", "name": "plate.dxf", "data": base64.b64encode(content).decode()})
+    assert saved.value.suggested_filename == "plate.dxf"
+    assert saved.value.path().read_bytes() == content
+
+
+# VS Code
+
+
+def test_in_vs_code_messages_go_by_its_api(open_pane) -> None:
+    pane = open_pane(script=CODE)
+    pane.page.wait_for_function("() => window.sent.some(m => m.type === 'ready')")
+    assert "/socket" not in pane.host.requests
+    pane.page.evaluate("message => window.postMessage(message)", picture())
+    expect(pane.find("#status")).to_have_text("Solved")
+    pane.page.mouse.click(*pane.at(-40, 10))
+    sent = pane.page.evaluate("() => window.sent")
+    assert [m["type"] for m in sent] == ["ready", "hover", "goto"]
+    assert pane.page.evaluate("() => window.kept.uri") == URI
+    expect(pane.find("#theme")).to_be_hidden()
+    pane.page.get_by_role("button", name="Points", exact=True).click()
+    pane.page.reload()
+    expect(pane.page.get_by_role("button", name="Points", exact=True)).to_have_attribute(
+        "aria-pressed", "true"
+    )
+
+
+def test_in_vs_code_its_colors_win(open_pane) -> None:
+    pane = open_pane(script=CODE)
+    pane.page.evaluate(
+        """() => {
+            document.body.classList.add("vscode-dark");
+            document.documentElement.style.setProperty("--vscode-sideBar-background", "rgb(1, 2, 3)");
+        }"""
+    )
+    background = "() => getComputedStyle(document.querySelector('.toolbar')).backgroundColor"
+    assert pane.page.evaluate(background) == "rgb(1, 2, 3)"
+
+
+# Themes and sizes
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_themes(open_pane, scheme: str) -> None:
+    def lightness() -> float:
+        color = pane.page.evaluate(
+            "() => getComputedStyle(document.querySelector('.toolbar')).backgroundColor"
+        )
+        return sum(map(int, color[4:-1].split(", "))) / 765
+
+    pane = open_pane(color_scheme=scheme)
+    assert (lightness() > 0.5) == (scheme == "light")
+    button = pane.page.get_by_role("button", name="Theme")
+    button.click()
+    assert lightness() > 0.5
+    button.click()
+    assert lightness() < 0.5
+    pane.page.reload()
+    assert lightness() < 0.5
+    button.click()
+    assert (lightness() > 0.5) == (scheme == "light")
+
+
+@pytest.mark.parametrize("width", [320, 480, 720, 1400])
+def test_everything_fits_into_narrow_windows(open_pane, width: int) -> None:
+    pane = open_pane(viewport={"width": width, "height": 800})
+    pane.host.hears("ready")
+    pane.shows(problems=[problem(message="a `long` " * 30)])
+    size = pane.page.evaluate(
+        "() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
+    )
+    assert size == [width, 800]
+    for part in ("#stage", "#knobs", "#problems", ".statusbar"):
+        box = pane.find(part).bounding_box()
+        assert box is not None
+        assert box["x"] >= 0
+        assert box["x"] + box["width"] <= width + 0.5
+        assert box["height"] > 20
+    stage = pane.find("#stage").bounding_box()
+    assert stage is not None
+    assert stage["height"] > 150
+
+
+# Without a mouse
+
+
+def test_every_control_has_a_name(pane: Pane) -> None:
+    pane.shows(problems=[problem(fixes=1)])
+    unnamed = pane.page.eval_on_selector_all(
+        "button, input, select, [tabindex]",
+        """all => all.filter(one => !(one.getAttribute("aria-label") || one.textContent.trim() || one.labels?.length))
+            .map(one => one.outerHTML)""",
+    )
+    assert unnamed == []
+
+
+def test_menus_work_by_keys(pane: Pane) -> None:
+    pane.page.get_by_role("button", name="Export").focus()
+    pane.page.keyboard.press("Enter")
+    expect(pane.find("#export-menu")).to_be_visible()
+    pane.page.keyboard.press("Tab")
+    pane.page.keyboard.press("ArrowDown")
+    pane.page.keyboard.press("Enter")
+    assert pane.host.hears("export")["format"] == "pdf"
+    expect(pane.find("#export-menu")).to_be_hidden()
+    expect(pane.page.get_by_role("button", name="Export")).to_be_focused()
+    pane.page.keyboard.press("Enter")
+    pane.page.keyboard.press("Escape")
+    expect(pane.find("#export-menu")).to_be_hidden()
+
+
+def test_panels_fold_and_stay_folded(pane: Pane) -> None:
+    fold = pane.page.get_by_role("button", name="Parameters")
+    expect(pane.find("#knobs-list")).to_be_visible()
+    fold.click()
+    expect(pane.find("#knobs-list")).to_be_hidden()
+    expect(fold).to_have_attribute("aria-expanded", "false")
+    pane.page.reload()
+    pane.host.hears("ready", 2)
+    pane.shows()
+    expect(pane.find("#knobs-list")).to_be_hidden()
+
+
+def test_keys_in_a_field_are_typed(pane: Pane) -> None:
+    before = pane.scale, json.dumps(pane.at(0, 0))
+    field = pane.page.get_by_role("textbox", name="width")
+    field.focus()
+    pane.page.keyboard.type("+f0-")
+    assert (pane.scale, json.dumps(pane.at(0, 0))) == before

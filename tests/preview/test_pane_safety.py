@@ -1,0 +1,182 @@
+"""The preview pane in Chromium: drawings and texts that mean harm, and drawings that must not lose anything."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+
+from aidl_lang.export import Options
+from aidl_lang.pipeline import compile
+from aidl_lang.source import SourceFile
+from tests.preview.conftest import Pane
+from tests.preview.messages import SVG, URI, handle, knob, place, problem
+from tests.preview.scripted import ScriptedHost
+
+EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*.aidl"))
+EVIL = "window.harmed = true; fetch('/harm')"
+HTML = "http://www.w3.org/1999/xhtml"
+
+HOSTILE = {
+    "script": f"<script>{EVIL}</script>",
+    "script with a prefix": f'<s:script xmlns:s="http://www.w3.org/2000/svg">{EVIL}</s:script>',
+    "script elsewhere": f'<script xmlns="{HTML}">{EVIL}</script>',
+    "load": f'<g onload="{EVIL}"><path d="M0 0L9 9" onload="{EVIL}" onmouseover="{EVIL}" onfocus="{EVIL}"/></g>',
+    "image": f'<image href="/harm" x="0" y="0" width="9" height="9" onerror="{EVIL}" onload="{EVIL}"/>',
+    "image of old": '<image xmlns:xlink="http://www.w3.org/1999/xlink" xlink:href="/harm" width="9" height="9"/>',
+    "html": f'<foreignObject width="99" height="99"><img xmlns="{HTML}" src="/harm" onerror="{EVIL}"/></foreignObject>',
+    "frame": f'<foreignObject><iframe xmlns="{HTML}" src="/harm" srcdoc="&lt;script&gt;{EVIL}&lt;/script&gt;"/></foreignObject>',
+    "link": f'<a href="javascript:{EVIL}"><path class="trap" d="M-50 30L50 30L50 -30L-50 -30Z" fill="red"/></a>',
+    "use": '<use href="/harm#a"/><use href="data:image/svg+xml,x#a"/>',
+    "animation": f'<path d="M0 0L9 9"><animate attributeName="href" values="javascript:{EVIL}"/><set attributeName="onload" to="{EVIL}"/></path>',
+    "style": "<style>@import '/harm'; body { display: none } * { background: url(/harm) }</style>",
+    "style of one": '<path d="M0 0L9 9" style="fill: url(/harm); background: url(/harm)"/>',
+    "paint from elsewhere": '<path d="M0 0L9 9" fill="url(/harm#a)" stroke="url(&quot;/harm&quot;)"/>',
+    "paint written oddly": '<path d="M0 0L9 9" fill="u\\72l(/harm)" stroke="URL(/harm)" clip-path="url(/harm)"/>',
+    "filter": '<filter id="f"><feImage href="/harm"/></filter><path filter="url(#f)" mask="url(/harm)" d="M0 0L9 9"/>',
+    "instruction": "<?xml-stylesheet href='/harm' type='text/css'?>",
+    "entity": "&harm;",
+    "handler in capitals": f'<path d="M0 0L9 9" ONLOAD="{EVIL}" onClick="{EVIL}"/>',
+    "embedded": f'<embed xmlns="{HTML}" src="/harm"/><object xmlns="{HTML}" data="/harm"/>',
+}
+
+
+@pytest.fixture
+def unguarded(open_pane):
+    """The pane without a Content-Security-Policy, so that nothing but the pane itself stands in the way."""
+    with ScriptedHost(csp="") as host:
+        pane = open_pane(host)
+        host.hears("ready")
+        pane.shows()
+        yield pane
+
+
+@pytest.mark.parametrize("content", HOSTILE.values(), ids=HOSTILE)
+def test_a_hostile_drawing_does_nothing(unguarded: Pane, content: str) -> None:
+    unguarded.shows(svg=SVG.replace("</svg>", f"{content}</svg>"))
+    unguarded.move(0, 0)
+    unguarded.page.mouse.click(*unguarded.at(0, -20))
+    unguarded.page.wait_for_timeout(30)
+    assert unguarded.page.evaluate("() => window.harmed") is None
+    assert "/harm" not in unguarded.host.requests
+    assert unguarded.page.url == unguarded.host.url
+    nodes = unguarded.page.eval_on_selector_all(
+        "#world *",
+        "all => all.flatMap(one => [one.localName, ...[...one.attributes].map(a => a.name + '=' + a.value)])",
+    )
+    assert not [
+        n
+        for n in nodes
+        if re.match(r"on|href|style|script|image|foreign|a$|use$|animate|set$|filter|xlink", n)
+    ]
+    assert not [n for n in nodes if "harm" in n]
+
+
+def test_the_same_would_do_harm_elsewhere(unguarded: Pane) -> None:
+    """So that the test above can fail."""
+    content = HOSTILE["image"] + HOSTILE["html"]
+    unguarded.page.evaluate(
+        """text => document.body.append(document.importNode(
+            new DOMParser().parseFromString(text, "image/svg+xml").documentElement, true))""",
+        SVG.replace("</svg>", f"{content}</svg>"),
+    )
+    unguarded.page.wait_for_function("() => window.harmed")
+    assert "/harm" in unguarded.host.requests
+
+
+@pytest.mark.parametrize(
+    "text", ["", "no XML", "<svg>", "<html xmlns='http://www.w3.org/1999/xhtml'/>", "<svg/>"]
+)
+def test_what_is_no_drawing_is_said(pane: Pane, text: str) -> None:
+    pane.shows(svg=text)
+    expect(pane.find(".toast")).to_contain_text("not an SVG document")
+    expect(pane.find("#empty")).to_be_visible()
+    pane.complaints.clear()  # Chromium styles its own report of broken XML, and the policy stops that
+    pane.shows()
+    expect(pane.find("#empty")).to_be_hidden()
+
+
+def test_names_in_a_drawing_are_not_those_of_the_page(pane: Pane) -> None:
+    clip = '<clipPath id="stage"><rect x="0" y="-30" width="50" height="60"/></clipPath>'
+    content = f'<defs>{clip}</defs><g id="status" clip-path="url(#stage)"><rect id="world" width="9" height="9"/></g>'
+    pane.shows(svg=SVG.replace("</svg>", f"{content}</svg>"))
+    assert (
+        pane.find("[id=stage]").count()
+        == pane.find("[id=status]").count()
+        == pane.find("[id=world]").count()
+        == 1
+    )
+    target = pane.page.eval_on_selector(
+        "#world [clip-path]", "one => one.getAttribute('clip-path').slice(5, -1)"
+    )
+    assert pane.find(f"clipPath#{target} rect").count() == 1
+
+
+def test_hostile_texts_are_shown_as_text(pane: Pane) -> None:
+    evil = '<img src=/harm onerror="window.harmed=true"><script>window.harmed=true</script>`<b>`&amp;'
+    seen = evil.replace("`", "")
+    pane.shows(
+        uri=f"file:///a/{evil}",
+        elements=[
+            {
+                "path": f"part.{evil}",
+                "kind": "structure",
+                "type": evil,
+                "range": None,
+                "uri": None,
+                "hint": evil,
+            }
+            for _ in range(5)
+        ],
+        knobs=[
+            knob(path=f"{evil}.{evil}", name=evil, doc=evil),
+            knob(path="c", name="c", kind="choice", value=evil, choices=[evil], doc=""),
+            knob(path="t", name="t", kind="text", value=evil, doc=""),
+        ],
+        handles=[handle(hint=evil)],
+        problems=[problem(message=evil, hints=[evil], code=evil, fixes=1, titles=[evil], points=[[0, 0]])],
+        conflicts=[
+            {
+                "headline": evil,
+                "constraints": [
+                    {"text": evil, "range": place(1, 0, 1), "uri": evil, "elements": [], "off": 1}
+                ],
+            }
+        ],
+        motions=[{"words": evil, "elements": [0], "arrows": [{"from": [0, 0], "to": [9, 0]}], "turns": []}],
+        source={"text": f"{evil}\n", "tokens": [[0, 0, len(evil), "keyword"]]},
+        status=evil,
+    )
+    pane.page.get_by_role("button", name="Freedom").click()
+    pane.move(-40, 10)
+    pane.host.say({"type": "error", "message": evil})
+    expect(pane.find(".toast")).to_contain_text(seen)
+    for where, text in (
+        ("tooltip", evil),
+        ("problems-list", seen),
+        ("knobs-list", seen),
+        ("freedom-list", evil),
+    ):
+        expect(pane.find(f"#{where}")).to_contain_text(text)
+    expect(pane.find("#source-lines code").first).to_have_text(evil)
+    assert pane.page.evaluate("() => window.harmed") is None
+    assert pane.find("img, b, script:not([src])").count() == 0
+    assert "/harm" not in pane.host.requests
+
+
+@pytest.mark.parametrize("example", EXAMPLES[::3], ids=lambda path: path.stem)
+def test_nothing_of_a_drawing_is_lost(pane: Pane, example: Path) -> None:
+    compiled = compile(SourceFile(example.name, example.read_text("utf-8")))
+    layers = frozenset({"names", "points", "bbox", "constraints", "dof", "plan"})
+    svg = compiled.export(".svg", Options(layers)).decode()
+    pane.shows(svg=svg, uri=f"{URI}/{example.name}")
+    for shape in ("path", "circle", "rect", "clipPath"):
+        expect(pane.find(f".drawing {shape}")).to_have_count(len(re.findall(rf"<{shape}\b", svg)))
+    words = re.findall(r"<text[^>]*>([^<]*)</text>", svg)
+    assert len(words) == pane.find(".drawing text").count() > 0
+    fills = set(re.findall(r'fill="([^"]*)"', svg))
+    assert fills == set(
+        pane.page.eval_on_selector_all(".drawing [fill]", "all => all.map(one => one.getAttribute('fill'))")
+    )
