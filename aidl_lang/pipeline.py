@@ -297,6 +297,27 @@ def compile(
         return _finish(built, diagnostics, settings, watch, known, frozenset(show), memory)
 
 
+def placed(
+    program: Program, params: Mapping[str, str | float | bool], settings: Settings = Settings()
+) -> tuple[Model, Evaluator] | None:
+    """Where the parts of a program come to lie with these params, which are not drawn; None where it does not
+    solve.
+    """
+    from aidl_lang.expression import Evaluator
+    from aidl_lang.lower import lower
+    from aidl_lang.solver import Status, solve
+
+    with _working:
+        built = interpret(program, params, settings.building)
+        if has_errors(built.diagnostics):
+            return None
+        lowered = lower(built.model)
+        solution = solve(lowered.problem, settings.solving)
+    if solution.status is not Status.SOLVED:
+        return None
+    return built.model, Evaluator(dict(zip(lowered.unknowns, solution.values.tolist(), strict=True)))
+
+
 def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled:
     """An outcome with its parts where another solution of the same model has them, as while one is dragged.
 
@@ -393,5 +414,6 @@ __all__ = [
     "formatted",
     "front",
     "knobs",
+    "placed",
     "redrawn",
 ]

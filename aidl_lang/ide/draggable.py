@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from aidl_lang import expression as ex
 from aidl_lang.boxes import box_of, spelled_out
 from aidl_lang.building.scopes import Scope
-from aidl_lang.expression import Evaluator, Expression
+from aidl_lang.expression import Evaluator, Expression, Unknown
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.model import Geometry, Model, Structure, convert, own_geometry
 from aidl_lang.primitives import xy
@@ -46,6 +47,18 @@ class Grip:
     thing: Geometry | Structure = field(repr=False)
     depth: int
 
+    @property
+    def is_frame(self) -> bool:
+        """Whether it stands for a structure, which goes where its frame goes."""
+        return isinstance(self.thing, Structure)
+
+    @property
+    def frame(self) -> frozenset[Unknown]:
+        """The unknowns of the frame of a structure."""
+        if not isinstance(self.thing, Structure):
+            return frozenset()
+        return frozenset(ex.unknowns([self.thing.frame.x, self.thing.frame.y]))
+
     def at(self, evaluate: Evaluator) -> Vec:
         return evaluate(self.x), evaluate(self.y)
 
@@ -53,7 +66,7 @@ class Grip:
 def grips(model: Model) -> Iterator[Grip]:
     """All points of a model by which it might be moved, in order of writing; none of copies."""
     for depth, structure in _structures(model.root, 0):
-        if structure.parent is not None and structure.frame.x.op == structure.frame.y.op == "unknown":
+        if structure.parent is not None:
             yield from _of_structure(model, structure, depth)
         for geometry in structure.own():
             if geometry.source is None and not geometry.construction:

@@ -1,5 +1,5 @@
-"""Taking hold of a point of the drawing: what can be moved, where everything goes when it is, and how the text
-has to change for that.
+"""Taking hold of a point of the drawing: what can be moved, where everything goes when it is, and how the
+text has to change for that.
 
 A point moves by what the text leaves open, in this order: first guesses, as the points of a sketch do; the
 sizes of what it is a point of; a `param`; and the place of the drawing as a whole, by first guesses again.
@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from aidl_lang import pipeline
 from aidl_lang.diagnostics import Edit
@@ -21,7 +23,7 @@ from aidl_lang.geometry.curves import Vec
 from aidl_lang.ide.draggable import Grip, grips, is_somewhere
 from aidl_lang.ide.guesses import Guess, guesses
 from aidl_lang.ide.knob_dragging import moved_by_params, turned
-from aidl_lang.ide.mobility import Ways, belongs, pull, values_at, ways
+from aidl_lang.ide.mobility import AXES, Way, Ways, belongs, is_movable, pull, values_at, ways
 from aidl_lang.ide.view import View
 from aidl_lang.ide.writing_back import Refusal, compiled, shortest
 from aidl_lang.lower import Lowered, lower
@@ -37,7 +39,7 @@ _FARTHEST = 1e6
 """Millimetres from the origin that a point may be dragged."""
 _WEIGHT = 1e4
 _DEAR = 1e-3
-"""How much shorter a change of a position is that counts as much as one of a size, while sizes are dragged."""
+"""How much shorter a change is that counts as much as one of what is dragged, where it is only to follow."""
 _SECONDS = 1.0
 _FINE = 1e-6
 
@@ -79,13 +81,13 @@ class Dragged:
 
 
 def handles(view: View, *, params: bool = True) -> list[Handle]:
-    """The points that can be dragged; without `params`, only those that this takes no further runs to tell."""
+    """The points that can be dragged; without `params`, only those that take no further runs to tell."""
     found = [*_by_numbers(view)]
     if params and view.outcome is not None and view.outcome.built is not None:
         taken = {handle.id for handle in found if not _is_slide(view, handle.id)}
         known = moved_by_params(view, _grips(view))
         by_param = [
-            Handle(grip.id, grip.path, at, "param", f"{_name(grip)}: drag to change {_listed(known[grip.id])}")
+            Handle(grip.id, grip.path, at, "param", _by_param(grip, known[grip.id]))
             for grip, at in _places(view)
             if grip.id in known and grip.id not in taken
         ]
@@ -104,12 +106,12 @@ def drag(view: View, handle: str, to: Vec, step: float = STEP) -> Dragged | Refu
     if found is None or grip is None:
         return Refusal("there is nothing to drag by this name")
     if found.moves == "param":
-        turn = turned(view, grip, to, _grips_of)
+        turn = turned(view, grip, to, step)
         if isinstance(turn, Refusal):
             return turn
         shown, at, edits = turn
         return Dragged(shown, at, view, grip, step, edits)
-    return _pulled(view, grip, to, step, by_sizes=found.moves == "size")
+    return _pulled(view, grip, to, step)
 
 
 # --- What can be dragged -------------------------------------------------------------------------
@@ -124,8 +126,9 @@ def _grips(view: View) -> tuple[Grip, ...]:
     outcome = view.outcome
     if outcome is None or outcome.built is None or outcome.status != "solved" or view.is_stale:
         return ()
-    found = sorted(grips(outcome.built), key=lambda grip: grip.depth)
-    return tuple(found[:_MOST_GRIPS])
+    written = _written(view)
+    found = [grip for grip in grips(outcome.built) if not grip.is_frame or grip.frame & written]
+    return tuple(sorted(found, key=lambda grip: grip.depth)[:_MOST_GRIPS])
 
 
 def _places(view: View) -> Iterator[tuple[Grip, Vec]]:
@@ -141,7 +144,7 @@ def _places(view: View) -> Iterator[tuple[Grip, Vec]]:
 def _ways(view: View) -> Ways:
     outcome = view.outcome
     if outcome is None or outcome.built is None or outcome.evaluate is None:
-        return Ways(frozenset(), frozenset(), frozenset())
+        return Ways()
     found = [grip for grip, _ in _places(view)]
     return ways(outcome.built, found, outcome.evaluate, _written(view))
 
@@ -200,59 +203,91 @@ def _name(grip: Grip) -> str:
     return f"{path}.{grip.name}" if grip.name else path
 
 
-def _listed(names: tuple[str, ...]) -> str:
-    return " and ".join(f"`{name}`" for name in names)
+def _by_param(grip: Grip, params: tuple[str, ...]) -> str:
+    return f"{_name(grip)}: drag to change {' and '.join(f'`{name}`' for name in params)}"
 
 
 # --- Pulling -------------------------------------------------------------------------------------
 
 
-def _pulled(view: View, grip: Grip, to: Vec, step: float, *, by_sizes: bool) -> Dragged | Refusal:
-    outcome = view.outcome
-    if outcome is None or outcome.built is None or outcome.evaluate is None:
-        return Refusal("there is no drawing")
-    wish = pull(outcome.built, grip, *to, _WEIGHT)
-    lowered = lower(replace(outcome.built, constraints=[*outcome.built.constraints, wish]))
-    solution = _solved(lowered, outcome.evaluate, _sizes_near(view, grip) if by_sizes else frozenset())
-    if solution.status is not Status.SOLVED:
+def _pulled(view: View, grip: Grip, to: Vec, step: float) -> Dragged | Refusal:
+    outcome, known = view.outcome, _ways(view)
+    way = known.own.get(grip.id) or known.sizes.get(grip.id) or known.whole.get(grip.id)
+    if outcome is None or outcome.built is None or outcome.evaluate is None or way is None:
+        return Refusal("there is nothing to drag")
+    model = outcome.built
+    wishes = [pull(model, grip, way.directions, to, _WEIGHT)]
+    if (pin := _grips_of(view).get(way.pin or "")) is not None:
+        wishes.append(pull(model, pin, AXES, pin.at(outcome.evaluate), None))
+    lowered = lower(replace(model, constraints=[*model.constraints, *wishes]))
+    by_sizes = grip.id in known.sizes and grip.id not in known.own
+    found = _nearest(_Pull(view, grip, lowered, outcome.evaluate, by_sizes), way, to)
+    if found is None:
         return Refusal(f"`{_name(grip)}` cannot go there: the constraints would not hold")
-    shown = pipeline.redrawn(outcome, lowered, solution)
-    assert shown.evaluate is not None
-    at = grip.at(shown.evaluate)
-    if not is_somewhere(at):
-        return Refusal(f"`{_name(grip)}` cannot go there")
-    return Dragged(replace(view, outcome=shown, drawn=shown), at, view, grip, step)
+    shown = pipeline.redrawn(outcome, lowered, found[0])
+    return Dragged(replace(view, outcome=shown, drawn=shown), found[1], view, grip, step)
 
 
-def _sizes_near(view: View, grip: Grip) -> frozenset[Unknown]:
-    """The kept sizes of what a point is of, as far as the text says them."""
-    return frozenset(u for u in _written(view) if u.kept and belongs(u, grip))
+@dataclass(frozen=True)
+class _Pull:
+    """A model with the wish that a point be elsewhere, by first guesses or by sizes too."""
+
+    view: View
+    grip: Grip
+    lowered: Lowered
+    evaluate: Evaluator
+    by_sizes: bool
+
+    def solved(self, *, everything: bool) -> tuple[Solution, Vec] | None:
+        """The solution nearest to the present one, and where the point is then; None if there is none.
+
+        All is solved at once, since it all holds as it is. What no number of the text says stays; with
+        `everything`, it moves where it has to. Likewise positions, while sizes are changed.
+        """
+        lowered, problem = self.lowered, self.lowered.problem
+        written = _written(self.view)
+        resized = self._are({u for u in written if self.by_sizes and u.kept and belongs(u, self.grip.thing)})
+        said = self._are(written) & ~problem.kept
+        movable = is_movable(lowered, self.evaluate, written) & ~problem.kept
+        free = resized | (movable if everything else said)
+        dear = np.where(resized, 1.0, np.where(said, _DEAR if self.by_sizes else 1.0, _DEAR))
+        at = values_at(lowered, self.evaluate)
+        flat = replace(
+            problem,
+            initial=at,
+            scale=dear * problem.scale,
+            kept=~free,
+            group=np.zeros(len(at), dtype=np.int64),
+            frame_of=np.full(len(at), -1),
+            parent=np.array([-1]),
+            holder=np.zeros_like(problem.holder),
+            observables=(),
+        )
+        solution = solve(flat, Settings(tolerance=1e-10, seconds=_SECONDS))
+        if solution.status is not Status.SOLVED:
+            return None
+        guessed = np.array([u.guess for u in lowered.unknowns])
+        changed = np.flatnonzero(problem.kept & (np.abs(solution.values - guessed) > 1e-9 * problem.scale))
+        place = self.grip.at(Evaluator(dict(zip(lowered.unknowns, solution.values.tolist(), strict=True))))
+        return (replace(solution, changed=tuple(changed.tolist())), place) if is_somewhere(place) else None
+
+    def _are(self, unknowns: AbstractSet[Unknown]) -> NDArray[np.bool_]:
+        return np.array([u in unknowns for u in self.lowered.unknowns], dtype=np.bool_)
 
 
-def _solved(lowered: Lowered, evaluate: Evaluator, sizes: frozenset[Unknown]) -> Solution:
-    """The solution that is nearest to the present one: everything at once, since everything holds as it is.
+def _nearest(pull: _Pull, way: Way, to: Vec) -> tuple[Solution, Vec] | None:
+    """What brings the point nearest: if it will do, without moving what the text does not say."""
 
-    The `sizes` may change, and positions then only as far as they have to.
-    """
-    problem, at = lowered.problem, values_at(lowered, evaluate)
-    resized = np.array([u in sizes for u in lowered.unknowns], dtype=np.bool_)
-    width = len(at)
-    scale = np.where(resized | ~np.bool_(sizes), 1.0, _DEAR) * problem.scale
-    flat = replace(
-        problem,
-        initial=at,
-        scale=scale,
-        kept=problem.kept & ~resized,
-        group=np.zeros(width, dtype=np.int64),
-        frame_of=np.full(width, -1),
-        parent=np.array([-1]),
-        holder=np.zeros_like(problem.holder),
-        observables=(),
-    )
-    solution = solve(flat, Settings(tolerance=1e-10, seconds=_SECONDS))
-    guessed = np.array([u.guess for u in lowered.unknowns])
-    changed = np.flatnonzero(problem.kept & (np.abs(solution.values - guessed) > 1e-9 * problem.scale))
-    return replace(solution, changed=tuple(changed.tolist()))
+    def off(found: tuple[Solution, Vec]) -> float:
+        x, y = found[1][0] - to[0], found[1][1] - to[1]
+        return max(abs(u * x + v * y) for u, v in way.directions)
+
+    first = pull.solved(everything=False)
+    if first is not None and off(first) <= _FINE:
+        return first
+    second = pull.solved(everything=True)
+    found = [each for each in (first, second) if each is not None]
+    return min(found, key=lambda each: round(off(each), 6), default=None)
 
 
 # --- Writing it into the text --------------------------------------------------------------------

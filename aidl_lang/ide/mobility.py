@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from scipy.linalg import qr
 
 from aidl_lang import expression as ex
 from aidl_lang.expression import Evaluator, Unknown
+from aidl_lang.geometry.curves import Vec
 from aidl_lang.ide.draggable import Grip
 from aidl_lang.lower import Lowered, lower
 from aidl_lang.model import Comparison, Constraint, Geometry, Model, Structure
@@ -35,14 +36,20 @@ _RANK = 1e-9
 _MOVES = 1e-6
 """Velocities that count as none, where one is typical."""
 _HOLDS = 1e-6
+_NARROW = 1e-3
+"""A second direction counts if it is this much of the first."""
+AXES: tuple[Vec, Vec] = ((1.0, 0.0), (0.0, 1.0))
 _NOWHERE = Span(SourceFile("dragging", ""), 0, 0)
 
 
-def pull(model: Model, grip: Grip, x: float, y: float, weight: float) -> Constraint:
-    """The wish that a point be somewhere."""
-    pairs = ((grip.x, x), (grip.y, y))
-    rows = tuple(Comparison("==", e, ex.constant(v), LENGTH, frozenset()) for e, v in pairs)
-    return Constraint(model.root, rows, grip.id, _NOWHERE, weight)
+@dataclass(frozen=True)
+class Way:
+    """How a point can be moved: along any of some directions (unit vectors, one or two), while another point,
+    by its id, is to stay where it is, for else everything would be drawn along.
+    """
+
+    directions: tuple[Vec, ...]
+    pin: str | None = None
 
 
 @dataclass(frozen=True)
@@ -50,27 +57,47 @@ class Ways:
     """
     own    points that a first guess moves against others
     sizes  points that a kept size of their own moves
-    whole  points that move only as the drawing slides as a whole, by first guesses too
+    whole  points that move as the drawing slides as a whole, by first guesses too
     """
 
-    own: frozenset[str]
-    sizes: frozenset[str]
-    whole: frozenset[str]
+    own: Mapping[str, Way] = field(default_factory=dict)
+    sizes: Mapping[str, Way] = field(default_factory=dict)
+    whole: Mapping[str, Way] = field(default_factory=dict)
+
+
+def pull(model: Model, grip: Grip, directions: Sequence[Vec], to: Vec, weight: float | None) -> Constraint:
+    """The wish that a point be somewhere, as far as some directions tell; without a weight, the command."""
+    rows = []
+    for u, v in directions:
+        x, y = ex.mul(ex.constant(u), grip.x), ex.mul(ex.constant(v), grip.y)
+        wanted = ex.constant(u * to[0] + v * to[1])
+        rows.append(Comparison("==", ex.add(x, y), wanted, LENGTH, frozenset()))
+    return Constraint(model.root, tuple(rows), grip.id, _NOWHERE, weight)
 
 
 def ways(model: Model, grips: Sequence[Grip], evaluate: Evaluator, written: AbstractSet[Unknown]) -> Ways:
     """How each point can be moved; `written` are the unknowns that a number of the text stands for."""
-    wishes = {grip: pull(model, grip, *grip.at(evaluate), 1.0) for grip in grips}
+    wishes = {grip: pull(model, grip, AXES, grip.at(evaluate), 1.0) for grip in grips}
     lowered = lower(replace(model, constraints=[*model.constraints, *wishes.values()]))
     scene = _Scene(lowered, evaluate, wishes, written)
-    own: set[str] = set()
-    sizes: set[str] = set()
-    whole: set[str] = set()
+    own: dict[str, Way] = {}
+    sizes: dict[str, Way] = {}
+    whole: dict[str, Way] = {}
     for part in scene.parts():
-        own |= part.own
-        sizes |= part.sizes
-        whole |= part.whole
-    return Ways(frozenset(own), frozenset(sizes), frozenset(whole))
+        against, along = part.by_positions()
+        own |= against
+        whole |= along
+        sizes |= part.by_sizes()
+    return Ways(own, sizes, whole)
+
+
+def is_movable(lowered: Lowered, evaluate: Evaluator, written: AbstractSet[Unknown]) -> NDArray[np.bool_]:
+    """Which unknowns (n,) may move at all: positions that do so already, and what a number of the text says.
+
+    A frame that no constraint mentions stays where it is, unless its place is written.
+    """
+    free = [(not u.kept and u in evaluate.values) or u in written for u in lowered.unknowns]
+    return np.array(free, dtype=np.bool_)
 
 
 def values_at(lowered: Lowered, evaluate: Evaluator) -> Floats:
@@ -103,7 +130,7 @@ class _Scene:
         points = np.stack((first, first + 1), axis=1).ravel()
         self.is_written = np.array([u in written for u in self.unknowns], dtype=np.bool_)
         self.is_free = ~problem.kept
-        movable = self.is_free | self.is_written
+        movable = is_movable(lowered, evaluate, written)
         with np.errstate(all="ignore"):
             _, matrix = linearise(problem.tape, at, rows.expression[np.concatenate((equal, points))])
         scaled = matrix.scaled(np.ones(len(matrix)), problem.scale)
@@ -113,64 +140,101 @@ class _Scene:
     def parts(self) -> Iterator[_Part]:
         """What hangs together and has points in it."""
         count, width = len(self.matrix), len(self.unknowns)
-        labels = components(self.matrix.rows, self.matrix.columns + count, count + width)
-        of_column = labels[count:]
-        slides = self.equations + 2 * np.arange(len(self.grips))
-        for label in np.unique(labels[self.equations : count]).tolist():
-            columns = np.flatnonzero(of_column == label)
-            grips = np.flatnonzero((labels[slides] == label) | (labels[slides + 1] == label))
+        x = self.equations + 2 * np.arange(len(self.grips))
+        links = np.concatenate((self.matrix.rows, x)), np.concatenate((self.matrix.columns + count, x + 1))
+        labels = components(*links, count + width)
+        for label in np.unique(labels[x]).tolist():
+            columns = np.flatnonzero(labels[count:] == label)
             if 0 < len(columns) <= MOST_UNKNOWNS:
-                yield _Part(self, columns, np.flatnonzero(labels[: self.equations] == label), grips)
+                equations = np.flatnonzero(labels[: self.equations] == label)
+                yield _Part(self, columns, equations, np.flatnonzero(labels[x] == label))
 
 
 class _Part:
-    """Points that hang together. `own`, `sizes` and `whole` are the ids of those that can be moved so."""
+    """Points that hang together, by their ids, and how they can be moved (see `Ways`)."""
 
     def __init__(self, scene: _Scene, columns: Ints, equations: Ints, grips: Ints) -> None:
         self.scene, self.columns = scene, columns
-        self.own: set[str] = set()
-        self.sizes: set[str] = set()
-        self.whole: set[str] = set()
+        self.grips = [scene.grips[index] for index in grips.tolist()]
+        self.others = len(scene.grips) - len(self.grips)
         rows = scene.equations + np.stack((2 * grips, 2 * grips + 1), axis=1)
-        jacobian = scene.matrix.take(equations).dense(columns) if len(equations) else np.zeros((0, len(columns)))
-        velocity = np.stack([self._dense(row) for row in rows])
-        free, written = scene.is_free[columns], scene.is_written[columns]
-        positions = np.zeros((len(columns), 0))
-        if free.any():
-            null = _null_space(jacobian[:, free])
-            positions = np.zeros((len(columns), null.shape[1]))
-            positions[free] = null
-        moved = velocity @ positions
-        mean = moved.sum(axis=0) / len(scene.grips)
-        everything = _null_space(jacobian)
-        for number, index in enumerate(grips.tolist()):
-            grip = scene.grips[index]
-            if _moves(moved[number]) and self._is_written(positions, moved[number], written):
-                (self.own if _moves(moved[number] - mean) else self.whole).add(grip.id)
-            sizes = ~free & written & self._belongs(grip)
-            if sizes.any() and _moves(velocity[number][:, sizes] @ everything[sizes]):
-                self.sizes.add(grip.id)
+        self.velocity = np.stack([self._dense(row) for row in rows])
+        self.free, self.written = scene.is_free[columns], scene.is_written[columns]
+        jacobian = self._dense(equations)
+        self.positions = np.zeros((len(columns), 0))
+        if self.free.any():
+            null = _null_space(jacobian[:, self.free])
+            self.positions = np.zeros((len(columns), null.shape[1]))
+            self.positions[self.free] = null
+        self.everything = _null_space(jacobian)
+
+    def by_positions(self) -> tuple[dict[str, Way], dict[str, Way]]:
+        """The points that move against most others, and those that move with them."""
+        moved = self.velocity @ self.positions
+        world = _World(moved, self.others)
+        own: dict[str, Way] = {}
+        whole: dict[str, Way] = {}
+        for number, grip in enumerate(self.grips):
+            if not (_moves(moved[number]) and self._is_written(moved[number])):
+                continue
+            if _moves(against := moved[number] - world.velocity):
+                own[grip.id] = Way(_directions(against), self._pin(world))
+            else:
+                whole[grip.id] = Way(_directions(moved[number]))
+        return own, whole
+
+    def by_sizes(self) -> dict[str, Way]:
+        """The points that move against most others where a size of what they are points of changes."""
+        found: dict[str, Way] = {}
+        for thing in dict.fromkeys(grip.thing for grip in self.grips):
+            own = np.array([belongs(self.scene.unknowns[c], thing) for c in self.columns.tolist()])
+            own &= ~self.free & self.written
+            if not own.any():
+                continue
+            motions = self.everything @ _null_space(self.everything[~self.free & ~own])
+            moved = self.velocity @ motions
+            world = _World(moved, self.others)
+            for number, grip in enumerate(self.grips):
+                if grip.thing is thing and _moves(against := moved[number] - world.velocity):
+                    found[grip.id] = Way(_directions(against), self._pin(world))
+        return found
+
+    def _pin(self, world: _World) -> str | None:
+        """A point of those that are to stay, if they could be drawn along."""
+        return self.grips[world.member].id if world.member is not None else None
+
+    def _is_written(self, moved: Floats) -> bool:
+        """Whether numbers of the text take part in the shortest motions that move a point."""
+        return _moves((self.positions @ np.linalg.pinv(moved, rcond=_MOVES))[self.written])
 
     def _dense(self, rows: Ints) -> Floats:
         return np.asarray(self.scene.matrix.take(rows).dense(self.columns))
 
-    def _is_written(self, motions: Floats, moved: Floats, written: NDArray[np.bool_]) -> bool:
-        """Whether numbers of the text take part in the shortest motions that move a point."""
-        return _moves((motions @ np.linalg.pinv(moved, rcond=_MOVES))[written])
 
-    def _belongs(self, grip: Grip) -> NDArray[np.bool_]:
-        """Which unknowns are of the geometry that a point is of, or of the structure."""
-        owners = (_belongs(self.scene.unknowns[column], grip) for column in self.columns.tolist())
-        return np.array(list(owners), dtype=np.bool_)
+class _World:
+    """The most points that keep together in all motions: what stays while something else is dragged.
+
+    velocity (2, d) of them all; `member` is one of them, if they move
+    """
+
+    def __init__(self, moved: Floats, others: int) -> None:
+        """`moved` are the velocities (g, 2, d); `others` is the number of points that none of these moves."""
+        left = np.arange(len(moved))
+        still = np.abs(moved).max(axis=(1, 2), initial=0.0) <= _MOVES
+        most = others + int(still.sum())
+        self.velocity: Floats = np.zeros(moved.shape[1:])
+        self.member: int | None = None
+        left = left[~still]
+        while len(left) > most:
+            like = np.abs(moved[left] - moved[left[0]]).max(axis=(1, 2), initial=0.0) <= _MOVES
+            if int(like.sum()) > most:
+                most, self.member = int(like.sum()), int(left[0])
+                self.velocity = moved[left[0]]
+            left = left[~like]
 
 
-def belongs(unknown: Unknown, grip: Grip) -> bool:
-    """Whether a number is one of the geometry that a point is of, or of a structure around it."""
-    return _belongs(unknown, grip)
-
-
-def _belongs(unknown: Unknown, grip: Grip) -> bool:
-    thing = grip.thing
+def belongs(unknown: Unknown, thing: Geometry | Structure) -> bool:
+    """Whether a number is one of a geometry, or of a structure around it."""
     holder: Geometry | Structure | None = unknown.holder
     if isinstance(holder, Structure):
         around = thing.owner if isinstance(thing, Geometry) else thing
@@ -180,6 +244,14 @@ def _belongs(unknown: Unknown, grip: Grip) -> bool:
             return True
         holder = holder.container
     return False
+
+
+def _directions(velocity: Floats) -> tuple[Vec, ...]:
+    """The directions of the velocities (2, d) of a point; the axes where there are two."""
+    left, sizes, _ = np.linalg.svd(velocity, full_matrices=False)
+    if len(sizes) > 1 and sizes[1] > _NARROW * sizes[0]:
+        return AXES
+    return ((float(left[0, 0]), float(left[1, 0])),)
 
 
 def _moves(velocity: Floats) -> bool:

@@ -49,6 +49,7 @@ def signature_help(view: View, offset: int) -> SignatureHelp | None:
     spot = spot_at(view, offset)
     if spot.where is Where.COMMENT:
         return None
+    offset = spot.offset  # within the text
     opening = _open_call(standing_before(view.source, offset))
     if opening is None:
         return None

@@ -225,13 +225,15 @@ def _all_of(found: Iterator[Geometry]) -> Iterator[Geometry]:
 
 
 def _with_lets(env: Env, block: ast.Block) -> Env:
-    """An environment with the names for expressions that a block of constraints, or a turn, has of its own."""
+    """An environment with the names that a block of constraints, or a turn, has for expressions."""
     scope = Scope(env.scope, env.scope.container, turn=True, labels=env.scope.labels)
     for node in block.statements:
-        if isinstance(node, ast.Let) and env.scope.find(node.name.text) is None:
-            scope.values[node.name.text] = LetBinding(node.value, scope)
-        elif isinstance(node, ast.Assign) and not node.indices and env.scope.find(node.name.text) is None:
-            scope.values[node.name.text] = LetBinding(node.value, scope)
+        match node:
+            case ast.Let(name=name, value=value) | ast.Assign(name=name, indices=(), value=value):
+                if env.scope.find(name.text) is None:
+                    scope.values[name.text] = LetBinding(value, scope)
+            case _:
+                pass
     return Env(scope, env.here, env.reach)
 
 

@@ -11,12 +11,12 @@ from aidl_lang.building.conditions import holds
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env
 from aidl_lang.checking.fields import PRIMITIVE
-from aidl_lang.expression import Unknown
 from aidl_lang.export.numbers import fixed
+from aidl_lang.expression import Unknown
 from aidl_lang.ide.solved_values import Found, Solved, items_of, spelled
 from aidl_lang.model import Condition, Geometry, Structure
 from aidl_lang.source import Span
-from aidl_lang.units import ANGLE, AREA, LENGTH, MaybeDimension
+from aidl_lang.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension
 from aidl_lang.values import Num, PointVal, Status, Text, Value
 
 DECIMALS = 4
@@ -43,7 +43,9 @@ def number_text(value: float, dimension: MaybeDimension) -> str:
     """A number as people write it, with its unit: `112.4 mm`."""
     if not math.isfinite(value):
         return "no number"
-    return fixed(value, DECIMALS) + _UNITS.get(dimension, f" {dimension}" if dimension else "")
+    if dimension is None or dimension == PLAIN:
+        return fixed(value, DECIMALS)
+    return fixed(value, DECIMALS) + _UNITS.get(dimension, f" {dimension}")
 
 
 def lines(solved: Solved, name: str, found: list[Found]) -> list[str]:
@@ -133,7 +135,9 @@ def _of_one(solved: Solved, unknown: Unknown) -> str:
         model = solved.outcome.model
         changed = {c.path: c for c in model.changed} if model is not None else {}
         change = changed.get(unknown.path)
-        return "kept" if change is None else f"a size that had to change from {fixed(change.written, DECIMALS)}"
+        return (
+            "kept" if change is None else f"a size that had to change from {fixed(change.written, DECIMALS)}"
+        )
     return "free" if unknown.path in solved.free else "solved"
 
 
@@ -148,7 +152,7 @@ def _point(solved: Solved, value: PointVal) -> str | None:
 
 def _frame(env: Env) -> str:
     """In which frame coordinates are, where that is not the root's."""
-    return f" in `{env.here.name}`" if env.here.parent is not None else ""
+    return f" (in {env.here.name})" if env.here.parent is not None else ""
 
 
 def _geometry(solved: Solved, name: str, geometry: Geometry, env: Env) -> Iterator[str]:
@@ -231,5 +235,3 @@ def constraint_lines(solved: Solved, span: Span) -> list[str]:
 
 def _times(count: int) -> str:
     return f" in all {count} cases" if count > 1 else ""
-
-

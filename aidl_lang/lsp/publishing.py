@@ -8,7 +8,7 @@ from lsprotocol import types
 
 from aidl_lang.diagnostics import Diagnostic, Label, Severity
 from aidl_lang.lsp.convert import START, Converter
-from aidl_lang.lsp.documents import Document
+from aidl_lang.lsp.documents import Document, Known
 from aidl_lang.resources import resource
 
 SOURCE = "aidl"
@@ -72,21 +72,28 @@ class Publisher:
     def __init__(self, send: Callable[[types.PublishDiagnosticsParams], None]) -> None:
         self._send = send
         self._told: dict[Document, dict[str, list[types.Diagnostic]]] = {}
+        self._serials: dict[Document, int] = {}
 
-    def publish(self, document: Document, version: int, found: list[tuple[str, types.Diagnostic]]) -> None:
-        """What there is to say of a program now, and nothing of what was said before."""
+    def publish(self, document: Document, known: Known, found: list[tuple[str, types.Diagnostic]]) -> None:
+        """What there is to say of a program, in place of what was said before; nothing where that was of a
+        newer text.
+        """
+        if known.serial < self._serials.get(document, known.serial):
+            return
+        self._serials[document] = known.serial
         by_uri: dict[str, list[types.Diagnostic]] = {document.uri: []}
         for uri, diagnostic in found:
             by_uri.setdefault(uri, []).append(diagnostic)
         before = self._told.get(document, {})
         self._told[document] = by_uri
-        self._tell(document.uri, version)
+        self._tell(document.uri, known.version)
         for uri in before | by_uri:
             if uri != document.uri and before.get(uri) != by_uri.get(uri):
                 self._tell(uri)
 
     def forget(self, document: Document) -> None:
         """Nothing is to be said of a program any more."""
+        self._serials.pop(document, None)
         for uri in self._told.pop(document, {}):
             self._tell(uri)
 

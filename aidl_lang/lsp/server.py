@@ -176,7 +176,7 @@ class Server(LanguageServer):
     def _publish(self, document: Document, known: Known) -> None:
         convert = self.converter(known.view, document.uri)
         found = converted(known.view.diagnostics, convert, document.uri)
-        self.publisher.publish(document, known.version, list(found))
+        self.publisher.publish(document, known, list(found))
 
     # --- Questions ------------------------------------------------------------------------------
 

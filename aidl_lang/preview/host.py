@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from typing import TypeAlias
 
@@ -12,6 +13,7 @@ from aidl_lang.agents.workspace import RefusalError
 from aidl_lang.cancelling import Cancelled
 from aidl_lang.ide.preview import Preview
 from aidl_lang.ide.preview.protocol import Json
+from aidl_lang.ide.view import View
 from aidl_lang.preview import messages
 from aidl_lang.preview.messages import ApplyFix, Cancel, Drag, Export, Ready, SetKnob, Show
 from aidl_lang.preview.program import CannotError, Program
@@ -21,13 +23,22 @@ Then: TypeAlias = Callable[[], None]
 """What is left to do in the event loop."""
 
 
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A preview of a version of the text, and the message that says it."""
+
+    preview: Preview
+    version: int
+    text: str
+
+
 class Page:
     """One page that is open. What it has not taken yet waits; of pictures only the newest."""
 
     def __init__(self) -> None:
         self.show: frozenset[str] = frozenset()
-        self.shown: tuple[Preview, int] | None = None
-        """what it was sent last, and of which version"""
+        self.shown: Picture | None = None
+        """what it was sent last"""
         self.is_owed = False
         """whether it waits for a picture even if the text stays as it is"""
         self._waiting: list[tuple[bool, str]] = []
@@ -38,6 +49,10 @@ class Page:
             self._waiting = [each for each in self._waiting if not each[0]]
         self._waiting.append((is_picture, text))
         self._news.set()
+
+    def take(self, picture: Picture) -> None:
+        self.shown, self.is_owed = picture, False
+        self.post(picture.text, is_picture=True)
 
     def tell(self, message: Json) -> None:
         self.post(json.dumps(message))
@@ -86,24 +101,41 @@ class Host:
                 raise
             trouble = str(reason)
         pages = [page for page in tuple(self.pages) if is_new or page.is_owed]
-        pictures = {show: self._picture(show) for show in {page.show for page in pages}}
+        view = self.program.current
+        pictures: dict[frozenset[str], Picture] = {}
+        for show in {page.show for page in pages}:
+            made = self.program.picture(view, show)
+            pictures[show] = Picture(made, self.program.version, self.program.message(view, made))
         return partial(self._show_all, pages, pictures, trouble)
 
-    def _picture(self, show: frozenset[str]) -> tuple[Preview, int, str]:
-        preview, message = self.program.picture(self.program.current, show)
-        return preview, self.program.version, json.dumps(message)
-
-    def _show_all(
-        self, pages: list[Page], pictures: dict[frozenset[str], tuple[Preview, int, str]], trouble: str
-    ) -> None:
+    def _show_all(self, pages: list[Page], pictures: dict[frozenset[str], Picture], trouble: str) -> None:
         for page in pages:
             if page.show in pictures:  # else it has just asked for others
-                self._show(page, *pictures[page.show])
+                page.take(pictures[page.show])
         self._tell_trouble(trouble)
+        if pages:
+            self._worker.later(Job(self._completed, _nothing, self._not_completed))
 
-    def _show(self, page: Page, preview: Preview, version: int, text: str) -> None:
-        page.shown, page.is_owed = (preview, version), False
-        page.post(text, is_picture=True)
+    def _completed(self) -> Then:
+        """What takes longer is told when the pictures are there."""
+        found: list[tuple[Page, Picture, Picture]] = []
+        for page in tuple(self.pages):
+            before = page.shown
+            if before is not None and not before.preview.tried and before.version == self.program.version:
+                made = self.program.completed(before.preview)
+                if made.handles != before.preview.handles:
+                    text = self.program.message(self.program.current, made)
+                    found.append((page, before, Picture(made, before.version, text)))
+        return partial(self._complete_all, found)
+
+    def _complete_all(self, found: list[tuple[Page, Picture, Picture]]) -> None:
+        for page, before, after in found:
+            if page.shown is before:
+                page.take(after)
+
+    def _not_completed(self, error: BaseException) -> None:
+        if not isinstance(error, Cancelled):
+            self._trouble(error)
 
     def _trouble(self, error: BaseException) -> None:
         if not isinstance(error, Cancelled):
@@ -181,24 +213,29 @@ class Host:
 
     def _tried_knob(self, page: Page, path: str, value: float | str | bool) -> Then:
         view = self.program.with_knob(path, value)
-        preview, message = self.program.picture(view, page.show, is_tried=True)
-        return partial(self._show, page, preview, self.program.version, json.dumps(message))
+        return self._tried(page, view)
 
     def _dragged(self, page: Page, handle: str, to: tuple[float, float]) -> Then:
-        view = self.program.dragged(handle, to)
-        preview, message = self.program.picture(view, page.show, is_tried=True)
-        return partial(self._show, page, preview, self.program.version, json.dumps(message))
+        return self._tried(page, self.program.dragged(handle, to))
 
-    def _fix(self, shown: tuple[Preview, int] | None, problem: int, fix: int) -> None:
-        preview, version = shown or (None, -1)
-        if preview is None or version != self.program.version:
+    def _tried(self, page: Page, view: View) -> Then:
+        made = self.program.picture(view, page.show, is_tried=True)
+        return partial(page.take, Picture(made, self.program.version, self.program.message(view, made)))
+
+    def _fix(self, shown: Picture | None, problem: int, fix: int) -> None:
+        if shown is None or shown.version != self.program.version:
             raise CannotError("the text has changed meanwhile")
-        if not (0 <= problem < len(preview.problems) and 0 <= fix < len(preview.problems[problem].fixes)):
+        problems = shown.preview.problems
+        if not (0 <= problem < len(problems) and 0 <= fix < len(problems[problem].fixes)):
             raise CannotError("there is no such fix")
-        self.program.edit(preview.problems[problem].fixes[fix].edits)
+        self.program.edit(problems[problem].fixes[fix].edits)
 
     def _exported(self, page: Page, name: str) -> Then:
         return partial(page.tell, self.program.export(name, page.show))
+
+
+def _nothing() -> None:
+    """Nobody waits for it."""
 
 
 def _told(error: BaseException) -> str:

@@ -6,6 +6,7 @@ Everything here takes its time and runs in one thread. A run may raise `cancelli
 from __future__ import annotations
 
 import base64
+import json
 from codecs import BOM_UTF8
 from collections import defaultdict
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -14,12 +15,14 @@ from pathlib import Path
 from aidl_lang.diagnostics import Edit
 from aidl_lang.export import ExportError, Options
 from aidl_lang.geometry.curves import Vec
+from aidl_lang.ide.dragging import Dragged, Handle, drag
 from aidl_lang.ide.edits import applied
-from aidl_lang.ide.preview import Preview, Writer, preview, set_knob, tried
+from aidl_lang.ide.preview import Preview, Writer, preview, set_knob, tried, with_handles
 from aidl_lang.ide.preview.protocol import Json
 from aidl_lang.ide.semantic_tokens import semantic_tokens
 from aidl_lang.ide.view import View, look, run
 from aidl_lang.ide.workspace import Workspace
+from aidl_lang.ide.writing_back import Refusal
 from aidl_lang.pipeline import Memory
 from aidl_lang.source import SourceFile
 from aidl_lang.world import MAX_BYTES
@@ -45,6 +48,7 @@ class Program:
         self._memory, self._trying = Memory(), Memory()
         self._texts: Mapping[str, str] = {}
         """of the files that the view is made of, by name"""
+        self._handles: tuple[Handle, ...] = ()
         self._source: tuple[View, Json] | None = None
 
     # --- The text
@@ -71,11 +75,21 @@ class Program:
 
     # --- Showing
 
-    def picture(self, view: View, show: Collection[str], *, is_tried: bool = False) -> tuple[Preview, Json]:
-        """A preview, and the message that says it."""
-        made = preview(view, show, tried=is_tried)
+    def picture(self, view: View, show: Collection[str], *, is_tried: bool = False) -> Preview:
+        """A preview with the handles that were known last."""
+        return preview(view, show, tried=is_tried, known=self._handles)
+
+    def completed(self, made: Preview) -> Preview:
+        """The preview of the text with all of its handles, which take a while."""
+        found = with_handles(made, self.current)
+        self._handles = found.handles
+        return found
+
+    def message(self, view: View, made: Preview) -> str:
+        """The message that says a preview."""
         writer = Writer(view)
-        return made, {"type": "picture", **writer.preview(made, self.version, self._source_of(view, writer))}
+        data = writer.preview(made, self.version, self._source_of(view, writer))
+        return json.dumps({"type": "picture", **data})
 
     def _source_of(self, view: View, writer: Writer) -> Json:
         """The text beside the picture, which is the same for all that is tried with it."""
@@ -95,7 +109,13 @@ class Program:
 
     def dragged(self, handle: str, to: Vec) -> View:
         """The program as it would be with a handle dragged somewhere. Raises CannotError."""
-        raise CannotError(f"{handle} cannot be dragged to {to}")
+        return self._drag(handle, to).view
+
+    def _drag(self, handle: str, to: Vec) -> Dragged:
+        found = drag(self.current, handle, to)
+        if isinstance(found, Refusal):
+            raise CannotError(found.reason)
+        return found
 
     # --- Editing
 
@@ -105,7 +125,10 @@ class Program:
 
     def drop(self, handle: str, to: Vec) -> None:
         """Write into the text what puts a handle somewhere. Raises CannotError."""
-        raise CannotError(f"{handle} cannot be dragged to {to}")
+        edits = self._drag(handle, to).edits
+        if isinstance(edits, Refusal):
+            raise CannotError(edits.reason)
+        self.edit(edits)
 
     def edit(self, edits: Sequence[Edit]) -> None:
         """Carry out edits of the view in its files, whole or not at all each. Raises CannotError."""

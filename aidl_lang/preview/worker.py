@@ -1,7 +1,7 @@
 """One thread that does what takes time: never more than one thing behind what is wanted.
 
 A change of the text comes before all else and gives up whatever runs. Orders are carried out in turn. Of what
-is merely tried, each page has one thing in waiting, the newest.
+is merely tried, each page has one thing in waiting, the newest. What nobody waits for comes last.
 """
 
 from __future__ import annotations
@@ -37,9 +37,11 @@ class Worker:
         self._is_text_new = self._is_asked = False
         self._orders: deque[Job] = deque()
         self._attempts: dict[Hashable, Job] = {}
+        self._later: Job | None = None
         self._wake = asyncio.Event()
         self._is_closing = False
-        self._is_running_attempt = False
+        self._is_trying = self._is_idling = False
+        """what runs: an attempt, what nobody waits for"""
 
     def refresh(self) -> None:
         """The text may be new, so what runs is given up."""
@@ -60,6 +62,11 @@ class Worker:
         self._attempts[page] = job
         self._wake.set()
 
+    def later(self, job: Job) -> None:
+        """When there is nothing else to do; in place of what waits for that."""
+        self._later = job
+        self._wake.set()
+
     def forget(self, page: Hashable) -> None:
         """What waits to be tried for a page is not wanted any more."""
         self._attempts.pop(page, None)
@@ -78,21 +85,26 @@ class Worker:
             pool.shutdown(wait=False, cancel_futures=True)
 
     def _next(self) -> Job | None:
-        self._is_running_attempt = False
+        self._is_trying = self._is_idling = False
         if self._is_text_new or (self._is_asked and not self._orders):
             self._is_text_new = self._is_asked = False
             return self._refresh
         if self._orders:
             return self._orders.popleft()
         if self._attempts:
-            self._is_running_attempt = True
+            self._is_trying = True
             return self._attempts.pop(next(iter(self._attempts)))
-        return None
+        job, self._later, self._is_idling = self._later, None, True
+        return job
 
     def _is_unwanted(self) -> bool:
         """Asked by the thread in passing."""
-        is_outdone = self._is_running_attempt and (self._is_asked or bool(self._orders))
-        return self._is_closing or self._is_text_new or is_outdone
+        if self._is_closing or self._is_text_new:
+            return True
+        is_more_wanted = self._is_asked or bool(self._orders)
+        if self._is_idling:
+            return is_more_wanted or bool(self._attempts)
+        return self._is_trying and is_more_wanted
 
     async def _carry_out(self, job: Job, pool: ThreadPoolExecutor) -> None:
         loop = asyncio.get_running_loop()

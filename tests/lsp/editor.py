@@ -69,6 +69,9 @@ class Editor(LanguageClient):
             text = uri.read_text("utf-8") if text is None else text
             uri = uri.as_uri()
         assert text is not None
+        self.told = [told for told in self.told if told.uri != uri]  # versions begin anew
+        for news in (self.pictures, self.statuses):
+            news[:] = [each for each in news if each["uri"] != uri]
         self.texts[uri], self.versions[uri] = text, 1
         item = types.TextDocumentItem(uri, "aidl", 1, text)
         self.text_document_did_open(types.DidOpenTextDocumentParams(item))

@@ -83,10 +83,10 @@ def host() -> Iterator[ScriptedHost]:
 
 @pytest.fixture
 def open_pane(browser: Browser, host: ScriptedHost) -> Iterator[Callable[..., Pane]]:
-    """What opens the pane, its first picture shown; `looks` are those of `Browser.new_context`."""
+    """What opens the pane; `looks` are those of `Browser.new_context`."""
     opened = []
 
-    def open_pane(host: ScriptedHost = host, script: str = "", **looks: Any) -> Pane:
+    def open_pane(host: ScriptedHost = host, script: str = "", has_clock: bool = False, **looks: Any) -> Pane:
         looks = {"viewport": {"width": 1200, "height": 800}, **looks}
         context = browser.new_context(**looks)
         opened.append(context)
@@ -96,6 +96,8 @@ def open_pane(browser: Browser, host: ScriptedHost) -> Iterator[Callable[..., Pa
         pane = Pane(context.new_page(), host)
         pane.page.on("pageerror", lambda error: pane.complaints.append(str(error)))
         pane.page.on("console", lambda line: line.type == "error" and pane.complaints.append(f"{line.text}"))
+        if has_clock:
+            pane.page.clock.install(time=0)
         pane.page.goto(host.url)
         return pane
 

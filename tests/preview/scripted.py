@@ -70,9 +70,12 @@ class ScriptedHost:
 
     def say(self, message: Message) -> None:
         """Send to the pane that is connected, or to the next that is."""
+        self.say_text(json.dumps(message))
+
+    def say_text(self, text: str) -> None:
         self.wait(lambda: self._connection is not None)
         assert self._connection is not None
-        self._connection.send(json.dumps(message))
+        self._connection.send(text)
 
     def drop(self) -> None:
         """End the connection."""

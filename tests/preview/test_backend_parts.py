@@ -220,37 +220,32 @@ def test_a_point_moves_from_where_it_is() -> None:
     assert arrow.end[0] == pytest.approx(40, abs=1e-3)
 
 
+SEVERAL = """
+drawing d {
+    drawing pin { rim = circle(center: (9, 9), radius: guess(3)) }
+    plate = rectangle(center: fixed((0, 0)), width: guess(40), height: 20)
+    knob = circle(center: fixed((0, 30)), radius: 2)
+    hand = line(fixed((50, 0)), length: fixed(10), angle: guess(30deg))
+}
+"""
+
+
 def test_what_turns_has_an_arc_about_what_holds_it() -> None:
-    ((way,),) = ways(
-        """
-        assembly a {
-            drawing hand { tip = line((0, 0), (30, 40)) }
-            solid hub { rim = circle(center: (0, 0), radius: 5) }
-            constrain { hub.center == (0, 0); hand.tip.start == (0, 0); hand.tip.length == 50 }
-        }
-        """
-    ).values()
+    (way,) = ways(SEVERAL)["d.hand"]
     (turn,) = way.turns
-    assert turn.center == pytest.approx((0, 0), abs=1e-5)
-    assert 10 < turn.radius < 60
+    assert turn.center == pytest.approx((50, 0), abs=1e-5)
+    assert 2 < turn.radius < 15
     assert 10 < abs(turn.sweep) < 360
+    # The arc goes through the hand.
+    assert turn.first < 30 < turn.first + turn.sweep or turn.first + turn.sweep < 30 < turn.first
 
 
-def test_what_grows_has_arrows_apart() -> None:
-    found = ways(
-        """
-        solid a {
-            body = rectangle(center: (0, 0), width: guess(40), height: 20)
-            constrain { body.center == (0, 0) }
-        }
-        """
-    )
-    arrows = [arrow for several in found.values() for way in several for arrow in way.arrows]
-    assert arrows
-    for arrow in arrows:
-        outwards = arrow.end[0] - arrow.start[0]
-        assert abs(outwards) > 1
-        assert arrow.end[1] == pytest.approx(arrow.start[1], abs=1e-6)
+def test_what_grows_has_arrows_outwards() -> None:
+    (way,) = ways(SEVERAL)["d.plate"]
+    assert {(round(a.start[0]), a.end[0] > a.start[0]) for a in way.arrows} == {(20, True), (-20, False)}
+    assert all(a.end[1] == pytest.approx(a.start[1], abs=1e-6) for a in way.arrows)
+    (round_,) = ways(SEVERAL)["d.pin.rim"]
+    assert {(round(a.start[0]), a.end[0] > a.start[0]) for a in round_.arrows} == {(12, True), (6, False)}
 
 
 def test_the_examples_have_arrows_in_finite_places() -> None:

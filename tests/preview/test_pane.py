@@ -138,6 +138,24 @@ def test_lines_stay_thin_and_keep_their_proportions(pane: Pane) -> None:
             pane.page.keyboard.press("+")
 
 
+def test_many_thin_dimensions_do_not_make_outlines_thick(pane: Pane) -> None:
+    line = '<path d="M0 0L9 0" fill="none" stroke="red" stroke-width="0.1"/>'
+    pane.shows(svg=SVG.replace("</svg>", f"{line * 40}</svg>"))
+    width = "one => getComputedStyle(one).strokeWidth"
+    assert pane.page.eval_on_selector(".drawing path[fill='#a7bcd6']", width) == "1.25px"
+    assert pane.page.eval_on_selector(".drawing path[stroke=red]", width) == "0.75px"
+
+
+def test_what_stands_around_the_drawing_is_fitted_in_too(pane: Pane) -> None:
+    pane.shows(svg=SVG.replace("</svg>", '<path d="M-90 0L-90 -10" stroke="red" fill="none"/></svg>'))
+    pane.page.keyboard.press("f")
+    x, _, width, _ = stage(pane)
+    left, right = pane.at(-90, 0)[0], pane.at(50, 0)[0]
+    assert x < left < right < x + width
+    assert (left + right) / 2 == pytest.approx(x + width / 2, abs=0.5)
+    expect(pane.find("#status-size")).to_have_text("100 × 60 mm")
+
+
 def test_the_scale_bar_is_as_long_as_it_says(pane: Pane) -> None:
     for key in ("f", "+", "+", "+", "-", "-", "-", "-", "-", "-"):
         pane.page.keyboard.press(key)
@@ -154,7 +172,7 @@ def test_the_pointer_tells_its_place(pane: Pane) -> None:
 
 
 def test_a_drawing_that_has_moved_out_of_sight_is_looked_for(pane: Pane) -> None:
-    moved = SVG.replace("<g id", '<g transform="translate(9000 0)" id')
+    moved = SVG.replace('60mm">', '60mm"><g transform="translate(9000 0)">').replace("</svg>", "</g></svg>")
     pane.shows(svg=moved, box=[8950, -30, 9050, 30])
     x, _, width, _ = stage(pane)
     assert x < pane.at(9000, 0)[0] < x + width
@@ -198,6 +216,8 @@ def test_the_host_reveals_elements(pane: Pane) -> None:
     assert outlined(pane, "reveal") == [drawn(pane, RIM)]
     pane.host.say({"type": "reveal", "elements": [0]})
     expect(pane.find(".mark.reveal .line")).to_have_count(4)  # the drawing is seen by all that is in it
+    pane.host.say({"type": "reveal", "elements": [PLATE, RIM]})
+    expect(pane.find(".mark.reveal .line")).to_have_count(1)  # the rim is in the plate
     pane.host.say({"type": "reveal", "elements": [99, -1]})
     expect(pane.find(".mark.reveal .line")).to_have_count(0)
 

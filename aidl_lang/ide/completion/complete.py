@@ -8,12 +8,13 @@ from aidl_lang import ast
 from aidl_lang.ide.completion import names, words
 from aidl_lang.ide.completion.arguments import named_arguments
 from aidl_lang.ide.completion.constraints import constraints
-from aidl_lang.ide.completion.context import CONDITION, Context, Use, context_of
+from aidl_lang.ide.completion.context import Context, Use, context_of
 from aidl_lang.ide.completion.draft import Draft, ranked
 from aidl_lang.ide.completion.imports import importing
 from aidl_lang.ide.completion.item import Completion
 from aidl_lang.ide.completion.members import indices, members
 from aidl_lang.ide.completion.statements import clauses, kinds, statements, truths
+from aidl_lang.ide.completion.wanted import CONDITION
 from aidl_lang.ide.completion.words import Files
 from aidl_lang.ide.nodes import around
 from aidl_lang.ide.site import Site, Spot, Where, site_at, spot_at

@@ -15,7 +15,7 @@ from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.types import AnyType, ListType, NumberType, Signature, TextType, TruthType, Type, accepts
 from aidl_lang.vocabulary import vocabulary
 
-_FITS, _FITS_ANY, _FITS_NOT, _BARE = 0.0, 1.0, 6.0, 0.5
+_FITS_PARTS, _FITS, _FITS_ANY, _FITS_NOT, _BARE = -0.1, 0.0, 1.0, 6.0, 0.5
 _MOST_NAMES = 8
 _FEW_PAIRS = 40
 """Pairs of kinds that a constraint takes that is one of certain things; what takes more takes nearly all."""
@@ -70,10 +70,9 @@ def _tier(form: Form, things: Sequence[Known]) -> float:
     found = [pair for a, b in _chosen(form, things) if (pair := (kind_of(a.fact), b and kind_of(b.fact)))]
     if not found:
         return _FITS_NOT + len(form.pairs) / 1000
-    is_of_parts = "structure" in found[0] and len(form.pairs) >= _FEW_PAIRS
-    if len(form.pairs) < _FEW_PAIRS or is_of_parts:
-        return _FITS + len(form.pairs) / 1000 - 0.1 * is_of_parts
-    return _FITS_ANY + len(form.pairs) / 1000
+    if "structure" in found[0] and form.name in vocabulary().relations:
+        return _FITS_PARTS
+    return (_FITS if len(form.pairs) < _FEW_PAIRS else _FITS_ANY) + len(form.pairs) / 1000
 
 
 def _chosen(form: Form, things: Sequence[Known]) -> Iterator[tuple[Known, Known | None]]:

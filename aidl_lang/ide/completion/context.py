@@ -1,4 +1,4 @@
-"""What is wanted at a place, and which names may be used there."""
+"""What is known of a place: the call around it, and which names may be used there."""
 
 from __future__ import annotations
 
@@ -11,29 +11,15 @@ from aidl_lang import ast
 from aidl_lang.builtins import COPYING, DERIVING, MATH, PATTERNS
 from aidl_lang.checking.facts import Fact, Place
 from aidl_lang.checking.named import of_symbol
+from aidl_lang.ide.completion.wanted import Around, Wanted
 from aidl_lang.ide.overloads import Reading, readings
 from aidl_lang.ide.site import PLACEHOLDER, Site
 from aidl_lang.ide.view import View
 from aidl_lang.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind
-from aidl_lang.types import (
-    ANY,
-    AnyType,
-    GeometryType,
-    ListType,
-    NumberType,
-    PointType,
-    RangeType,
-    TextType,
-    TruthType,
-    Type,
-    accepts,
-    parameter_type,
-)
-from aidl_lang.units import ANGLE, LENGTH
+from aidl_lang.types import ANY, ListType, NumberType, TextType, Type
+from aidl_lang.units import LENGTH
 from aidl_lang.vocabulary import vocabulary
 
-_WHOLE = NumberType(None, whole=True)
-_NUMBER = NumberType(LENGTH)
 _ATTRIBUTES: dict[str, Type] = {"thickness": NumberType(LENGTH), "elevation": NumberType(LENGTH)}
 
 
@@ -45,28 +31,6 @@ class Use(Enum):
     CONSTRAINT = "what is in its structure"
     CHECK = "everything"
     CONSTANT = "constants"
-
-
-@dataclass(frozen=True)
-class Wanted:
-    """Types of which one is wanted, the likelier first; none where anything may stand. `name` is the
-    parameter that it is for.
-    """
-
-    types: tuple[Type, ...] = ()
-    name: str = ""
-
-    def distance(self, given: Type) -> int | None:
-        """How far a type is from what is wanted; None if it does not fit. What is not known may fit."""
-        if isinstance(given, AnyType):
-            return _PERHAPS
-        found = [d for kind in self.types if (d := accepts(kind, given)) is not None]
-        return min(found) if found else None if self.types else 0
-
-
-_PERHAPS = 3
-CONDITION = Wanted((TruthType(),))
-"""What begins with a value as often as not: `a.radius >= 3`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +104,32 @@ class Context:
 
     @cached_property
     def wanted(self) -> Wanted:
-        return _wanted(self, self.path)
+        return Around(self.view.program.inference, self._of_argument).wanted(self.path)
+
+    def _of_argument(self) -> Wanted:
+        """What the parameters want that an argument may be for, by all overloads that are possible."""
+        if self.call is None:
+            return self._of_attribute()
+        number = self.call[1]
+        kinds: dict[Type, None] = {}
+        name = ""
+        for reading in self.readings:
+            taken = reading.taken[number] if number < len(reading.taken) else None
+            kind = reading.type_of(taken) if taken is not None else None
+            if kind is None or taken is None:
+                continue
+            name = name or taken
+            positional = self.call[0].arguments[number - len(reading.taken)].name is None
+            if isinstance(kind, ListType) and positional:
+                kinds[kind.element] = None
+            kinds[kind] = None
+        return Wanted(() if ANY in kinds and len(kinds) == 1 else tuple(kinds), name)
+
+    def _of_attribute(self) -> Wanted:
+        attribute = next((n for n in reversed(self.path) if isinstance(n, ast.Attribute)), None)
+        if attribute is None:
+            return Wanted()
+        return Wanted((_ATTRIBUTES.get(attribute.name.text, TextType()),), f"@{attribute.name.text}")
 
     @cached_property
     def values(self) -> list[Known]:
@@ -261,119 +250,3 @@ _STATEMENTS = (
     ast.Alias,
     ast.Parameter,
 )
-
-
-# --- What is wanted --------------------------------------------------------------------------------
-
-
-def _wanted(context: Context, path: tuple[ast.Node, ...]) -> Wanted:
-    """What the last node of a path is wanted to be, by what stands around it."""
-    if len(path) < 2:
-        return Wanted()
-    node, above = path[-1], path[-2]
-    match above:
-        case ast.Argument() | ast.Unary(operator="-" | "+"):
-            return _of_argument(context) if isinstance(above, ast.Argument) else _wanted(context, path[:-1])
-        case ast.Binary(operator="+" | "-", left=left, right=right):
-            other = context.view.program.inference.fact(right if node is left else left).type
-            return _alike(other) if not isinstance(other, AnyType) else _wanted(context, path[:-1])
-        case ast.Binary(operator="and" | "or") | ast.Unary():
-            return CONDITION
-        case ast.Binary():
-            return Wanted((_NUMBER, NumberType(None)))
-        case ast.Comparison(operands=operands):
-            return _compared(context, node, operands)
-        case ast.Equation(left=left, right=right):
-            return _compared(context, node, (left, right))
-        case ast.Conditional(test=test):
-            return CONDITION if node is test else _wanted(context, path[:-1])
-        case ast.List():
-            return _member_of(_wanted(context, path[:-1]))
-        case _:
-            return _of_place(node, above, path)
-
-
-def _of_place(node: ast.Node, above: ast.Node, path: tuple[ast.Node, ...]) -> Wanted:
-    """What a statement, or another fixed place, wants."""
-    match above:
-        case ast.Point():
-            return Wanted((NumberType(LENGTH),))
-        case ast.Placement(at=at):
-            return Wanted((PointType() if node is at else NumberType(ANGLE),))
-        case ast.Membership(container=container) | ast.Param(domain=container) if node is container:
-            return Wanted((RangeType(), ListType(ANY)))
-        case ast.Range() | ast.Membership():
-            return Wanted((_NUMBER, _WHOLE))
-        case ast.For() | ast.Comprehension(iterable=_) if node is above.iterable:
-            return Wanted((ListType(ANY), RangeType()))
-        case ast.Index() | ast.Structure() | ast.Assign() if _is_index(node, above):
-            return Wanted((_WHOLE,))
-        case ast.If(test=test) | ast.Assert(test=test) | ast.Prefer(value=test) if node is test:
-            return CONDITION
-        case ast.Assert():
-            return Wanted((TextType(),))
-        case ast.Prefer():
-            return Wanted((NumberType(None),))
-        case ast.ExpressionStatement():
-            return CONDITION
-        case ast.Parameter() if (kind := parameter_type(above)) is not None:
-            return Wanted((kind,))
-        case _:
-            return Wanted()
-
-
-def _is_index(node: ast.Node, above: ast.Index | ast.Structure | ast.Assign) -> bool:
-    return node is above.index if isinstance(above, ast.Index) else node in above.indices
-
-
-def _of_argument(context: Context) -> Wanted:
-    """What the parameters want that an argument may be for, by all overloads that are possible."""
-    if context.call is None:
-        return _of_attribute(context)
-    number = context.call[1]
-    kinds: dict[Type, None] = {}
-    name = ""
-    for reading in context.readings:
-        taken = reading.taken[number] if number < len(reading.taken) else None
-        kind = reading.type_of(taken) if taken is not None else None
-        if kind is None or taken is None:
-            continue
-        name = name or taken
-        positional = context.call[0].arguments[number - len(reading.taken)].name is None
-        if isinstance(kind, ListType) and positional:
-            kinds[kind.element] = None
-        kinds[kind] = None
-    return Wanted(() if ANY in kinds and len(kinds) == 1 else tuple(kinds), name)
-
-
-def _of_attribute(context: Context) -> Wanted:
-    attribute = next((n for n in reversed(context.path) if isinstance(n, ast.Attribute)), None)
-    if attribute is None:
-        return Wanted()
-    return Wanted((_ATTRIBUTES.get(attribute.name.text, TextType()),), f"@{attribute.name.text}")
-
-
-def _compared(context: Context, node: ast.Node, operands: tuple[ast.Expression, ...]) -> Wanted:
-    """What goes with the other sides of a comparison."""
-    facts = [context.view.program.inference.fact(o) for o in operands if o is not node]
-    known = next((f.type for f in facts if not isinstance(f.type, AnyType)), None)
-    return _alike(known) if known is not None else Wanted()
-
-
-def _alike(kind: Type) -> Wanted:
-    """What may be compared with, or added to, something of a type."""
-    match kind:
-        case NumberType(dimension):
-            return Wanted((NumberType(dimension), NumberType(None)))
-        case GeometryType("line"):
-            return Wanted((NumberType(LENGTH), kind))
-        case _:
-            return Wanted((kind,))
-
-
-def _member_of(wanted: Wanted) -> Wanted:
-    elements = [kind.element for kind in wanted.types if isinstance(kind, ListType)]
-    known = tuple(kind for kind in elements if not isinstance(kind, AnyType))
-    if not elements and PointType() in wanted.types:
-        known = (NumberType(LENGTH),)
-    return Wanted(known, wanted.name)

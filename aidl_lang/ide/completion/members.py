@@ -14,9 +14,10 @@ from aidl_lang.checking.members import member_of
 from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.standard import body_of
 from aidl_lang.ide.completion import names
-from aidl_lang.ide.completion.context import CONDITION, Context, Known, Use
+from aidl_lang.ide.completion.context import Context, Known, Use
 from aidl_lang.ide.completion.draft import Draft
 from aidl_lang.ide.completion.fitting import forms, kind_of
+from aidl_lang.ide.completion.wanted import CONDITION
 from aidl_lang.ide.describing import fenced, joined
 from aidl_lang.reference.signatures import parts
 from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind

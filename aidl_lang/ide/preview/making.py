@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import replace
 
+from aidl_lang.ide.draggable import grips, is_somewhere
+from aidl_lang.ide.dragging import Handle, handles
 from aidl_lang.ide.preview.elements import Elements, elements
 from aidl_lang.ide.preview.picture import svg_of
 from aidl_lang.ide.preview.problems import conflicts, problems
@@ -16,10 +19,14 @@ from aidl_lang.pipeline import Compiled, Memory, Settings
 _NOWHERE = (0.0, 0.0, 0.0, 0.0)
 
 
-def preview(view: View, show: Collection[str] = (), *, tried: bool = False) -> Preview:
+def preview(
+    view: View, show: Collection[str] = (), *, tried: bool = False, known: Iterable[Handle] = ()
+) -> Preview:
     """What there is to see of a program that was run, with some of LAYERS over it.
 
-    A program that does not draw shows the last one that did, and its own problems.
+    A program that does not draw shows the last one that did, and its own problems. What can be dragged takes
+    longer to find out than all the rest (see `with_handles`): here are those that are `known` from another
+    picture of it, where they are now.
     """
     assert view.outcome is not None, "the view was not run"
     found = elements(view)
@@ -34,12 +41,27 @@ def preview(view: View, show: Collection[str] = (), *, tried: bool = False) -> P
         box=drawn.drawing.box if drawn is not None and drawn.drawing is not None else _NOWHERE,
         elements=found.values,
         knobs=tuple(sliders(view)),
-        handles=(),
+        handles=tuple(_moved(view, known)),
         problems=tuple(problems(view, found)),
         conflicts=tuple(conflicts(view, found)),
         ways=tuple(_ways(view, found)),
         degrees=view.outcome.model.degrees if view.outcome.model is not None else None,
     )
+
+
+def with_handles(made: Preview, view: View) -> Preview:
+    """The preview of a view with all that can be dragged. Raises Cancelled as `run` does."""
+    return replace(made, handles=tuple(handles(view)))
+
+
+def _moved(view: View, known: Iterable[Handle]) -> Iterator[Handle]:
+    """Those of the handles that are there, where they are now."""
+    outcome, wanted = view.outcome, {handle.id: handle for handle in known}
+    if not wanted or view.is_stale or outcome is None or outcome.built is None or outcome.evaluate is None:
+        return
+    for grip in grips(outcome.built):
+        if grip.id in wanted and is_somewhere(at := grip.at(outcome.evaluate)):
+            yield replace(wanted[grip.id], at=at)
 
 
 def _is_anything_drawn(outcome: Compiled) -> bool:

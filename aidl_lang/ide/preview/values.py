@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from aidl_lang.diagnostics import Fix
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.ide.dragging import Handle
 from aidl_lang.source import Span
 
 LAYERS = ("names", "points", "bbox", "constraints", "dof", "plan", "dimensions")
@@ -80,15 +81,6 @@ class Conflict:
 
 
 @dataclass(frozen=True)
-class Handle:
-    id: str
-    path: str
-    at: Vec
-    moves: str
-    hint: str
-
-
-@dataclass(frozen=True)
 class Arrow:
     start: Vec
     end: Vec
@@ -120,6 +112,7 @@ class Preview:
     status  `solved`, `partial`, `failed` or `wrong`: of the text as it is now, as are knobs and problems
     stale   whether the picture is that of an earlier text, since this one does not draw
     tried   whether it is of values that the text does not say
+    handles what can be dragged, as far as it is known
     svg     None where nothing was ever drawn
     box     of the drawing
     """

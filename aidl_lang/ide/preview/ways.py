@@ -11,14 +11,14 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from aidl_lang.expression import Evaluator, Expression, Unknown
+from aidl_lang.expression import Evaluator, Expression, Unknown, add, sub
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.ide.preview.elements import Elements, box_of
 from aidl_lang.ide.preview.values import Arrow, Turn, Way
 from aidl_lang.lower import seen
-from aidl_lang.model import Model, convert
+from aidl_lang.model import Model, Structure, convert
 from aidl_lang.pipeline import Compiled
 from aidl_lang.solved import Motion
 
@@ -49,8 +49,8 @@ def ways(outcome: Compiled, elements: Elements) -> Iterator[Way]:
         numbers = elements.all_near(motion.things)
         moving = flow.velocities(motion)
         arrows, turns = list[Arrow](), list[Turn]()
-        for number in numbers[:MOST_THINGS]:
-            thing = _thing(flow, moving, elements, number)
+        for path in motion.things[:MOST_THINGS]:
+            thing = _thing(flow, moving, elements, path)
             if thing is not None:
                 arrows += thing.arrows(motion.kind)
                 turns += thing.turns(motion.kind)
@@ -64,9 +64,8 @@ class _Flow:
         self.evaluate, self.size = evaluate, size
         self.points: list[tuple[str, Expression, Expression]] = []
         for structure in model.root.walk():
-            for _, path, numbers in seen(structure):
-                if len(numbers) == 2:
-                    self.points.append((path, *convert(*numbers, structure, model.root)))
+            for path, x, y in _points(structure):
+                self.points.append((path, *convert(x, y, structure, model.root)))
         self.places = [(evaluate(x), evaluate(y)) for _, x, y in self.points]
         self.unknowns: dict[str, list[Unknown]] = defaultdict(list)
         for unknown in model.unknowns:
@@ -87,6 +86,21 @@ class _Flow:
             (nudged(x) - at[0], nudged(y) - at[1])
             for (_, x, y), at in zip(self.points, self.places, strict=True)
         ]
+
+
+def _points(structure: Structure) -> Iterator[tuple[str, Expression, Expression]]:
+    """Points of the geometry of a structure itself, in its frame, and two on each circle."""
+    center: tuple[str, Expression, Expression] | None = None
+    for _, path, numbers in seen(structure):
+        if len(numbers) == 2:
+            yield path, *numbers
+        holder, _, name = path.rpartition(".")
+        if name == "center" and len(numbers) == 2:
+            center = holder, *numbers
+        elif name == "radius" and center is not None and center[0] == holder:
+            _, x, y = center
+            yield path, add(x, numbers[0]), y
+            yield path, sub(x, numbers[0]), y
 
 
 @dataclass(frozen=True)
@@ -171,22 +185,31 @@ class _Thing:
         return Arrow(at, (at[0] + length * velocity[0], at[1] + length * velocity[1]))
 
 
-def _thing(flow: _Flow, moving: Sequence[Vec], elements: Elements, number: int) -> _Thing | None:
-    """What an element is in a motion; None where it has no points or is nowhere."""
-    drawn = elements.drawn[number]
-    inside = f"{drawn.element.path}."
-    own = [
-        (place, velocity)
-        for (path, *_), place, velocity in zip(flow.points, flow.places, moving, strict=True)
-        if path == drawn.element.path or path.startswith(inside)
-    ]
-    own = [each for each in own if all(map(math.isfinite, (*each[0], *each[1])))]
+def _thing(flow: _Flow, moving: Sequence[Vec], elements: Elements, thing: str) -> _Thing | None:
+    """What the thing at a path is in a motion; None where it has no points or is nowhere."""
+    found = _moving(flow, moving, thing)
+    if not found and (around := elements.near(thing)) is not None:
+        thing = elements.values[around].path
+        found = _moving(flow, moving, thing)
+    own = [each for each in found if all(map(math.isfinite, (*each[0], *each[1])))]
     if not own:
         return None
     places, velocities = [place for place, _ in own], [velocity for _, velocity in own]
     fastest = max((math.hypot(*v) for v in moving if all(map(math.isfinite, v))), default=0.0)
-    box = box_of(drawn.model) or union_bounds([(*place, *place) for place in places])
+    number = elements.number.get(thing)  # else it is a point, or a number, of something
+    box = box_of(elements.drawn[number].model) if number is not None else None
+    box = box or union_bounds([(*place, *place) for place in places])
     return _Thing(box, places, velocities, flow.size, fastest)
+
+
+def _moving(flow: _Flow, moving: Sequence[Vec], thing: str) -> list[tuple[Vec, Vec]]:
+    """The points of the thing at a path, and how they move."""
+    inside = f"{thing}."
+    return [
+        (place, velocity)
+        for (path, *_), place, velocity in zip(flow.points, flow.places, moving, strict=True)
+        if path == thing or path.startswith(inside)
+    ]
 
 
 def _mean(vectors: Sequence[Vec]) -> Vec:

@@ -1,6 +1,6 @@
 /** The drawing on its sheet: what is shown, what is under the pointer, and what is outlined over it.
  * @import { Preview } from "./protocol.js"
- * @import { View } from "./view.js"
+ * @import { Box, View } from "./view.js"
  */
 
 import { svg } from "./dom.js";
@@ -59,6 +59,17 @@ export class Drawing {
   }
 
   /**
+   * The box of a drawing and of all that stands around it, as dimensions do.
+   * @param {Box} box
+   * @returns {Box}
+   */
+  around([left, bottom, right, top]) {
+    const { x, y, width, height } = this.#content.getBBox();
+    if (!width && !height) return [left, bottom, right, top];
+    return [Math.min(left, x), Math.min(bottom, -y - height), Math.max(right, x + width), Math.max(top, -y)];
+  }
+
+  /**
    * The element that is drawn at a node of the page, if it is one of the drawing.
    * @param {Node | null} node
    * @returns {number | null}
@@ -71,7 +82,7 @@ export class Drawing {
   }
 
   /**
-   * Outline these elements and no others in one of the ways.
+   * Outline these elements and no others in one of the ways; what is in another of them is not outlined itself.
    * @param {Mark} mark
    * @param {readonly number[]} elements
    */
@@ -79,7 +90,9 @@ export class Drawing {
     const before = this.#marked.get(mark) ?? [];
     if (before.length === elements.length && before.every((element, k) => element === elements[k])) return;
     this.#marked.set(mark, [...elements]);
-    const shapes = new Set(elements.flatMap((element) => this.#shapes(element)));
+    const paths = new Set(elements.map((element) => this.#elements[element]?.path ?? ""));
+    const outer = elements.filter((element) => !around(this.#elements[element]?.path ?? "").some((path) => paths.has(path)));
+    const shapes = new Set(outer.flatMap((element) => this.#shapes(element)));
     const copies = (/** @type {string} */ name) => [...shapes].map((shape) => this.#outline(shape, name));
     this.#marks.get(mark)?.replaceChildren(...copies("rim"), ...copies("line"));
   }
@@ -133,4 +146,13 @@ export class Drawing {
     if (transform) copy.setAttribute("transform", transform);
     return copy;
   }
+}
+
+/**
+ * The paths of all that a thing is in.
+ * @param {string} path
+ */
+function around(path) {
+  const names = path.split(".");
+  return names.slice(0, -1).map((_, k) => names.slice(0, k + 1).join("."));
 }

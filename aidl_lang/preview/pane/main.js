@@ -217,7 +217,7 @@ class Pane {
     document.title = `${name} \u2013 AIDL`;
     part("name", HTMLElement).textContent = name;
     document.body.classList.toggle("stale", preview.stale);
-    this.paper.box = preview.svg === null ? null : preview.box;
+    this.paper.box = preview.svg === null ? null : this.drawing.around(preview.box);
     this.knobs.show(preview);
     this.problems.show(preview);
     this.status.show(preview);
@@ -229,7 +229,7 @@ class Pane {
     this.pointing.show(preview);
     this.measure(); // panels that come and go while one types must not move the drawing
     const isOther = before?.uri !== preview.uri || before.svg === null;
-    if (isOther || !this.view.sees(preview.box)) this.fit();
+    if (isOther || !this.view.sees(this.paper.box ?? preview.box)) this.fit();
     else this.place();
     document.body.dataset.shown = JSON.stringify([preview.uri, preview.version]);
   }
@@ -260,7 +260,7 @@ class Pane {
   }
 
   fit() {
-    if (this.preview?.svg) this.view.fit(this.preview.box);
+    if (this.paper.box) this.view.fit(this.paper.box);
   }
 
   /** @param {PointerEvent} event */

@@ -1,5 +1,7 @@
 /** The drawing that a host sends, made safe: it is built anew from what a drawing may consist of. */
 
+import { clamp } from "./numbers.js";
+
 const SVG = "http://www.w3.org/2000/svg";
 
 const ELEMENTS = new Set([
@@ -17,8 +19,10 @@ const ATTRIBUTES = new Set([
 const LOCAL = /^\s*url\(\s*["']?#([^"')]*)["']?\s*\)\s*$/;
 /** Before the ids of the drawing, which must not be those of the page. */
 const PREFIX = "drawing-";
-/** Of the line that most of the drawing is made of, in pixels. */
+/** Widths of lines in pixels: of most outlines, and of any. */
 const LINE = 1.25;
+const THINNEST = 0.75;
+const THICKEST = 3;
 
 /**
  * A group with the content of an SVG document, for a page that shows 1 mm as any number of pixels.
@@ -81,22 +85,32 @@ function safeValue(name, value) {
  * @param {SVGGElement} group
  */
 function thin(group) {
-  /** @type {Map<number, number>} */
-  const counts = new Map();
   const lines = [...group.querySelectorAll("[stroke-width]")].filter((line) => line.closest("text") === null);
-  for (const line of lines) {
-    const width = Number(line.getAttribute("stroke-width"));
-    if (width > 0) counts.set(width, (counts.get(width) ?? 0) + 1);
-  }
-  const [usual] = [...counts].reduce((most, one) => (one[1] > most[1] ? one : most), [0, 0]);
+  const outlines = lines.filter((line) => !["none", null].includes(line.getAttribute("fill")));
+  const usual = usualWidth(outlines) || usualWidth(lines); // of bodies, else of whatever there is
   if (!usual) return;
   const factor = LINE / usual;
   for (const line of lines) {
+    const width = clamp(Number(line.getAttribute("stroke-width")) * factor, THINNEST, THICKEST);
     line.setAttribute("vector-effect", "non-scaling-stroke");
-    line.setAttribute("stroke-width", (Number(line.getAttribute("stroke-width")) * factor).toFixed(3));
+    line.setAttribute("stroke-width", width.toFixed(3));
     const dashes = line.getAttribute("stroke-dasharray");
     if (dashes === null) continue;
     const scaled = dashes.split(/[\s,]+/).map((dash) => Number(dash) * factor);
     line.setAttribute("stroke-dasharray", scaled.every(Number.isFinite) ? scaled.join(" ") : "none");
   }
+}
+
+/**
+ * The width that the most lines have; 0 if there are none.
+ * @param {Element[]} lines
+ */
+function usualWidth(lines) {
+  /** @type {Map<number, number>} */
+  const counts = new Map();
+  for (const line of lines) {
+    const width = Number(line.getAttribute("stroke-width"));
+    if (width > 0) counts.set(width, (counts.get(width) ?? 0) + 1);
+  }
+  return [...counts].reduce((most, one) => (one[1] > most[1] ? one : most), [0, 0])[0];
 }

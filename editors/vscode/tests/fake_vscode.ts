@@ -50,15 +50,12 @@ function make(recorded: Recorded): object {
     extensions: { getExtension: () => undefined },
     Uri: { joinPath: (_base: unknown, ...parts: string[]) => parts.join("/") },
   };
-  return new Proxy(
-    { EventEmitter: Emitter },
-    {
-      get: (known: Record<string, unknown>, name) => {
-        const own = namespaces[String(name)];
-        return own === undefined ? (known[String(name)] ?? nothing(String(name))) : rest(own, disposable);
-      },
-    },
-  );
+  const get = (_: object, name: string | symbol): unknown => {
+    if (name === "EventEmitter") return Emitter;
+    const own = namespaces[String(name)];
+    return own === undefined ? nothing(String(name)) : rest(own, disposable);
+  };
+  return Object.create(new Proxy({}, { get })); // bundlers copy a module's own properties, but keep its prototype
 }
 
 /** A namespace whose other functions only register something. */

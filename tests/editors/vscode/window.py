@@ -125,13 +125,13 @@ class Window:
     def tab(self, name: str) -> Locator:
         return self.page.locator(f".tab.active[data-resource-name='{name}']")
 
-    def give(self, file: Path) -> None:
-        """Tell a dialog that asks for a file."""
-        expect(self.field).to_have_value(re.compile("^/.+"), timeout=PATIENCE)  # what it begins with
+    def give(self, file: Path, suggested: str = "") -> None:
+        """Tell a dialog that asks for a file which one, once it has listed the folder that it begins with."""
+        rows = self.page.locator(".quick-input-list .monaco-list-row")
+        expect(self.field).to_have_value(re.compile(f"^/.*{re.escape(suggested)}$"), timeout=PATIENCE)
+        expect(rows.filter(has_text="..").first).to_be_visible(timeout=PATIENCE)
         self.field.fill(str(file))
-        expect(self.page.locator(".quick-input-list .monaco-list-row.focused")).to_be_visible(
-            timeout=PATIENCE
-        )
+        expect(self.field).to_have_value(str(file))
         self.field.press("Enter")
         self.field.wait_for(state="hidden", timeout=PATIENCE)
 

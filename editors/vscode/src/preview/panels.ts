@@ -107,6 +107,7 @@ export class Previews implements vscode.Disposable, vscode.WebviewPanelSerialize
       {
         uri,
         version: () => vscode.workspace.textDocuments.find((one) => one.uri.toString() === uri)?.version ?? null,
+        connected: () => this.server.state === "running",
         post: (message) => void panel.webview.postMessage(message),
         ask: this.server.ask,
         mark: (place) => this.marks.mark(place === null ? null : normalPlace(place)),

@@ -22,6 +22,8 @@ export interface Editor {
   readonly uri: string;
   /** Of the document as it is now; null where it is not open. */
   version(): number | null;
+  /** Whether there is a server to ask; when there is one again, `refresh` is called. */
+  connected(): boolean;
   post(message: FromHost): void;
   ask: Ask;
   /** Shows in the text where something is written; null: nothing. */
@@ -58,6 +60,7 @@ export class Relay {
   async refresh(): Promise<void> {
     const { uri } = this.editor;
     this.forgetTries();
+    if (!this.editor.connected()) return;
     await this.guarded(async () => {
       const picture = await this.editor.ask("aidl/preview", { uri, show: [...this.layers] });
       if (picture !== null) this.show(picture);

@@ -21,6 +21,13 @@ import { runOf, type ServerState } from "../status";
 import { findServer, installLine, isFound, type Found, type Missing } from "./find";
 import { selectedPython } from "./python";
 
+/** One that leaves it to the extension to tell that it could not start. */
+class Client extends LanguageClient {
+  override error(...[message, data, notify]: Parameters<LanguageClient["error"]>): void {
+    super.error(message, data, this.isRunning() ? notify : false);
+  }
+}
+
 export class Server implements vscode.Disposable {
   private client: LanguageClient | null = null;
   private now: ServerState = "stopped";
@@ -97,7 +104,7 @@ export class Server implements vscode.Disposable {
     const { found, python } = await this.locate();
     if (!isFound(found)) {
       this.output.error(`No ${found.name} was found at\n  ${found.places.join("\n  ")}`);
-      return this.complain(`The program "${found.name}" that starts the AIDL language server was not found.`, python);
+      return this.complain(`The program "${found.name}" that starts the AIDL language server was not found. Install it with:`, python);
     }
     this.output.info(`Starts ${[found.program, ...found.arguments].join(" ")}`);
     const client = this.create(found);
@@ -108,7 +115,8 @@ export class Server implements vscode.Disposable {
     } catch (error) {
       this.output.error(`It did not start: ${messageOf(error)}`);
       await this.halt();
-      this.complain(`The AIDL language server did not start (${found.program}).`, python);
+      const without = "Its output tells why. If it lacks what editors need:";
+      this.complain(`The AIDL language server did not start (${found.program}). ${without}`, python);
     }
   }
 
@@ -125,7 +133,7 @@ export class Server implements vscode.Disposable {
       outputChannel: this.output,
       revealOutputChannelOn: RevealOutputChannelOn.Never,
     };
-    const client: LanguageClient = new LanguageClient("aidl", "AIDL", { command: program, args }, {
+    const client: LanguageClient = new Client("aidl", "AIDL", { command: program, args }, {
       ...options,
       errorHandler: this.errorHandler(() => client),
     });
@@ -181,7 +189,7 @@ export class Server implements vscode.Disposable {
     const output = "Show Output";
     const line = installLine(python, process.platform);
     void vscode.window
-      .showErrorMessage(`${what} Install it with: ${line}`, install, choose, output)
+      .showErrorMessage(`${what} ${line}`, install, choose, output)
       .then((answer) => {
         if (answer === install) {
           const terminal = vscode.window.createTerminal("AIDL");

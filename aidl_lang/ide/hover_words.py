@@ -1,0 +1,107 @@
+"""Hovering over what is no name: keywords, attributes, the signs of comparisons, numbers.
+
+Each answer is Markdown with the place that it is about.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from aidl_lang import ast
+from aidl_lang.ide.describing import fenced, joined
+from aidl_lang.ide.guesses import guesses
+from aidl_lang.ide.hover_values import listed, not_solved, stated_at
+from aidl_lang.ide.nodes import around
+from aidl_lang.ide.site import Spot
+from aidl_lang.ide.solved_values import solved_of
+from aidl_lang.ide.telling import compared, number_text
+from aidl_lang.ide.view import View
+from aidl_lang.kinds import kind_of
+from aidl_lang.reference.collect import Entry, reference
+from aidl_lang.source import Span
+from aidl_lang.syntax.tokens import Token, tokenize
+from aidl_lang.units import UNITS
+from aidl_lang.vocabulary import vocabulary
+
+_GUIDE = "`aidl guide` tells the language in a few pages."
+Told = tuple[str, Span]
+
+
+def of_word(view: View, offset: int) -> Told | None:
+    """A keyword, a kind, or the sign of a comparison."""
+    token = _token_at(view, offset)
+    if token is None:
+        return None
+    span = view.span(token.start, token.end)
+    words = vocabulary()
+    if token.kind in words.comparisons:
+        text = _compared(view, token)
+        return (text, span) if text else None
+    word = token.text.strip("( \t")
+    kind = kind_of(word)
+    entry = reference().entries.get(kind or word)
+    if entry is None or (token.kind == "NAME" and kind is None):
+        return None
+    return (_keyword(entry), view.span(token.start, token.start + len(word)))
+
+
+def _keyword(entry: Entry) -> str:
+    example = fenced(entry.doc.example) if entry.doc.example else ""
+    forms = fenced("\n".join(o.form for o in entry.overloads))
+    return joined([forms, entry.doc.line, entry.doc.text, example, _GUIDE])
+
+
+def _token_at(view: View, offset: int) -> Token | None:
+    touching = None
+    for token in tokenize(view.source).tokens:
+        if token.start <= offset < token.end:
+            return token
+        if token.end == offset:
+            touching = token
+    return touching
+
+
+def _compared(view: View, token: Token) -> str:
+    """Both sides of a comparison, and how well it holds."""
+    path = around(view.module, token.start)
+    node = path[-1]
+    if not isinstance(node, ast.Comparison):
+        return ""
+    solved = solved_of(view)
+    if solved is None:
+        return not_solved(view)
+    sides = [(side.span.one_line, solved.values(side, path)) for side in node.operands]
+    return joined([stated_at(view, node, path), listed(compared(solved, sides))])
+
+
+def of_attribute(view: View, spot: Spot) -> Told | None:
+    if spot.before is None or spot.before.kind != "@":
+        return None
+    name = view.source.text[spot.start : spot.end]
+    entry = reference().entries.get(f"@{'color' if name == 'colour' else name}")
+    return (_keyword(entry), view.span(spot.before.start, spot.end)) if entry is not None else None
+
+
+def of_number(view: View, start: int) -> Told | None:
+    """A number in mm or degrees, and what the solver made of it."""
+    path = around(view.module, start)
+    node = path[-1]
+    if not isinstance(node, ast.Number):
+        return None
+    blocks = list(_converted(node))
+    for guess in guesses(view):
+        if guess.span.start <= start < guess.span.end and guess.solved is not None:
+            unit = f" {guess.measure}" if guess.measure else ""
+            what = "kept" if guess.is_kept else "a first guess"
+            became = number_text(guess.solved, None) + unit
+            many = f" and {len(guess.uses) - 1} more" if len(guess.uses) > 1 else ""
+            change = f"solved to {became}" if guess.is_off(guess.solved) else f"stays {became}"
+            blocks.append(f"`{guess.path}`{many}: {what}, {change}")
+    return (joined(blocks), node.span) if blocks else None
+
+
+def _converted(node: ast.Number) -> Iterator[str]:
+    if node.unit is not None:
+        factor, dimension = UNITS[node.unit]
+        worth = number_text(node.value * factor, dimension)
+        yield f"`{node.span.text}` = {worth}" if factor != 1.0 else f"{dimension}: {worth}"
