@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-model lint format reference colours bench bench-check bench-regions bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test test-model lint format reference colours vscode test-vscode bench bench-check bench-regions bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -38,6 +38,15 @@ reference: $(READY) ## write docs/reference, docs/guide.md and llms.txt anew fro
 
 colours: $(READY) ## write the grammars, words and snippets for editors anew
 	$(BIN)/python -m aidl_lang.highlighting .
+
+vscode: ## check and test the extension for VS Code, and pack it: build/aidl.vsix
+	@mkdir -p build
+	cd editors/vscode && npm ci --silent --no-audit --no-fund && npm run --silent check && npm test --silent \
+		&& npm run --silent package -- --out ../../build/aidl.vsix
+
+test-vscode: $(READY) vscode ## try the extension in VS Code itself; installs that into build/code-server, once
+	$(BIN)/python tests/editors/vscode/install.py build/code-server
+	AIDL_CODE_SERVER=build/code-server AIDL_VSIX=build/aidl.vsix $(BIN)/python -m pytest tests/editors/vscode
 
 bench: $(READY) ## measure the command and the stages
 	$(BIN)/python benchmarks/run.py

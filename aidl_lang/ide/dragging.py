@@ -23,9 +23,9 @@ from aidl_lang.geometry.curves import Vec
 from aidl_lang.ide.draggable import Grip, grips, is_somewhere
 from aidl_lang.ide.guesses import Guess, guesses
 from aidl_lang.ide.knob_dragging import moved_by_params, turned
-from aidl_lang.ide.mobility import AXES, Way, Ways, belongs, is_movable, pull, values_at, ways
+from aidl_lang.ide.mobility import AXES, Way, Ways, belongs, movable, pull, values_at, ways
 from aidl_lang.ide.view import View
-from aidl_lang.ide.writing_back import Refusal, compiled, shortest
+from aidl_lang.ide.writing_back import Refusal, compiled, is_same, shortest
 from aidl_lang.lower import Lowered, lower
 from aidl_lang.pipeline import Compiled
 from aidl_lang.solver import Settings, Solution, Status, solve
@@ -42,6 +42,8 @@ _DEAR = 1e-3
 """How much shorter a change is that counts as much as one of what is dragged, where it is only to follow."""
 _SECONDS = 1.0
 _FINE = 1e-6
+_NAMED = 2
+"""Params that a hint names."""
 
 
 @dataclass(frozen=True)
@@ -146,7 +148,7 @@ def _ways(view: View) -> Ways:
     if outcome is None or outcome.built is None or outcome.evaluate is None:
         return Ways()
     found = [grip for grip, _ in _places(view)]
-    return ways(outcome.built, found, outcome.evaluate, _written(view))
+    return ways(outcome.built, found, outcome.evaluate, _written(view), _movable(view))
 
 
 @lru_cache(maxsize=4)
@@ -155,8 +157,17 @@ def _editable(view: View) -> tuple[Guess, ...]:
     return tuple(guess for guess in guesses(view) if not guess.is_shared)
 
 
+@lru_cache(maxsize=4)
 def _written(view: View) -> frozenset[Unknown]:
     return frozenset(u for guess in _editable(view) for u in guess.unknowns)
+
+
+@lru_cache(maxsize=4)
+def _movable(view: View) -> frozenset[Unknown]:
+    outcome = view.outcome
+    if outcome is None or outcome.built is None or outcome.evaluate is None:
+        return frozenset()
+    return movable(outcome.built, outcome.evaluate, _written(view))
 
 
 def _by_numbers(view: View) -> Iterator[Handle]:
@@ -204,7 +215,8 @@ def _name(grip: Grip) -> str:
 
 
 def _by_param(grip: Grip, params: tuple[str, ...]) -> str:
-    return f"{_name(grip)}: drag to change {' and '.join(f'`{name}`' for name in params)}"
+    more = " or others" if len(params) > _NAMED else ""
+    return f"{_name(grip)}: drag to change {' or '.join(f'`{name}`' for name in params[:_NAMED])}{more}"
 
 
 # --- Pulling -------------------------------------------------------------------------------------
@@ -248,8 +260,8 @@ class _Pull:
         written = _written(self.view)
         resized = self._are({u for u in written if self.by_sizes and u.kept and belongs(u, self.grip.thing)})
         said = self._are(written) & ~problem.kept
-        movable = is_movable(lowered, self.evaluate, written) & ~problem.kept
-        free = resized | (movable if everything else said)
+        loose = self._are(_movable(self.view)) & ~problem.kept
+        free = resized | (loose if everything else said)
         dear = np.where(resized, 1.0, np.where(said, _DEAR if self.by_sizes else 1.0, _DEAR))
         at = values_at(lowered, self.evaluate)
         flat = replace(
@@ -342,5 +354,11 @@ def _comes_to(view: View, edits: tuple[Edit, ...], dragged: Dragged, tolerance: 
     if grip is None or again.outcome.evaluate is None:
         return False
     errors = {d.code for d in again.outcome.diagnostics if d.is_error}
-    is_no_worse = errors <= {d.code for d in view.outcome.diagnostics}
-    return is_no_worse and math.dist(grip.at(again.outcome.evaluate), dragged.at) <= tolerance
+    if not errors <= {d.code for d in view.outcome.diagnostics}:
+        return False
+    if math.dist(grip.at(again.outcome.evaluate), dragged.at) <= tolerance:
+        return True
+    # A drawing whose place the text does not say may come to lie elsewhere.
+    shown = dragged.view.outcome
+    is_same_shape = shown is not None and is_same(shown, again.outcome, slid=True, tolerance=tolerance)
+    return is_same_shape and not _is_slide(view, grip.id)

@@ -18,7 +18,7 @@ from aidl_lang.ide.describing import (
     of_parameter,
 )
 from aidl_lang.ide.hover_values import failed, listed, not_solved, stated_at
-from aidl_lang.ide.hover_words import Told, of_attribute, of_number, of_word
+from aidl_lang.ide.hover_words import Told, of_attribute, of_number, of_word, token_at
 from aidl_lang.ide.meaning import Mention, chosen, mention_at
 from aidl_lang.ide.nodes import around
 from aidl_lang.ide.site import Where, spot_at
@@ -60,13 +60,13 @@ def hover(view: View, offset: int, end: int | None = None) -> Hover | None:
     if end is not None and end > offset:
         return _of_selection(view, offset, end)
     spot = spot_at(view, offset)
-    match spot.where:
-        case Where.COMMENT | Where.STRING:
-            return None
-        case Where.NUMBER:
-            told = of_number(view, spot.token.start) if spot.token is not None else None
-        case _:
-            told = of_attribute(view, spot) or _of_name_at(view, offset) or of_word(view, offset)
+    if spot.where in (Where.COMMENT, Where.STRING):
+        return None
+    token = token_at(view, offset)
+    if token is not None and token.kind == "NUMBER":
+        told = of_number(view, token.start)
+    else:
+        told = of_attribute(view, spot) or _of_name_at(view, offset) or of_word(view, offset)
     return Hover(*told) if told is not None else None
 
 

@@ -29,7 +29,7 @@ Told = tuple[str, Span]
 
 def of_word(view: View, offset: int) -> Told | None:
     """A keyword, a kind, or the sign of a comparison."""
-    token = _token_at(view, offset)
+    token = token_at(view, offset)
     if token is None:
         return None
     span = view.span(token.start, token.end)
@@ -51,7 +51,7 @@ def _keyword(entry: Entry) -> str:
     return joined([forms, entry.doc.line, entry.doc.text, example, _GUIDE])
 
 
-def _token_at(view: View, offset: int) -> Token | None:
+def token_at(view: View, offset: int) -> Token | None:
     touching = None
     for token in tokenize(view.source).tokens:
         if token.start <= offset < token.end:

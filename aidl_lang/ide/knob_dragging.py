@@ -23,8 +23,10 @@ _SECONDS = 0.6
 """For trying all params once; those that are left are not dragged by."""
 _NUDGE = 1e-3
 """How far a param is turned to see what follows, as a share of its range or value."""
-_FOLLOWS = 1e-3
+_FOLLOWS = 1e-2
 """Millimetres for one of its units by which a point follows a param at least."""
+_LAZY = 0.1
+"""Millimetres for one of its units of a param that half as gladly is turned as one that does much."""
 _ROUNDS = 3
 _BESIDE = 0.3
 """Sine of the angle between the ways of two params that are not the same way."""
@@ -50,7 +52,7 @@ def turned(view: View, grip: Grip, to: Vec, step: float) -> tuple[View, Vec, tup
         if at is None or not slopes or math.dist(at, to) <= step:
             break
         wanted = to[0] - at[0], to[1] - at[1]
-        best = max(slopes, key=lambda path: abs(_along(wanted, slopes[path])))
+        best = max(slopes, key=lambda path: _promise(view, path, wanted, slopes[path]))
         way = slopes.pop(best)
         value = _value(view, grip.id, best, values, to, way, step)
         if value is not None:
@@ -177,6 +179,18 @@ def _value(
             gone = _along((at[0] - before[1][0], at[1] - before[1][1]), way)
             slope = gone / (value - before[0]) if abs(gone) > _FOLLOWS * abs(value - before[0]) else slope
     return best
+
+
+def _promise(view: View, path: str, wanted: Vec, way: Vec) -> float:
+    """How far of a wanted way a param could take a point within its range, the more gladly the more it does
+    for each of its units.
+    """
+    assert view.outcome is not None
+    knob = next(k for k in view.outcome.knobs if k.path == path)
+    slope, along = math.hypot(*way), _along(wanted, way)
+    value = float(knob.value)
+    room = abs(_clamped(knob, value + along / slope) - value) * slope
+    return min(abs(along), room) * slope / (slope + _LAZY)
 
 
 def _clamped(knob: Knob, value: float) -> float:

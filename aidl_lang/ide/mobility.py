@@ -75,11 +75,17 @@ def pull(model: Model, grip: Grip, directions: Sequence[Vec], to: Vec, weight: f
     return Constraint(model.root, tuple(rows), grip.id, _NOWHERE, weight)
 
 
-def ways(model: Model, grips: Sequence[Grip], evaluate: Evaluator, written: AbstractSet[Unknown]) -> Ways:
+def ways(
+    model: Model,
+    grips: Sequence[Grip],
+    evaluate: Evaluator,
+    written: AbstractSet[Unknown],
+    movable: AbstractSet[Unknown],
+) -> Ways:
     """How each point can be moved; `written` are the unknowns that a number of the text stands for."""
     wishes = {grip: pull(model, grip, AXES, grip.at(evaluate), 1.0) for grip in grips}
     lowered = lower(replace(model, constraints=[*model.constraints, *wishes.values()]))
-    scene = _Scene(lowered, evaluate, wishes, written)
+    scene = _Scene(lowered, evaluate, wishes, written, movable)
     own: dict[str, Way] = {}
     sizes: dict[str, Way] = {}
     whole: dict[str, Way] = {}
@@ -91,13 +97,17 @@ def ways(model: Model, grips: Sequence[Grip], evaluate: Evaluator, written: Abst
     return Ways(own, sizes, whole)
 
 
-def is_movable(lowered: Lowered, evaluate: Evaluator, written: AbstractSet[Unknown]) -> NDArray[np.bool_]:
-    """Which unknowns (n,) may move at all: positions that do so already, and what a number of the text says.
-
-    A frame that no constraint mentions stays where it is, unless its place is written.
+def movable(model: Model, evaluate: Evaluator, written: AbstractSet[Unknown]) -> frozenset[Unknown]:
+    """The unknowns that may move: what numbers of the text say, and of the others those that a run of the
+    changed text moves after them. Those are frames, where a constraint mentions them, and positions that the
+    structure itself constrains; from outside, a structure is moved as a whole.
     """
-    free = [(not u.kept and u in evaluate.values) or u in written for u in lowered.unknowns]
-    return np.array(free, dtype=np.bool_)
+    found = set(written)
+    found.update(u for u in evaluate.values if u.frame_of is not None)
+    for constraint in model.constraints:
+        both = (e for c in constraint.comparisons for e in (c.left, c.right))
+        found.update(u for u in ex.unknowns(both) if u.owner is constraint.holder and u in evaluate.values)
+    return frozenset(u for u in found if not u.kept or u in written)
 
 
 def values_at(lowered: Lowered, evaluate: Evaluator) -> Floats:
@@ -115,6 +125,7 @@ class _Scene:
         evaluate: Evaluator,
         wishes: Mapping[Grip, Constraint],
         written: AbstractSet[Unknown],
+        movable: AbstractSet[Unknown],
     ) -> None:
         problem, rows = lowered.problem, lowered.problem.rows
         self.unknowns = lowered.unknowns
@@ -130,11 +141,11 @@ class _Scene:
         points = np.stack((first, first + 1), axis=1).ravel()
         self.is_written = np.array([u in written for u in self.unknowns], dtype=np.bool_)
         self.is_free = ~problem.kept
-        movable = is_movable(lowered, evaluate, written)
+        may_move = np.array([u in movable for u in self.unknowns], dtype=np.bool_)
         with np.errstate(all="ignore"):
             _, matrix = linearise(problem.tape, at, rows.expression[np.concatenate((equal, points))])
         scaled = matrix.scaled(np.ones(len(matrix)), problem.scale)
-        self.matrix = scaled.only(movable[scaled.columns])
+        self.matrix = scaled.only(may_move[scaled.columns])
         self.equations = len(equal)
 
     def parts(self) -> Iterator[_Part]:

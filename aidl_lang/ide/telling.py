@@ -135,9 +135,7 @@ def _of_one(solved: Solved, unknown: Unknown) -> str:
         model = solved.outcome.model
         changed = {c.path: c for c in model.changed} if model is not None else {}
         change = changed.get(unknown.path)
-        return (
-            "kept" if change is None else f"a size that had to change from {fixed(change.written, DECIMALS)}"
-        )
+        return "kept" if change is None else f"had to change from {fixed(change.written, DECIMALS)}"
     return "free" if unknown.path in solved.free else "solved"
 
 

@@ -167,19 +167,19 @@ def _is_no_worse(before: Compiled, after: Compiled) -> bool:
 # --- Comparing -----------------------------------------------------------------------------------
 
 
-def is_same(before: Compiled, after: Compiled, *, slid: bool = False) -> bool:
+def is_same(before: Compiled, after: Compiled, *, slid: bool = False, tolerance: float = SAME) -> bool:
     """Whether two outcomes draw the same, name by name; with `slid`, wherever the drawing as a whole lies."""
+
+    def is_near(a: float, b: float) -> bool:
+        return abs(a - b) <= tolerance or (math.isnan(a) and math.isnan(b))
+
     if before.model is None or after.model is None or before.status != after.status:
         return False
     one, other = (list(_drawn(model.root, slid)) for model in (before.model, after.model))
     return len(one) == len(other) and all(
-        name == path and len(a) == len(b) and all(map(_is_near, a, b))
+        name == path and len(a) == len(b) and all(map(is_near, a, b))
         for (name, a), (path, b) in zip(one, other, strict=True)
     )
-
-
-def _is_near(a: float, b: float) -> bool:
-    return abs(a - b) <= SAME or (math.isnan(a) and math.isnan(b))
 
 
 def _drawn(root: SolvedStructure, slid: bool) -> Iterator[tuple[str, list[float]]]:

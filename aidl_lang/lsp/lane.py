@@ -50,10 +50,7 @@ class Lane:
         self._loop = loop
         self._waiting: dict[Hashable, Job[Any]] = {}
         self.running: Job[Any] | None = None
-
-    @property
-    def is_idle(self) -> bool:
-        return self.running is None and not self._waiting
+        self._is_closed = False
 
     def waits(self, key: Hashable) -> bool:
         return key in self._waiting
@@ -61,6 +58,9 @@ class Lane:
     def put(self, job: Job[Any], first: bool = False) -> None:
         """Have work done in its turn, or as the next."""
         self.drop(job.key)
+        if self._is_closed:
+            job.dropped()
+            return
         self._waiting = {job.key: job, **self._waiting} if first else {**self._waiting, job.key: job}
         self._start()
 
@@ -71,6 +71,7 @@ class Lane:
 
     def close(self) -> None:
         """Drop what waits and begin nothing more."""
+        self._is_closed = True
         for key in list(self._waiting):
             self.drop(key)
         self._executor.shutdown(wait=False, cancel_futures=True)
@@ -102,12 +103,7 @@ class Answers:
 
     def __init__(self, name: str) -> None:
         self._executor = _executor(name)
-        self._asked = 0
         self._is_closing = False
-
-    @property
-    def is_busy(self) -> bool:
-        return self._asked > 0
 
     async def ask(self, answer: Callable[[], T]) -> T:
         """Raises what `answer` raises."""
@@ -117,22 +113,13 @@ class Answers:
             with cancelled_when(lambda: unwanted.is_set() or self._is_closing):
                 return answer()
 
-        loop = asyncio.get_running_loop()
-        running = self._executor.submit(work)
-        self._asked += 1
-        running.add_done_callback(lambda _: self._count_down(loop))
+        if self._is_closing:
+            raise asyncio.CancelledError
         try:
-            return await asyncio.wrap_future(running)
+            return await asyncio.wrap_future(self._executor.submit(work))
         except asyncio.CancelledError:
             unwanted.set()
             raise
-
-    def _count_down(self, loop: asyncio.AbstractEventLoop) -> None:
-        def count() -> None:
-            self._asked -= 1
-
-        with suppress(RuntimeError):  # the loop has ended
-            loop.call_soon_threadsafe(count)
 
     def close(self) -> None:
         """Give up what is being answered, and begin nothing more."""

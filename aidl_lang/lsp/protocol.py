@@ -68,9 +68,9 @@ class Protocol(LanguageServerProtocol):
             return
         asked = data.get("id") if "method" in data else None
         try:
-            message = self.structure_message(data)
             if asked is not None:
                 self._require_time(data["method"])
+            message = self.structure_message(data)
         except exceptions.JsonRpcException as trouble:
             log.warning("a message that cannot be understood: %s", trouble)
             if isinstance(asked, int | str):

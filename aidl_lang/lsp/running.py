@@ -69,10 +69,6 @@ class Runner:
         self._loop = loop
         self._is_closing = False
 
-    @property
-    def is_busy(self) -> bool:
-        return not (self.looking.is_idle and self.solving.is_idle)
-
     def warm_up(self) -> None:
         """Load what the first run needs while nobody waits for it."""
         self.solving.put(Job("warm", _warm_up, lambda future: None))
@@ -100,9 +96,16 @@ class Runner:
             if known is not None and document.path != path and _stands_on(known.view, path):
                 self.renew(document)
 
-    async def work(self, key: Hashable, function: Callable[[], T], is_unwanted: Callable[[], bool]) -> T:
-        """Have something done in the solving thread, before what waits there. Of what is asked under one key
-        only the newest is done: the others raise Cancelled, as does what is unwanted any more.
+    async def work(
+        self,
+        key: Hashable,
+        function: Callable[[], T],
+        is_unwanted: Callable[[], bool],
+        *,
+        first: bool = True,
+    ) -> T:
+        """Have something done in the solving thread, before what waits there or behind it. Of what is asked
+        under one key only the newest is done: the others raise Cancelled, as does what is unwanted any more.
         """
         found: asyncio.Future[T] = self._loop.create_future()
 
@@ -123,7 +126,7 @@ class Runner:
             if not found.done():
                 found.set_exception(Cancelled())
 
-        self.solving.put(Job(key, work, done, dropped), first=True)
+        self.solving.put(Job(key, work, done, dropped), first=first)
         return await found
 
     def forget(self, document: Document) -> None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 import socket
 import sys
+import threading
 import time
 from collections.abc import Coroutine
 
@@ -79,14 +81,6 @@ async def _serve(reader: asyncio.StreamReader, writer: wire.Output | asyncio.Str
         return _LOST
     finally:
         server.close()
-        await _rest(server)
-
-
-async def _rest(server: Server) -> None:
-    """Wait a little for work that was given up; some steps cannot be broken off."""
-    deadline = time.monotonic() + _LAST_SECONDS
-    while server.is_busy and time.monotonic() < deadline:
-        await asyncio.sleep(0.01)
 
 
 def _run(session: Coroutine[None, None, int]) -> int:
@@ -95,7 +89,20 @@ def _run(session: Coroutine[None, None, int]) -> int:
     sys.setswitchinterval(_SWITCH)
     logging.basicConfig(stream=sys.stderr, format="%(levelname)s %(name)s: %(message)s")
     logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_news)
-    return asyncio.run(session)
+    code = asyncio.run(session)
+    _end_threads(code)
+    return code
+
+
+def _end_threads(code: int) -> None:
+    """Wait a little for work that was given up; some steps cannot be broken off, and end with us."""
+    deadline = time.monotonic() + _LAST_SECONDS
+    working = [t for t in threading.enumerate() if t is not threading.current_thread() and not t.daemon]
+    for thread in working:
+        thread.join(timeout=max(0.0, deadline - time.monotonic()))
+    if any(thread.is_alive() for thread in working):
+        logging.shutdown()
+        os._exit(code)
 
 
 def _is_news(record: logging.LogRecord) -> bool:

@@ -87,11 +87,6 @@ class Server(LanguageServer):
         self.searches.close()
 
     @property
-    def is_busy(self) -> bool:
-        runner = self.runner
-        return runner.is_busy or self.answers.is_busy or self.searches.is_busy
-
-    @property
     def unit(self) -> Unit:
         return Unit(self.workspace.position_encoding or Unit.UTF_16)
 

@@ -51,7 +51,7 @@ class Page:
         self._news.set()
 
     def take(self, picture: Picture) -> None:
-        self.shown, self.is_owed = picture, False
+        self.shown = picture
         self.post(picture.text, is_picture=True)
 
     def tell(self, message: Json) -> None:
@@ -111,6 +111,7 @@ class Host:
     def _show_all(self, pages: list[Page], pictures: dict[frozenset[str], Picture], trouble: str) -> None:
         for page in pages:
             if page.show in pictures:  # else it has just asked for others
+                page.is_owed = False
                 page.take(pictures[page.show])
         self._tell_trouble(trouble)
         if pages:

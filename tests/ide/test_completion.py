@@ -242,7 +242,9 @@ def test_all_constraints_of_the_table_exist() -> None:
 
 
 def test_reading_the_table() -> None:
-    page = "## above\n\n`above(a, b)`: any two, but no number and no list\n\n## r\n\n`r(a) == 9`: arc, circle\n"
+    page = (
+        "## above\n\n`above(a, b)`: any two, but no number and no list\n\n## r\n\n`r(a) == 9`: arc, circle\n"
+    )
     found = read(page)
     assert ("point", "structure") in found["above"][0].pairs
     assert not any("number" in pair or "list" in pair for pair in found["above"][0].pairs)
@@ -404,7 +406,9 @@ def test_what_is_inserted_parses_no_worse(path: Path) -> None:
         for completion in chance.sample(found, min(8, len(found))):
             if completion.label in _OPERANDS_FOLLOW:
                 continue
-            made = [broken[: token.start] + completion.plain + more + broken[token.start :] for more in _AFTER]
+            made = [
+                broken[: token.start] + completion.plain + more + broken[token.start :] for more in _AFTER
+            ]
             worse = [errors(m) for m in made]
             assert min(worse) <= before, (completion.label, broken[token.start - 40 : token.start])
 

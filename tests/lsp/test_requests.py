@@ -25,12 +25,13 @@ solid plate {
 
 
 async def telephone(editor: Editor) -> str:
-    uri = TELEPHONE.as_uri()
+    """The telephone as it is on disk, solved."""
+    uri, text = TELEPHONE.as_uri(), TELEPHONE.read_text("utf-8")
     if uri not in editor.texts:
         editor.open(TELEPHONE)
-        await editor.found(uri)
-    elif editor.texts[uri] != TELEPHONE.read_text("utf-8"):
-        editor.become(uri, TELEPHONE.read_text("utf-8"))
+    elif editor.texts[uri] != text:
+        editor.become(uri, text)
+    await editor.status(uri)
     return uri
 
 
@@ -303,6 +304,15 @@ async def test_signature_help_marks_the_argument(editor: Editor) -> None:
     chosen = found.signatures[found.active_signature]
     start, end = chosen.parameters[found.active_parameter].label
     assert chosen.label[start:end].startswith("radius")
+
+
+async def test_hover_tells_the_solved_value(editor: Editor) -> None:
+    uri = await telephone(editor)
+    text = editor.texts[uri]
+    found = await editor.text_document_hover_async(types.HoverParams(**editor.at(uri, "width = 160", 2)))
+    assert "160 mm" in found.contents.value
+    start = offset(text, found.range.start)
+    assert text[start : offset(text, found.range.end)] == "width"
 
 
 async def test_lenses_tell_what_is_free(editor: Editor) -> None:

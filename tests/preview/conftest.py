@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Locator, Page, sync_playwright
 
 from tests.preview.messages import picture
 from tests.preview.scripted import ScriptedHost
@@ -20,6 +20,7 @@ ARGUMENTS = [
     "--disable-sync",
     "--no-first-run",
 ]
+VIEWPORT = {"width": 1200, "height": 800}
 
 
 @pytest.fixture(scope="session")
@@ -75,6 +76,18 @@ class Pane:
         return self.page.locator(selector)
 
 
+def opened(context: BrowserContext, host: ScriptedHost, has_clock: bool = False) -> Pane:
+    """The pane on a page of its own."""
+    context.set_default_timeout(10_000)
+    pane = Pane(context.new_page(), host)
+    pane.page.on("pageerror", lambda error: pane.complaints.append(str(error)))
+    pane.page.on("console", lambda line: line.type == "error" and pane.complaints.append(line.text))
+    if has_clock:
+        pane.page.clock.install(time=0)
+    pane.page.goto(host.url)
+    return pane
+
+
 @pytest.fixture
 def host() -> Iterator[ScriptedHost]:
     with ScriptedHost() as host:
@@ -83,34 +96,39 @@ def host() -> Iterator[ScriptedHost]:
 
 @pytest.fixture
 def open_pane(browser: Browser, host: ScriptedHost) -> Iterator[Callable[..., Pane]]:
-    """What opens the pane; `looks` are those of `Browser.new_context`."""
-    opened = []
+    """What opens the pane in a browser of its own; `looks` are those of `Browser.new_context`."""
+    contexts = []
 
     def open_pane(host: ScriptedHost = host, script: str = "", has_clock: bool = False, **looks: Any) -> Pane:
-        looks = {"viewport": {"width": 1200, "height": 800}, **looks}
-        context = browser.new_context(**looks)
-        opened.append(context)
-        context.set_default_timeout(10_000)
+        contexts.append(browser.new_context(**{"viewport": VIEWPORT, **looks}))
         if script:
-            context.add_init_script(script)
-        pane = Pane(context.new_page(), host)
-        pane.page.on("pageerror", lambda error: pane.complaints.append(str(error)))
-        pane.page.on("console", lambda line: line.type == "error" and pane.complaints.append(f"{line.text}"))
-        if has_clock:
-            pane.page.clock.install(time=0)
-        pane.page.goto(host.url)
-        return pane
+            contexts[-1].add_init_script(script)
+        return opened(contexts[-1], host, has_clock)
 
     yield open_pane
-    for context in opened:
+    for context in contexts:
+        context.close()
+
+
+@pytest.fixture(scope="session")
+def shared(browser: Browser) -> Iterator[tuple[BrowserContext, ScriptedHost]]:
+    """One host for many tests, and a browser that keeps the pane's files."""
+    with ScriptedHost() as host:
+        context = browser.new_context(viewport=VIEWPORT)
+        yield context, host
         context.close()
 
 
 @pytest.fixture
-def pane(open_pane: Callable[..., Pane]) -> Iterator[Pane]:
+def pane(shared: tuple[BrowserContext, ScriptedHost]) -> Iterator[Pane]:
     """The pane with a plate in it; nothing that a test does may make the browser complain."""
-    pane = open_pane()
-    pane.host.hears("ready")
+    context, host = shared
+    host.forget()
+    pane = opened(context, host)
+    host.hears("ready")
     pane.shows()
     yield pane
+    pane.page.evaluate("() => localStorage.clear()")
+    pane.page.close()
+    host.drop()
     assert pane.complaints == []

@@ -94,8 +94,10 @@ class ScriptedHost:
         return self.of(kind)[count - 1]
 
     def forget(self) -> None:
+        """What was heard and asked for until now."""
         with self._changed:
             self.heard.clear()
+            self.requests.clear()
 
     def wait(self, condition: Callable[[], bool]) -> None:
         with self._changed:
@@ -133,5 +135,5 @@ class ScriptedHost:
 
 
 def _response(body: bytes, kind: str) -> Response:
-    headers = Headers({"Content-Type": kind, "Content-Length": str(len(body)), "Connection": "close"})
-    return Response(HTTPStatus.OK, "OK", headers, body)
+    headers = {"Content-Type": kind, "Content-Length": str(len(body)), "Cache-Control": "max-age=600"}
+    return Response(HTTPStatus.OK, "OK", Headers({**headers, "Connection": "close"}), body)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import partial
 
@@ -24,7 +25,7 @@ _LETTER = re.compile(r"\b([abpq]|box)\b(?!\()|(?<![\w.])(\d+)(?=deg\b|\b)")
 
 def constraints(context: Context, behind: float = 0.0) -> Iterator[Draft]:
     """All that may be stated here; `behind` is added to how unlikely each is."""
-    things = [known for known in context.values if known.is_unknown and not _is_self(known)]
+    things = _latest([known for known in context.values if known.is_unknown and not _is_self(known)])
     for name, alias in context.callables():
         found = context.scope.called(name)
         if found is not None and any(s.kind is ast.ConstraintDefinition for s in found[1]):
@@ -35,6 +36,18 @@ def constraints(context: Context, behind: float = 0.0) -> Iterator[Draft]:
         found = context.scope.called(name)
         if found is not None:
             yield _standard(context, name, found[1], table.get(name, ()), things, behind)
+
+
+def _latest(things: Sequence[Known]) -> list[Known]:
+    """The last few things of each kind, in the order in which they are declared."""
+    counts: Counter[str] = Counter()
+    found = []
+    for known in reversed(things):
+        kind = kind_of(known.fact)
+        counts[kind] += 1
+        if counts[kind] <= _MOST_NAMES:
+            found.append(known)
+    return found[::-1]
 
 
 def _is_self(known: Known) -> bool:

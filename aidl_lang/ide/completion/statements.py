@@ -96,7 +96,8 @@ def _keywords(site: Site, tier: float) -> Iterator[Draft]:
 def _statement(site: Site, word: str, tier: float) -> Draft:
     """A statement with places to fill in; the word alone where it goes on already."""
     rest = site.following.partition("\n")[0].strip()
-    text = word if rest else _SNIPPETS.get(word, word)
+    is_alone = not rest or rest.startswith("}")
+    text = _SNIPPETS.get(word, word) if is_alone else word
     return Draft(word, "keyword", tier, text, is_snippet="$" in text, describe=partial(_word, word))
 
 
@@ -192,7 +193,7 @@ def _soft(site: Site, word: str) -> bool:
 
 def truths(site: Site) -> Iterator[Draft]:
     for word in ("true", "false"):
-        if site.takes(word):
+        if site.takes(word) and not site.following.startswith("("):
             yield Draft(word, "keyword", 5.0, describe=partial(_word, word))
 
 

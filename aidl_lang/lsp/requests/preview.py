@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import base64
-import logging
-from collections.abc import Mapping, Sequence
-from functools import partial
+from collections.abc import Awaitable, Callable, Sequence
 from itertools import count
-from typing import Any
+from typing import Any, TypeVar
 
 from lsprotocol import types
 from pygls.exceptions import (
@@ -21,92 +19,118 @@ from aidl_lang.agents.workspace import RefusalError
 from aidl_lang.cancelling import Cancelled
 from aidl_lang.diagnostics import Edit
 from aidl_lang.export import FORMATS, ExportError, Options
-from aidl_lang.ide.preview import LAYERS, Writer, preview, set_knob, tried
+from aidl_lang.ide.dragging import Dragged, drag
+from aidl_lang.ide.preview import LAYERS, set_knob, tried
 from aidl_lang.ide.view import View
+from aidl_lang.ide.writing_back import Refusal
 from aidl_lang.lsp.documents import Document
-from aidl_lang.lsp.given import Given, Value
+from aidl_lang.lsp.given import Given
+from aidl_lang.lsp.pictures import Json, Pictures
 from aidl_lang.lsp.running import LIMITS
 from aidl_lang.lsp.server import FAILED, Asked, Server
 
 _LONGEST_WAIT = 30.0
 """Seconds for an outcome: longer than a run may take."""
+_DIMENSIONS = "dimensions"
 
-log = logging.getLogger(__name__)
+T = TypeVar("T")
 
 
 def register(server: Server) -> None:
-    Previews(server)
+    requests = _Requests(server)
+    for method, answer in {
+        "aidl/preview": requests.preview,
+        "aidl/previewClose": requests.close,
+        "aidl/try": requests.attempt,
+        "aidl/setKnob": requests.set_knob,
+        "aidl/drag": requests.drag,
+        "aidl/fix": requests.fix,
+        "aidl/export": requests.export,
+    }.items():
+        server.feature(method)(_handler(answer))
 
 
-class Previews:
-    """Who sees which pictures. A document that is shown is told of after each of its runs."""
+def _handler(answer: Callable[[Given], Awaitable[Any]]) -> Callable[[Any], Awaitable[Any]]:
+    """What pygls knows for a coroutine function of the parameters, which may not be typed as `object`."""
 
+    async def handler(params: Any) -> Any:
+        return await answer(Given(params))
+
+    return handler
+
+
+class _Requests:
     def __init__(self, server: Server) -> None:
         self.server = server
-        self._shown: dict[Document, tuple[str, ...]] = {}
-        self._requests = count()
-        for method, answer in {
-            "aidl/preview": self._open,
-            "aidl/previewClose": self._close,
-            "aidl/try": self._try,
-            "aidl/setKnob": self._set_knob,
-            "aidl/fix": self._fix,
-            "aidl/export": self._export,
-        }.items():
-            server.feature(method)(_coroutine(answer))
-        server.on_solved.append(self._solved)
-        server.on_closed.append(self._closed)
+        self.pictures = Pictures(server)
+        self._numbers = count()
 
-    async def _open(self, given: Given) -> dict[str, Any] | None:
+    async def preview(self, given: Given) -> Json | None:
+        """Shows a document from now on."""
         document = self._document(given)
-        self._shown[document] = given.texts("show")
+        self.pictures.show(document, given.texts("show"))
         self.server.runner.active = document
         await document.until_solved(document.serial, _LONGEST_WAIT)
-        return await self._picture(document, ("picture", next(self._requests)))
+        return await self.pictures.picture(document, next(self._numbers))
 
-    async def _close(self, given: Given) -> None:
+    async def close(self, given: Given) -> None:
         document = self.server.documents.get(given.text("uri"))
         if document is not None:
-            self._shown.pop(document, None)
+            self.pictures.forget(document)
 
-    async def _try(self, given: Given) -> dict[str, Any]:
-        asked, document = await self._solved_view(given)
-        knobs, show = given.values("knobs"), self._shown.get(document, ())
-        version = asked.known.version
+    async def attempt(self, given: Given) -> Json:
+        """The picture with other values of params, or with a point dragged; nothing is written."""
+        asked, document = await self._solved(given)
+        if "drag" in given:
+            wanted = given.inner("drag")
+            handle, to = wanted.text("id"), wanted.point("to")
 
-        def attempt() -> dict[str, Any]:
-            view = tried(asked.view, knobs, document.memory, LIMITS)
-            return _written(asked, view, show, version, is_tried=True)
+            def view() -> View:
+                return _agreed(drag(asked.view, handle, to)).view
+        else:
+            knobs = given.values("knobs")
 
-        def is_unwanted() -> bool:
-            return document.version != version or not document.is_open
+            def view() -> View:
+                return tried(asked.view, knobs, document.memory, LIMITS)
 
-        try:
-            return await self.server.runner.work(("try", document), attempt, is_unwanted)
-        except Cancelled:
-            raise JsonRpcRequestCancelled() from None
+        def picture() -> Json:
+            return self.pictures.drawn(asked, document, view(), is_tried=True)
 
-    async def _set_knob(self, given: Given) -> dict[str, Any]:
-        asked, _ = await self._solved_view(given)
+        return await self._work("try", document, asked, picture)
+
+    async def set_knob(self, given: Given) -> Json:
+        asked, _ = await self._solved(given)
         path, value = given.text("path"), given.value("value")
         try:
             edits = await self.server.answers.ask(lambda: set_knob(asked.view, path, value))
         except RefusalError as refusal:
-            return {"applied": False, "reason": str(refusal)}
+            return _not_applied(str(refusal))
         return await self._apply(asked, edits, f"Set {path}")
 
-    async def _fix(self, given: Given) -> dict[str, Any]:
-        asked, _ = await self._solved_view(given)
-        problem, fix = given.whole("problem"), given.whole("fix")
-        found = asked.view.diagnostics
-        fixes = [found[problem].fix] if 0 <= problem < len(found) else []
-        if not 0 <= fix < len(fixes) or (chosen := fixes[fix]) is None:
-            return {"applied": False, "reason": "there is no such fix"}
-        return await self._apply(asked, chosen.edits, chosen.title)
+    async def drag(self, given: Given) -> Json:
+        asked, document = await self._solved(given)
+        handle, to = given.text("id"), given.point("to")
 
-    async def _export(self, given: Given) -> dict[str, str]:
-        suffix = f".{given.text('format')}"
-        show = frozenset(given.texts("show"))
+        def edits() -> Sequence[Edit] | Refusal:
+            dragged = drag(asked.view, handle, to)
+            return dragged if isinstance(dragged, Refusal) else dragged.edits
+
+        made = await self._work("drag", document, asked, edits)
+        if isinstance(made, Refusal):
+            return _not_applied(made.reason)
+        return await self._apply(asked, made, "Drag")
+
+    async def fix(self, given: Given) -> Json:
+        asked, _ = await self._solved(given)
+        problem, number = given.whole("problem"), given.whole("fix")
+        found = asked.view.diagnostics
+        fix = found[problem].fix if 0 <= problem < len(found) and number == 0 else None
+        if fix is None:
+            return _not_applied("there is no such fix")
+        return await self._apply(asked, fix.edits, fix.title)
+
+    async def export(self, given: Given) -> Json:
+        suffix, show = f".{given.text('format')}", frozenset(given.texts("show"))
         if suffix not in FORMATS:
             raise JsonRpcInvalidParams(f"there is no format `{suffix}`")
         document = self._document(given)
@@ -114,59 +138,12 @@ class Previews:
         outcome = document.ran.view.outcome if document.ran is not None else None
         if outcome is None or outcome.model is None or outcome.drawing is None:
             raise JsonRpcException("the program does not draw, so there is nothing to export", FAILED)
-        options = Options(show & set(LAYERS) - {"dimensions"}, dimension="dimensions" in show)
+        options = Options(show & set(LAYERS) - {_DIMENSIONS}, dimension=_DIMENSIONS in show)
         try:
             data = await self.server.searches.ask(lambda: outcome.export(suffix, options))
         except ExportError as reason:
             raise JsonRpcException(str(reason), FAILED) from None
         return {"name": document.path.stem + suffix, "data": base64.b64encode(data).decode("ascii")}
-
-    def _closed(self, document: Document) -> None:
-        self._shown.pop(document, None)
-
-    def _solved(self, document: Document) -> None:
-        if document.ran is None:
-            return
-        self._tell_status(document)
-        if document in self._shown:
-            self.server.in_background(self._send(document))
-
-    async def _send(self, document: Document) -> None:
-        if (picture := await self._picture(document, ("picture", document))) is not None:
-            self.server.protocol.tell("aidl/previewChanged", picture)
-
-    async def _picture(self, document: Document, key: object) -> dict[str, Any] | None:
-        """Of the newest run; None where there was none."""
-        known = document.ran
-        if known is None or not document.is_open:
-            return None
-        asked, show = self.server.asked_now(document, known), self._shown.get(document, ())
-        make = partial(_written, asked, known.view, show, known.version)
-        try:
-            return await self.server.runner.work(key, make, lambda: not document.is_open)
-        except Cancelled:
-            return None  # a newer one follows, or nobody is there to see it
-
-    def _tell_status(self, document: Document) -> None:
-        known = document.ran
-        outcome = known.view.outcome if known is not None else None
-        if known is None or outcome is None:
-            return
-        severities = [diagnostic.severity.value for diagnostic in outcome.diagnostics]
-        self.server.protocol.tell(
-            "aidl/status",
-            {
-                "uri": document.uri,
-                "version": known.version,
-                "status": outcome.status,
-                "degrees": outcome.model.degrees if outcome.model is not None else None,
-                "seconds": sum(outcome.timings.values()),
-                "problems": {
-                    "errors": severities.count("error"),
-                    "warnings": severities.count("warning"),
-                },
-            },
-        )
 
     def _document(self, given: Given) -> Document:
         document = self.server.documents.get(given.text("uri"))
@@ -174,7 +151,7 @@ class Previews:
             raise JsonRpcInvalidParams("this document is not open")
         return document
 
-    async def _solved_view(self, given: Given) -> tuple[Asked, Document]:
+    async def _solved(self, given: Given) -> tuple[Asked, Document]:
         """The outcome of the version that is spoken of. Raises JsonRpcContentModified where that is gone."""
         document, version = self._document(given), given.whole("version")
         await document.until_solved(document.serial, _LONGEST_WAIT)
@@ -183,30 +160,34 @@ class Previews:
             raise JsonRpcContentModified("the text has changed")
         return self.server.asked_now(document, known), document
 
-    async def _apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> dict[str, Any]:
+    async def _work(self, kind: str, document: Document, asked: Asked, function: Callable[[], T]) -> T:
+        """In the solving thread, unless the text changes meanwhile, or more of the kind is asked."""
+
+        def is_unwanted() -> bool:
+            return document.version != asked.known.version or not document.is_open
+
+        try:
+            return await self.server.runner.work((kind, document), function, is_unwanted)
+        except Cancelled:
+            raise JsonRpcRequestCancelled("there is something newer") from None
+
+    async def _apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> Json:
         """Have the client change the text."""
         convert = asked.convert
-        changes = convert.changes(
-            convert.by_file(edits), asked.can("workspace.workspace_edit.document_changes")
-        )
+        versioned = asked.can("workspace.workspace_edit.document_changes")
+        changes = convert.changes(convert.by_file(edits), versioned)
         answer = await self.server.workspace_apply_edit_async(types.ApplyWorkspaceEditParams(changes, label))
         if answer.applied:
             return {"applied": True}
-        return {"applied": False, "reason": answer.failure_reason or "the editor did not change the text"}
+        return _not_applied(answer.failure_reason or "the editor did not change the text")
 
 
-def _coroutine(answer: Any) -> Any:
-    """A handler that pygls takes for one: a plain coroutine function of the parameters."""
-
-    async def handler(params: Mapping[str, Value] | None) -> Any:
-        return await answer(Given(params))
-
-    return handler
+def _agreed(made: Dragged | Refusal) -> Dragged:
+    """Raises JsonRpcException where a point cannot be dragged."""
+    if isinstance(made, Refusal):
+        raise JsonRpcException(made.reason, FAILED)
+    return made
 
 
-def _written(
-    asked: Asked, view: View, show: Sequence[str], version: int, *, is_tried: bool = False
-) -> dict[str, Any]:
-    """In the solving thread."""
-    made = preview(view, show, tried=is_tried)
-    return Writer(view, asked.convert.uri_of).preview(made, version)
+def _not_applied(reason: str) -> Json:
+    return {"applied": False, "reason": reason}

@@ -1,10 +1,11 @@
-"""Help while writing: what may stand here, and how a call is made."""
+"""Help while writing: what may stand here, how a call is made, and what a word means."""
 
 from __future__ import annotations
 
 from lsprotocol import types
 
 from aidl_lang.ide.completion import MOST, Completion, complete
+from aidl_lang.ide.hover import hover
 from aidl_lang.ide.positions import Positions
 from aidl_lang.ide.signatures import OverloadHelp, signature_help
 from aidl_lang.lsp.documents import Document
@@ -40,6 +41,10 @@ _KIND = {
 }
 
 
+_PATIENCE = 0.3
+"""Seconds that a hover waits for solved values."""
+
+
 def register(server: Server) -> None:
     lists = _Lists()
     triggers = [".", "@", "(", '"']
@@ -57,6 +62,7 @@ def register(server: Server) -> None:
                 item.documentation = _markdown(said) if said else None
         return item
 
+    server.answers_to(types.TEXT_DOCUMENT_HOVER, patience=_PATIENCE)(_hover)
     helping = types.SignatureHelpOptions(trigger_characters=["(", ","], retrigger_characters=[")"])
     server.answers_to(types.TEXT_DOCUMENT_SIGNATURE_HELP, helping)(_help)
 
@@ -102,6 +108,11 @@ def _item(each: Completion, asked: Asked, snippets: bool, data: dict[str, object
         additional_text_edits=[types.TextEdit(edit.range(e.span), e.text) for e in each.extra] or None,
         data=data,
     )
+
+
+def _hover(asked: Asked, params: types.HoverParams) -> types.Hover | None:
+    found = hover(asked.view, asked.convert.offset(params.position))
+    return None if found is None else types.Hover(_markdown(found.text), asked.convert.range(found.span))
 
 
 def _help(asked: Asked, params: types.SignatureHelpParams) -> types.SignatureHelp | None:

@@ -16,7 +16,7 @@ export function activate(context: vscode.ExtensionContext): void {
   const output = vscode.window.createOutputChannel("AIDL", { log: true });
   const language = (server = new Server(output));
   const previews = new Previews(context.extensionUri, language);
-  context.subscriptions.push(output, language, previews, new StatusItem(language));
+  context.subscriptions.push(output, language, previews, new StatusItem(language, previews));
 
   const commands: Record<string, (target?: unknown) => Promise<void> | void> = {
     "aidl.openPreview": (target) => withDocument(target, previews, (document) => previews.show(document)),
@@ -53,13 +53,12 @@ async function withDocument(
   previews: Previews,
   action: (document: vscode.Uri) => Promise<void>,
 ): Promise<void> {
-  const inFront = vscode.window.activeTextEditor?.document;
   const document =
     target instanceof vscode.Uri
       ? target
       : typeof target === "string"
         ? vscode.Uri.parse(target)
-        : (previews.active ?? (inFront?.languageId === "aidl" ? inFront.uri : undefined));
+        : previews.active;
   if (document === undefined) throw new Error("Open an AIDL program first.");
   await action(document);
 }

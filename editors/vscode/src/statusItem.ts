@@ -1,7 +1,8 @@
-/** How solving went, in the status bar, for the document in front. */
+/** How solving went, in the status bar, for the program in front. */
 
 import * as vscode from "vscode";
 
+import type { Previews } from "./preview/panels";
 import type { RunStatus } from "./preview/protocol";
 import type { Server } from "./server/server";
 import { wordsFor } from "./status";
@@ -11,7 +12,10 @@ export class StatusItem implements vscode.Disposable {
   private readonly runs = new Map<string, RunStatus>();
   private readonly subscriptions: vscode.Disposable[];
 
-  constructor(private readonly server: Server) {
+  constructor(
+    private readonly server: Server,
+    private readonly previews: Previews,
+  ) {
     this.item.name = "AIDL";
     this.subscriptions = [
       this.item,
@@ -24,6 +28,7 @@ export class StatusItem implements vscode.Disposable {
         this.update();
       }),
       vscode.window.onDidChangeActiveTextEditor(() => this.update()),
+      previews.onActive(() => this.update()),
       vscode.workspace.onDidCloseTextDocument(({ uri }) => this.runs.delete(uri.toString())),
     ];
     this.update();
@@ -34,10 +39,10 @@ export class StatusItem implements vscode.Disposable {
   }
 
   private update(): void {
-    const document = vscode.window.activeTextEditor?.document;
-    if (document?.languageId !== "aidl") return this.item.hide();
+    const document = this.previews.active;
+    if (document === undefined) return this.item.hide();
     const { state } = this.server;
-    const { text, tooltip, severity } = wordsFor(state, this.runs.get(document.uri.toString()) ?? null);
+    const { text, tooltip, severity } = wordsFor(state, this.runs.get(document.toString()) ?? null);
     this.item.text = text;
     this.item.tooltip = tooltip;
     this.item.command = state === "stopped" ? "aidl.restartServer" : "aidl.openPreview";

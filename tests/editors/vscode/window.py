@@ -149,7 +149,8 @@ class Window:
         return self.page.locator(".quick-input-widget input.input")
 
     def caret(self, line: int, column: int) -> None:
-        """From 1, as an editor counts."""
+        """Put the caret into the text; counted from 1, as editors do."""
+        self.page.keyboard.press("Control+1")  # the text's side of the window
         self.page.keyboard.press("Control+G")
         self.field.fill(f":{line}:{column}")
         self.field.press("Enter")

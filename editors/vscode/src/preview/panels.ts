@@ -26,6 +26,8 @@ export class Previews implements vscode.Disposable, vscode.WebviewPanelSerialize
   private readonly pane: vscode.Uri;
   private readonly icon: { light: vscode.Uri; dark: vscode.Uri };
   private readonly subscriptions: vscode.Disposable[];
+  private readonly changedActive = new vscode.EventEmitter<void>();
+  readonly onActive = this.changedActive.event;
 
   constructor(
     extension: vscode.Uri,
@@ -36,6 +38,7 @@ export class Previews implements vscode.Disposable, vscode.WebviewPanelSerialize
     this.icon = { light: icon("light"), dark: icon("dark") };
     this.subscriptions = [
       this.marks,
+      this.changedActive,
       vscode.window.registerWebviewPanelSerializer(TYPE, this),
       server.onPreview((preview) => this.open.get(normal(preview.uri))?.relay.changed(preview)),
       server.onState((state) => {
@@ -59,10 +62,11 @@ export class Previews implements vscode.Disposable, vscode.WebviewPanelSerialize
     await this.adopt(vscode.window.createWebviewPanel(TYPE, "Preview", column, { retainContextWhenHidden: true }), document);
   }
 
-  /** The document of the preview that is in front, if one is. */
+  /** The program in front: the one whose preview or text has the focus. */
   get active(): vscode.Uri | undefined {
     for (const [uri, { panel }] of this.open) if (panel.active) return vscode.Uri.parse(uri);
-    return undefined;
+    const document = vscode.window.activeTextEditor?.document;
+    return document?.languageId === "aidl" ? document.uri : undefined;
   }
 
   /** After a reload of the window: the pane keeps the URI of its document. */
@@ -92,8 +96,10 @@ export class Previews implements vscode.Disposable, vscode.WebviewPanelSerialize
     panel.onDidDispose(() => {
       relay.dispose();
       this.open.delete(uri);
+      this.changedActive.fire();
       if (this.server.state === "running") void this.server.ask("aidl/previewClose", { uri }).catch(() => undefined);
     });
+    panel.onDidChangeViewState(() => this.changedActive.fire());
     panel.webview.options = { enableScripts: true, localResourceRoots: [this.pane] };
     panel.webview.onDidReceiveMessage((message: ToHost) => void relay.receive(message));
     panel.webview.html = await this.page(panel.webview);
