@@ -96,7 +96,7 @@ def _of_geometry(model: Model, geometry: Geometry, depth: int) -> Iterator[Grip]
     for name, place in named:
         x, y = convert(*xy(place), geometry.owner, model.root)
         at = f"{geometry.path}.{name}" if name else geometry.path
-        if not (x.is_open or y.is_open or (x.is_constant and y.is_constant)):
+        if not (x.is_open or y.is_open):
             yield Grip(at, geometry.path, name, x, y, geometry, depth + name.count("."))
 
 

@@ -9,26 +9,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
-import numpy as np
-from numpy.typing import NDArray
-
-from aidl_lang import pipeline
 from aidl_lang.diagnostics import Edit
-from aidl_lang.expression import Evaluator, Unknown
+from aidl_lang.expression import Unknown
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.ide.draggable import Grip, grips, is_somewhere
 from aidl_lang.ide.guesses import Guess, guesses
 from aidl_lang.ide.knob_dragging import moved_by_params, turned
-from aidl_lang.ide.mobility import AXES, Way, Ways, belongs, movable, pull, values_at, ways
+from aidl_lang.ide.mobility import Ways, belongs, movable, ways
+from aidl_lang.ide.pulling import Pull, pulled
 from aidl_lang.ide.view import View
 from aidl_lang.ide.writing_back import Refusal, compiled, is_same, shortest
-from aidl_lang.lower import Lowered, lower
 from aidl_lang.pipeline import Compiled
-from aidl_lang.solver import Settings, Solution, Status, solve
 
 STEP = 0.1
 """Millimetres to which numbers are rounded that dragging writes."""
@@ -37,10 +31,6 @@ _MOST_GRIPS = 400
 """Points of a model that are looked at; the outermost ones of a larger model."""
 _FARTHEST = 1e6
 """Millimetres from the origin that a point may be dragged."""
-_WEIGHT = 1e4
-_DEAR = 1e-3
-"""How much shorter a change is that counts as much as one of what is dragged, where it is only to follow."""
-_SECONDS = 1.0
 _FINE = 1e-6
 _NAMED = 2
 """Params that a hint names."""
@@ -219,87 +209,20 @@ def _by_param(grip: Grip, params: tuple[str, ...]) -> str:
     return f"{_name(grip)}: drag to change {' or '.join(f'`{name}`' for name in params[:_NAMED])}{more}"
 
 
-# --- Pulling -------------------------------------------------------------------------------------
-
-
 def _pulled(view: View, grip: Grip, to: Vec, step: float) -> Dragged | Refusal:
     outcome, known = view.outcome, _ways(view)
     way = known.own.get(grip.id) or known.sizes.get(grip.id) or known.whole.get(grip.id)
-    if outcome is None or outcome.built is None or outcome.evaluate is None or way is None:
+    if outcome is None or way is None:
         return Refusal("there is nothing to drag")
-    model = outcome.built
-    wishes = [pull(model, grip, way.directions, to, _WEIGHT)]
-    if (pin := _grips_of(view).get(way.pin or "")) is not None:
-        wishes.append(pull(model, pin, AXES, pin.at(outcome.evaluate), None))
-    lowered = lower(replace(model, constraints=[*model.constraints, *wishes]))
     by_sizes = grip.id in known.sizes and grip.id not in known.own
-    found = _nearest(_Pull(view, grip, lowered, outcome.evaluate, by_sizes), way, to)
+    written = _written(view)
+    sizes = frozenset(u for u in written if by_sizes and u.kept and belongs(u, grip.thing))
+    pin = _grips_of(view).get(way.pin or "")
+    found = pulled(outcome, Pull(grip, way, pin, written, _movable(view), sizes), to)
     if found is None:
         return Refusal(f"`{_name(grip)}` cannot go there: the constraints would not hold")
-    shown = pipeline.redrawn(outcome, lowered, found[0])
-    return Dragged(replace(view, outcome=shown, drawn=shown), found[1], view, grip, step)
-
-
-@dataclass(frozen=True)
-class _Pull:
-    """A model with the wish that a point be elsewhere, by first guesses or by sizes too."""
-
-    view: View
-    grip: Grip
-    lowered: Lowered
-    evaluate: Evaluator
-    by_sizes: bool
-
-    def solved(self, *, everything: bool) -> tuple[Solution, Vec] | None:
-        """The solution nearest to the present one, and where the point is then; None if there is none.
-
-        All is solved at once, since it all holds as it is. What no number of the text says stays; with
-        `everything`, it moves where it has to. Likewise positions, while sizes are changed.
-        """
-        lowered, problem = self.lowered, self.lowered.problem
-        written = _written(self.view)
-        resized = self._are({u for u in written if self.by_sizes and u.kept and belongs(u, self.grip.thing)})
-        said = self._are(written) & ~problem.kept
-        loose = self._are(_movable(self.view)) & ~problem.kept
-        free = resized | (loose if everything else said)
-        dear = np.where(resized, 1.0, np.where(said, _DEAR if self.by_sizes else 1.0, _DEAR))
-        at = values_at(lowered, self.evaluate)
-        flat = replace(
-            problem,
-            initial=at,
-            scale=dear * problem.scale,
-            kept=~free,
-            group=np.zeros(len(at), dtype=np.int64),
-            frame_of=np.full(len(at), -1),
-            parent=np.array([-1]),
-            holder=np.zeros_like(problem.holder),
-            observables=(),
-        )
-        solution = solve(flat, Settings(tolerance=1e-10, seconds=_SECONDS))
-        if solution.status is not Status.SOLVED:
-            return None
-        guessed = np.array([u.guess for u in lowered.unknowns])
-        changed = np.flatnonzero(problem.kept & (np.abs(solution.values - guessed) > 1e-9 * problem.scale))
-        place = self.grip.at(Evaluator(dict(zip(lowered.unknowns, solution.values.tolist(), strict=True))))
-        return (replace(solution, changed=tuple(changed.tolist())), place) if is_somewhere(place) else None
-
-    def _are(self, unknowns: AbstractSet[Unknown]) -> NDArray[np.bool_]:
-        return np.array([u in unknowns for u in self.lowered.unknowns], dtype=np.bool_)
-
-
-def _nearest(pull: _Pull, way: Way, to: Vec) -> tuple[Solution, Vec] | None:
-    """What brings the point nearest: if it will do, without moving what the text does not say."""
-
-    def off(found: tuple[Solution, Vec]) -> float:
-        x, y = found[1][0] - to[0], found[1][1] - to[1]
-        return max(abs(u * x + v * y) for u, v in way.directions)
-
-    first = pull.solved(everything=False)
-    if first is not None and off(first) <= _FINE:
-        return first
-    second = pull.solved(everything=True)
-    found = [each for each in (first, second) if each is not None]
-    return min(found, key=lambda each: round(off(each), 6), default=None)
+    shown, at = found
+    return Dragged(replace(view, outcome=shown, drawn=shown), at, view, grip, step)
 
 
 # --- Writing it into the text --------------------------------------------------------------------

@@ -66,7 +66,7 @@ def hover(view: View, offset: int, end: int | None = None) -> Hover | None:
     if token is not None and token.kind == "NUMBER":
         told = of_number(view, token.start)
     else:
-        told = of_attribute(view, spot) or _of_name_at(view, offset) or of_word(view, offset)
+        told = of_attribute(view, offset) or _of_name_at(view, offset) or of_word(view, offset)
     return Hover(*told) if told is not None else None
 
 

@@ -39,7 +39,7 @@ def stated_at(view: View, node: ast.Node, path: Sequence[ast.Node]) -> str:
     for each in reversed(path):
         may_be_one = isinstance(each, _STATED | ast.Comparison | ast.Call | ast.Membership)
         if may_be_one and (told := constraint_lines(solved, each.span)):
-            return joined([*(f"This constraint {line}." for line in told), failed(solved)])
+            return joined([*told, failed(solved)])
         if isinstance(each, ast.Block):
             break
     return ""

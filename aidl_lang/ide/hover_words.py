@@ -12,7 +12,6 @@ from aidl_lang.ide.describing import fenced, joined
 from aidl_lang.ide.guesses import guesses
 from aidl_lang.ide.hover_values import listed, not_solved, stated_at
 from aidl_lang.ide.nodes import around
-from aidl_lang.ide.site import Spot
 from aidl_lang.ide.solved_values import solved_of
 from aidl_lang.ide.telling import compared, number_text
 from aidl_lang.ide.view import View
@@ -74,12 +73,14 @@ def _compared(view: View, token: Token) -> str:
     return joined([stated_at(view, node, path), listed(compared(solved, sides))])
 
 
-def of_attribute(view: View, spot: Spot) -> Told | None:
-    if spot.before is None or spot.before.kind != "@":
+def of_attribute(view: View, offset: int) -> Told | None:
+    """The name behind an `@`."""
+    node = next((n for n in reversed(around(view.module, offset)) if isinstance(n, ast.Attribute)), None)
+    if node is None or offset > node.name.span.end:
         return None
-    name = view.source.text[spot.start : spot.end]
+    name = node.name.text
     entry = reference().entries.get(f"@{'color' if name == 'colour' else name}")
-    return (_keyword(entry), view.span(spot.before.start, spot.end)) if entry is not None else None
+    return (_keyword(entry), view.span(node.span.start, node.name.span.end)) if entry is not None else None
 
 
 def of_number(view: View, start: int) -> Told | None:

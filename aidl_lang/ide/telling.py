@@ -221,14 +221,15 @@ def constraint_lines(solved: Solved, span: Span) -> list[str]:
     reports = [r for r in model.constraints if r.span == span] if model is not None else []
     if not reports:
         return []
-    wrong = [r for r in reports if not r.satisfied]
+    wrong = [abs(r.residual) for r in reports if not r.satisfied]
     is_wish = reports[0].soft
     if not wrong:
-        return [f"holds{_times(len(reports))}" if not is_wish else f"fulfilled{_times(len(reports))}"]
-    worst = max(abs(r.residual) for r in wrong)
-    head = "is not wholly fulfilled" if is_wish else "does not hold"
+        return [
+            ("This wish is fulfilled" if is_wish else "This constraint holds") + _times(len(reports)) + "."
+        ]
+    head = "This wish is not wholly fulfilled" if is_wish else "This constraint does not hold"
     count = f" in {len(wrong)} of {len(reports)} cases" if len(reports) > 1 else ""
-    return [f"{head}{count}: off by {fixed(worst, DECIMALS)}"]
+    return [f"{head}{count}: it is off by {fixed(max(wrong), DECIMALS)}."]
 
 
 def _times(count: int) -> str:

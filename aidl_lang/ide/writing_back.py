@@ -21,7 +21,7 @@ from aidl_lang.source import Span
 
 SAME = 1e-6
 """Millimetres by which two drawings may differ and still be the same."""
-_PRECISIONS = (VISIBLE / 2, 1e-7, 0.0)
+_PRECISIONS = (VISIBLE / 2, 1e-9, 0.0)
 """Errors of a number, as shares of it (or of one where it is smaller): each is tried where one before it was
 too coarse. With none, all digits are written.
 """
@@ -130,13 +130,14 @@ def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...]
         moved = _moved(again, wanted, order)
         if is_slid and (not moved or is_same(view.outcome, again.outcome)):
             return (edits, again) if _is_no_worse(view.outcome, again.outcome) else None
-        if is_slid:
+        finest = 1 if is_slid else len(_PRECISIONS) - 1
+        coarse = [guess for guess in moved or wanted if level[guess] < finest]
+        if coarse:
+            level |= {guess: level[guess] + 1 for guess in coarse}
+        elif is_slid:
             wanted |= moved
-            continue
-        coarse = [guess for guess in moved or wanted if level[guess] < len(_PRECISIONS) - 1]
-        if not coarse:
+        else:
             return None
-        level |= {guess: level[guess] + 1 for guess in coarse}
     return None
 
 

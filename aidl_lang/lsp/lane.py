@@ -42,15 +42,19 @@ class Job(Generic[T]):
 
 class Lane:
     """Does one piece of work at a time; of what waits under one key, only the newest. All methods belong to
-    the loop's thread.
+    the loop's thread; `finished` is called there after each piece.
     """
 
-    def __init__(self, name: str, loop: asyncio.AbstractEventLoop) -> None:
+    def __init__(self, name: str, loop: asyncio.AbstractEventLoop, finished: Callable[[], None]) -> None:
         self._executor = _executor(name)
-        self._loop = loop
+        self._loop, self._finished = loop, finished
         self._waiting: dict[Hashable, Job[Any]] = {}
         self.running: Job[Any] | None = None
         self._is_closed = False
+
+    @property
+    def is_busy(self) -> bool:
+        return self.running is not None
 
     def waits(self, key: Hashable) -> bool:
         return key in self._waiting
@@ -94,6 +98,7 @@ class Lane:
                 job.done(future)
         finally:
             self._start()
+            self._finished()
 
 
 class Answers:

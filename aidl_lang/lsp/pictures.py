@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from functools import partial
@@ -13,6 +14,9 @@ from aidl_lang.ide.preview import Preview, Writer, preview, with_handles
 from aidl_lang.ide.view import View
 from aidl_lang.lsp.documents import Document
 from aidl_lang.lsp.server import Asked, Server
+
+_PAUSE = 0.25
+"""Seconds without a change after which it is looked into what can be dragged: that takes as long as a run."""
 
 Json: TypeAlias = dict[str, Any]
 T = TypeVar("T")
@@ -80,6 +84,9 @@ class Pictures:
 
     async def _complete(self, document: Document, asked: Asked, made: Preview) -> None:
         """Find out what can be dragged, and tell of the picture again if that is news."""
+        await asyncio.sleep(_PAUSE)
+        if document.ran is not asked.known or document not in self._shown:
+            return
         view = asked.known.view
         full = await self._work(
             ("handles", document), document, partial(with_handles, made, view), first=False

@@ -21,6 +21,7 @@ from aidl_lang.ide.view import SETTINGS, View, look, run
 from aidl_lang.ide.workspace import Workspace
 from aidl_lang.lsp.documents import Document, Documents, Known
 from aidl_lang.lsp.lane import Job, Lane, gave_up
+from aidl_lang.lsp.tidying import Tidier
 from aidl_lang.world import MemoryWorld
 
 T = TypeVar("T")
@@ -64,8 +65,9 @@ class Runner:
         self.delay = 0.0
         self.active: Document | None = None
         """What the user is at: it goes first."""
-        self.looking = Lane("looking", loop)
-        self.solving = Lane("solving", loop)
+        self._tidier = Tidier(loop, lambda: self.looking.is_busy or self.solving.is_busy)
+        self.looking = Lane("looking", loop, self._tidier.note)
+        self.solving = Lane("solving", loop, self._tidier.note)
         self._loop = loop
         self._is_closing = False
 
@@ -140,6 +142,7 @@ class Runner:
         self._is_closing = True
         self.looking.close()
         self.solving.close()
+        self._tidier.close()
 
     def _looked(self, document: Document, version: int, serial: int, future: Future[View]) -> None:
         if not document.is_open:
@@ -177,7 +180,7 @@ class Runner:
         self._loop.call_at(began + PATIENCE, self._tell_what_is_known, document, known)
 
     def _tell_what_is_known(self, document: Document, known: Known) -> None:
-        if document.is_open and document.newest is known and document.solved < known.serial:
+        if document.is_open and document.seen == known.serial > document.solved:
             self.listener.took_long(document)
 
     def _run(self, document: Document, known: Known, is_patient: bool) -> View:
@@ -209,10 +212,10 @@ class Runner:
             self.listener.crashed(error)
         else:
             document.ran = replace(known, view=future.result())
-            if document.newest is known:
+            newest = document.newest
+            if newest is None or newest.serial == known.serial:
                 document.newest = document.ran
-            elif document.newest is not None:
-                newest = document.newest
+            else:
                 document.newest = replace(newest, view=replace(newest.view, drawn=document.ran.view.drawn))
             self.listener.solved(document)
         document.tell()

@@ -115,7 +115,7 @@ class Host:
                 page.take(pictures[page.show])
         self._tell_trouble(trouble)
         if pages:
-            self._worker.later(Job(self._completed, _nothing, self._not_completed))
+            self._worker.later(Job(self._completed, _nothing, self._trouble))
 
     def _completed(self) -> Then:
         """What takes longer is told when the pictures are there."""
@@ -133,10 +133,6 @@ class Host:
         for page, before, after in found:
             if page.shown is before:
                 page.take(after)
-
-    def _not_completed(self, error: BaseException) -> None:
-        if not isinstance(error, Cancelled):
-            self._trouble(error)
 
     def _trouble(self, error: BaseException) -> None:
         if not isinstance(error, Cancelled):

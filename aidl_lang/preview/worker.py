@@ -12,7 +12,7 @@ from collections.abc import Callable, Hashable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
-from aidl_lang.cancelling import cancelled_when
+from aidl_lang.cancelling import Cancelled, cancelled_when
 
 BUSY_AFTER = 0.15
 """Seconds after which whoever waits is told."""
@@ -63,7 +63,7 @@ class Worker:
         self._wake.set()
 
     def later(self, job: Job) -> None:
-        """When there is nothing else to do; in place of what waits for that."""
+        """When there is nothing else to do, from the start if it is interrupted; in place of what waits."""
         self._later = job
         self._wake.set()
 
@@ -117,6 +117,8 @@ class Worker:
         error = future.exception()
         if error is None:
             future.result()()
+        elif isinstance(error, Cancelled) and self._is_idling:
+            self._later = self._later or job  # there will be time for it
         else:
             job.failed(error)
 

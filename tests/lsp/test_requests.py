@@ -372,6 +372,28 @@ async def test_preview_says_where_everything_is_written(editor: Editor) -> None:
     await editor.ask("aidl/previewClose", uri=uri)
 
 
+async def test_a_point_is_dragged(editor: Editor) -> None:
+    uri = editor.open("untitled:drag", "solid a {\n    b = circle(center: (30, 40), radius: 9)\n}\n")
+    await editor.ask("aidl/preview", uri=uri, show=[])
+    with_handles = await editor.until(
+        lambda: [p for p in editor.pictures if p["uri"] == uri and p["handles"]]
+    )
+    handle = next(h for h in with_handles[-1]["handles"] if h["at"] == [30, 40])
+    shown = await editor.ask("aidl/try", uri=uri, version=1, drag={"id": handle["id"], "to": [50, 10]})
+    assert shown["tried"]
+    assert shown["box"] == pytest.approx([41, 1, 59, 19])
+    assert editor.versions[uri] == 1
+    done = await editor.ask("aidl/drag", uri=uri, version=1, id=handle["id"], to=[50, 10])
+    assert done == {"applied": True}
+    assert editor.texts[uri] == "solid a {\n    b = circle(center: (50, 10), radius: 9)\n}\n"
+    nowhere = await editor.ask("aidl/drag", uri=uri, version=2, id=handle["id"], to=[1e99, 0])
+    assert not nowhere["applied"]
+    assert nowhere["reason"]
+    nobody = await editor.ask("aidl/drag", uri=uri, version=2, id="nobody", to=[1, 0])
+    assert not nobody["applied"]
+    editor.close(uri)
+
+
 async def test_exports_are_those_of_the_command(editor: Editor) -> None:
     uri = await telephone(editor)
     await editor.found(uri)

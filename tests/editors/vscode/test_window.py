@@ -112,11 +112,33 @@ def test_a_slider_solves_while_it_moves_and_writes_when_it_is_let_go(window):
     expect(pane.locator("#status-size")).not_to_have_text(size, timeout=PATIENCE)
     assert window.text() == PLATE
     mouse.up()
-    expect(window.editor).not_to_contain_text("80mm", timeout=PATIENCE)
+    expect(window.editor.locator(".view-lines")).not_to_contain_text("80mm", timeout=PATIENCE)
     written = number(window.text())
     assert 140 < written < 190
     assert window.text() == PLATE.replace("80mm", f"{written:g}mm")
     expect(slider).to_have_value(f"{written:g}")
+
+
+def test_a_dragged_point_changes_the_text_and_undo_takes_it_back(window):
+    window.open("drag.aidl", PLATE)
+    pane = window.preview()
+    pane.locator("#handles-toggle").click()
+    guess = pane.locator(".handle.guess").first
+    box = guess.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    mouse = window.page.mouse
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x + 60, y, steps=6)
+    mouse.up()
+    expect(window.editor.locator(".view-lines")).not_to_contain_text("(-20, 0)", timeout=PATIENCE)
+    (moved,) = re.findall(r"center: \((-?[\d.]+), (-?[\d.]+)\)", window.text())
+    assert -20 < float(moved[0]) < 30
+    assert float(moved[1]) == pytest.approx(0, abs=0.5)
+    window.caret(1, 1)
+    window.page.keyboard.press("Control+Z")
+    expect(window.editor.locator(".view-lines")).to_contain_text("(-20, 0)", timeout=PATIENCE)
+    assert window.text() == PLATE
 
 
 def test_the_pointer_in_the_picture_marks_the_text(window):

@@ -137,10 +137,7 @@ export class Server implements vscode.Disposable {
       ...options,
       errorHandler: this.errorHandler(() => client),
     });
-    client.onDidChangeState(({ newState }) => {
-      if (client !== this.client) return;
-      this.become(newState === State.Running ? "running" : newState === State.Starting ? "starting" : "stopped");
-    });
+    client.onDidChangeState(({ newState }) => void this.follow(client, newState));
     client.onNotification("aidl/previewChanged", (preview: Preview) => {
       this.changedPreview.fire(preview);
       this.changedRun.fire(runOf(preview));
@@ -162,6 +159,19 @@ export class Server implements vscode.Disposable {
         return ran ? handler().closed() : { action: CloseAction.DoNotRestart, handled: true };
       },
     };
+  }
+
+  /** The client says that it runs before it has told the server of the open documents; what is asked then would be of
+   * documents that the server does not know. Its start is over when it has. */
+  private async follow(client: LanguageClient, state: State): Promise<void> {
+    if (client !== this.client) return;
+    if (state !== State.Running) return this.become(state === State.Starting ? "starting" : "stopped");
+    try {
+      await client.start();
+    } catch {
+      return; // told by who started it
+    }
+    if (client === this.client && client.isRunning()) this.become("running");
   }
 
   private become(state: ServerState): void {

@@ -1,0 +1,293 @@
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.ide.dragging import MOST_HANDLES, Dragged, Handle, drag, handles
+from aidl_lang.ide.edits import applied
+from aidl_lang.ide.view import View, look, run
+from aidl_lang.ide.workspace import Workspace
+from aidl_lang.ide.writing_back import Refusal
+from aidl_lang.syntax.tokens import tokenize
+from tests.ide.conftest import EXAMPLES, seen
+
+ROD = """drawing d {
+    base = line(fixed((0, 0)), fixed((100, 0)))
+    rod = line((20, 0), (20, 30))
+    bob = circle(center: (20, 30), radius: 5)
+    far = circle(center: (70, 60), radius: 4)
+    constrain {
+        coincident(rod.start, base)
+        vertical(rod)
+        bob.center == rod.end
+    }
+}
+"""
+PLATE = """solid plate {
+    body = rectangle(center: (0, 0), width: 80, height: 40)
+    hole bore at (10, 5) { rim = circle(center: origin, radius: 6) }
+    constrain bore.bottom >= body.bottom + 2
+}
+"""
+SHELF = """assembly shelf {
+    param width = 120mm in 60..200 step 5
+    solid board { body = rectangle(center: fixed((0, 0)), width: width, height: fixed(8)) }
+}
+"""
+
+
+def handle(view: View, ending: str) -> Handle:
+    return next(h for h in handles(view) if h.id.endswith(ending))
+
+
+def dragged(view: View, ending: str, to: Vec, **options) -> Dragged:
+    found = drag(view, handle(view, ending).id, to, **options)
+    assert isinstance(found, Dragged), found
+    return found
+
+
+def dropped(view: View, found: Dragged) -> View:
+    """The program as its text says after the drag, solved anew."""
+    assert not isinstance(found.edits, Refusal), found.edits
+    text = applied(view.source.text, found.edits)
+    return run(look(view.path, text, view.world))
+
+
+def geometry(view: View, path: str):
+    assert view.outcome is not None
+    assert view.outcome.model is not None
+    assert view.outcome.status == "solved"
+    parts = (p for s in view.outcome.model.root.walk() for g in s.geometry for p in g.walk())
+    return next(part for part in parts if part.path == path)
+
+
+def besides_numbers(text: str) -> list[str]:
+    words = [text[t.start : t.end] for t in tokenize(seen(text).source).tokens]
+    return [w for w in words if not w[:1].isdigit() and w != "-"]
+
+
+# --- First guesses -------------------------------------------------------------------------------
+
+
+def test_a_point_that_is_free_goes_where_it_is_dragged() -> None:
+    view = seen(ROD, solved=True)
+    found = dragged(view, "far.center", (60, 44.3))
+    assert found.at == pytest.approx((60, 44.3), abs=1e-6)
+    assert geometry(found.view, "d.far").values["center"] == pytest.approx((60, 44.3), abs=1e-6)
+    again = dropped(view, found)
+    assert again.source.text == ROD.replace("(70, 60)", "(60, 44.3)")
+    assert geometry(again, "d.far").values["center"] == pytest.approx((60, 44.3), abs=1e-6)
+
+
+def test_what_is_constrained_moves_along() -> None:
+    view = seen(ROD, solved=True)
+    found = dragged(view, "rod.start", (55, 0))
+    assert geometry(found.view, "d.bob").values["center"] == pytest.approx((55, 30), abs=1e-6)
+    again = dropped(view, found)
+    assert geometry(again, "d.rod").values["start"] == pytest.approx((55, 0), abs=1e-3)
+    assert geometry(again, "d.bob").values["center"] == pytest.approx((55, 30), abs=1e-3)
+    assert geometry(again, "d.far").values["center"] == (70, 60)
+    assert besides_numbers(again.source.text) == besides_numbers(ROD)
+
+
+def test_a_point_goes_as_near_as_its_constraints_let_it() -> None:
+    view = seen(ROD, solved=True)
+    found = dragged(view, "rod.start", (40, 25))
+    assert found.at == pytest.approx((40, 0), abs=1e-6)
+    again = dropped(view, found)
+    assert geometry(again, "d.rod").values["start"] == pytest.approx((40, 0), abs=1e-3)
+
+
+def test_an_inequality_stops_a_point() -> None:
+    text = PLATE.replace("(0, 0)", "fixed((0, 0))")
+    view = seen(text, solved=True)
+    found = dragged(view, "bore at", (-12, -300))
+    x, y = found.at
+    assert (x, y) == pytest.approx((-12, -12), abs=1e-5)
+    again = dropped(view, found)
+    assert geometry(again, "plate.bore.rim").values["center"] == pytest.approx((-12, -12), abs=0.2)
+    assert besides_numbers(again.source.text) == besides_numbers(text)
+
+
+def test_numbers_are_rounded_to_the_step() -> None:
+    view = seen(ROD, solved=True)
+    found = dragged(view, "far.center", (60.123, 44.377), step=0.5)
+    assert applied(ROD, found.edits) == ROD.replace("(70, 60)", "(60, 44.4)")
+    fine = dragged(view, "far.center", (60.123, 44.377), step=0.001)
+    assert applied(ROD, fine.edits) == ROD.replace("(70, 60)", "(60.123, 44.377)")
+
+
+def test_units_stay() -> None:
+    text = "drawing d { a = circle(center: (1cm, 2in), radius: 3)\n b = circle(center: (50, 0), radius: 3) }"
+    view = seen(text, solved=True)
+    again = dropped(view, dragged(view, "a.center", (25, 25.4)))
+    assert again.source.text == text.replace("(1cm, 2in)", "(2.5cm, 1in)")
+
+
+def test_a_structure_is_moved_by_its_place() -> None:
+    text = "assembly a { solid s at (10, 20) { r = square(center: origin, size: 8) }\n"
+    text += " solid t { r = square(center: fixed((0, 0)), size: 4) } }"
+    view = seen(text, solved=True)
+    found = dragged(view, "r.center", (-30, 5))
+    assert dropped(view, found).source.text == text.replace("(10, 20)", "(-30, 5)")
+
+
+def test_a_drawing_that_may_slide_is_moved_as_a_whole_by_its_middle() -> None:
+    text = "solid s { r = rectangle(center: (0, 0), width: 80, height: 40) }"
+    view = seen(text, solved=True)
+    assert dropped(view, dragged(view, "r.center", (7, 3))).source.text == text.replace("(0, 0)", "(7, 3)")
+
+
+# --- Sizes ---------------------------------------------------------------------------------------
+
+
+def test_a_corner_held_by_sizes_changes_them() -> None:
+    view = seen(PLATE, solved=True)
+    assert handle(view, "body.top_right").moves == "size"
+    found = dragged(view, "body.top_right", (50, 26))
+    assert found.at == pytest.approx((50, 26), abs=1e-6)
+    again = dropped(view, found)
+    assert "width: 100, height: 52" in again.source.text
+    assert geometry(again, "plate.body.top_right").values["at"] == pytest.approx((50, 26), abs=0.2)
+    assert besides_numbers(again.source.text) == besides_numbers(PLATE)
+
+
+def test_the_end_of_a_line_moves_alone() -> None:
+    text = "drawing d { l = line((0, 0), (40, 0)) }"
+    view = seen(text, solved=True)
+    again = dropped(view, dragged(view, "l.end", (30, 30)))
+    assert again.source.text == text.replace("(40, 0)", "(30, 30)")
+
+
+# --- Params --------------------------------------------------------------------------------------
+
+
+def test_a_corner_held_by_a_param_turns_it() -> None:
+    view = seen(SHELF, solved=True)
+    assert handle(view, "body.top_right").moves == "param"
+    found = dragged(view, "body.top_right", (71, 30))
+    assert found.at == pytest.approx((70, 4), abs=1e-6)
+    again = dropped(view, found)
+    assert again.source.text == SHELF.replace("120mm", "140mm")
+    assert geometry(again, "shelf.board.body.top_right").values["at"] == pytest.approx((70, 4), abs=1e-6)
+
+
+@pytest.mark.parametrize(("x", "width"), [(900.0, "200mm"), (-900.0, "60mm")])
+def test_a_param_stays_in_its_range(x: float, width: str) -> None:
+    view = seen(SHELF, solved=True)
+    found = dragged(view, "body.top_right", (x, 4))
+    assert applied(SHELF, found.edits) == SHELF.replace("120mm", width)
+
+
+def test_a_param_that_bends_the_way_is_followed() -> None:
+    text = (
+        "drawing d { param turn = 10deg in 0deg..80deg\n"
+        " l = line(start: fixed((0, 0)), length: fixed(100), angle: turn) }"
+    )
+    view = seen(text, solved=True)
+    there = (100 * math.cos(math.radians(50)), 100 * math.sin(math.radians(50)))
+    found = dragged(view, "l.end", there)
+    assert math.dist(found.at, there) < 1
+    again = dropped(view, found)
+    assert math.dist(geometry(again, "d.l").values["end"], there) < 1
+
+
+def test_a_param_set_from_outside_is_not_turned() -> None:
+    view = seen(SHELF, solved=True)
+    held = run(view, params={"width": 100.0})
+    assert handles(held) == []
+
+
+def test_points_that_follow_params_can_be_left_out() -> None:
+    assert handles(seen(SHELF, solved=True), params=False) == []
+
+
+# --- What there is -------------------------------------------------------------------------------
+
+
+def test_what_is_exact_has_no_handles() -> None:
+    assert handles(seen("drawing d { l = line(fixed((0, 0)), fixed((40, 0))) }", solved=True)) == []
+
+
+def test_handles_lie_where_their_points_are_and_each_place_has_one() -> None:
+    view = seen(ROD, solved=True)
+    found = {h.id: h.at for h in handles(view)}
+    assert found["d.far.center"] == (70, 60)
+    assert len({(round(x, 3), round(y, 3)) for x, y in found.values()}) == len(found)
+    assert {h.moves for h in handles(view)} <= {"guess", "size", "param"}
+
+
+def test_there_are_not_too_many_and_the_outer_ones_are_kept() -> None:
+    many = "for i in 0..200 { hole h[i] at (i, 0) { c = circle(center: (i, 1), radius: 1) } }"
+    text = f"solid s {{ r = rectangle(center: (100, 0), width: 900, height: 90)\n p = (1, 2)\n {many} }}"
+    found = handles(seen(text, solved=True))
+    assert len(found) <= MOST_HANDLES
+    assert "s.p" in {h.id for h in found}
+
+
+def test_numbers_of_a_loop_move_nothing() -> None:
+    text = "drawing d { for i in 0..1 { c[i] = circle(center: (5, 0), radius: fixed(1)) } }"
+    assert handles(seen(text, solved=True)) == []
+
+
+@pytest.mark.parametrize("text", ["", "solid s {", "solid s { c = circle(center: (0, 0), radius: }", "}{"])
+def test_broken_programs_have_none(text: str) -> None:
+    assert handles(seen(text, solved=True)) == []
+    assert handles(seen(text)) == []
+    assert isinstance(drag(seen(text, solved=True), "s.c.center", (1, 2)), Refusal)
+
+
+@pytest.mark.parametrize("to", [(math.inf, 0), (math.nan, math.nan), (1e30, 1), (0, -1e300)])
+@pytest.mark.parametrize("ending", ["far.center", "rod.start"])
+def test_places_out_of_the_world_are_refused(to: Vec, ending: str) -> None:
+    view = seen(ROD, solved=True)
+    assert isinstance(drag(view, handle(view, ending).id, to), Refusal)
+
+
+def test_unknown_handles_and_steps_are_refused() -> None:
+    view = seen(ROD, solved=True)
+    assert isinstance(drag(view, "d.nothing", (1, 2)), Refusal)
+    assert isinstance(drag(view, "d.far.center", (1, 2), step=math.nan), Refusal)
+    assert isinstance(drag(view, "d.far.center", (1, 2), step=0), Refusal)
+
+
+def test_far_targets_are_answered() -> None:
+    view = seen(PLATE, solved=True)
+    for each in handles(view):
+        found = drag(view, each.id, (9e5, -9e5))
+        assert isinstance(found, Refusal) or math.isfinite(math.hypot(*found.at))
+
+
+def test_dragging_leaves_the_view_as_it_was() -> None:
+    view = seen(ROD, solved=True)
+    assert view.outcome is not None
+    before = dict(view.outcome.evaluate.values) if view.outcome.evaluate else {}
+    dragged(view, "rod.start", (55, 0))
+    assert view.outcome.evaluate is not None
+    assert dict(view.outcome.evaluate.values) == before
+
+
+@pytest.mark.parametrize("name", ["telephone", "toy_sword", "key"])
+def test_in_examples_points_come_to_lie_where_they_were_shown(name: str) -> None:
+    path = next(p for p in EXAMPLES if p.stem == name)
+    view = solved(path)
+    put = 0
+    for each in handles(view)[:8]:
+        found = drag(view, each.id, (each.at[0] + 3, each.at[1] + 2))
+        if isinstance(found, Refusal) or isinstance(found.edits, Refusal):
+            continue
+        put += 1
+        again = dropped(view, found)
+        assert again.outcome is not None
+        assert again.outcome.status == "solved"
+        assert besides_numbers(again.source.text) == besides_numbers(view.source.text)
+        assert again.outcome.model is not None
+        assert all(report.satisfied for report in again.outcome.model.constraints if not report.soft)
+    assert put >= 5
+
+
+def solved(path: Path) -> View:
+    return run(look(path, path.read_text("utf-8"), Workspace([path.parent]).world(path)))

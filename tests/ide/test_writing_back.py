@@ -1,0 +1,135 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aidl_lang.ide.edits import applied
+from aidl_lang.ide.guesses import guesses
+from aidl_lang.ide.inlays import inlays
+from aidl_lang.ide.view import View, look, run
+from aidl_lang.ide.workspace import Workspace
+from aidl_lang.ide.writing_back import Refusal, Rewriting, can_write_back, shortest, write_back
+from aidl_lang.syntax.tokens import tokenize
+from tests.ide.conftest import EXAMPLES, seen
+from tests.ide.test_guesses import curves, near
+
+MOVED = """drawing d {
+    c = circle(center: (1, 2), radius: guess(5))
+    constrain {
+        c.center == (1, 8)
+        c.radius == 7
+    }
+}
+"""
+
+
+def rewritten(view: View, **options) -> str:
+    found = write_back(view, **options)
+    assert isinstance(found, Rewriting), found
+    return applied(view.source.text, found.edits)
+
+
+def words_besides_numbers(text: str) -> list[str]:
+    view = seen(text)
+    words = [text[t.start : t.end] for t in tokenize(view.source).tokens]
+    return [w for w in words if not w[:1].isdigit() and w != "-"]
+
+
+def test_first_guesses_become_what_was_solved() -> None:
+    assert rewritten(seen(MOVED, solved=True)) == MOVED.replace("2)", "8)").replace("guess(5)", "guess(7)")
+
+
+def test_a_selection_is_left_to_itself() -> None:
+    view = seen(MOVED, solved=True)
+    start = MOVED.index("radius")
+    assert rewritten(view, span=view.span(start, start + 16)) == MOVED.replace("guess(5)", "guess(7)")
+
+
+def test_nothing_to_write_is_said() -> None:
+    text = rewritten(seen(MOVED, solved=True))
+    view = seen(text, solved=True)
+    assert not can_write_back(view)
+    assert isinstance(write_back(view), Refusal)
+    assert isinstance(write_back(seen(text)), Refusal)
+
+
+def test_units_stay_as_they_are_written() -> None:
+    text = "drawing d { c = circle(center: (1cm, 2in), radius: 5)\n constrain c.center == (25, 25.4) }"
+    assert "center: (2.5cm, 1in)" in rewritten(seen(text, solved=True))
+
+
+def test_changed_sizes_are_written_only_when_asked() -> None:
+    text = (
+        "drawing d { c = circle(center: (0, 2), radius: 5)\n constrain { c.radius == 7\n c.center.y == 3 } }"
+    )
+    view = seen(text, solved=True)
+    assert rewritten(view) == text.replace("(0, 2)", "(0, 3)")
+    assert rewritten(view, sizes=True) == text.replace("radius: 5", "radius: 7")
+
+
+def test_a_line_that_had_to_change_is_moved_without_writing_its_length() -> None:
+    text = "drawing d { l = line((0, 0), (40, 0))\n constrain { l.start == (5, 5)\n l.length == 60 } }"
+    view = seen(text, solved=True)
+    assert "line((5, 5), (45, 5))" in rewritten(view)
+    both = seen(rewritten(view), solved=True)
+    assert "line((5, 5), (65, 5))" in rewritten(both, sizes=True)
+
+
+def test_exact_numbers_params_and_expressions_are_not_touched() -> None:
+    text = (
+        "drawing d { param w = 3\n let u = 4\n c = circle(center: (u + 1, 2), radius: w)\n"
+        " e = circle(center: fixed((9, 9)), radius: fixed(2))\n constrain c.center == (8, 8) }"
+    )
+    assert rewritten(seen(text, solved=True)) == text.replace("(u + 1, 2)", "(u + 1, 8)")
+
+
+@pytest.mark.parametrize("name", ["telephone", "phone_stand", "lighthouse", "wrench", "handset"])
+def test_examples_draw_the_same_and_have_nothing_left_to_tell(name: str) -> None:
+    path = next(p for p in EXAMPLES if p.stem == name)
+    view = example(path)
+    text = rewritten(view)
+    again = run(look(path, text, view.world))
+    assert again.outcome is not None
+    assert again.outcome.status == "solved"
+    assert near(curves(view), curves(again))
+    kept = {g.path for g in guesses(again) if g.is_kept}
+    assert [i for i in inlays(again) if not any(f"`{p}`" in i.tooltip for p in kept)] == []
+    assert words_besides_numbers(text) == words_besides_numbers(view.source.text)
+
+
+def example(path: Path) -> View:
+    view = look(path, path.read_text("utf-8"), Workspace([path.parent]).world(path))
+    return run(view)
+
+
+def test_a_program_that_would_draw_something_else_is_left_alone() -> None:
+    text = "drawing d { let n = 3.2\n c = circle(center: (n, 0), radius: 1)\n constrain c.center.x == 9\n"
+    text += " if written(c.center.x) < 5 { e = circle(center: fixed((0, 0)), radius: fixed(1)) } }"
+    view = seen(text, solved=True)
+    assert view.outcome is not None
+    assert view.outcome.status == "solved"
+    found = write_back(view)
+    assert isinstance(found, Refusal)
+    assert "would not draw the same" in found.reason
+
+
+def test_line_ends_and_astral_characters_stay() -> None:
+    circle = "\tc = circle(center: (1, /* \U0001f600 */ 2), radius: 3)\r\n"
+    text = f"\ufeff// \U0001d518\r\ndrawing d {{\r\n{circle}\tconstrain c.center == (1, -7)\r\n}}\r\n"
+    assert rewritten(seen(text, solved=True)) == text.replace("*/ 2", "*/ -7")
+
+
+@pytest.mark.parametrize(
+    ("value", "tolerance", "text"),
+    [
+        (52.3700000003, 1e-7, "52.37"),
+        (52.37, 0.05, "52.4"),
+        (-0.0001, 0.01, "0"),
+        (1 / 3, 1e-6, "0.333333"),
+        (1e18, 0.1, "1000000000000000000"),
+        (1e-9, 0.0, "0.000000001"),
+    ],
+)
+def test_numbers_are_as_short_as_they_may_be(value: float, tolerance: float, text: str) -> None:
+    assert shortest(value, tolerance) == text
