@@ -13,6 +13,7 @@ from aidl_lang.source import Span
 
 _NAMED = 3
 """Things that one title names, and different things that it says."""
+_HELD = "fully constrained"
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,8 @@ def _lenses(view: View, outcome: Compiled, model: SolvedModel) -> Iterator[Lens]
         if isinstance(node, ast.Structure) and (found := made.get(node.span)):
             title = _title(found, motions, model.constraints)
             if found[0] is model.root:
-                title = f"{_status(outcome, model)} · {title}"
+                as_whole = "moves only as a whole" if model.degrees else _HELD
+                title = f"{_status(outcome, model)} · {title.replace(_HELD, as_whole)}"
             yield Lens(node.name.span, title, tuple(structure.path for structure in found))
 
 
@@ -82,7 +84,7 @@ def _one(structure: SolvedStructure, motions: Sequence[Motion], reports: Sequenc
     ]
     if free:
         return f"{held}{', '.join(free[:_NAMED])}" + (" …" if len(free) > _NAMED else "")
-    return f"{held}fully constrained"
+    return f"{held}{_HELD}"
 
 
 def _names(motion: Motion, inside: str) -> str:

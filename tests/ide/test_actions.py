@@ -254,3 +254,26 @@ def test_edits_between_two_texts_make_one_of_the_other() -> None:
     view = seen(TOWER)
     other = TOWER.replace("let thick", "let thin\nlet thick").replace("    } // on top\n", "    }\n")
     assert applied(TOWER, between(view.source, other)) == other
+
+
+def test_solved_values_are_written_here_and_everywhere() -> None:
+    marked = """\
+drawing a {
+    left = circle(center: (1, 31), radius: 4)
+    right = circle(center: (2, 3¦0), radius: 4)
+    constrain { left.center == (0, 30), right.center == (0, -30) }
+}
+"""
+    view, found = offered(marked)
+    title = "Write solved values back as first guesses"
+    offers = {a.title: a for a in found if a.kind == "refactor.rewrite"}
+    assert list(offers) == [f"{title}: `a`", title]
+    text = applied(view.source.text, offers[title].make())
+    assert "left = circle(center: (0, 30), radius: 4)" in text
+    assert "right = circle(center: (0, -30), radius: 4)" in text
+    assert compiled(text).export(".svg") == compiled(view.source.text).export(".svg")
+    line = view.source.text.index("(1, 31)")
+    selected = [a for a in actions(view, line, line + 7) if a.title == f"{title}: selection"]
+    text = applied(view.source.text, selected[0].make())
+    assert "left = circle(center: (0, 30), radius: 4)" in text
+    assert "right = circle(center: (2, 30), radius: 4)" in text

@@ -106,6 +106,22 @@ async def test_actions_are_worked_out_when_they_are_chosen(editor: Editor) -> No
     editor.close(uri)
 
 
+async def test_solved_values_are_written_back(editor: Editor) -> None:
+    uri = await telephone(editor)
+    before = pipeline.compile(SourceFile("a", editor.texts[uri]))
+    only = types.CodeActionContext([], only=[types.CodeActionKind.RefactorRewrite])
+    at = types.Range(types.Position(1, 0), types.Position(1, 0))
+    offered = await editor.text_document_code_action_async(
+        types.CodeActionParams(editor.document(uri), at, only)
+    )
+    action = next(a for a in offered if a.title == "Write solved values back as first guesses")
+    editor.apply((await editor.code_action_resolve_async(action)).edit)
+    assert "radius: guess(16)" in editor.texts[uri]
+    after = pipeline.compile(SourceFile("a", editor.texts[uri]))
+    assert after.drawing.box == pytest.approx(before.drawing.box, abs=1e-5)
+    assert after.status == "solved"
+
+
 async def test_definitions_here_and_in_the_library(editor: Editor) -> None:
     uri = await telephone(editor)
     text = editor.texts[uri]

@@ -11,6 +11,7 @@ from aidl_lang.ide.actions.constraining import missing_constraints
 from aidl_lang.ide.actions.extracting import extractions
 from aidl_lang.ide.actions.fixes import fixes
 from aidl_lang.ide.actions.naming import namings
+from aidl_lang.ide.actions.writing import writings
 from aidl_lang.ide.view import View
 
 __all__ = ["Action", "CannotActError", "actions"]
@@ -23,4 +24,5 @@ def actions(view: View, start: int, end: int) -> list[Action]:
         *missing_constraints(view, start),
         *namings(view, start, end),
         *extractions(view, start),
+        *writings(view, start, end),
     ]

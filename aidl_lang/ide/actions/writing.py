@@ -1,0 +1,46 @@
+"""Writing solved values into the text: where the cursor or the selection is, and everywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+from aidl_lang.diagnostics import Edit
+from aidl_lang.ide.actions.action import Action, CannotActError
+from aidl_lang.ide.nodes import structures_around
+from aidl_lang.ide.view import View
+from aidl_lang.ide.writing_back import Refusal, can_write_back, write_back
+from aidl_lang.source import Span
+
+_TITLES = {False: "Write solved values back as first guesses", True: "Write changed sizes back"}
+
+
+def writings(view: View, start: int, end: int) -> Iterator[Action]:
+    """For what is selected, or else the innermost structure around the cursor; and for the whole file."""
+    if view.outcome is None:
+        return
+    part, where = _part(view, start, end)
+    for sizes, title in _TITLES.items():
+        if part is not None and can_write_back(view, part, sizes=sizes):
+            yield _action(view, part, f"{title}: {where}", sizes=sizes)
+        if can_write_back(view, sizes=sizes):
+            yield _action(view, None, title, sizes=sizes)
+
+
+def _part(view: View, start: int, end: int) -> tuple[Span | None, str]:
+    """A part of the text, and what it is called."""
+    if start < end:
+        return view.span(start, end), "selection"
+    node = next(structures_around(view, start), None)
+    return (None, "") if node is None else (node.span, f"`{node.name.text}`")
+
+
+def _action(view: View, part: Span | None, title: str, *, sizes: bool) -> Action:
+    return Action(title, "refactor.rewrite", partial(_written, view, part, sizes=sizes))
+
+
+def _written(view: View, part: Span | None, *, sizes: bool) -> Sequence[Edit]:
+    found = write_back(view, part, sizes=sizes)
+    if isinstance(found, Refusal):
+        raise CannotActError(found.reason)
+    return found.edits
