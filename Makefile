@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-model lint format reference colours vscode test-vscode bench bench-check bench-regions bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test test-model lint format reference colours editors vscode test-vscode bench bench-editor bench-check bench-regions bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -38,6 +38,10 @@ reference: $(READY) ## write docs/reference, docs/guide.md and llms.txt anew fro
 
 colours: $(READY) ## write the grammars, words and snippets for editors anew
 	$(BIN)/python -m aidl_lang.highlighting .
+
+editors: vscode ## check all that is built with Node: the preview's pane, the CodeMirror package, the extension
+	cd editors/preview && npm ci --silent --no-audit --no-fund && npm run --silent check
+	cd editors/codemirror && npm ci --silent --no-audit --no-fund && npm test --silent
 
 vscode: ## check and test the extension for VS Code, and pack it: build/aidl.vsix
 	@mkdir -p build
