@@ -55,6 +55,9 @@ test-vscode: $(READY) vscode ## try the extension in VS Code itself; installs th
 bench: $(READY) ## measure the command and the stages
 	$(BIN)/python benchmarks/run.py
 
+bench-editor: $(READY) ## measure what an editor waits for
+	$(BIN)/python benchmarks/editor.py
+
 bench-check: $(READY) ## measure a check beside another language's
 	$(BIN)/python benchmarks/check.py
 

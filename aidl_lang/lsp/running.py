@@ -17,6 +17,9 @@ from typing import Protocol, TypeVar
 
 from aidl_lang import ast, resources
 from aidl_lang.cancelling import Cancelled, cancelled_when, checkpoint
+from aidl_lang.ide.completion import complete
+from aidl_lang.ide.hover import hover
+from aidl_lang.ide.preview import preview
 from aidl_lang.ide.view import SETTINGS, View, look, run
 from aidl_lang.ide.workspace import Workspace
 from aidl_lang.lsp.documents import Document, Documents, Known
@@ -72,8 +75,9 @@ class Runner:
         self._is_closing = False
 
     def warm_up(self) -> None:
-        """Load what the first run needs while nobody waits for it."""
-        self.solving.put(Job("warm", _warm_up, lambda future: None))
+        """Load what the first run and the first questions need while nobody waits for it."""
+        self.solving.put(Job("first run", lambda: run(_example()), lambda future: None))
+        self.solving.put(Job("first questions", _ask_something, lambda future: None))
 
     def renew(self, document: Document, *, active: bool = False) -> None:
         """The text of a document has changed, or one that it stands on."""
@@ -221,9 +225,16 @@ class Runner:
         document.tell()
 
 
-def _warm_up() -> None:
-    path = Path("warm.aidl").absolute()
-    run(look(path, "solid warm { part = circle(radius: 1) }", MemoryWorld({})))
+def _example() -> View:
+    text = "solid example { part = circle(radius: 1) }"
+    return look(Path("example.aidl").absolute(), text, MemoryWorld({}))
+
+
+def _ask_something() -> None:
+    view = run(_example())
+    complete(view, view.source.text.index("circle"))
+    hover(view, view.source.text.index("circle"))
+    preview(view)
 
 
 def is_library(path: Path) -> bool:

@@ -20,7 +20,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Receive, Scope, Send
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket
 
 from aidl_lang.preview.host import Host, Page
 from aidl_lang.preview.messages import LONGEST
@@ -43,6 +43,7 @@ _HEADERS = {
     "X-Content-Type-Options": "nosniff",
 }
 _TRY_AGAIN = 1013
+_NO_TEXT = 1003
 _TOO_BIG = 1009
 
 
@@ -149,13 +150,10 @@ async def _send(socket: WebSocket, page: Page) -> None:
 
 
 async def _listen(socket: WebSocket, host: Host, page: Page) -> None:
-    """Until the page goes."""
-    try:
-        while True:
-            text = await socket.receive_text()
-            if len(text) > LONGEST:
-                await socket.close(_TOO_BIG)
-                return
-            host.hear(page, text)
-    except (WebSocketDisconnect, KeyError):  # it goes, or sends bytes
-        return
+    """Until the page goes, or sends what no page sends."""
+    while (message := await socket.receive())["type"] == "websocket.receive":
+        text = message.get("text")
+        if text is None or len(text) > LONGEST:
+            await socket.close(_NO_TEXT if text is None else _TOO_BIG)
+            return
+        host.hear(page, text)

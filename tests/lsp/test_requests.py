@@ -122,6 +122,21 @@ async def test_solved_values_are_written_back(editor: Editor) -> None:
     assert after.status == "solved"
 
 
+async def test_fixes_are_applied_by_command(editor: Editor) -> None:
+    uri = editor.open("untitled:command", "solid a { b = circle(raduis: 3) }\n")
+    command = types.ExecuteCommandParams("aidl.applyFixes", arguments=[uri])
+    assert await editor.workspace_execute_command_async(command)
+    assert editor.texts[uri] == "solid a { b = circle(radius: 3) }\n"
+    with pytest.raises(JsonRpcException, match="nothing to fix"):
+        await editor.workspace_execute_command_async(command)
+    for arguments in (None, [], [3], ["untitled:nothing"]):
+        with pytest.raises(JsonRpcException, match="not open"):
+            await editor.workspace_execute_command_async(
+                types.ExecuteCommandParams("aidl.applyFixes", arguments=arguments)
+            )
+    editor.close(uri)
+
+
 async def test_definitions_here_and_in_the_library(editor: Editor) -> None:
     uri = await telephone(editor)
     text = editor.texts[uri]

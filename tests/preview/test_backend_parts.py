@@ -216,6 +216,7 @@ def test_a_point_moves_from_where_it_is() -> None:
         "drawing a { hand = line(fixed((10, 5)), (40, 5)); constrain { hand.length == 30 } }"
     ).values()
     (arrow,) = way.arrows
+    assert way.words == "slide up–down at its end"
     assert arrow.start == pytest.approx((40, 5))
     assert arrow.end[0] == pytest.approx(40, abs=1e-3)
 
@@ -244,6 +245,7 @@ def test_what_grows_has_arrows_outwards() -> None:
     (way,) = ways(SEVERAL)["d.plate"]
     assert {(round(a.start[0]), a.end[0] > a.start[0]) for a in way.arrows} == {(20, True), (-20, False)}
     assert all(a.end[1] == pytest.approx(a.start[1], abs=1e-6) for a in way.arrows)
+    assert way.words == "change its width"
     (round_,) = ways(SEVERAL)["d.pin.rim"]
     assert {(round(a.start[0]), a.end[0] > a.start[0]) for a in round_.arrows} == {(12, True), (6, False)}
 

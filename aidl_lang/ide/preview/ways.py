@@ -54,7 +54,17 @@ def ways(outcome: Compiled, elements: Elements) -> Iterator[Way]:
             if thing is not None:
                 arrows += thing.arrows(motion.kind)
                 turns += thing.turns(motion.kind)
-        yield Way(motion.words, tuple(numbers), tuple(arrows), tuple(turns))
+        yield Way(_words(motion, elements), tuple(numbers), tuple(arrows), tuple(turns))
+
+
+def _words(motion: Motion, elements: Elements) -> str:
+    """What the elements can do; with the name of the point or number of an element that does it."""
+    if len(motion.things) != 1 or (number := elements.near(motion.things[0])) is None:
+        return motion.words
+    inside = motion.things[0].removeprefix(elements.values[number].path).removeprefix(".")
+    if not inside:
+        return motion.words
+    return f"{motion.words} its {inside}" if motion.kind == "change" else f"{motion.words} at its {inside}"
 
 
 class _Flow:

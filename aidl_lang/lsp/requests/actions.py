@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from lsprotocol import types
-from pygls.exceptions import JsonRpcContentModified, JsonRpcException
+from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcInvalidParams
 
 from aidl_lang.diagnostics import Edit
 from aidl_lang.ide.actions import Action, CannotActError, actions
@@ -37,6 +37,33 @@ def register(server: Server) -> None:
             raise JsonRpcContentModified("the text has changed")
         action.edit = await server.answers.ask(lambda: _worked_out(asked, given, action.title))
         return action
+
+    @server.command("aidl.applyFixes")
+    async def apply_fixes(*arguments: Any) -> bool:
+        """For clients that have commands and no code actions; the argument is the document."""
+        document = server.documents.get(arguments[0]) if arguments and isinstance(arguments[0], str) else None
+        asked = await server.asked(document) if document is not None else None
+        if asked is None:
+            raise JsonRpcInvalidParams("this document is not open")
+        changes = await server.answers.ask(lambda: _all_fixes(asked))
+        params = types.ApplyWorkspaceEditParams(changes, "Apply all fixes")
+        return (await server.workspace_apply_edit_async(params)).applied
+
+
+def _all_fixes(asked: Asked) -> types.WorkspaceEdit:
+    whole = len(asked.view.source.text)
+    for action in actions(asked.view, 0, whole):
+        if action.kind == types.CodeActionKind.SourceFixAll.value:
+            return _made(asked, action)
+    raise JsonRpcException("there is nothing to fix", FAILED)
+
+
+def _made(asked: Asked, action: Action) -> types.WorkspaceEdit:
+    """Raises JsonRpcException where an action cannot be carried out."""
+    try:
+        return _edit(asked, action.make())
+    except CannotActError as reason:
+        raise JsonRpcException(str(reason), FAILED) from None
 
 
 def _offer(asked: Asked, params: types.CodeActionParams) -> list[types.CodeAction]:
@@ -88,10 +115,7 @@ def _worked_out(asked: Asked, given: Given, title: str) -> types.WorkspaceEdit:
     kind = given.text("kind")
     for action in actions(asked.view, given.whole("start"), given.whole("end")):
         if (action.title, action.kind) == (title, kind):
-            try:
-                return _edit(asked, action.make())
-            except CannotActError as reason:
-                raise JsonRpcException(str(reason), FAILED) from None
+            return _made(asked, action)
     raise JsonRpcContentModified("the text has changed")
 
 

@@ -19,7 +19,7 @@ def register(server: Server) -> None:
     @server.feature(types.INITIALIZE)
     def initialize(params: types.InitializeParams) -> None:
         _take_roots(server)
-        server.settings = Settings.read(params.initialization_options)
+        _use(server, Settings.read(params.initialization_options))
 
     @server.feature(types.INITIALIZED)
     async def initialized(params: types.InitializedParams) -> None:
@@ -80,8 +80,10 @@ async def _ask_settings(server: Server) -> None:
 
 
 def _use_settings(server: Server, settings: Settings) -> None:
-    if settings == server.settings:
-        return
-    server.settings = settings
-    server.runner.delay = settings.delay
-    server.refresh_hints()
+    if settings != server.settings:
+        _use(server, settings)
+        server.refresh_hints()
+
+
+def _use(server: Server, settings: Settings) -> None:
+    server.settings, server.runner.delay = settings, settings.delay

@@ -1,0 +1,187 @@
+"""`aidl preview` as people have it: a real process, a real browser, a real file."""
+
+from __future__ import annotations
+
+import math
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Locator, Page, expect
+
+ROOT = Path(__file__).resolve().parents[2]
+TELEPHONE = (ROOT / "examples" / "telephone.aidl").read_text("utf-8")
+ON_FIRST_HOLE = (19 + 4) * math.cos(math.radians(60)), (19 + 4) * math.sin(math.radians(60))
+"""A point on the first hole of the dial, whose plate lies in the middle of the base."""
+PATIENCE = 30.0
+"""Seconds after which what a test waits for is not coming."""
+
+
+@dataclass
+class Preview:
+    """The page of a program, and its file."""
+
+    page: Page
+    file: Path
+    complaints: list[str]
+
+    def find(self, selector: str) -> Locator:
+        return self.page.locator(selector)
+
+    def at(self, x: float, y: float) -> tuple[float, float]:
+        """Where on the page a point of the drawing is."""
+        a, d, e, f = self.page.evaluate(
+            """() => {
+                const { a, d, e, f } = document.querySelector(".drawing").getScreenCTM();
+                return [a, d, e, f];
+            }"""
+        )
+        return a * x + e, -d * y + f
+
+    def width(self) -> float:
+        """Of what is painted, in mm."""
+        return float(
+            self.page.evaluate(
+                """() => Math.max(...[...document.querySelectorAll(".drawing [data-element] path:not(.hit)")]
+                    .map(path => path.getBBox().width))"""
+            )
+        )
+
+    def until_width(self, width: float) -> None:
+        wait(lambda: abs(self.width() - width) < 0.01)
+
+    @property
+    def text(self) -> str:
+        return self.file.read_text("utf-8")
+
+
+def wait(is_so: Callable[[], bool]) -> None:
+    end = time.monotonic() + PATIENCE
+    while not is_so():
+        assert time.monotonic() < end, "it did not come"
+        time.sleep(0.02)
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, str]]:
+    """The file and the address of a program that is previewed."""
+    file = tmp_path_factory.mktemp("preview") / "telephone.aidl"
+    file.write_text(TELEPHONE, "utf-8")
+    command = [sys.executable, "-m", "aidl_lang", "preview", str(file), "--no-open"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=ROOT) as process:
+        try:
+            assert process.stderr is not None
+            found = re.search(r"http://\S+", process.stderr.readline())
+            assert found is not None
+            yield file, found[0]
+            process.send_signal(signal.SIGINT)
+            assert process.wait(PATIENCE) == 130
+            assert process.stderr.read() == ""
+        finally:
+            process.kill()
+
+
+@pytest.fixture
+def preview(browser: Browser, served: tuple[Path, str]) -> Iterator[Preview]:
+    file, url = served
+    file.write_text(TELEPHONE, "utf-8")
+    page = browser.new_page(viewport={"width": 1400, "height": 900})
+    page.set_default_timeout(PATIENCE * 1000)
+    expect.set_options(timeout=PATIENCE * 1000)
+    complaints: list[str] = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("console", lambda m: complaints.append(m.text) if m.type in ("error", "warning") else None)
+    page.goto(url)
+    shown = Preview(page, file, complaints)
+    expect(shown.find("#source-lines")).to_contain_text("param width = 160mm")
+    shown.until_width(160)
+    yield shown
+    page.close()
+    assert complaints == []
+
+
+def test_a_slider_solves_again_and_is_written_on_release(preview: Preview) -> None:
+    slider = preview.find("#knobs-list input[type=range]")
+    box = slider.bounding_box()
+    assert box is not None
+    middle = box["y"] + box["height"] / 2
+    preview.page.mouse.move(box["x"] + box["width"] * 60 / 140, middle)
+    preview.page.mouse.down()
+    preview.page.mouse.move(box["x"] + box["width"] * 0.9, middle, steps=12)
+    tried = float(preview.find("#knobs-list input:not([type=range])").input_value())
+    assert tried > 200
+    preview.until_width(tried)
+    assert preview.text == TELEPHONE
+    preview.page.mouse.up()
+    wait(lambda: preview.text != TELEPHONE)
+    (written,) = re.findall(r"param width = ([\d.]+)mm in 100\.\.240", preview.text)
+    assert float(written) == tried
+    assert preview.text == TELEPHONE.replace("160mm", f"{written}mm")
+    expect(preview.find("#source-lines")).to_contain_text(f"param width = {written}mm")
+    preview.until_width(float(written))
+
+
+def test_a_dragged_point_changes_the_text(preview: Preview) -> None:
+    text = "drawing sketch {\n    one = line((0, 0), (30, 40))\n    two = line(one.end, (80, 0))\n}\n"
+    preview.file.write_text(text, "utf-8")
+    expect(preview.find("#source-lines")).to_contain_text("drawing sketch")
+    preview.find("#handles-toggle").click()
+    handle = preview.find('.handle[aria-label*="one.start"]')
+    handle.wait_for()
+    before = handle.bounding_box()
+    assert before is not None
+    x, y = before["x"] + before["width"] / 2, before["y"] + before["height"] / 2
+    assert (x, y) == pytest.approx(preview.at(0, 0), abs=1)
+    preview.page.mouse.move(x, y)
+    preview.page.mouse.down()
+    preview.page.mouse.move(*preview.at(-20, -10), steps=10)
+    wait(lambda: preview.page.evaluate("document.querySelector('.drawing').getBBox().width") > 90)
+    assert preview.text == text
+    preview.page.mouse.up()
+    wait(lambda: preview.text != text)
+    assert re.sub(r"-?\d+(\.\d+)?", "N", preview.text) == re.sub(r"-?\d+(\.\d+)?", "N", text)
+    (x, y) = map(float, re.findall(r"one = line\(\((-?[\d.]+), (-?[\d.]+)\)", preview.text)[0])
+    assert (x, y) == pytest.approx((-20, -10), abs=1)
+
+
+def test_hovering_shows_where_something_is_written(preview: Preview) -> None:
+    marked = preview.find("#source-lines .line.marked")
+    preview.page.mouse.move(*preview.at(0, -30))
+    expect(preview.find("#tooltip")).to_contain_text("160 × 80 mm")
+    expect(marked).to_contain_text(["solid base {", "body = trapezoid(", "}"])
+    preview.page.mouse.move(*preview.at(*ON_FIRST_HOLE))
+    expect(marked).to_contain_text(["rim = circle(center: fixed(polar(19"])
+
+
+def test_a_save_in_another_editor_is_seen(preview: Preview) -> None:
+    preview.file.write_text(TELEPHONE.replace("160mm", "200mm"), "utf-8")
+    preview.until_width(200)
+    expect(preview.find("#source-lines")).to_contain_text("200mm")
+
+
+def test_a_broken_text_leaves_the_picture_marked_as_stale(preview: Preview) -> None:
+    preview.file.write_text(TELEPHONE.replace("solid base {", "solid base {{"), "utf-8")
+    stale = preview.find("#stale")
+    expect(stale).to_be_visible()
+    assert preview.width() == pytest.approx(160, abs=0.01)
+    expect(preview.find("#problems-list")).to_contain_text("E01")
+    preview.file.write_text(TELEPHONE.replace("160mm", "180mm"), "utf-8")
+    expect(stale).to_be_hidden()
+    preview.until_width(180)
+
+
+def test_a_file_is_exported(preview: Preview) -> None:
+    preview.find("#export-button").click()
+    with preview.page.expect_download() as download:
+        preview.find(
+            "#export-menu button",
+        ).first.click()
+    path = download.value.path()
+    assert download.value.suggested_filename.startswith("telephone.")
+    assert path.stat().st_size > 500
