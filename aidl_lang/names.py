@@ -41,6 +41,12 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
     return [folded[match] for match in matches[:count]]
 
 
+def is_spelled_in(letters: str, word: str) -> bool:
+    """Whether the letters stand in a word in their order, as those do that somebody types to find it."""
+    rest = iter(fold(word))
+    return all(letter in rest for letter in fold(letters))
+
+
 def is_slip(name: str, meant: str) -> bool:
     """Whether one name is so near to the other that nobody need be asked: a letter wrong, missing, too many
     or exchanged with its neighbour, two in a long name; but no word more or less, as in `same_center_x`.

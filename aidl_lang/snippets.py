@@ -10,7 +10,12 @@ import re
 
 from aidl_lang.records import record
 
-_PLACE = re.compile(r"\$\{(\d+)(?::([^}]*))?\}|\$(\d+)")
+_PLACE = re.compile(
+    r"\\([\\$}])"  # a sign that is meant as itself
+    r"|\$\{(\d+)(?::((?:\\.|[^\\}])*)|\|((?:\\.|[^\\,|])*)[^|]*\|)?\}"  # with a text, or a choice of several
+    r"|\$(\d+)"
+)
+_ESCAPED = re.compile(r"\\(.)")
 
 
 @record()
@@ -26,12 +31,17 @@ class Snippet:
 
     @property
     def expanded(self) -> str:
-        """The text with what is suggested at its places, the same at those of one number."""
-        given: dict[str, str] = {}
-        for match in _PLACE.finditer(self.body):
-            if match[2] is not None:
-                given.setdefault(match[1], match[2])
-        return _PLACE.sub(lambda match: given.get(match[1] or match[3], ""), self.body)
+        return expanded(self.body)
+
+
+def expanded(body: str) -> str:
+    """The text with what is suggested at its places, the same at those of one number."""
+    given: dict[str, str] = {}
+    for match in _PLACE.finditer(body):
+        text = match[3] if match[3] is not None else match[4]
+        if text is not None:
+            given.setdefault(match[2], _ESCAPED.sub(r"\1", text))
+    return _PLACE.sub(lambda match: match[1] or given.get(match[2] or match[5], ""), body)
 
 
 SNIPPETS = (
@@ -128,3 +138,5 @@ SNIPPETS = (
         "constraints",
     ),
 )
+
+OF_WORD = {snippet.prefix: snippet for snippet in SNIPPETS}

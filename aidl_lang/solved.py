@@ -145,6 +145,10 @@ class SolvedStructure:
         for child in self.structures:
             yield from child.walk()
 
+    def walk_geometry(self) -> Iterator[SolvedGeometry]:
+        """The geometry of this structure and of all below it, each followed by its parts."""
+        return (part for s in self.walk() for geometry in s.geometry for part in geometry.walk())
+
     def find(self, path: str) -> SolvedStructure | None:
         return next((s for s in self.walk() if s.path == path), None)
 
@@ -283,10 +287,7 @@ class SolvedModel:
     @property
     def is_unfinished(self) -> bool:
         """Whether outlines are to be made of others, or corners to be finished (see `geometry.outlines`)."""
-        structures = list(self.root.walk())
-        return any(s.finishes for s in structures) or any(
-            part.recipe for s in structures for geometry in s.geometry for part in geometry.walk()
-        )
+        return any(s.finishes for s in self.root.walk()) or any(g.recipe for g in self.root.walk_geometry())
 
     @cached_property
     def motions(self) -> tuple[Motion, ...]:

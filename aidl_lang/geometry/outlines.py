@@ -37,9 +37,8 @@ _HALVINGS = 24
 
 def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
     """The model with its derived outlines and finished corners, and what is wrong with them."""
-    structures = list(model.root.walk())
-    index = {g.path: g for s in structures for top in s.geometry for g in top.walk()}
-    outliner = _Outliner(tuple(f for s in structures for f in s.finishes), index)
+    index = {g.path: g for g in model.root.walk_geometry()}
+    outliner = _Outliner(tuple(f for s in model.root.walk() for f in s.finishes), index)
     root = outliner.structure(model.root)
     return replace(model, root=root), list(dict.fromkeys(outliner.notes))
 

@@ -40,13 +40,22 @@ def of_entry(entry: Entry, *, example: bool = True) -> str:
     return joined([head, entry.doc.line, entry.doc.text, *facts(entry), *shown])
 
 
+def of_public(name: str) -> str:
+    """The same by a name or a word; nothing of one that the reference does not have."""
+    entry = reference().entries.get(name)
+    return of_entry(entry) if entry is not None else ""
+
+
 def of_definition(node: ast.Node) -> str:
     """A definition of a program: its head and its `///` comment."""
     return joined([fenced(head(node)), of_comment(getattr(node, "doc", None))])
 
 
 def of_comment(comment: str | None) -> str:
-    about = doc(comment or "")
+    return of_doc(doc(comment or ""))
+
+
+def of_doc(about: Doc) -> str:
     return joined([about.line, about.text, fenced(about.example) if about.example else ""])
 
 

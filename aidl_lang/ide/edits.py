@@ -35,6 +35,14 @@ def line_start(text: str, offset: int) -> int:
     return text.rfind("\n", 0, offset) + 1
 
 
+def above_comments(text: str, offset: int) -> int:
+    """The beginning of the line of an offset, or of the comments that stand right above it."""
+    start = line_start(text, offset)
+    while start and text[line_start(text, start - 1) : start].lstrip().startswith(("//", "#")):
+        start = line_start(text, start - 1)
+    return start
+
+
 def indent_at(text: str, offset: int) -> str:
     """The white space that the line of an offset begins with."""
     line = text[line_start(text, offset) : offset]

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from aidl_lang.ide.nodes import tokens_of
 from aidl_lang.ide.view import View
 from aidl_lang.syntax.tokens import Token
 
@@ -28,7 +27,7 @@ class Fold:
 
 def folds(view: View) -> list[Fold]:
     """By their first line; of two that begin in one line the longer."""
-    tokens = tokens_of(view)
+    tokens = view.tokens
 
     def line(offset: int) -> int:
         return view.source.position(offset)[0]

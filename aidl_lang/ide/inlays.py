@@ -19,7 +19,7 @@ from aidl_lang.solved import Scalar
 from aidl_lang.source import Span
 from aidl_lang.units import UNITS
 
-_DIGITS = 5
+_DECIMALS = 3
 _ARROW = "→"
 
 
@@ -114,4 +114,4 @@ def _shown(value: Scalar) -> str:
         case str():
             return f'"{value}"'
         case _:
-            return f"{round(value, 3) + 0.0:.{_DIGITS + 2}g}"
+            return fixed(value, _DECIMALS)

@@ -106,13 +106,29 @@ def _named_arguments(view: View, call: ast.Call) -> Iterator[Mention]:
 
 def parameter(view: View, signature: Signature, name: str) -> Symbol:
     """The parameter of a callable by its name."""
-    for each in (signature.node.parameters or ()) if signature.node is not None else ():
-        if each.name.text == name:
-            assert signature.node is not None
-            view.resolution.scope_of(signature.node)  # which enters the names of a library definition
-            if (symbol := view.resolution.uses.get(each.name)) is not None:
-                return symbol
+    node = parameter_node(signature, name)
+    if node is not None and signature.node is not None:
+        view.resolution.scope_of(signature.node)  # which enters the names of a library definition
+        if (symbol := view.resolution.uses.get(node.name)) is not None:
+            return symbol
     return Symbol(name, SymbolKind.ARGUMENT)
+
+
+def parameter_node(signature: Signature, name: str) -> ast.Parameter | None:
+    """Where a definition declares a parameter; None for what is built in."""
+    parameters = (signature.node.parameters or ()) if signature.node is not None else ()
+    return next((p for p in parameters if p.name.text == name), None)
+
+
+def free_name(view: View, name: str) -> str:
+    """The name, or the first with a number behind it, that neither the text nor the library has."""
+    taken = {fold(node.text) for node in ast.walk(view.module) if isinstance(node, ast.Identifier | ast.Name)}
+    taken |= set(map(fold, view.program.library.callables))
+    candidate, count = name, 1
+    while fold(candidate) in taken:
+        count += 1
+        candidate = f"{name}_{count}"
+    return candidate
 
 
 def _imported_names(view: View, node: ast.Import) -> Iterator[Mention]:

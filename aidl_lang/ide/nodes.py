@@ -1,4 +1,4 @@
-"""From an offset in a text to the nodes that stand there."""
+"""From an offset in a text to the nodes and the token that stand there."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from aidl_lang import ast
 from aidl_lang.ide.view import View
 from aidl_lang.resolving.symbols import Scope
-from aidl_lang.syntax.tokens import Token, Tokens, tokenize
+from aidl_lang.syntax.tokens import Token
 
 
 def around(module: ast.Module, offset: int) -> list[ast.Node]:
@@ -45,19 +45,15 @@ def _opens_here(node: ast.Node, offset: int) -> bool:
             return True
 
 
-def tokens_of(view: View) -> Tokens:
-    """All tokens and comments of the text."""
-    return tokenize(view.source)
-
-
-def token_before(tokens: Tokens, offset: int) -> Token | None:
-    """The last token that begins before an offset."""
-    before = None
-    for token in tokens.tokens:
-        if token.start >= offset:
-            break
-        before = token
-    return before
+def token_at(view: View, offset: int) -> Token | None:
+    """The token that an offset lies in, or else the one that ends there."""
+    touching = None
+    for token in view.tokens.tokens:
+        if token.start <= offset < token.end:
+            return token
+        if token.end == offset:
+            touching = token
+    return touching
 
 
 def structures_around(view: View, offset: int) -> Iterator[ast.Structure]:

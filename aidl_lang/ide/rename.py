@@ -12,6 +12,7 @@ from aidl_lang.ide.edits import applied
 from aidl_lang.ide.meaning import Mention, Place, mention_at, mentions, place_of
 from aidl_lang.ide.project import Project
 from aidl_lang.ide.references import Occurrence, references
+from aidl_lang.ide.refusing import CannotError
 from aidl_lang.ide.view import View, look
 from aidl_lang.ide.workspace import Workspace
 from aidl_lang.resolving.symbols import Symbol
@@ -19,10 +20,6 @@ from aidl_lang.source import Span
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import tokenize
 from aidl_lang.world import FileError
-
-
-class CannotRenameError(Exception):
-    """Why a name cannot be changed, or not to this one."""
 
 
 @dataclass(frozen=True)
@@ -33,12 +30,12 @@ class Renaming:
 
 
 def renameable(view: View, offset: int) -> Span:
-    """The name at an offset that can be changed. Raises CannotRenameError."""
+    """The name at an offset that can be changed. Raises CannotError."""
     return _own(view, offset).span
 
 
 def rename(project: Project, view: View, offset: int, name: str) -> Renaming:
-    """The edits that give what is named at an offset another name. Raises CannotRenameError where this is no
+    """The edits that give what is named at an offset another name. Raises CannotError where this is no
     name, or where some name would mean something else then.
     """
     mention = _own(view, offset)
@@ -55,23 +52,21 @@ def rename(project: Project, view: View, offset: int, name: str) -> Renaming:
 def _own(view: View, offset: int) -> Mention:
     mention = mention_at(view, offset)
     if mention is None:
-        raise CannotRenameError("there is no name here whose meaning is known")
+        raise CannotError("there is no name here whose meaning is known")
     symbol = mention.symbol
     if not symbol.declarations:
-        raise CannotRenameError(f"`{symbol.name}` is built in")
+        raise CannotError(f"`{symbol.name}` is built in")
     if view.is_library(symbol.declarations[0].span.source):
-        raise CannotRenameError(
-            f"`{symbol.name}` belongs to the standard library; `alias` gives it a second name"
-        )
+        raise CannotError(f"`{symbol.name}` belongs to the standard library; `alias` gives it a second name")
     return mention
 
 
 def _require_name(view: View, name: str) -> None:
     tokens = tokenize(type(view.source)("name", name)).tokens
     if len(tokens) != 2 or tokens[0].text != name or not (name.isidentifier()):
-        raise CannotRenameError(f"`{name}` is no name: names are made of letters, digits and `_`")
+        raise CannotError(f"`{name}` is no name: names are made of letters, digits and `_`")
     if tokens[0].kind != "NAME" or name in load_tables().reserved:
-        raise CannotRenameError(f"`{name}` is a word of the language")
+        raise CannotError(f"`{name}` is a word of the language")
 
 
 def _require_same_meaning(
@@ -96,10 +91,10 @@ def _require_same_meaning(
         try:
             text = changed.text(path)
         except FileError as reason:
-            raise CannotRenameError(str(reason)) from None
+            raise CannotError(str(reason)) from None
         new = look(path, text, changed.world(path))
         if (trouble := _difference(old, new, edits)) is not None:
-            raise CannotRenameError(f"`{name}` cannot be the new name: {trouble}")
+            raise CannotError(f"`{name}` cannot be the new name: {trouble}")
 
 
 def _difference(old: View, new: View, edits: Mapping[Path, tuple[Edit, ...]]) -> str | None:

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from aidl_lang import ast
 from aidl_lang.builtins import PATTERNS
 from aidl_lang.ide.meaning import Mention, mentions
-from aidl_lang.ide.nodes import tokens_of
 from aidl_lang.ide.view import View
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.source import Span
@@ -58,7 +57,7 @@ def semantic_tokens(view: View) -> list[Colored]:
     """All of a text in its order, comments included; what is mere punctuation is left out."""
     names = {m.span.start: _of_mention(view, m) for m in mentions(view)}
     names |= {c.span.start: c for c in _heads(view)}
-    tokens = tokens_of(view)
+    tokens = view.tokens
     found = [Colored(comment.span, "comment") for comment in tokens.comments]
     for token in tokens.tokens:
         end = token.end - 1 if token.kind == "CALL" else token.end

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from aidl_lang import ast
 from aidl_lang.checking.calls import arguments
-from aidl_lang.ide.describing import doc_of, fenced, is_public, joined, label_of, of_parameter
+from aidl_lang.ide.describing import doc_of, is_public, label_of, of_doc, of_parameter
 from aidl_lang.ide.nodes import around, scope_at
 from aidl_lang.ide.overloads import Reading, readings
 from aidl_lang.ide.site import Where, site_at, spot_at
@@ -124,6 +124,5 @@ def _told(reading: Reading, argument: int) -> OverloadHelp:
         ParameterHelp(name, place, of_parameter(signature, name))
         for (name, _, _), place in zip(signature.parameters, label.parameters, strict=True)
     )
-    about = doc_of(signature)
-    shown = joined([about.line, about.text, fenced(about.example) if about.example else ""])
-    return OverloadHelp(label.text, shown, parameters, _parameter(reading, argument), reading.fits)
+    about = of_doc(doc_of(signature))
+    return OverloadHelp(label.text, about, parameters, _parameter(reading, argument), reading.fits)

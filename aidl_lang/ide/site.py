@@ -19,8 +19,7 @@ from aidl_lang.parser import parse, standing_before
 from aidl_lang.resolving.symbols import Scope
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.automaton import Automaton
-from aidl_lang.syntax.tables import load_tables
-from aidl_lang.syntax.tokens import END, UNKNOWN, Token, Tokens, tokenize
+from aidl_lang.syntax.tokens import END, UNKNOWN, Token, Tokens
 
 PLACEHOLDER = "_what_is_being_written_here_" + "_" * 40
 """The name that stands for what is being written: too long to be a misspelling of another, for which many
@@ -58,7 +57,7 @@ class Spot:
 def spot_at(view: View, offset: int) -> Spot:
     text = view.source.text
     offset = max(0, min(offset, len(text)))
-    tokens = tokenize(view.source)
+    tokens = view.tokens
     if _in_comment(tokens, text, offset):
         return Spot(Where.COMMENT, offset, offset, offset, None)
     before: Token | None = None
@@ -246,8 +245,3 @@ def _has_placeholder(module: ast.Module, start: int) -> bool:
     """Whether a tree has the placeholder that stands at an offset."""
     node = around(module, start + 1)[-1]
     return isinstance(node, ast.Name | ast.Identifier) and node.text == PLACEHOLDER
-
-
-def is_keyword(word: str) -> bool:
-    tables = load_tables()
-    return word in tables.reserved or word in tables.soft_words

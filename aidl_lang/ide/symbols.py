@@ -9,7 +9,7 @@ from pathlib import Path
 from aidl_lang import ast
 from aidl_lang.ide.project import Project
 from aidl_lang.ide.view import View
-from aidl_lang.names import fold
+from aidl_lang.names import fold, is_spelled_in
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.source import Span
 
@@ -50,18 +50,13 @@ def search(project: Project, query: str) -> list[Found]:
         for path in project.workspace.programs()
         if (view := project.view(path)) is not None
         for each in _flat(view.path, outline(view), "")
-        if _has_letters(fold(each.entry.name), wanted)
+        if is_spelled_in(query, each.entry.name)
     ]
     return sorted(found, key=lambda each: _rank(fold(each.entry.name), wanted))[:MOST_FOUND]
 
 
 def _rank(name: str, wanted: str) -> tuple[bool, bool, bool, int]:
     return name != wanted, not name.startswith(wanted), wanted not in name, len(name)
-
-
-def _has_letters(name: str, wanted: str) -> bool:
-    letters = iter(name)
-    return all(letter in letters for letter in wanted)
 
 
 def _flat(path: Path, entries: Iterable[Entry], container: str) -> Iterator[Found]:

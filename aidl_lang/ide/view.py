@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 from aidl_lang import ast, pipeline, resources
-from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.diagnostics import Diagnostic, Edit
+from aidl_lang.ide.edits import applied
 from aidl_lang.pipeline import Compiled, Memory, Settings
 from aidl_lang.resolving.resolution import Resolution
 from aidl_lang.source import SourceFile, Span
+from aidl_lang.syntax.tokens import Tokens, tokenize
 from aidl_lang.typecheck import Program
 from aidl_lang.world import World
 
@@ -75,6 +77,11 @@ class View:
     def _files(self) -> frozenset[SourceFile]:
         return frozenset(module.source for module in self.program.resolution.modules)
 
+    @cached_property
+    def tokens(self) -> Tokens:
+        """All tokens and comments of the text."""
+        return tokenize(self.source)
+
     def span(self, start: int, end: int) -> Span:
         return Span(self.source, start, end)
 
@@ -107,3 +114,9 @@ def run(
     )
     drawn = outcome if outcome.drawing is not None else last.drawn if last is not None else None
     return replace(view, outcome=outcome, drawn=drawn, params=params)
+
+
+def edited(view: View, edits: Iterable[Edit]) -> View:
+    """What comes of the text with edits made, run with the same values from outside."""
+    changed = look(view.path, applied(view.source.text, edits), view.world)
+    return run(changed, params=view.params)

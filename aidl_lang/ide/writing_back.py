@@ -6,15 +6,15 @@ Nothing is proposed that was not tried: the edited text is solved again, and has
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 
 from aidl_lang.diagnostics import Edit
 from aidl_lang.export.numbers import fixed
 from aidl_lang.geometry.curves import Vec
-from aidl_lang.ide.edits import applied
 from aidl_lang.ide.guesses import VISIBLE, Guess, as_kept, guesses
-from aidl_lang.ide.view import View, look, run
+from aidl_lang.ide.refusing import CannotError
+from aidl_lang.ide.view import View, edited
 from aidl_lang.pipeline import Compiled
 from aidl_lang.solved import SolvedStructure
 from aidl_lang.source import Span
@@ -33,16 +33,8 @@ _MOST_TRIES = 8
 class Rewriting:
     """Edits that write solved values into the text, tried: `view` is what comes of them."""
 
-    title: str
     edits: tuple[Edit, ...]
     view: View
-
-
-@dataclass(frozen=True)
-class Refusal:
-    """Why something that was asked for cannot be done."""
-
-    reason: str
 
 
 def can_write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> bool:
@@ -50,19 +42,18 @@ def can_write_back(view: View, span: Span | None = None, *, sizes: bool = False)
     return bool(_targets(view, span, sizes))
 
 
-def write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> Rewriting | Refusal:
+def write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> Rewriting:
     """The edits that write solved values as first guesses, in a part of the text or in all of it; with
-    `sizes`, the values of the kept sizes that had to change.
+    `sizes`, the values of the kept sizes that had to change. Raises CannotError.
     """
     targets = _targets(view, span, sizes)
     if not targets:
         what = "kept size had to change" if sizes else "first guess was solved to something else"
-        return Refusal(f"no {what} here")
-    title = "Write changed sizes back" if sizes else "Write solved values back as first guesses"
+        raise CannotError(f"no {what} here")
     for chosen in (targets, {g: v for g, v in targets.items() if not g.is_shared}):
         if chosen and (found := _tried(view, chosen)) is not None:
-            return Rewriting(title, *found)
-    return Refusal("with the solved values written there, the program would not draw the same")
+            return Rewriting(*found)
+    raise CannotError("with the solved values written there, the program would not draw the same")
 
 
 def number_text(guess: Guess, value: float, precision: float = VISIBLE / 2) -> str:
@@ -124,7 +115,7 @@ def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...]
             Edit(guess.span, number_text(guess, value, _PRECISIONS[level[guess]]))
             for guess, value in wanted.items()
         )
-        again = compiled(view, edits)
+        again = edited(view, edits)
         assert again.outcome is not None
         is_slid = is_same(view.outcome, again.outcome, slid=True)
         moved = _moved(again, wanted, order)
@@ -139,12 +130,6 @@ def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...]
         else:
             return None
     return None
-
-
-def compiled(view: View, edits: Sequence[Edit]) -> View:
-    """What the text is with edits made."""
-    text = applied(view.source.text, edits)
-    return run(look(view.path, text, view.world), params=view.params)
 
 
 def _moved(again: View, wanted: Mapping[Guess, float], order: Mapping[Span, int]) -> dict[Guess, float]:

@@ -19,10 +19,10 @@ from aidl_lang.ide.dragging import Dragged, Handle, drag
 from aidl_lang.ide.edits import applied
 from aidl_lang.ide.preview import Preview, Writer, preview, set_knob, tried, with_handles
 from aidl_lang.ide.preview.protocol import Json
+from aidl_lang.ide.refusing import Refusal
 from aidl_lang.ide.semantic_tokens import semantic_tokens
 from aidl_lang.ide.view import View, look, run
 from aidl_lang.ide.workspace import Workspace
-from aidl_lang.ide.writing_back import Refusal
 from aidl_lang.pipeline import Memory
 from aidl_lang.source import SourceFile
 from aidl_lang.world import MAX_BYTES

@@ -7,8 +7,9 @@ from dataclasses import replace
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.ide.actions import Action, CannotActError, actions
+from aidl_lang.ide.actions import Action, actions
 from aidl_lang.ide.edits import applied, between
+from aidl_lang.ide.refusing import CannotError
 from aidl_lang.ide.view import View, look, run
 
 from .conftest import EXAMPLES, cursor, opened, seen
@@ -120,7 +121,7 @@ def test_a_number_that_must_give_way_cannot_become_exact() -> None:
     marked = DISK.replace("radius: 16", "radius: 1¦6").replace(">= 3", "== 17")
     _, found = offered(marked)
     (action,) = [a for a in found if a.title.startswith("Name")]
-    with pytest.raises(CannotActError, match="exact"):
+    with pytest.raises(CannotError, match="exact"):
         action.make()
 
 
@@ -178,7 +179,7 @@ def test_what_needs_a_function_from_around_it_is_left() -> None:
     )
     _, found = offered(text.replace("solid floor", "solid fl¦oor"))
     (action,) = [a for a in found if a.title.startswith("Extract")]
-    with pytest.raises(CannotActError, match="`floor` uses `up`"):
+    with pytest.raises(CannotError, match="`floor` uses `up`"):
         action.make()
 
 
@@ -202,7 +203,7 @@ def test_what_is_said_to_be_missing_takes_a_freedom_away(path: object) -> None:
             continue
         try:
             changed = compiled(applied(text, action.make()))
-        except CannotActError:
+        except CannotError:
             continue
         tried += 1
         assert changed.ok

@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 
 from aidl_lang.diagnostics import has_errors
-from aidl_lang.ide.completion import MOST, Completion, complete, plain
+from aidl_lang.ide.completion import MOST, Completion, complete
 from aidl_lang.ide.completion.fitting import forms, read
 from aidl_lang.ide.view import look
 from aidl_lang.ide.workspace import Workspace
 from aidl_lang.library import load
 from aidl_lang.parser import parse
 from aidl_lang.reference.coverage import cells
+from aidl_lang.snippets import expanded
 from aidl_lang.source import SourceFile
 from aidl_lang.syntax.tokens import tokenize
 from aidl_lang.vocabulary import vocabulary
@@ -359,7 +360,7 @@ def test_what_other_files_define_comes_with_its_import() -> None:
     bolt = next(c for c in listed if c.label == "bolt")
     (edit,) = bolt.extra
     made = put(text, bolt)
-    made = made[: edit.span.start] + edit.text + made[edit.span.end :]
+    made = made[: edit.span.start] + edit.replacement + made[edit.span.end :]
     assert 'import bolt from "parts.aidl"' in made
     assert not has_errors(seen(made, parts=PARTS).found)
     assert "A bolt of a size." in bolt.documentation
@@ -427,7 +428,7 @@ def test_places_are_code_points() -> None:
 
 
 def test_plain_text_of_a_snippet() -> None:
-    assert plain("at (${1:0}, ${2:0}) ${3|left,right|} {\n    $0\n}") == "at (0, 0) left {\n    \n}"
+    assert expanded("at (${1:0}, ${2:0}) ${3|left,right|} {\n    $0\n}") == "at (0, 0) left {\n    \n}"
 
 
 def test_an_empty_file() -> None:

@@ -8,9 +8,9 @@ import pytest
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.ide.dragging import MOST_HANDLES, Dragged, Handle, drag, handles
 from aidl_lang.ide.edits import applied
+from aidl_lang.ide.refusing import Refusal
 from aidl_lang.ide.view import View, look, run
 from aidl_lang.ide.workspace import Workspace
-from aidl_lang.ide.writing_back import Refusal
 from aidl_lang.syntax.tokens import tokenize
 from tests.ide.conftest import EXAMPLES, seen
 

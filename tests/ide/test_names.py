@@ -11,7 +11,8 @@ from aidl_lang.ide.definition import definitions
 from aidl_lang.ide.meaning import mention_at, mentions, place_of
 from aidl_lang.ide.project import Project
 from aidl_lang.ide.references import highlights, references
-from aidl_lang.ide.rename import CannotRenameError, rename, renameable
+from aidl_lang.ide.refusing import CannotError
+from aidl_lang.ide.rename import rename, renameable
 from aidl_lang.ide.view import View
 from aidl_lang.ide.workspace import Workspace
 from aidl_lang.source import SourceFile
@@ -147,14 +148,14 @@ def test_renaming_a_param_of_three_files_changes_those_places_and_no_picture() -
 def test_a_name_that_would_change_a_meaning_is_refused(name: str, reason: str) -> None:
     project = opened(FILES)
     view = view_in(project, "holes.aidl")
-    with pytest.raises(CannotRenameError, match=reason):
+    with pytest.raises(CannotError, match=reason):
         rename(project, view, at(view, "param", "clearance"), name)
 
 
 def test_a_name_that_an_importing_file_uses_otherwise_is_refused() -> None:
     project = opened(FILES | {"pair.aidl": PAIR.replace("solid strip {", "let play = 3\nsolid strip {")})
     view = view_in(project, "holes.aidl")
-    with pytest.raises(CannotRenameError, match=r"pair\.aidl"):
+    with pytest.raises(CannotError, match=r"pair\.aidl"):
         rename(project, view, at(view, "param", "clearance"), "play")
 
 
@@ -168,7 +169,7 @@ def test_a_name_that_an_importing_file_uses_otherwise_is_refused() -> None:
 )
 def test_what_is_not_the_authors_has_no_other_name(before: str, word: str, reason: str) -> None:
     view = view_in(opened(FILES), "plate.aidl")
-    with pytest.raises(CannotRenameError, match=reason):
+    with pytest.raises(CannotError, match=reason):
         renameable(view, at(view, before, word))
 
 

@@ -173,7 +173,7 @@ def test_conflicts_name_what_they_relate() -> None:
 
 def ways(text: str) -> dict[str, list[Way]]:
     """By the path of what moves, joined by spaces."""
-    made = preview(view_of(text))
+    made = preview(view_of(text), ("freedom",))
     found: dict[str, list[Way]] = {}
     for way in made.ways:
         found.setdefault(" ".join(made.elements[k].path for k in way.elements), []).append(way)
@@ -255,7 +255,8 @@ def test_the_examples_have_arrows_in_finite_places() -> None:
         view = run(look(path, path.read_text("utf-8"), Workspace().world(path)))
         assert view.outcome is not None
         assert view.outcome.model is not None
-        made = preview(view)
+        made = preview(view, ("freedom",))
+        assert preview(view).ways == ()
         assert len(made.ways) == len(view.outcome.model.motions)
         for way in made.ways:
             numbers = [n for a in way.arrows for n in (*a.start, *a.end)]

@@ -6,7 +6,7 @@ program first, and refuse where it would not be what was promised.
 
 from __future__ import annotations
 
-from aidl_lang.ide.actions.action import Action, CannotActError
+from aidl_lang.ide.actions.action import Action
 from aidl_lang.ide.actions.constraining import missing_constraints
 from aidl_lang.ide.actions.extracting import extractions
 from aidl_lang.ide.actions.fixes import fixes
@@ -14,7 +14,7 @@ from aidl_lang.ide.actions.naming import namings
 from aidl_lang.ide.actions.writing import writings
 from aidl_lang.ide.view import View
 
-__all__ = ["Action", "CannotActError", "actions"]
+__all__ = ["Action", "actions"]
 
 
 def actions(view: View, start: int, end: int) -> list[Action]:

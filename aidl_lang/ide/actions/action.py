@@ -6,20 +6,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from aidl_lang.diagnostics import Diagnostic, Edit
-from aidl_lang.ide.edits import applied
-from aidl_lang.ide.view import View, look, run
+from aidl_lang.ide.view import View
 from aidl_lang.source import SourceFile
-
-
-class CannotActError(Exception):
-    """Why an action that was offered cannot be carried out."""
 
 
 @dataclass(frozen=True)
 class Action:
     """
     kind    `quickfix`, `refactor.extract`, `refactor.rewrite` or `source.fixAll`, as editors sort them
-    make    the edits; raises CannotActError
+    make    the edits; raises CannotError
     mends   the diagnostic that it is for
     """
 
@@ -28,12 +23,6 @@ class Action:
     make: Callable[[], Sequence[Edit]]
     mends: Diagnostic | None = None
     is_preferred: bool = False
-
-
-def tried(view: View, edits: Sequence[Edit]) -> View:
-    """The program after some edits, solved."""
-    changed = look(view.path, applied(view.source.text, edits), view.world)
-    return run(changed, params=view.params)
 
 
 def drawn_alike(one: View, other: View) -> bool:

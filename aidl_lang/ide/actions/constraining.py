@@ -13,17 +13,21 @@ from functools import partial
 
 from aidl_lang import ast
 from aidl_lang.diagnostics import Edit
+from aidl_lang.export.numbers import fixed
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.evaluate import bounds
 from aidl_lang.geometry.network import union_bounds
-from aidl_lang.ide.actions.action import Action, CannotActError, first_error, tried
+from aidl_lang.ide.actions.action import Action, first_error
 from aidl_lang.ide.edits import indent_at, insert
 from aidl_lang.ide.nodes import structures_around
-from aidl_lang.ide.view import View
+from aidl_lang.ide.refusing import CannotError
+from aidl_lang.ide.view import View, edited
 from aidl_lang.solved import Box, Motion, SolvedGeometry, SolvedModel, SolvedStructure
 
 _ALIGNED = 1e-6
 """Relative to the size of the drawing: places so near are one."""
+_DECIMALS = 3
+"""Of a number that is written: no finer than a micrometre."""
 _MOST = 4
 """Motions of a structure for which something is offered."""
 _WRITABLE = re.compile(r"[^\W\d]\w*(\[-?\d+\])*(\.[^\W\d]\w*(\[-?\d+\])*)*")
@@ -58,12 +62,12 @@ def missing_constraints(view: View, offset: int) -> Iterator[Action]:
 def _added(view: View, node: ast.Structure, statement: str) -> list[Edit]:
     """The statement in the structure's last `constrain { }`, or in a new one at its end."""
     edits = [_place(view, node, statement)]
-    changed = tried(view, edits)
+    changed = edited(view, edits)
     before, after = (each.model if (each := v.outcome) is not None else None for v in (view, changed))
     if after is None or changed.outcome is None or not changed.outcome.ok:
-        raise CannotActError(f"with `{statement}` the program does not solve: {first_error(changed)}")
+        raise CannotError(f"with `{statement}` the program does not solve: {first_error(changed)}")
     if before is None or before.degrees is None or (after.degrees or 0) >= before.degrees:
-        raise CannotActError(f"`{statement}` would hold nothing that is free")
+        raise CannotError(f"`{statement}` would hold nothing that is free")
     return edits
 
 
@@ -99,13 +103,13 @@ def _statements(model: SolvedModel, structure: SolvedStructure, motion: Motion) 
         case "grow" if moved is not None:
             side = "width" if motion.words == "grow wider" else "height"
             length = moved.box.width if side == "width" else moved.box.height
-            yield f"{name}.{side} == {_short(length)}"
+            yield f"{name}.{side} == {fixed(length, _DECIMALS)}"
         case "change":
             value = _number(structure, name)
             if value is not None:
-                yield f"{name} == {_short(value)}"
+                yield f"{name} == {fixed(value, _DECIMALS)}"
         case "turn" if (angle := _number(structure, f"{name}.angle")) is not None:
-            yield f"{name}.angle == {_short(angle)}deg"
+            yield f"{name}.angle == {fixed(angle, _DECIMALS)}deg"
         case _:
             pass
 
@@ -128,7 +132,7 @@ def _held(
             yield f"{place} == {name}.{axis}" if other.is_point else f"{place} == {name}.center.{axis}"
             break
     if (origin := _origin(model.root, structure.path)) is not None:
-        yield f"{place} == {_short(at - origin['xy'.index(axis)])}"
+        yield f"{place} == {fixed(at - origin['xy'.index(axis)], _DECIMALS)}"
 
 
 def _things(structure: SolvedStructure) -> Iterator[_Thing]:
@@ -137,9 +141,8 @@ def _things(structure: SolvedStructure) -> Iterator[_Thing]:
     for below in structure.walk():
         if below is not structure and below.box is not None:
             yield _Thing(below.path.removeprefix(inside), below.box, is_point=False)
-        for geometry in below.geometry:
-            for part in geometry.walk():
-                yield from _placed(part, inside)
+    for geometry in structure.walk_geometry():
+        yield from _placed(geometry, inside)
 
 
 def _placed(geometry: SolvedGeometry, inside: str) -> Iterator[_Thing]:
@@ -172,15 +175,9 @@ def _origin(root: SolvedStructure, path: str) -> Vec | None:
 def _number(structure: SolvedStructure, name: str) -> float | None:
     """A number of a structure, or of some geometry in it."""
     thing, _, field = name.rpartition(".")
-    holders = [s for s in structure.walk() if s.path.removeprefix(f"{structure.path}.") == thing]
-    if not thing:
-        holders = [structure]
-    values = [s.params.get(field) for s in holders]
-    for below in structure.walk():
-        for geometry in below.geometry:
-            for part in geometry.walk():
-                if part.path.removeprefix(f"{structure.path}.") == thing:
-                    values.append(part.values.get(field))  # type: ignore[arg-type]
+    path = f"{structure.path}.{thing}" if thing else structure.path
+    values: list[object] = [s.params.get(field) for s in structure.walk() if s.path == path]
+    values += [g.values.get(field) for g in structure.walk_geometry() if g.path == path]
     return next((float(v) for v in values if isinstance(v, float | int) and not isinstance(v, bool)), None)
 
 
@@ -191,8 +188,3 @@ def _middle(box: Box, axis: str) -> float:
 def _size(model: SolvedModel) -> float:
     box = model.root.box
     return math.hypot(box.width, box.height) if box is not None else 1.0
-
-
-def _short(value: float) -> str:
-    """A number as people write it: no finer than a micrometre."""
-    return f"{round(value, 3) + 0.0:.10g}"

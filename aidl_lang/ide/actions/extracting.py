@@ -8,13 +8,12 @@ from textwrap import dedent, indent
 
 from aidl_lang import ast
 from aidl_lang.diagnostics import Edit
-from aidl_lang.ide.actions.action import Action, CannotActError, drawn_alike, first_error, tried
-from aidl_lang.ide.actions.naming import above_comments
-from aidl_lang.ide.edits import insert, line_start
-from aidl_lang.ide.meaning import Mention, mentions
+from aidl_lang.ide.actions.action import Action, drawn_alike, first_error
+from aidl_lang.ide.edits import above_comments, insert, line_start
+from aidl_lang.ide.meaning import Mention, free_name, mentions
 from aidl_lang.ide.nodes import around
-from aidl_lang.ide.view import View
-from aidl_lang.names import fold
+from aidl_lang.ide.refusing import CannotError
+from aidl_lang.ide.view import View, edited
 from aidl_lang.resolving.symbols import UNKNOWNS, Symbol, SymbolKind
 from aidl_lang.source import Span
 
@@ -28,20 +27,9 @@ def extractions(view: View, offset: int) -> Iterator[Action]:
     inside = [node for node in path if isinstance(node, ast.Structure)]
     if len(inside) < 2 or inside[-1].parameters is not None or offset > inside[-1].body.span.start:
         return
-    name = _template_name(view, inside[-1])
+    name = free_name(view, f"{inside[-1].name.text}_{inside[-1].kind_word.text}")
     title = f"Extract `{inside[-1].name.text}` to a template: `{name}`"
     yield Action(title, "refactor.extract", partial(_extracted, view, inside[-1], path[1], name))
-
-
-def _template_name(view: View, node: ast.Structure) -> str:
-    taken = {fold(n.text) for n in ast.walk(view.module) if isinstance(n, ast.Identifier)}
-    taken |= set(map(fold, view.program.library.callables))
-    candidate = name = f"{node.name.text}_{node.kind_word.text}"
-    count = 1
-    while fold(candidate) in taken:
-        count += 1
-        candidate = f"{name}_{count}"
-    return candidate
 
 
 def _extracted(view: View, node: ast.Structure, outermost: ast.Node, name: str) -> list[Edit]:
@@ -60,9 +48,9 @@ def _extracted(view: View, node: ast.Structure, outermost: ast.Node, name: str) 
             f"{target} = {name}({arguments}){placement}",
         ),
     ]
-    after = tried(view, edits)
+    after = edited(view, edits)
     if not drawn_alike(view, after):
-        raise CannotActError(f"`{node.name.text}` cannot be made a template as it is: {first_error(after)}")
+        raise CannotError(f"`{node.name.text}` cannot be made a template as it is: {first_error(after)}")
     return edits
 
 
@@ -79,7 +67,7 @@ def _dedented(view: View, node: ast.Structure) -> str:
 
 
 def _passed(view: View, node: ast.Structure) -> list[Symbol]:
-    """The names from around a structure that its body uses. Raises CannotActError for what a template cannot
+    """The names from around a structure that its body uses. Raises CannotError for what a template cannot
     be given.
     """
     found: dict[Symbol, None] = {}
@@ -95,7 +83,7 @@ def _passed(view: View, node: ast.Structure) -> list[Symbol]:
         if symbol.kind in _PASSED:
             found[symbol] = None
         else:
-            raise CannotActError(_why_not(node, mention))
+            raise CannotError(_why_not(node, mention))
     return list(found)
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.ide.actions.action import Action, CannotActError
+from aidl_lang.ide.actions.action import Action
 from aidl_lang.ide.edits import between
+from aidl_lang.ide.refusing import CannotError
 from aidl_lang.ide.view import View
 from aidl_lang.mending import mend
 
@@ -57,5 +58,5 @@ def _action(fix: Fix, d: Diagnostic, *, is_preferred: bool) -> Action:
 def _everything(view: View) -> Sequence[Edit]:
     mended = mend(view.source, view.world)
     if mended.source.text == view.source.text:
-        raise CannotActError("the fixes stand in files that this one imports, or undo one another")
+        raise CannotError("the fixes stand in files that this one imports, or undo one another")
     return between(view.source, mended.source.text)

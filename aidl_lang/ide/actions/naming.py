@@ -9,11 +9,12 @@ from itertools import pairwise
 from aidl_lang import ast
 from aidl_lang.checking.calls import arguments
 from aidl_lang.diagnostics import Edit
-from aidl_lang.ide.actions.action import Action, CannotActError, first_error, tried
-from aidl_lang.ide.edits import indent_at, insert, line_start
+from aidl_lang.ide.actions.action import Action, first_error
+from aidl_lang.ide.edits import above_comments, indent_at, insert
+from aidl_lang.ide.meaning import free_name
 from aidl_lang.ide.nodes import around
-from aidl_lang.ide.view import View
-from aidl_lang.names import fold
+from aidl_lang.ide.refusing import CannotError
+from aidl_lang.ide.view import View, edited
 from aidl_lang.units import UNITS
 
 _SHORT = 2
@@ -26,7 +27,7 @@ def namings(view: View, start: int, end: int) -> Iterator[Action]:
     number = _number(path)
     if number is None or number.span.end < end or any(isinstance(node, ast.Param) for node in path):
         return
-    name = _free_name(view, _suggested(view, path))
+    name = free_name(view, _suggested(view, path))
     title = f"Name this number as a param: `{name}`"
     yield Action(title, "refactor.extract", partial(_named, view, path, number, name))
 
@@ -39,9 +40,9 @@ def _number(path: Sequence[ast.Node]) -> ast.Number | None:
 def _named(view: View, path: Sequence[ast.Node], number: ast.Number, name: str) -> list[Edit]:
     edits = [_declared(view, path, f"param {name} = {number.span.text}{_range(number)}")]
     edits.append(Edit(number.span, name))
-    before, after = view.outcome, tried(view, edits)
+    before, after = view.outcome, edited(view, edits)
     if before is not None and before.ok and not (after.outcome and after.outcome.ok):
-        raise CannotActError(f"as a param the number is exact, and then: {first_error(after)}")
+        raise CannotError(f"as a param the number is exact, and then: {first_error(after)}")
     return edits
 
 
@@ -85,14 +86,6 @@ def _declared(view: View, path: Sequence[ast.Node], line: str) -> Edit:
     return insert(view.source, above_comments(text, here.span.start), f"{line}\n\n")
 
 
-def above_comments(text: str, offset: int) -> int:
-    """The beginning of the line of an offset, or of the comments that stand right above it."""
-    start = line_start(text, offset)
-    while start and text[line_start(text, start - 1) : start].lstrip().startswith(("//", "#")):
-        start = line_start(text, start - 1)
-    return start
-
-
 def _suggested(view: View, path: Sequence[ast.Node]) -> str:
     """What a number may be called, by what it is given to: `grip_height`, `hook_x`."""
     words: list[str] = []
@@ -125,13 +118,3 @@ def _parameter(view: View, call: ast.Call, inner: ast.Node) -> str | None:
         return None
     nodes = arguments(view.program.inference, call)
     return fits[0].parameter_of(nodes.index(given.value))
-
-
-def _free_name(view: View, name: str) -> str:
-    """The name, or with a number behind it, that nothing in the text has."""
-    taken = {fold(node.text) for node in ast.walk(view.module) if isinstance(node, ast.Identifier | ast.Name)}
-    candidate, count = name, 1
-    while fold(candidate) in taken:
-        count += 1
-        candidate = f"{name}_{count}"
-    return candidate

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 
 from aidl_lang.diagnostics import Edit
-from aidl_lang.ide.actions.action import Action, CannotActError
+from aidl_lang.ide.actions.action import Action
 from aidl_lang.ide.nodes import structures_around
 from aidl_lang.ide.view import View
-from aidl_lang.ide.writing_back import Refusal, can_write_back, write_back
+from aidl_lang.ide.writing_back import can_write_back, write_back
 from aidl_lang.source import Span
 
 _TITLES = {False: "Write solved values back as first guesses", True: "Write changed sizes back"}
@@ -40,7 +40,4 @@ def _action(view: View, part: Span | None, title: str, *, sizes: bool) -> Action
 
 
 def _written(view: View, part: Span | None, *, sizes: bool) -> Sequence[Edit]:
-    found = write_back(view, part, sizes=sizes)
-    if isinstance(found, Refusal):
-        raise CannotActError(found.reason)
-    return found.edits
+    return write_back(view, part, sizes=sizes).edits

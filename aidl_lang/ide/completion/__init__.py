@@ -1,6 +1,6 @@
 """Completion: what may be written at a place, the likeliest first."""
 
 from aidl_lang.ide.completion.complete import complete
-from aidl_lang.ide.completion.item import MOST, Completion, Edit, plain
+from aidl_lang.ide.completion.item import MOST, Completion
 
-__all__ = ["MOST", "Completion", "Edit", "complete", "plain"]
+__all__ = ["MOST", "Completion", "complete"]

@@ -11,6 +11,7 @@ from aidl_lang.ide.completion.context import Context
 from aidl_lang.ide.completion.draft import Draft, stop
 from aidl_lang.ide.completion.words import words_of
 from aidl_lang.ide.describing import is_public, of_parameter
+from aidl_lang.ide.meaning import parameter_node
 from aidl_lang.ide.overloads import Reading
 from aidl_lang.reference.signatures import things
 from aidl_lang.types import ListType, NumberType, PointType, Signature, TextType, TruthType, Type
@@ -57,10 +58,8 @@ def _argument(context: Context, signature: Signature, name: str, kind: Type, tie
 
 
 def _default(signature: Signature, name: str) -> str:
-    node = signature.node
-    parameters = (node.parameters or ()) if node is not None else ()
-    found = next((p.default for p in parameters if p.name.text == name), None)
-    return found.span.one_line if found is not None else ""
+    node = parameter_node(signature, name)
+    return node.default.span.one_line if node is not None and node.default is not None else ""
 
 
 def _proposed(signature: Signature, name: str, kind: Type, default: str) -> str:

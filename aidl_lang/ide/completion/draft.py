@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
-from aidl_lang.ide.completion.item import MOST, Completion, Edit
-from aidl_lang.names import fold
+from aidl_lang.diagnostics import Edit
+from aidl_lang.ide.completion.item import MOST, Completion, nothing
+from aidl_lang.names import is_spelled_in
+from aidl_lang.snippets import Snippet
 from aidl_lang.source import Span
-
-
-def _nothing() -> str:
-    return ""
 
 
 @dataclass(frozen=True)
@@ -25,7 +23,7 @@ class Draft:
     detail: str = ""
     is_snippet: bool = False
     extra: tuple[Edit, ...] = ()
-    describe: Callable[[], str] = field(default=_nothing, repr=False)
+    describe: Callable[[], str] = field(default=nothing, repr=False)
 
 
 def ranked(drafts: Iterable[Draft], span: Span, prefix: str) -> list[Completion]:
@@ -33,24 +31,13 @@ def ranked(drafts: Iterable[Draft], span: Span, prefix: str) -> list[Completion]
     chosen: dict[tuple[str, str], Draft] = {}
     for draft in sorted(drafts, key=lambda d: d.tier):
         chosen.setdefault((draft.label, draft.text), draft)
-    wanted = fold(prefix)
-    fitting = [d for d in chosen.values() if _is_spelling(wanted, fold(d.label))]
+    fitting = [d for d in chosen.values() if is_spelled_in(prefix, d.label)]
     return [
         Completion(
             d.label, d.kind, d.text or d.label, span, d.detail, d.is_snippet, rank, d.extra, d.describe
         )
-        for rank, d in enumerate(_cut(fitting))
+        for rank, d in enumerate(fitting[:MOST])
     ]
-
-
-def _cut(drafts: Sequence[Draft]) -> Sequence[Draft]:
-    return drafts[:MOST]
-
-
-def _is_spelling(letters: str, word: str) -> bool:
-    """Whether the letters stand in a word in this order."""
-    rest = iter(word)
-    return all(letter in rest for letter in letters)
 
 
 def escaped(text: str) -> str:
@@ -58,6 +45,13 @@ def escaped(text: str) -> str:
     for sign in ("\\", "$", "}"):
         text = text.replace(sign, "\\" + sign)
     return text
+
+
+def written_out(snippet: Snippet) -> str:
+    """A beginning as completion writes it: indented as programs are, the cursor resting at its end where
+    nothing else is said.
+    """
+    return snippet.body.replace("\t", "    ").removesuffix("$0")
 
 
 def stop(number: int, proposed: str) -> str:

@@ -6,12 +6,13 @@ from collections.abc import Iterator
 from functools import lru_cache, partial
 
 from aidl_lang import ast
+from aidl_lang.diagnostics import Edit
 from aidl_lang.ide.completion import names
 from aidl_lang.ide.completion.context import Context, Use
 from aidl_lang.ide.completion.draft import Draft
-from aidl_lang.ide.completion.item import Edit
 from aidl_lang.ide.completion.words import Files, importable
 from aidl_lang.ide.describing import of_definition
+from aidl_lang.ide.edits import insert
 from aidl_lang.library import signature
 from aidl_lang.parser import parse
 from aidl_lang.resolving.declare import is_definition
@@ -83,16 +84,12 @@ def _import(context: Context, file: str, name: str) -> Edit:
     known = next((s for s in imports if s.names and s.path.value == file), None)
     if known is not None:
         end = known.names[-1].span.end
-        return Edit(view.span(end, end), f", {name}")
+        return insert(view.source, end, f", {name}")
     statement = f'import {name} from "{file}"'
     if imports:
         end = imports[-1].span.end
-        return Edit(view.span(end, end), f"\n{statement}")
-    return (
-        Edit(view.span(0, 0), f"{statement}\n")
-        if not _has_mark(view.source.text)
-        else Edit(view.span(1, 1), f"{statement}\n")
-    )
+        return insert(view.source, end, f"\n{statement}")
+    return insert(view.source, int(_has_mark(view.source.text)), f"{statement}\n")
 
 
 def _has_mark(text: str) -> bool:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from aidl_lang.diagnostics import Edit
+from aidl_lang.snippets import expanded
 from aidl_lang.source import Span
 
 MOST = 200
@@ -13,18 +14,8 @@ MOST = 200
 grows.
 """
 
-_STOP = re.compile(r"\$\{\d+:([^}]*)\}|\$\{\d+\|([^,|]*)[^|]*\|\}|\$\d+")
 
-
-@dataclass(frozen=True)
-class Edit:
-    """Text in the place of a span."""
-
-    span: Span
-    text: str
-
-
-def _nothing() -> str:
+def nothing() -> str:
     return ""
 
 
@@ -50,7 +41,7 @@ class Completion:
     is_snippet: bool = False
     rank: int = 0
     extra: tuple[Edit, ...] = ()
-    describe: Callable[[], str] = field(default=_nothing, repr=False, compare=False)
+    describe: Callable[[], str] = field(default=nothing, repr=False, compare=False)
 
     @property
     def documentation(self) -> str:
@@ -59,9 +50,4 @@ class Completion:
     @property
     def plain(self) -> str:
         """The text without places to fill in, each as it is proposed."""
-        return plain(self.text) if self.is_snippet else self.text
-
-
-def plain(snippet: str) -> str:
-    """The text that a snippet gives if nothing is filled in."""
-    return _STOP.sub(lambda m: m[1] or m[2] or "", snippet)
+        return expanded(self.text) if self.is_snippet else self.text

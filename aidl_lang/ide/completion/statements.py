@@ -3,39 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 
 from aidl_lang import ast
 from aidl_lang.ide.completion import names
 from aidl_lang.ide.completion.constraints import constraints
 from aidl_lang.ide.completion.context import Context
-from aidl_lang.ide.completion.draft import Draft
-from aidl_lang.ide.describing import of_entry
+from aidl_lang.ide.completion.draft import Draft, written_out
+from aidl_lang.ide.describing import of_public
 from aidl_lang.ide.site import Site
 from aidl_lang.kinds import KINDS
 from aidl_lang.reference.collect import reference
+from aidl_lang.snippets import OF_WORD
 from aidl_lang.vocabulary import vocabulary
 
 _BLOCK = " {\n    $0\n}"
-_SNIPPETS = {
-    "param": "param ${1:width} = ${2:80mm} in ${3:20}..${4:200}",
-    "var": "var ${1:gap} = ${2:5}",
-    "let": "let ${1:name} = ${2:value}",
-    "constrain": "constrain" + _BLOCK,
-    "prefer": "prefer ${1:a} == ${2:b}",
-    "assert": 'assert ${1:test}, "${2:why}"',
-    "for": "for ${1:i} in ${2:0}..${3:9}" + _BLOCK,
-    "if": "if ${1:test}" + _BLOCK,
+_OWN = {
     "else": "else" + _BLOCK,
-    "fn": "fn ${1:name}(${2:x}) = ${3:x}",
-    "shape": "shape ${1:name}(${2:center: point = (0, 0)})" + _BLOCK,
-    "constraint": "constraint ${1:name}(${2:a: box}, ${3:b: box})" + _BLOCK,
     "template": "template ${1:solid} ${2:name}()" + _BLOCK,
-    "alias": "alias ${1:name} = ${2:target}",
-    "import": 'import "${1:file.aidl}"',
     "construction": "construction ${1:axis} = line(${2:origin}, ${3:(0, 10)})",
     "todo": "todo",
 }
+"""Statements for which the snippets of all editors have no beginning, or another one (see `snippets`)."""
 _IN_ITEMS = ("let", "for", "if", "prefer", "constrain")
 _AT_TOP = ("import",)
 _CLAUSES = {
@@ -45,6 +35,7 @@ _CLAUSES = {
     "rotated": "rotated ${1:45deg}",
     "at": "at (${1:0}, ${2:0})",
 }
+_NAMES_FIRST = 7.0
 _STATEMENTS, _KINDS, _OPERATIONS, _SHAPES, _NAMES, _LOW = 2.0, 1.0, 4.0, 5.0, 3.0, 6.0
 
 
@@ -67,8 +58,6 @@ def statements(context: Context) -> Iterator[Draft]:
 
 
 def _later(draft: Draft, tier: float) -> Draft:
-    from dataclasses import replace
-
     return replace(draft, tier=tier + draft.tier / 100)
 
 
@@ -80,7 +69,13 @@ def kinds(site: Site, tier: float) -> Iterator[Draft]:
     for number, kind in enumerate(KINDS):
         text = kind if is_named else f"{kind} ${{1:name}}" + _BLOCK
         yield Draft(
-            kind, "kind", tier + number / 10, text, "structure", not is_named, describe=partial(_word, kind)
+            kind,
+            "kind",
+            tier + number / 10,
+            text,
+            "structure",
+            not is_named,
+            describe=partial(of_public, kind),
         )
 
 
@@ -97,8 +92,14 @@ def _statement(site: Site, word: str, tier: float) -> Draft:
     """A statement with places to fill in; the word alone where it goes on already."""
     rest = site.following.partition("\n")[0].strip()
     is_alone = not rest or rest.startswith("}")
-    text = _SNIPPETS.get(word, word) if is_alone else word
-    return Draft(word, "keyword", tier, text, is_snippet="$" in text, describe=partial(_word, word))
+    text = _beginning(word) if is_alone else word
+    return Draft(word, "keyword", tier, text, is_snippet="$" in text, describe=partial(of_public, word))
+
+
+def _beginning(word: str) -> str:
+    if word in _OWN:
+        return _OWN[word]
+    return written_out(OF_WORD[word]) if word in OF_WORD else word
 
 
 def _operations(context: Context) -> Iterator[Draft]:
@@ -149,19 +150,15 @@ def clauses(site: Site, *, is_condition: bool = True) -> Iterator[Draft]:
         (*words.clauses, "else", "if", *words.word_operators, "as", "from", "then")
     ):
         if _goes_on(site, word, operand=operand, is_condition=is_condition):
-            text = _CLAUSES.get(word, _BLOCK_ELSE if word == "else" and _ends_block(site) else word)
+            text = _CLAUSES.get(word, _OWN["else"] if word == "else" and _ends_block(site) else word)
             yield Draft(
                 word,
                 "keyword",
                 number / 100 + _NAMES_FIRST * operand,
                 text,
                 is_snippet="$" in text,
-                describe=partial(_word, word),
+                describe=partial(of_public, word),
             )
-
-
-_BLOCK_ELSE = _SNIPPETS["else"]
-_NAMES_FIRST = 7.0
 
 
 def _ends_block(site: Site) -> bool:
@@ -194,9 +191,4 @@ def _soft(site: Site, word: str) -> bool:
 def truths(site: Site) -> Iterator[Draft]:
     for word in ("true", "false"):
         if site.takes(word) and not site.following.startswith("("):
-            yield Draft(word, "keyword", 5.0, describe=partial(_word, word))
-
-
-def _word(word: str) -> str:
-    entry = reference().entries.get(word)
-    return of_entry(entry) if entry is not None else ""
+            yield Draft(word, "keyword", 5.0, describe=partial(of_public, word))

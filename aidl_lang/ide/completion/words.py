@@ -13,13 +13,14 @@ from aidl_lang.building.outlines import CORNER_WORDS
 from aidl_lang.builtins import WORDED
 from aidl_lang.geometry.colors import COLOR_NAMES
 from aidl_lang.ide.completion.context import Context
-from aidl_lang.ide.completion.draft import Draft
-from aidl_lang.ide.describing import of_callable, of_entry
+from aidl_lang.ide.completion.draft import Draft, written_out
+from aidl_lang.ide.describing import of_callable, of_public
 from aidl_lang.ide.overloads import Reading
 from aidl_lang.ide.site import Site
 from aidl_lang.materials import densities
 from aidl_lang.names import fold
 from aidl_lang.reference.collect import reference
+from aidl_lang.snippets import SNIPPETS
 from aidl_lang.types import PARAMETER_TYPES, AnyType, NumberType, Signature, TextType
 from aidl_lang.units import UNITS, Dimension
 from aidl_lang.vocabulary import vocabulary
@@ -29,16 +30,6 @@ Files = Callable[[], Iterable[Path]]
 _DEEPEST = 4
 """Calls of calls in which the choices of a parameter are looked for."""
 _FAVOURITES = ("mm", "deg")
-_SNIPPETS = {
-    "color": '@color("${1:crimson}")',
-    "layer": '@layer("${1:cut}")',
-    "thickness": "@thickness(${1:3mm})",
-    "material": '@material("${1:birch}")',
-    "note": '@note("${1:text}")',
-    "orientation": "@orientation(${1|front,side,top|})",
-    "elevation": "@elevation(${1:18mm})",
-    "detached": "@detached",
-}
 _PLAIN_TYPES = ("number", "integer", "length", "angle", "point", "text", "bool", "list", "box")
 
 
@@ -65,18 +56,13 @@ def _worth(unit: str, factor: float, dimension: Dimension) -> str:
 
 def attributes(is_called: bool) -> Iterator[Draft]:
     """What may stand behind `@`; by the name alone where its parenthesis stands already."""
-    for name, snippet in _SNIPPETS.items():
-        text = name if is_called else snippet[1:]
-        entry = reference().entries.get(f"@{name}")
-        yield Draft(
-            name,
-            "attribute",
-            0.0,
-            text,
-            entry.doc.line if entry is not None else "",
-            "$" in text,
-            describe=partial(of_entry, entry) if entry is not None else lambda: "",
-        )
+    for snippet in (s for s in SNIPPETS if s.place == "attribute"):
+        name = snippet.prefix.removeprefix("@")
+        text = name if is_called else written_out(snippet).removeprefix("@")
+        entry = reference().entries.get(snippet.prefix)
+        detail = entry.doc.line if entry is not None else ""
+        described = partial(of_public, snippet.prefix)
+        yield Draft(name, "attribute", 0.0, text, detail, "$" in text, describe=described)
 
 
 def of_attribute(name: str, *, is_quoted: bool) -> Iterator[Draft]:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 
-from aidl_lang.ide.draggable import grips, is_somewhere
-from aidl_lang.ide.dragging import Handle, handles
+from aidl_lang.ide.dragging import Handle, grips, handles, is_somewhere
 from aidl_lang.ide.preview.elements import Elements, elements
 from aidl_lang.ide.preview.picture import svg_of
 from aidl_lang.ide.preview.problems import conflicts, problems
 from aidl_lang.ide.preview.sliders import sliders
-from aidl_lang.ide.preview.values import LAYERS, Preview, Way
+from aidl_lang.ide.preview.values import FREEDOM, LAYERS, Preview, Way
 from aidl_lang.ide.preview.ways import ways
 from aidl_lang.ide.view import SETTINGS, View, run
 from aidl_lang.pipeline import Compiled, Memory, Settings
@@ -22,7 +21,7 @@ _NOWHERE = (0.0, 0.0, 0.0, 0.0)
 def preview(
     view: View, show: Collection[str] = (), *, tried: bool = False, known: Iterable[Handle] = ()
 ) -> Preview:
-    """What there is to see of a program that was run, with some of LAYERS over it.
+    """What there is to see of a program that was run, with some of LAYERS over it, and FREEDOM if wanted.
 
     A program that does not draw shows the last one that did, and its own problems. What can be dragged takes
     longer to find out than all the rest (see `with_handles`): here are those that are `known` from another
@@ -44,7 +43,7 @@ def preview(
         handles=tuple(_moved(view, known)),
         problems=tuple(problems(view, found)),
         conflicts=tuple(conflicts(view, found)),
-        ways=tuple(_ways(view, found)),
+        ways=tuple(_ways(view, found)) if FREEDOM in show else (),
         degrees=view.outcome.model.degrees if view.outcome.model is not None else None,
     )
 

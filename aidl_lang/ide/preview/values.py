@@ -10,6 +10,8 @@ from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.ide.dragging import Handle
 from aidl_lang.source import Span
 
+FREEDOM = "freedom"
+"""As a layer: what can still move, which is told beside the picture and not drawn in it."""
 LAYERS = ("names", "points", "bbox", "constraints", "dof", "plan", "dimensions")
 """What may be drawn over the picture."""
 

@@ -26,6 +26,8 @@ MOST = 40
 """Motions that are told."""
 MOST_THINGS = 8
 """Things of one motion that get arrows of their own."""
+MOST_POINTS = 40
+"""Points of a thing by which its motion is told."""
 LENGTH = 0.14
 """Of an arrow, relative to the drawing."""
 _ARC = 70.0
@@ -46,15 +48,14 @@ def ways(outcome: Compiled, elements: Elements) -> Iterator[Way]:
         return
     flow = _Flow(outcome.built, outcome.evaluate, outcome.drawing.size)
     for motion in motions:
-        numbers = elements.all_near(motion.things)
-        moving = flow.velocities(motion)
-        arrows, turns = list[Arrow](), list[Turn]()
-        for path in motion.things[:MOST_THINGS]:
-            thing = _thing(flow, moving, elements, path)
-            if thing is not None:
-                arrows += thing.arrows(motion.kind)
-                turns += thing.turns(motion.kind)
-        yield Way(_words(motion, elements), tuple(numbers), tuple(arrows), tuple(turns))
+        things = list(_things(flow, motion, elements))
+        fastest = max((math.hypot(*v) for thing in things for v in thing.velocities), default=0.0)
+        yield Way(
+            _words(motion, elements),
+            tuple(elements.all_near(motion.things)),
+            tuple(arrow for thing in things for arrow in thing.arrows(motion.kind, _SLOW * fastest)),
+            tuple(turn for thing in things for turn in thing.turns(motion.kind)),
+        )
 
 
 def _words(motion: Motion, elements: Elements) -> str:
@@ -68,34 +69,47 @@ def _words(motion: Motion, elements: Elements) -> str:
 
 
 class _Flow:
-    """All points of a model with their paths, and how they move."""
+    """The points of a model with their paths, and how they move."""
 
     def __init__(self, model: Model, evaluate: Evaluator, size: float) -> None:
-        self.evaluate, self.size = evaluate, size
-        self.points: list[tuple[str, Expression, Expression]] = []
-        for structure in model.root.walk():
-            for path, x, y in _points(structure):
-                self.points.append((path, *convert(x, y, structure, model.root)))
-        self.places = [(evaluate(x), evaluate(y)) for _, x, y in self.points]
-        self.unknowns: dict[str, list[Unknown]] = defaultdict(list)
+        self.size = size
+        self._model, self._evaluate = model, evaluate
+        self._points = [(p, s, x, y) for s in model.root.walk() for p, x, y in _points(s)]
+        self._in_root: dict[int, tuple[Expression, Expression]] = {}
+        self._unknowns: dict[str, list[Unknown]] = defaultdict(list)
         for unknown in model.unknowns:
-            self.unknowns[unknown.path].append(unknown)
+            self._unknowns[unknown.path].append(unknown)
 
-    def velocities(self, motion: Motion) -> list[Vec]:
-        """Of each point, in mm for a nudge."""
+    def nudged(self, motion: Motion) -> Evaluator | None:
+        """What evaluates the model after a very little of a motion."""
         fastest = max((abs(rate) for rate in motion.moves.values()), default=0.0)
         if not fastest or not math.isfinite(fastest):
-            return [(0.0, 0.0)] * len(self.points)
+            return None
         step = _NUDGE * self.size / fastest
-        values = dict(self.evaluate.values)
+        values = dict(self._evaluate.values)
         for path, rate in motion.moves.items():
-            for unknown in self.unknowns[path]:
+            for unknown in self._unknowns[path]:
                 values[unknown] = values.get(unknown, unknown.guess) + step * rate
-        nudged = Evaluator(values, self.evaluate.measure)
-        return [
-            (nudged(x) - at[0], nudged(y) - at[1])
-            for (_, x, y), at in zip(self.points, self.places, strict=True)
-        ]
+        return Evaluator(values, self._evaluate.measure)
+
+    def moving(self, nudged: Evaluator, thing: str) -> list[tuple[Vec, Vec]]:
+        """Points of the thing at a path, and where they go; some of very many."""
+        inside = f"{thing}."
+        found = [k for k, (path, *_) in enumerate(self._points) if path == thing or path.startswith(inside)]
+        moving = []
+        for k in found[:: len(found) // MOST_POINTS + 1]:
+            x, y = (self._evaluate(e) for e in self._at(k))
+            u, v = (nudged(e) for e in self._at(k))
+            if all(map(math.isfinite, (x, y, u, v))):
+                moving.append(((x, y), (u - x, v - y)))
+        return moving
+
+    def _at(self, k: int) -> tuple[Expression, Expression]:
+        """In the frame of the root."""
+        if k not in self._in_root:
+            _, structure, x, y = self._points[k]
+            self._in_root[k] = convert(x, y, structure, self._model.root)
+        return self._in_root[k]
 
 
 def _points(structure: Structure) -> Iterator[tuple[str, Expression, Expression]]:
@@ -123,7 +137,6 @@ class _Thing:
     places: Sequence[Vec]
     velocities: Sequence[Vec]
     size: float
-    fastest: float
 
     @property
     def center(self) -> Vec:
@@ -153,17 +166,17 @@ class _Thing:
         reach = math.hypot(self.box[2] - self.box[0], self.box[3] - self.box[1]) / 2
         return abs(self.spin) * reach > math.hypot(*self.velocity)
 
-    def arrows(self, kind: str) -> Iterator[Arrow]:
-        """One for what slides; for what grows, from its ends outwards."""
+    def arrows(self, kind: str, slow: float) -> Iterator[Arrow]:
+        """One for what slides; for what grows, from its ends outwards. What is `slow` stands still."""
         if kind == "turn" or (kind == "together" and self.is_turning):
             return
-        if kind in ("slide", "together") and math.hypot(*self.velocity) > _SLOW * self.fastest:
+        if kind in ("slide", "together") and math.hypot(*self.velocity) > slow:
             yield self._arrow(self.center, self.velocity)
             return
         moving = sorted(
             zip(self.velocities, self.places, strict=True), key=lambda each: -math.hypot(*each[0])
         )
-        if not moving or math.hypot(*moving[0][0]) <= _SLOW * self.fastest:
+        if not moving or math.hypot(*moving[0][0]) <= slow:
             return
         (first, at), others = moving[0], moving[1:]
         yield self._arrow(at, first)
@@ -195,31 +208,21 @@ class _Thing:
         return Arrow(at, (at[0] + length * velocity[0], at[1] + length * velocity[1]))
 
 
-def _thing(flow: _Flow, moving: Sequence[Vec], elements: Elements, thing: str) -> _Thing | None:
-    """What the thing at a path is in a motion; None where it has no points or is nowhere."""
-    found = _moving(flow, moving, thing)
-    if not found and (around := elements.near(thing)) is not None:
-        thing = elements.values[around].path
-        found = _moving(flow, moving, thing)
-    own = [each for each in found if all(map(math.isfinite, (*each[0], *each[1])))]
-    if not own:
-        return None
-    places, velocities = [place for place, _ in own], [velocity for _, velocity in own]
-    fastest = max((math.hypot(*v) for v in moving if all(map(math.isfinite, v))), default=0.0)
-    number = elements.number.get(thing)  # else it is a point, or a number, of something
-    box = box_of(elements.drawn[number].model) if number is not None else None
-    box = box or union_bounds([(*place, *place) for place in places])
-    return _Thing(box, places, velocities, flow.size, fastest)
-
-
-def _moving(flow: _Flow, moving: Sequence[Vec], thing: str) -> list[tuple[Vec, Vec]]:
-    """The points of the thing at a path, and how they move."""
-    inside = f"{thing}."
-    return [
-        (place, velocity)
-        for (path, *_), place, velocity in zip(flow.points, flow.places, moving, strict=True)
-        if path == thing or path.startswith(inside)
-    ]
+def _things(flow: _Flow, motion: Motion, elements: Elements) -> Iterator[_Thing]:
+    """What moves in a motion, as far as it has points and is somewhere."""
+    nudged = flow.nudged(motion)
+    if nudged is None:
+        return
+    for path in motion.things[:MOST_THINGS]:
+        moving = flow.moving(nudged, path)
+        number = elements.number.get(path)  # else it is a point, or a number, of something
+        if not moving and (number := elements.near(path)) is not None:
+            moving = flow.moving(nudged, elements.values[number].path)
+        if moving:
+            box = box_of(elements.drawn[number].model) if number is not None else None
+            places, velocities = [place for place, _ in moving], [velocity for _, velocity in moving]
+            box = box or union_bounds([(*place, *place) for place in places])
+            yield _Thing(box, places, velocities, flow.size)
 
 
 def _mean(vectors: Sequence[Vec]) -> Vec:

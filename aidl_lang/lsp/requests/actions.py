@@ -9,7 +9,8 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcInvalidParams
 
 from aidl_lang.diagnostics import Edit
-from aidl_lang.ide.actions import Action, CannotActError, actions
+from aidl_lang.ide.actions import Action, actions
+from aidl_lang.ide.refusing import CannotError
 from aidl_lang.lsp.given import Given
 from aidl_lang.lsp.server import FAILED, Asked, Server
 
@@ -62,7 +63,7 @@ def _made(asked: Asked, action: Action) -> types.WorkspaceEdit:
     """Raises JsonRpcException where an action cannot be carried out."""
     try:
         return _edit(asked, action.make())
-    except CannotActError as reason:
+    except CannotError as reason:
         raise JsonRpcException(str(reason), FAILED) from None
 
 
@@ -83,7 +84,7 @@ def _offer(asked: Asked, params: types.CodeActionParams) -> list[types.CodeActio
         if action.mends is not None or not resolves:
             try:
                 offer.edit = _edit(asked, action.make())
-            except CannotActError:
+            except CannotError:
                 continue
         else:
             offer.data = {

@@ -11,7 +11,8 @@ from pygls.exceptions import JsonRpcException
 from aidl_lang.ide.definition import definitions
 from aidl_lang.ide.links import links
 from aidl_lang.ide.references import highlights, references
-from aidl_lang.ide.rename import CannotRenameError, rename, renameable
+from aidl_lang.ide.refusing import CannotError
+from aidl_lang.ide.rename import rename, renameable
 from aidl_lang.ide.symbols import Entry, outline, search
 from aidl_lang.lsp.convert import Converter
 from aidl_lang.lsp.server import FAILED, Asked, Server
@@ -79,7 +80,7 @@ def _highlight(asked: Asked, params: types.DocumentHighlightParams) -> list[type
 def _prepare_rename(asked: Asked, params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder:
     try:
         span = renameable(asked.view, asked.convert.offset(params.position))
-    except CannotRenameError as reason:
+    except CannotError as reason:
         _fail(reason)
     return types.PrepareRenamePlaceholder(asked.convert.range(span), span.text)
 
@@ -90,7 +91,7 @@ def _rename(asked: Asked, params: types.RenameParams) -> types.WorkspaceEdit | N
         return None
     try:
         made = rename(asked.project, view, asked.convert.offset(params.position), params.new_name)
-    except CannotRenameError as reason:
+    except CannotError as reason:
         _fail(reason)
     return asked.convert.changes(made.edits, asked.can("workspace.workspace_edit.document_changes"))
 

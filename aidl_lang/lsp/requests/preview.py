@@ -21,8 +21,8 @@ from aidl_lang.diagnostics import Edit
 from aidl_lang.export import FORMATS, ExportError, Options
 from aidl_lang.ide.dragging import Dragged, drag
 from aidl_lang.ide.preview import LAYERS, set_knob, tried
+from aidl_lang.ide.refusing import Refusal
 from aidl_lang.ide.view import View
-from aidl_lang.ide.writing_back import Refusal
 from aidl_lang.lsp.documents import Document
 from aidl_lang.lsp.given import Given
 from aidl_lang.lsp.pictures import Json, Pictures

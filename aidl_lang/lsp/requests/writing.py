@@ -105,7 +105,7 @@ def _item(each: Completion, asked: Asked, snippets: bool, data: dict[str, object
         sort_text=f"{each.rank:04}",
         insert_text_format=snippet if is_snippet else types.InsertTextFormat.PlainText,
         text_edit=types.TextEdit(edit.range(each.span), each.text if is_snippet else each.plain),
-        additional_text_edits=[types.TextEdit(edit.range(e.span), e.text) for e in each.extra] or None,
+        additional_text_edits=[edit.edit(e) for e in each.extra] or None,
         data=data,
     )
 

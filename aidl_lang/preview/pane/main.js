@@ -34,6 +34,7 @@ class Pane {
   settled = null;
   #isSourceWanted = false;
   #isFreedomWanted = false;
+  #isOpen = false;
 
   stage = part("stage", HTMLElement);
   host = connect({
@@ -113,7 +114,7 @@ class Pane {
     themeButton(this.host.code !== null);
     exportMenu((format) => this.send({ type: "export", format }));
     this.layers = layersMenu(
-      (layers) => this.send({ type: "show", layers }),
+      () => this.want(),
       (hasGrid) => {
         this.paper.hasGrid = hasGrid;
         this.place();
@@ -124,6 +125,7 @@ class Pane {
       this.#isFreedomWanted = isOn;
       this.freedom.toggle(isOn);
       this.panels();
+      if (this.#isOpen) this.want();
     });
     const isWide = innerWidth >= WIDE;
     toggle("source-toggle", (isOn) => {
@@ -142,10 +144,20 @@ class Pane {
   }
 
   open() {
+    this.#isOpen = true;
     this.status.connected();
     this.send({ type: "ready" });
-    const layers = this.layers?.() ?? [];
-    if (layers.length) this.send({ type: "show", layers });
+    if (this.#wanted().length) this.want();
+  }
+
+  /** Tell the host what is wanted beside the drawing: what can move takes it a while to find out. */
+  want() {
+    this.send({ type: "show", layers: this.#wanted() });
+  }
+
+  /** @returns {import("./protocol.js").Layer[]} */
+  #wanted() {
+    return [...(this.layers?.() ?? []), ...(this.#isFreedomWanted ? /** @type {const} */ (["freedom"]) : [])];
   }
 
   /** @param {number} seconds */

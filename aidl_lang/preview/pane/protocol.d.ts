@@ -88,7 +88,7 @@ export interface Preview {
   source: Source | null;
 }
 
-export type Layer = "names" | "points" | "bbox" | "constraints" | "dof" | "plan" | "dimensions";
+export type Layer = "names" | "points" | "bbox" | "constraints" | "dof" | "plan" | "dimensions" | "freedom";
 export type Format = "svg" | "dxf" | "pdf" | "png" | "step" | "stl" | "3mf";
 
 export type FromHost =

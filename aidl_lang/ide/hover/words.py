@@ -10,15 +10,15 @@ from collections.abc import Iterator
 from aidl_lang import ast
 from aidl_lang.ide.describing import fenced, joined
 from aidl_lang.ide.guesses import guesses
-from aidl_lang.ide.hover_values import listed, not_solved, stated_at
-from aidl_lang.ide.nodes import around
-from aidl_lang.ide.solved_values import solved_of
-from aidl_lang.ide.telling import compared, number_text
+from aidl_lang.ide.hover.solved_values import solved_of
+from aidl_lang.ide.hover.telling import compared, number_text
+from aidl_lang.ide.hover.values import listed, not_solved, stated_at
+from aidl_lang.ide.nodes import around, token_at
 from aidl_lang.ide.view import View
 from aidl_lang.kinds import kind_of
 from aidl_lang.reference.collect import Entry, reference
 from aidl_lang.source import Span
-from aidl_lang.syntax.tokens import Token, tokenize
+from aidl_lang.syntax.tokens import Token
 from aidl_lang.units import UNITS
 from aidl_lang.vocabulary import vocabulary
 
@@ -48,16 +48,6 @@ def _keyword(entry: Entry) -> str:
     example = fenced(entry.doc.example) if entry.doc.example else ""
     forms = fenced("\n".join(o.form for o in entry.overloads))
     return joined([forms, entry.doc.line, entry.doc.text, example, _GUIDE])
-
-
-def token_at(view: View, offset: int) -> Token | None:
-    touching = None
-    for token in tokenize(view.source).tokens:
-        if token.start <= offset < token.end:
-            return token
-        if token.end == offset:
-            touching = token
-    return touching
 
 
 def _compared(view: View, token: Token) -> str:

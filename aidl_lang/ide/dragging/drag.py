@@ -15,13 +15,14 @@ from functools import cached_property, lru_cache
 from aidl_lang.diagnostics import Edit
 from aidl_lang.expression import Unknown
 from aidl_lang.geometry.curves import Vec
-from aidl_lang.ide.draggable import Grip, grips, is_somewhere
+from aidl_lang.ide.dragging.by_params import moved_by_params, turned
+from aidl_lang.ide.dragging.grips import Grip, grips, is_somewhere
+from aidl_lang.ide.dragging.mobility import Ways, belongs, movable, ways
+from aidl_lang.ide.dragging.pulling import Pull, pulled
 from aidl_lang.ide.guesses import Guess, guesses
-from aidl_lang.ide.knob_dragging import moved_by_params, turned
-from aidl_lang.ide.mobility import Ways, belongs, movable, ways
-from aidl_lang.ide.pulling import Pull, pulled
-from aidl_lang.ide.view import View
-from aidl_lang.ide.writing_back import Refusal, compiled, is_same, shortest
+from aidl_lang.ide.refusing import Refusal
+from aidl_lang.ide.view import View, edited
+from aidl_lang.ide.writing_back import is_same, shortest
 from aidl_lang.pipeline import Compiled
 
 STEP = 0.1
@@ -270,7 +271,7 @@ def _written_as(view: View, numbers: list[tuple[Guess, float]], step: float) -> 
 
 def _comes_to(view: View, edits: tuple[Edit, ...], dragged: Dragged, tolerance: float) -> bool:
     """Whether the edited text solves, says nothing worse, and has the point where it was shown."""
-    again = compiled(view, edits)
+    again = edited(view, edits)
     assert again.outcome is not None
     assert view.outcome is not None
     grip = _grips_of(again).get(dragged._grip.id)

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from aidl_lang import ast
 from aidl_lang.ide.describing import joined
-from aidl_lang.ide.solved_values import Solved, solved_of
-from aidl_lang.ide.telling import constraint_lines
+from aidl_lang.ide.hover.solved_values import Solved, solved_of
+from aidl_lang.ide.hover.telling import constraint_lines
 from aidl_lang.ide.view import View
 
 _STATED = ast.ExpressionStatement | ast.Equation | ast.Prefer

@@ -13,7 +13,7 @@ from aidl_lang.building.state import Env
 from aidl_lang.checking.fields import PRIMITIVE
 from aidl_lang.export.numbers import fixed
 from aidl_lang.expression import Unknown
-from aidl_lang.ide.solved_values import Found, Solved, items_of, spelled
+from aidl_lang.ide.hover.solved_values import Found, Solved, items_of, spelled
 from aidl_lang.model import Condition, Geometry, Structure
 from aidl_lang.source import Span
 from aidl_lang.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension

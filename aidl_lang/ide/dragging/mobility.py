@@ -17,7 +17,7 @@ from scipy.linalg import qr
 from aidl_lang import expression as ex
 from aidl_lang.expression import Evaluator, Unknown
 from aidl_lang.geometry.curves import Vec
-from aidl_lang.ide.draggable import Grip
+from aidl_lang.ide.dragging.grips import Grip
 from aidl_lang.lower import Lowered, lower
 from aidl_lang.model import Comparison, Constraint, Geometry, Model, Structure
 from aidl_lang.solver.components import components

@@ -14,16 +14,16 @@ from aidl_lang.ide.describing import (
     label_of,
     of_callable,
     of_comment,
-    of_entry,
     of_parameter,
+    of_public,
 )
-from aidl_lang.ide.hover_values import failed, listed, not_solved, stated_at
-from aidl_lang.ide.hover_words import Told, of_attribute, of_number, of_word, token_at
-from aidl_lang.ide.meaning import Mention, chosen, mention_at
-from aidl_lang.ide.nodes import around
+from aidl_lang.ide.hover.solved_values import solved_of
+from aidl_lang.ide.hover.telling import lines
+from aidl_lang.ide.hover.values import failed, listed, not_solved, stated_at
+from aidl_lang.ide.hover.words import Told, of_attribute, of_number, of_word
+from aidl_lang.ide.meaning import Mention, chosen, mention_at, parameter_node
+from aidl_lang.ide.nodes import around, token_at
 from aidl_lang.ide.site import Where, spot_at
-from aidl_lang.ide.solved_values import solved_of
-from aidl_lang.ide.telling import lines
 from aidl_lang.ide.view import View
 from aidl_lang.reference.collect import reference
 from aidl_lang.resolving.symbols import Symbol, SymbolKind
@@ -94,7 +94,7 @@ def _of_name(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
     if symbol.kind in _VALUES:
         blocks.append(_values(view, mention, path))
     elif mention.symbol.node is None:
-        blocks.append(_of_public(symbol.name))
+        blocks.append(of_public(symbol.name))
     return joined(blocks)
 
 
@@ -204,8 +204,7 @@ def _of_named_argument(view: View, argument: ast.Argument, path: Sequence[ast.No
     if signature is None:
         return ""
     kind = next((k for name, k, _ in signature.parameters if name == symbol.name), None)
-    parameters = (signature.node.parameters or ()) if signature.node is not None else ()
-    node = next((p for p in parameters if p.name.text == symbol.name), None)
+    node = parameter_node(signature, symbol.name)
     shown = node.span.one_line if node is not None else f"{symbol.name}: {kind}"
     head_line = fenced(f"{signature.name}(… {shown} …)")
     return joined([head_line, of_parameter(signature, symbol.name), _given(view, argument, path)])
@@ -228,11 +227,6 @@ def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
 
 def _is_made(made: ast.Assign, argument: ast.Argument) -> bool:
     return isinstance(made.value, ast.Call) and argument in made.value.arguments
-
-
-def _of_public(name: str) -> str:
-    entry = reference().entries.get(name)
-    return of_entry(entry) if entry is not None else ""
 
 
 # --- Selections -----------------------------------------------------------------------------------

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from aidl_lang import pipeline
 from aidl_lang.expression import Evaluator, Unknown
 from aidl_lang.geometry.curves import Vec
-from aidl_lang.ide.draggable import Grip, is_somewhere
-from aidl_lang.ide.mobility import AXES, Way, pull, values_at
+from aidl_lang.ide.dragging.grips import Grip, is_somewhere
+from aidl_lang.ide.dragging.mobility import AXES, Way, pull, values_at
 from aidl_lang.lower import Lowered, lower
 from aidl_lang.model import Model
 from aidl_lang.pipeline import Compiled
