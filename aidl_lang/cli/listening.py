@@ -37,14 +37,22 @@ def address(text: str) -> str:
 
 def listener(host: str, port: int, code: str, hint: str) -> socket.socket:
     """A socket that takes connections already. Raises UseError of a code where there can be none."""
-    found = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
+    try:
+        family, kind, protocol, _, at = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        found = socket.socket(family, kind, protocol)
+    except OSError as error:
+        raise _refused(host, port, error, code, hint) from None
     if os.name == "posix":  # elsewhere this would let two servers have one port
         found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
-        found.bind((host, port))
+        found.bind(at)
         found.listen()  # so that who reads the address can connect at once
     except OSError as error:
         found.close()
-        why = (error.strerror or str(error)).lower()
-        raise UseError(code, f"port {port} cannot be served: {why}", hint) from None
+        raise _refused(host, port, error, code, hint) from None
     return found
+
+
+def _refused(host: str, port: int, error: OSError, code: str, hint: str) -> UseError:
+    where = f"port {port}" if host == LOCALHOST else f"{host}:{port}"
+    return UseError(code, f"{where} cannot be served: {(error.strerror or str(error)).lower()}", hint)

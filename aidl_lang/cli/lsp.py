@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import os
-import socket
 from importlib.util import find_spec
 
+from aidl_lang.cli import listening
 from aidl_lang.cli.report import UseError, say
 
 _CODE = "E0954"
@@ -29,7 +28,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise UseError(
             _CODE, "the server needs `pygls`, not installed here", "pip install 'aidl-lang[editor]'"
         )
-    listener = None if arguments.tcp is None else _listener(*arguments.tcp)
+    hint = "port 0 takes one that is free"
+    listener = None if arguments.tcp is None else listening.listener(*arguments.tcp, _CODE, hint)
 
     from aidl_lang.lsp.serve import serve_socket, serve_standard_streams
 
@@ -45,25 +45,3 @@ def _address(text: str) -> tuple[str, int]:
     if not (host and colon and port.isdecimal() and int(port) <= 65535):
         raise argparse.ArgumentTypeError(f"expected HOST:PORT, as in 127.0.0.1:0, not `{text}`")
     return host.strip("[]"), int(port)
-
-
-def _listener(host: str, port: int) -> socket.socket:
-    try:
-        family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-        listener = socket.socket(family, kind, protocol)
-    except OSError as error:
-        raise _refused(host, port, error) from None
-    if os.name == "posix":  # elsewhere this would let two servers have one port
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    try:
-        listener.bind(address)
-        listener.listen(1)
-    except OSError as error:
-        listener.close()
-        raise _refused(host, port, error) from None
-    return listener
-
-
-def _refused(host: str, port: int, error: OSError) -> UseError:
-    why = (error.strerror or str(error)).lower()
-    return UseError(_CODE, f"{host}:{port} cannot be served: {why}", "port 0 takes one that is free")
