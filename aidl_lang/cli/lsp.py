@@ -28,8 +28,10 @@ def run(arguments: argparse.Namespace) -> int:
         raise UseError(
             _CODE, "the server needs `pygls`, not installed here", "pip install 'aidl-lang[editor]'"
         )
-    hint = "port 0 takes one that is free"
-    listener = None if arguments.tcp is None else listening.listener(*arguments.tcp, _CODE, hint)
+    listener = None
+    if arguments.tcp is not None:
+        host, port = arguments.tcp
+        listener = listening.listener(host, port, _CODE, "port 0 takes one that is free")
 
     from aidl_lang.lsp.serve import serve_socket, serve_standard_streams
 

@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+_MOST_DECIMALS = 15
+
 
 def fixed(value: float, decimals: int = 6) -> str:
     """At most this many decimals, without trailing zeros and without a minus before zero."""
@@ -13,6 +15,14 @@ def fixed(value: float, decimals: int = 6) -> str:
     if "." in text:
         text = text.rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
+
+
+def shortest(value: float, tolerance: float) -> str:
+    """The decimal with the fewest places that is this near."""
+    for places in range(_MOST_DECIMALS):
+        if abs(round(value, places) - value) <= tolerance:
+            return fixed(value, places)
+    return fixed(value, _MOST_DECIMALS)
 
 
 def significant(value: float) -> float:

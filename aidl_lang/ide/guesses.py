@@ -55,6 +55,11 @@ class Guess:
         return _factor(self.unit)
 
     @property
+    def behind(self) -> str:
+        """Its measure, as it stands behind a number in a sentence."""
+        return f" {self.measure}" if self.measure else ""
+
+    @property
     def unknowns(self) -> frozenset[Unknown]:
         """What the solver moves where the number is another."""
         return frozenset(ex.unknowns(use.became for use in self.uses))

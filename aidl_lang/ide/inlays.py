@@ -13,7 +13,7 @@ from aidl_lang.diagnostics import Edit
 from aidl_lang.export.numbers import fixed
 from aidl_lang.ide.guesses import Guess, guesses
 from aidl_lang.ide.view import View
-from aidl_lang.ide.writing_back import number_text
+from aidl_lang.ide.writing_back import number_for
 from aidl_lang.names import fold
 from aidl_lang.solved import Scalar
 from aidl_lang.source import Span
@@ -53,18 +53,16 @@ def _solved(view: View) -> Iterator[Inlay]:
     for guess in guesses(view):
         if guess.solved is None or not guess.is_off(guess.solved):
             continue
-        unit = f" {guess.measure}" if guess.measure else ""
-        text = f"{_ARROW} {_shown(guess.solved)}{unit}"
-        edits = () if guess.is_shared else (Edit(guess.span, number_text(guess, guess.solved)),)
+        text = f"{_ARROW} {_shown(guess.solved)}{guess.behind}"
+        edits = () if guess.is_shared else (Edit(guess.span, number_for(guess, guess.solved)),)
         yield Inlay(guess.span.end, text, InlayKind.SOLVED, _told(guess), edits)
 
 
 def _told(guess: Guess) -> str:
     kind = "a size that had to change" if guess.is_kept else "a first guess"
     many = f", and of {len(guess.uses) - 1} more" if len(guess.uses) > 1 else ""
-    unit = f" {guess.measure}" if guess.measure else ""
     written, solved = _shown(guess.written), fixed(guess.solved or 0.0)
-    return f"`{guess.path}`{many}: {kind}, written as {written} and solved to {solved}{unit}"
+    return f"`{guess.path}`{many}: {kind}, written as {written} and solved to {solved}{guess.behind}"
 
 
 def _readings(view: View) -> Iterator[Inlay]:

@@ -16,7 +16,7 @@ from aidl_lang.ide.refusing import CannotError
 from aidl_lang.ide.view import View, look
 from aidl_lang.ide.workspace import Workspace
 from aidl_lang.resolving.symbols import Symbol
-from aidl_lang.source import Span
+from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import tokenize
 from aidl_lang.world import FileError
@@ -39,7 +39,7 @@ def rename(project: Project, view: View, offset: int, name: str) -> Renaming:
     name, or where some name would mean something else then.
     """
     mention = _own(view, offset)
-    _require_name(view, name)
+    _require_name(name)
     found = references(project, view, offset)
     by_file: dict[Path, list[Edit]] = defaultdict(list)
     for occurrence in found:
@@ -61,9 +61,9 @@ def _own(view: View, offset: int) -> Mention:
     return mention
 
 
-def _require_name(view: View, name: str) -> None:
-    tokens = tokenize(type(view.source)("name", name)).tokens
-    if len(tokens) != 2 or tokens[0].text != name or not (name.isidentifier()):
+def _require_name(name: str) -> None:
+    tokens = tokenize(SourceFile("name", name)).tokens
+    if len(tokens) != 2 or tokens[0].text != name or not name.isidentifier():
         raise CannotError(f"`{name}` is no name: names are made of letters, digits and `_`")
     if tokens[0].kind != "NAME" or name in load_tables().reserved:
         raise CannotError(f"`{name}` is a word of the language")

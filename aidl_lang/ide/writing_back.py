@@ -5,27 +5,22 @@ Nothing is proposed that was not tried: the edited text is solved again, and has
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 from aidl_lang.diagnostics import Edit
-from aidl_lang.export.numbers import fixed
-from aidl_lang.geometry.curves import Vec
+from aidl_lang.export.numbers import shortest
+from aidl_lang.ide.comparing import SAME, is_same
 from aidl_lang.ide.guesses import VISIBLE, Guess, as_kept, guesses
 from aidl_lang.ide.refusing import CannotError
 from aidl_lang.ide.view import View, edited
 from aidl_lang.pipeline import Compiled
-from aidl_lang.solved import SolvedStructure
 from aidl_lang.source import Span
 
-SAME = 1e-6
-"""Millimetres by which two drawings may differ and still be the same."""
 _PRECISIONS = (VISIBLE / 2, 1e-9, 0.0)
 """Errors of a number, as shares of it (or of one where it is smaller): each is tried where one before it was
 too coarse. With none, all digits are written.
 """
-_MOST_DECIMALS = 15
 _MOST_TRIES = 8
 
 
@@ -56,17 +51,9 @@ def write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> 
     raise CannotError("with the solved values written there, the program would not draw the same")
 
 
-def number_text(guess: Guess, value: float, precision: float = VISIBLE / 2) -> str:
+def number_for(guess: Guess, value: float, precision: float = VISIBLE / 2) -> str:
     """A value for a number of the text, with its unit: the shortest within a share of it."""
     return shortest(value, precision * max(1.0, abs(value))) + guess.unit
-
-
-def shortest(value: float, tolerance: float) -> str:
-    """The decimal with the fewest places that is this near."""
-    for places in range(_MOST_DECIMALS):
-        if abs(round(value, places) - value) <= tolerance:
-            return fixed(value, places)
-    return fixed(value, _MOST_DECIMALS)
 
 
 # --- Choosing ------------------------------------------------------------------------------------
@@ -112,7 +99,7 @@ def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...]
     wanted, level = dict(targets), dict.fromkeys(targets, 0)
     for _ in range(_MOST_TRIES):
         edits = tuple(
-            Edit(guess.span, number_text(guess, value, _PRECISIONS[level[guess]]))
+            Edit(guess.span, number_for(guess, value, _PRECISIONS[level[guess]]))
             for guess, value in wanted.items()
         )
         again = edited(view, edits)
@@ -148,51 +135,3 @@ def _moved(again: View, wanted: Mapping[Guess, float], order: Mapping[Span, int]
 def _is_no_worse(before: Compiled, after: Compiled) -> bool:
     """Whether nothing is said of the program that was not said before."""
     return {d.code for d in after.diagnostics} <= {d.code for d in before.diagnostics}
-
-
-# --- Comparing -----------------------------------------------------------------------------------
-
-
-def is_same(before: Compiled, after: Compiled, *, slid: bool = False, tolerance: float = SAME) -> bool:
-    """Whether two outcomes draw the same, name by name; with `slid`, wherever the drawing as a whole lies."""
-
-    def is_near(a: float, b: float) -> bool:
-        return abs(a - b) <= tolerance or (math.isnan(a) and math.isnan(b))
-
-    if before.model is None or after.model is None or before.status != after.status:
-        return False
-    one, other = (list(_drawn(model.root, slid)) for model in (before.model, after.model))
-    return len(one) == len(other) and all(
-        name == path and len(a) == len(b) and all(map(is_near, a, b))
-        for (name, a), (path, b) in zip(one, other, strict=True)
-    )
-
-
-def _drawn(root: SolvedStructure, slid: bool) -> Iterator[tuple[str, list[float]]]:
-    """Everything that a drawing is made of: its path, and the numbers that define it."""
-    at = (root.box.left, root.box.bottom) if slid and root.box is not None else (0.0, 0.0)
-    for structure in root.walk():
-        box = structure.box
-        corners = [] if box is None else [(box.left, box.bottom), (box.right, box.top)]
-        yield structure.path, list(_numbers(corners, at))
-        for geometry in structure.drawn:
-            for part in geometry.walk():
-                place = part.values.get("at") if part.type == "point" else None
-                yield f"{part.path}: {part.type}", list(_numbers((part.curve, place), at))
-
-
-def _numbers(value: object, at: Vec) -> Iterator[float]:
-    """The numbers of a curve or a point; a pair is a place, which is seen from `at`."""
-    match value:
-        case (float() as x, float() as y):
-            yield from (x - at[0], y - at[1])
-        case float():
-            yield value
-        case tuple() | list():
-            for item in value:
-                yield from _numbers(item, at)
-        case _ if is_dataclass(value):
-            for field in fields(value):
-                yield from _numbers(getattr(value, field.name), at)
-        case _:
-            pass

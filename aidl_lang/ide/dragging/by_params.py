@@ -11,11 +11,11 @@ from aidl_lang import ast, pipeline
 from aidl_lang.agents.knobs import edit_at
 from aidl_lang.agents.workspace import RefusalError
 from aidl_lang.diagnostics import Edit
+from aidl_lang.export.numbers import shortest
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.ide.dragging.grips import Grip, grips, is_somewhere
 from aidl_lang.ide.refusing import Refusal
 from aidl_lang.ide.view import View, run
-from aidl_lang.ide.writing_back import shortest
 from aidl_lang.model import Knob
 from aidl_lang.names import fold
 

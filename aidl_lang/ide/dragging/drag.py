@@ -13,8 +13,10 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 from aidl_lang.diagnostics import Edit
+from aidl_lang.export.numbers import shortest
 from aidl_lang.expression import Unknown
 from aidl_lang.geometry.curves import Vec
+from aidl_lang.ide.comparing import is_same
 from aidl_lang.ide.dragging.by_params import moved_by_params, turned
 from aidl_lang.ide.dragging.grips import Grip, grips, is_somewhere
 from aidl_lang.ide.dragging.mobility import Ways, belongs, movable, ways
@@ -22,7 +24,6 @@ from aidl_lang.ide.dragging.pulling import Pull, pulled
 from aidl_lang.ide.guesses import Guess, guesses
 from aidl_lang.ide.refusing import Refusal
 from aidl_lang.ide.view import View, edited
-from aidl_lang.ide.writing_back import is_same, shortest
 from aidl_lang.pipeline import Compiled
 
 STEP = 0.1

@@ -82,9 +82,8 @@ def of_number(view: View, start: int) -> Told | None:
     blocks = list(_converted(node))
     for guess in guesses(view):
         if guess.span.start <= start < guess.span.end and guess.solved is not None:
-            unit = f" {guess.measure}" if guess.measure else ""
             what = "kept" if guess.is_kept else "a first guess"
-            became = number_text(guess.solved, None) + unit
+            became = number_text(guess.solved, None) + guess.behind
             many = f" and {len(guess.uses) - 1} more" if len(guess.uses) > 1 else ""
             change = f"solved to {became}" if guess.is_off(guess.solved) else f"stays {became}"
             blocks.append(f"`{guess.path}`{many}: {what}, {change}")
