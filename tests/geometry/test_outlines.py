@@ -155,7 +155,10 @@ def test_offset_of_polygons_against_shapely(corners: list[Vec], distance: float,
         shapely.Polygon(corners).buffer(d, quad_segs=FINE),
     )
     assert area(ours) == pytest.approx(theirs.area, abs=0.02)
-    assert len(ours.faces) == len(shapely.get_parts(theirs)) or abs(theirs.area - area(ours)) < 1e-3
+    # Parts that just touch, or just do not, are told apart by less than the error of a circle of chords.
+    near = [shapely.Polygon(corners).buffer(d + by, quad_segs=FINE) for by in (-2e-3, 0.0, 2e-3)]
+    counts = [len(shapely.get_parts(each)) for each in near]
+    assert len(ours.faces) in counts or abs(theirs.area - area(ours)) < 1e-3
     assert_closed(ours)
     assert all(isinstance(p, Line | Arc | Circle) for loop in ours.loops for p in loop.pieces)
 

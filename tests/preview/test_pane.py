@@ -64,6 +64,18 @@ def test_the_wheel_zooms_at_the_pointer_and_the_view_is_kept(pane: Pane) -> None
     assert pane.find("#world path[fill='#123456']").count() == 1
 
 
+def test_a_drawing_that_grows_out_of_its_fitted_view_is_fitted_again(pane: Pane) -> None:
+    before = pane.scale
+    pane.shows(box=[-52, -30, 52, 30])
+    assert pane.scale == before
+    pane.shows(box=[-150, -30, 150, 30])
+    assert pane.scale == pytest.approx(before / 3, rel=0.01)
+    pane.page.keyboard.press("+")
+    chosen = pane.scale
+    pane.shows(box=[-900, -30, 900, 30])
+    assert pane.scale == chosen
+
+
 def test_dragging_moves_the_view_and_is_no_click(pane: Pane) -> None:
     x, y = pane.at(-30, 0)
     before = pane.scale

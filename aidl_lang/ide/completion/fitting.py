@@ -31,10 +31,6 @@ class Form:
     text: str
     pairs: frozenset[tuple[str, str]]
 
-    @property
-    def takes_two(self) -> bool:
-        return any(second for _, second in self.pairs)
-
 
 @cache
 def forms() -> Mapping[str, tuple[Form, ...]]:

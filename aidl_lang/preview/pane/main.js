@@ -1,4 +1,5 @@
 /** The preview: brings what the host says onto the page, and what is done there to the host.
+ * @import { Box } from "./view.js"
  * @import { FromHost, Handle, Preview, Range, ToHost, Vec } from "./protocol.js"
  */
 
@@ -35,6 +36,8 @@ class Pane {
   #isSourceWanted = false;
   #isFreedomWanted = false;
   #isOpen = false;
+  /** The box that was fitted into the window last. */
+  #fitted = /** @type {Box} */ ([0, 0, 0, 0]);
 
   stage = part("stage", HTMLElement);
   host = connect({
@@ -241,9 +244,20 @@ class Pane {
     this.pointing.show(preview);
     this.measure(); // panels that come and go while one types must not move the drawing
     const isOther = before?.uri !== preview.uri || before.svg === null;
-    if (isOther || !this.view.sees(this.paper.box ?? preview.box)) this.fit();
+    if (isOther || this.#strays(preview)) this.fit();
     else this.place();
     document.body.dataset.shown = JSON.stringify([preview.uri, preview.version]);
+  }
+
+  /**
+   * Whether the drawing has moved out of a view that was fitted, or wholly out of one that was chosen. What is
+   * only tried does not move the view: somebody is pulling at the drawing.
+   * @param {Preview} preview
+   */
+  #strays({ box, tried }) {
+    const around = this.paper.box ?? box;
+    const hasMoved = around.some((side, k) => side !== this.#fitted[k]);
+    return !this.view.sees(around) || (hasMoved && !tried && !this.view.isChosen && !this.view.holds(around));
   }
 
   /** Which panels there is something to show in. */
@@ -272,7 +286,9 @@ class Pane {
   }
 
   fit() {
-    if (this.paper.box) this.view.fit(this.paper.box);
+    if (!this.paper.box) return;
+    this.#fitted = this.paper.box;
+    this.view.fit(this.paper.box);
   }
 
   /** @param {PointerEvent} event */

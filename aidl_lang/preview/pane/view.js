@@ -110,4 +110,14 @@ export class View {
     const [x1, y1] = this.toScreen([right, bottom]);
     return x1 >= 0 && y1 >= 0 && x0 <= this.width && y0 <= this.height;
   }
+
+  /**
+   * Whether all of a box is in sight.
+   * @param {Box} box
+   */
+  holds([left, bottom, right, top]) {
+    const [x0, y0] = this.toScreen([left, top]);
+    const [x1, y1] = this.toScreen([right, bottom]);
+    return x0 >= 0 && y0 >= 0 && x1 <= this.width && y1 <= this.height;
+  }
 }
