@@ -142,7 +142,24 @@ class _Search:
             if abs(slope) < _NUDGE or is_factor:
                 return None
             wanted.append((value - residual / slope, value - free / slope, relation))
-        return max(wanted, key=lambda each: abs(each[0] - value), default=None)
+        return self._farthest(wanted, value)
+
+    def _farthest(
+        self, wanted: Sequence[tuple[float, float, str]], value: float
+    ) -> tuple[float, float, str] | None:
+        """The one farthest from a value. Of several that agree, one to the side that most would go to if they
+        had no say; where neither side has more of them, no side.
+        """
+        reach = max((abs(target - value) for target, _, _ in wanted), default=0.0)
+        alike = [each for each in wanted if abs(each[0] - value) >= reach - self.tolerance]
+        if not alike:
+            return None
+        below = [each for each in alike if each[1] < each[0] - self.tolerance]
+        above = [each for each in alike if each[1] > each[0] + self.tolerance]
+        if len(below) == len(above) and below:
+            target, _, relation = alike[0]
+            return target, target, relation
+        return (max(below, above, key=len) or alike)[0]
 
     def _point(self) -> Remedy | None:
         """Both numbers of a point that a coincidence names."""

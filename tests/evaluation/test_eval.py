@@ -122,7 +122,7 @@ def test_a_damaged_record_is_refused(evaluation: Evaluation) -> None:
         '{"prompt": "key", "variant": "full", "run": 1, "failure": {}}',
     ):
         place.write_text(content)
-        refused = evaluation("--report", "--prompts", "gear")
+        refused = evaluation("--report", "--prompts", "gear", "--variants", "full")
         assert refused.returncode == 2
         assert refused.stderr == (
             f"error[E0948]: `{place}` is no record of a run\n  = hint: remove it: the run is made again\n"
