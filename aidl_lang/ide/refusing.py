@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 class CannotError(Exception):
-    """Why an edit that was asked for cannot be made."""
+    """Why what was asked for cannot be done, for people."""
 
 
 @dataclass(frozen=True)

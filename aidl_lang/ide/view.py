@@ -78,6 +78,12 @@ class View:
         return frozenset(module.source for module in self.program.resolution.modules)
 
     @cached_property
+    def params_written(self) -> Mapping[Span, ast.Param]:
+        """The params of the text and of the files that it imports, by their places."""
+        nodes = (node for module in self.resolution.modules for node in ast.walk(module))
+        return {node.span: node for node in nodes if isinstance(node, ast.Param)}
+
+    @cached_property
     def tokens(self) -> Tokens:
         """All tokens and comments of the text."""
         return tokenize(self.source)

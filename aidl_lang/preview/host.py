@@ -13,10 +13,11 @@ from aidl_lang.agents.workspace import RefusalError
 from aidl_lang.cancelling import Cancelled
 from aidl_lang.ide.preview import Preview
 from aidl_lang.ide.preview.protocol import Json
+from aidl_lang.ide.refusing import CannotError
 from aidl_lang.ide.view import View
 from aidl_lang.preview import messages
 from aidl_lang.preview.messages import ApplyFix, Cancel, Drag, Export, Ready, SetKnob, Show
-from aidl_lang.preview.program import CannotError, Program
+from aidl_lang.preview.program import Program
 from aidl_lang.preview.worker import Job, Worker
 
 Then: TypeAlias = Callable[[], None]

@@ -19,7 +19,7 @@ from aidl_lang.ide.dragging import Dragged, Handle, drag
 from aidl_lang.ide.edits import applied
 from aidl_lang.ide.preview import Preview, Writer, preview, set_knob, tried, with_handles
 from aidl_lang.ide.preview.protocol import Json
-from aidl_lang.ide.refusing import Refusal
+from aidl_lang.ide.refusing import CannotError, Refusal
 from aidl_lang.ide.semantic_tokens import semantic_tokens
 from aidl_lang.ide.view import View, look, run
 from aidl_lang.ide.workspace import Workspace
@@ -31,10 +31,6 @@ FORMATS = ("svg", "dxf", "pdf", "png", "step", "stl", "3mf")
 
 Write = Callable[[Path, bytes], None]
 """Replaces a file in one step. Raises OSError."""
-
-
-class CannotError(Exception):
-    """What was asked for cannot be done; says why, for people."""
 
 
 class Program:

@@ -107,11 +107,12 @@ def _numeric(view: View) -> Iterator[Knob]:
 
 def _declaration(view: View, knob: Knob) -> ast.Param | None:
     """Where the text says the value of a param as a number."""
-    for node in ast.walk(view.module):
-        if isinstance(node, ast.Param) and node.span == knob.span:
-            number = node.value.operand if isinstance(node.value, ast.Unary) else node.value
-            return node if isinstance(number, ast.Number) else None
-    return None
+    if knob.span is None or knob.span.source is not view.source:
+        return None
+    if (node := view.params_written.get(knob.span)) is None:
+        return None
+    number = node.value.operand if isinstance(node.value, ast.Unary) else node.value
+    return node if isinstance(number, ast.Number) else None
 
 
 def _set(view: View, path: str, value: float) -> Iterator[Edit]:

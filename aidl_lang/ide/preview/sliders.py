@@ -62,13 +62,7 @@ def set_knob(view: View, path: str, value: float | str | bool) -> list[Edit]:
 
 def _declaration(view: View, knob: Knob) -> ast.Param | None:
     """Where a param is written in the texts of the view, none of the library's."""
-    for module in view.program.resolution.modules:
-        if knob.span is not None and module.source is knob.span.source:
-            if view.is_library(module.source):
-                return None
-            found = (n for n in ast.walk(module) if isinstance(n, ast.Param))
-            return next((n for n in found if n.span == knob.span), None)
-    return None
+    return None if knob.span is None else view.params_written.get(knob.span)
 
 
 def _is_literal(node: ast.Expression) -> bool:
