@@ -120,6 +120,24 @@ def source_unknowns(source: object, here: Structure) -> Iterator[Unknown]:
                 yield from ex.unknowns(defining(geometry, structure))
 
 
+def boxes_in(*roots: Expression) -> tuple[frozenset[Structure], frozenset[Unknown] | None]:
+    """The structures of whose boxes expressions speak, and the unknowns that they mention beside these; None
+    for the latter where they speak of no structure's box.
+    """
+    if not any(root.is_open for root in roots):
+        return frozenset(), None
+    leaves = [node for node in ex.nodes(roots) if not node.args]
+    boxes = [node.payload.box for node in leaves if isinstance(node.payload, _Side)]
+    structures = {s for box in boxes for s in box.sources if isinstance(s, Structure)}
+    if not structures:
+        return frozenset(), None
+    beside = {node.payload for node in leaves if isinstance(node.payload, Unknown)}
+    for box in boxes:
+        others = (s for s in box.sources if not isinstance(s, Structure))
+        beside.update(u for source in others for u in source_unknowns(source, box.here))
+    return frozenset(structures), frozenset(beside)
+
+
 def spelled_out(*roots: Expression) -> tuple[Expression, ...]:
     """The expressions of one comparison with every side of a box replaced by what it is there."""
     if not any(root.is_open for root in roots):

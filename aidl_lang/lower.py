@@ -19,6 +19,7 @@ from aidl_lang.model import (
     Geometry,
     Model,
     Structure,
+    chain,
     convert,
     is_size,
     own_geometry,
@@ -100,6 +101,7 @@ class _Lowering:
             longest=np.array([_LONGEST_TURN if u.angular else np.inf for u in found], dtype=np.float64),
             parent=np.array(parents, dtype=np.int64),
             **constraint_arrays(constraints),
+            named=True,
             observables=observables,
             names=tuple(u.path for u in found),
         )
@@ -186,7 +188,27 @@ class _Lowering:
         placed = frozenset(
             self.numbers[u] for c in constraint.comparisons for u in c.placed if u in self.numbers
         )
-        return SolverConstraint(self.groups[constraint.holder], rows, placed, constraint.weight)
+        whole, inside = self._named(constraint)
+        return SolverConstraint(
+            self.groups[constraint.holder], rows, placed, constraint.weight, whole, inside
+        )
+
+    def _named(self, constraint: Constraint) -> tuple[frozenset[int], frozenset[int]]:
+        """The groups that a constraint names as a whole, and those in which it names something. What a shape
+        asks of itself names nothing.
+        """
+        whole: set[Structure] = set()
+        inside: set[Structure] = set()
+        for comparison in () if constraint.is_inherent else constraint.comparisons:
+            mentioned = set(comparison.spoken_of)
+            for structure in comparison.boxes:
+                whole.add(structure)
+                mentioned.update(ex.unknowns(_places(structure, constraint.holder)))
+            for unknown in mentioned:
+                moved = unknown.owner if self._is_outline(unknown) else unknown.frame_of
+                (inside if moved is None else whole).add(moved or unknown.owner)
+        found = [frozenset(self.groups[s] for s in named if s in self.groups) for named in (whole, inside)]
+        return found[0], found[1]
 
     def _row(self, comparison: Comparison) -> Row:
         tape = self.tape
@@ -217,6 +239,14 @@ class _Lowering:
                 expression = self.tape.sub(self.tape.constant(least), self.tape.unknown(number))
                 row = Row(expression, Relation.AT_MOST, self.size)
                 yield SolverConstraint(self.groups[unknown.owner], (row,), frozenset())
+
+
+def _places(structure: Structure, holder: Structure) -> Iterator[Expression]:
+    """The frames by which a structure is placed in that which holds it."""
+    for s in chain(structure):
+        if s is holder:
+            return
+        yield from (s.frame.x, s.frame.y, s.frame.rotation)
 
 
 _Seen = tuple[Expression, Expression] | tuple[Expression]

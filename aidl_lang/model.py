@@ -7,7 +7,7 @@ frame of the structure that holds it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
@@ -351,6 +351,8 @@ class Comparison:
     """`left REL right`, REL one of `== != <= >= < >`, with boxes spelled out.
 
     `moved` are the unknowns that may move first where a call decides that; else the left side does.
+    `boxes` are the structures of whose boxes it speaks, `beside` the unknowns it mentions beside these; None
+    where it speaks of no structure's box.
     """
 
     relation: str
@@ -358,6 +360,8 @@ class Comparison:
     right: Expression
     dimension: MaybeDimension
     moved: frozenset[Unknown] | None = None
+    boxes: frozenset[Structure] = frozenset()
+    beside: frozenset[Unknown] | None = None
 
     @property
     def placed(self) -> frozenset[Unknown]:
@@ -365,6 +369,11 @@ class Comparison:
         if self.moved is not None:
             return self.moved
         return frozenset(ex.unknowns([self.left])) or frozenset(ex.unknowns([self.right]))
+
+    @property
+    def spoken_of(self) -> Iterable[Unknown]:
+        """The unknowns that it mentions by themselves, and not only as what is in a structure's box."""
+        return ex.unknowns([self.left, self.right]) if self.beside is None else self.beside
 
 
 @record(eq=False)
@@ -395,6 +404,8 @@ class Constraint:
     """loop variables at the place, as `i = 3`"""
     wording: object = field(default=None, repr=False)
     """the statement, to be read in other words (see building.wording); None for what was not stated"""
+    is_inherent: bool = False
+    """what a shape asks of itself: nobody said it of the structure that the shape is in"""
 
     @property
     def mentions(self) -> tuple[str, ...]:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 
 from aidl_lang import ast, units
 from aidl_lang import expression as ex
-from aidl_lang.boxes import box_of, source_unknowns, spelled_out
+from aidl_lang.boxes import box_of, boxes_in, source_unknowns, spelled_out
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.expression import Expression, Unknown
@@ -104,7 +105,8 @@ def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.No
     left, right = spelled_out(a.expression, b.expression)
     if left.is_constant and right.is_constant:
         return _relates(relation, left.value, right.value, dimension == ANGLE, _EXACT, strict=True)
-    return Condition("and", (Comparison(relation, left, right, dimension),))
+    boxes, beside = boxes_in(a.expression, b.expression)
+    return Condition("and", (Comparison(relation, left, right, dimension, None, boxes, beside),))
 
 
 def _dimension_hint(a: Num, b: Num) -> str:
@@ -213,7 +215,7 @@ def holds(
 
 
 def placed_by(comparison: Comparison, placed: frozenset[Unknown]) -> Comparison:
-    return Comparison(comparison.relation, comparison.left, comparison.right, comparison.dimension, placed)
+    return replace(comparison, moved=placed)
 
 
 def replace_placed(condition: Condition, placed: frozenset[Unknown]) -> Condition:

@@ -364,5 +364,5 @@ def hidden_constraints(it: Interpreter) -> list[Constraint]:
     for g, comparisons in it.hidden:
         if (g.name or g.known_as) and g.span is not None:
             text = f"{g.path.removeprefix(g.owner.path + '.')} is an arc of one radius"
-            found.append(Constraint(g.owner, comparisons, text, g.span))
+            found.append(Constraint(g.owner, comparisons, text, g.span, is_inherent=True))
     return found

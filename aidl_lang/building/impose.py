@@ -168,7 +168,7 @@ def _impose_within(
     if shape.name is not None and shape.span is not None:
         text = f"{shape.path.removeprefix(env.here.path + '.')}: {node.span.one_line}"
         turn = ", ".join(env.scope.labels)
-        it.add_constraint(Constraint(env.here, comparisons, text, shape.span, None, turn))
+        it.add_constraint(Constraint(env.here, comparisons, text, shape.span, None, turn, is_inherent=True))
 
 
 def _read(it: Interpreter, node: ast.Expression, env: Env) -> Value:

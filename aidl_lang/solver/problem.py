@@ -6,7 +6,7 @@ constraints, and has a parent. A constraint held by a group mentions only unknow
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cached_property
@@ -46,12 +46,16 @@ class Constraint:
 
     `placed` are the unknowns that may move first to satisfy it (language design, section 7: what gives way).
     `weight` is None for a hard constraint, else the constraint is a preference.
+    `whole` are the groups it names as a whole, by their box or their place, `inside` those in which it names
+    something; they count where the problem is `named`.
     """
 
     group: int
     rows: tuple[Row, ...]
     placed: frozenset[int]
     weight: float | None = None
+    whole: frozenset[int] = frozenset()
+    inside: frozenset[int] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -87,6 +91,9 @@ class Problem:
     holder   (c,) the group that holds each constraint
     weight   (c,) NaN for a hard constraint, else the weight of the preference
     placed   (2, k) pairs of a constraint and an unknown that may move first to satisfy it, by constraint
+    whole    (2, k) pairs of a constraint and a group that it names as a whole, by its box or its place
+    inside   (2, k) pairs of a constraint and a group in which it names something
+    named    whether these pairs are known; else there is nothing but what the rows mention (see `naming`)
     observables: (group, tape node) for each coordinate that a reader of the drawing could see move, in the
              root's frame: degrees of freedom are counted on these, so that a frame and its contents moving
              against each other do not count.
@@ -103,6 +110,9 @@ class Problem:
     holder: NDArray[np.int64]
     weight: Floats
     placed: NDArray[np.int64]
+    whole: NDArray[np.int64]
+    inside: NDArray[np.int64]
+    named: bool = False
     longest: Floats | None = None
     observables: tuple[tuple[int, int], ...] = ()
     names: tuple[str, ...] = field(default=(), repr=False)
@@ -120,17 +130,37 @@ class Problem:
             strict=True,
         ):
             rows[owner].append(Row(expression, Relation.AT_MOST if at_most else Relation.EQUAL, scale))
-        placed: list[list[int]] = [[] for _ in self.holder]
-        for owner, unknown in self.placed.T.tolist():
-            placed[owner].append(unknown)
+        placed, whole, inside = (
+            _by_constraint(pairs, len(rows)) for pairs in (self.placed, self.whole, self.inside)
+        )
         return tuple(
-            Constraint(holder, tuple(rows[i]), frozenset(placed[i]), None if weight != weight else weight)
+            Constraint(
+                holder,
+                tuple(rows[i]),
+                placed[i],
+                None if weight != weight else weight,
+                whole[i],
+                inside[i],
+            )
             for i, (holder, weight) in enumerate(zip(self.holder.tolist(), self.weight.tolist(), strict=True))
         )
 
     def with_constraints(self, constraints: Sequence[Constraint]) -> Problem:
         """The same unknowns under other constraints."""
         return replace(self, **constraint_arrays(constraints))
+
+
+def _by_constraint(pairs: NDArray[np.int64], count: int) -> list[frozenset[int]]:
+    found: list[set[int]] = [set() for _ in range(count)]
+    for constraint, number in pairs.T.tolist():
+        found[constraint].add(number)
+    return list(map(frozenset, found))
+
+
+def _pairs(listed: Iterable[Iterable[int]]) -> NDArray[np.int64]:
+    """(2, k) the index of each set of numbers, and each number in it."""
+    found = [(index, number) for index, numbers in enumerate(listed) for number in sorted(numbers)]
+    return np.array(found, dtype=np.int64).reshape(-1, 2).T
 
 
 class ConstraintArrays(TypedDict):
@@ -140,12 +170,13 @@ class ConstraintArrays(TypedDict):
     holder: NDArray[np.int64]
     weight: Floats
     placed: NDArray[np.int64]
+    whole: NDArray[np.int64]
+    inside: NDArray[np.int64]
 
 
 def constraint_arrays(constraints: Sequence[Constraint]) -> ConstraintArrays:
     """Constraints as the arrays of a `Problem`."""
     rows = [(row, index) for index, constraint in enumerate(constraints) for row in constraint.rows]
-    pairs = [(index, unknown) for index, c in enumerate(constraints) for unknown in sorted(c.placed)]
     return {
         "rows": Rows(
             np.array([row.expression for row, _ in rows], dtype=np.int64),
@@ -155,7 +186,9 @@ def constraint_arrays(constraints: Sequence[Constraint]) -> ConstraintArrays:
         ),
         "holder": np.array([c.group for c in constraints], dtype=np.int64),
         "weight": np.array([np.nan if c.weight is None else c.weight for c in constraints]),
-        "placed": np.array(pairs, dtype=np.int64).reshape(-1, 2).T,
+        "placed": _pairs(c.placed for c in constraints),
+        "whole": _pairs(c.whole for c in constraints),
+        "inside": _pairs(c.inside for c in constraints),
     }
 
 

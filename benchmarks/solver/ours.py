@@ -85,6 +85,8 @@ def problem_of(sketch: Sketch) -> Problem:
         holder=np.zeros(count, dtype=np.int64),
         weight=np.full(count, np.nan),
         placed=np.zeros((2, 0), dtype=np.int64),
+        whole=np.zeros((2, 0), dtype=np.int64),
+        inside=np.zeros((2, 0), dtype=np.int64),
         observables=tuple((0, node) for node in writer.unknowns),
     )
 

@@ -1,0 +1,66 @@
+"""Which groups constraints name: what no constraint names rides along with the group around it.
+
+To name the box of a group is to name the group, and not what lies in it; to name something in a group is to
+name all groups around it, up to the one that holds the constraint.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from aidl_lang.solver.gradients import below
+from aidl_lang.solver.operations import Bools, Ints, Op
+from aidl_lang.solver.problem import Problem
+
+
+@dataclass(frozen=True)
+class Naming:
+    """
+    frames  (g,) whether a constraint around each group names it or something in it, so that its frame may
+            move; the others ride along
+    inside  (g,) whether a constraint names something of what the group itself draws
+    whole   (g,) whether a constraint names it as a whole, by its box or its place
+    """
+
+    frames: Bools
+    inside: Bools
+    whole: Bools
+
+
+def naming(problem: Problem) -> Naming:
+    """What the constraints of a problem name. Where all that is known is what their rows mention, every group
+    whose frame occurs in a row is named, and so is all that groups draw.
+    """
+    groups = len(problem.parent)
+    if not problem.named:
+        frames = _mentioned_frames(problem)
+        return Naming(frames, np.ones(groups, dtype=np.bool_), frames)
+    frames = np.zeros(groups, dtype=np.bool_)
+    parent, holder = problem.parent.tolist(), problem.holder.tolist()
+    pairs = {(holder[c], g) for named in (problem.whole, problem.inside) for c, g in named.T.tolist()}
+    for held_by, group in pairs:
+        while group > held_by:  # parents have lower numbers than their children
+            frames[group] = True
+            group = parent[group]
+    inside, whole = _marked(problem.inside[1], groups), _marked(problem.whole[1], groups)
+    own = problem.whole[1] == problem.holder[problem.whole[0]]
+    inside |= _marked(problem.whole[1][own], groups)  # its own box is what it draws
+    inside[0] = True
+    return Naming(frames, inside, whole)
+
+
+def _marked(numbers: Ints, count: int) -> Bools:
+    found = np.zeros(count, dtype=np.bool_)
+    found[numbers] = True
+    return found
+
+
+def _mentioned_frames(problem: Problem) -> Bools:
+    """The groups whose frames occur in any row."""
+    tape = problem.tape
+    nodes = np.array(below(tape, problem.rows.expression.tolist()), dtype=np.int64)
+    unknowns = tape.operands[nodes[tape.ops[nodes] == Op.UNKNOWN], 0]
+    moved = problem.frame_of[unknowns]
+    return _marked(moved[moved >= 0], len(problem.parent))
