@@ -396,7 +396,7 @@ def _fitted(
         if name not in arguments:
             if not optional:
                 return Mismatch(signature, f"needs `{name}`")
-            defaulted += 1
+            defaulted += not isinstance(kind, TruthType)  # a flag that nobody raised assumes nothing
         elif name != gathered:
             index = arguments[name][0]
             step = accepts(kind, given[index].type)

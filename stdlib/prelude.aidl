@@ -159,8 +159,8 @@ fn circumcenter_from(b: point, c: point) = ((c.y * dot(b, b) - b.y * dot(c, c)) 
 fn circle(a: point, b: point, c: point) =
     circle(center: circumcenter(a, b, c), radius: norm(a - circumcenter(a, b, c)))
 
-/// The arc through three points, in the order given.
-fn arc(start: point, mid: point, end: point) = arc(
+/// The arc from one point over another, which is named, to a third. Three points without names are centre, start and end.
+fn arc(start: point, end: point, mid: point) = arc(
     center: circumcenter(start, mid, end),
     start: start,
     end: end,

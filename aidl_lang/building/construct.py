@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.boxes import SIDES
+from aidl_lang.building.arcs import ROUND, check_bare_points, differ
 from aidl_lang.building.conditions import all_of, compare_numbers
 from aidl_lang.building.lettering import typeset
 from aidl_lang.building.state import Env, Interpreter
@@ -267,12 +268,14 @@ def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 
 def _by_angles_if_round(a: Arguments) -> Arguments:
-    """Three literal points of one circle are a radius and two angles: nothing is left to be held equal."""
+    """Three literal points of one circle, rounded as numbers are by hand, are a radius and two angles: nothing is
+    left to be held equal. The radius is that of the start.
+    """
     if not all(name in a and _is_literal(_written(a, name)) for name in ("center", "start", "end")):
         return a
     center = _written(a, "center")
     (radius, first), (other, last) = (_way(center, _written(a, name)) for name in ("start", "end"))
-    if abs(radius.value - other.value) > 1e-9 * radius.value:
+    if differ(radius.value, other.value) > ROUND:
         return a
     return {"center": center, "radius": radius, "start_angle": first, "end_angle": last}
 
@@ -353,6 +356,8 @@ CONSTRUCTORS: dict[str, Callable[[Interpreter, Geometry, Arguments, Env], None]]
 def construct(it: Interpreter, kind: str, arguments: Arguments, node: ast.Node, env: Env) -> Geometry:
     """A primitive from arguments that fit one of its constructors."""
     it.count_entity(node)
+    if kind == "arc" and isinstance(node, ast.Call):
+        check_bare_points(it, node, arguments)
     geometry = Geometry(kind, env.here, it.place(node))
     CONSTRUCTORS[kind](it, geometry, arguments, env)
     return geometry
