@@ -96,6 +96,7 @@ class Geometry:
     recipe     how its curves come from other outlines after solving
     finishes   sizes of the fillets and chamfers of its corners: `fillet` of a point or a whole outline,
                `end.fillet` of the end of a curve
+    attributes  what is said of it alone: `note`, and in a drawing `color`
     """
 
     type: str
@@ -115,6 +116,7 @@ class Geometry:
     reach: Structure | None = None
     recipe: Recipe | None = None
     finishes: dict[str, Num] = field(default_factory=dict)
+    attributes: dict[str, tuple[Value, ...]] = field(default_factory=dict)
     views: dict[Structure, dict[str, Value]] = field(default_factory=dict, repr=False)
     turns: dict[Structure, tuple[Expression, Expression]] = field(default_factory=dict, repr=False)
 

@@ -120,7 +120,7 @@ class _Reader:
             frame=Frame(
                 self.evaluate(frame.x), self.evaluate(frame.y), self.evaluate(frame.rotation), frame.mirrored
             ),
-            attributes={n: tuple(map(self._scalar, values)) for n, values in s.attributes.items()},
+            attributes=self._attributes(s),
             params=dict(self._params(s)),
             geometry=geometry,
             structures=children,
@@ -161,6 +161,9 @@ class _Reader:
                 return word
             case _:
                 return self._orientation(s.parent) if s.parent is not None else "top"
+
+    def _attributes(self, of: Structure | Geometry) -> dict[str, tuple[Scalar, ...]]:
+        return {name: tuple(map(self._scalar, values)) for name, values in of.attributes.items()}
 
     def _scalar(self, value: Value) -> Scalar:
         match value:
@@ -215,6 +218,7 @@ class _Reader:
             span=g.span,
             recipe=recipe,
             source=g.source.path if g.source is not None else None,
+            attributes=self._attributes(g),
         )
 
     def _recipe(self, recipe: Recipe) -> SolvedRecipe:
@@ -246,7 +250,8 @@ class _Reader:
         glyphs = tuple(_glyph(g, f"glyph[{i}]", glyph.curves, at) for i, glyph in enumerate(g.glyphs))
         values: Values = {"start": (x, y), "height": height, "angle": math.degrees(math.atan2(s, c))}
         whole = SolvedGeometry(g.name or g.type, g.path, g.type, values, None, glyphs, g.construction, g.span)
-        return replace(whole, source=g.source.path if g.source is not None else None)
+        source = g.source.path if g.source is not None else None
+        return replace(whole, source=source, attributes=self._attributes(g))
 
     def _at(self, value: Value) -> Vec:
         x, y = xy(value)

@@ -29,7 +29,7 @@ from aidl_lang.resolving.declare import Declarer, is_definition, made_by
 from aidl_lang.resolving.foreign import without_idle
 from aidl_lang.resolving.imports import ImportedModules, load_imports, with_inner_imports
 from aidl_lang.resolving.resolution import Resolution, library_scope
-from aidl_lang.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind, word_meant
+from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind, word_meant
 from aidl_lang.types import Signature
 
 if TYPE_CHECKING:
@@ -289,7 +289,7 @@ class Resolver:
         self.resolution.uses[node] = symbol
         if symbol.name != node.text:
             self.resolution.canonical[node] = symbol.name
-        if self.is_ordered and symbol.kind in UNKNOWNS and symbol.node is not None:
+        if self.is_ordered:
             complaints.check_order(self, node, symbol, scope)
 
     def _call(self, node: ast.Call, scope: Scope) -> None:
@@ -316,9 +316,18 @@ class Resolver:
         before, self.argument = self.argument, node
         candidates = self.resolution.candidates.get(node, ())
         for argument in node.arguments:
-            if not is_word(argument, candidates):
+            if not is_word(argument, candidates) or self._is_in_reach(argument.value, scope):
                 self.expression(argument.value, scope)
         self.argument = before
+
+    def _is_in_reach(self, node: ast.Expression, scope: Scope) -> bool:
+        """Whether a word for an option is here a name that the program declares."""
+        if self.is_library or not isinstance(node, ast.Name):
+            return False
+        symbol = scope.value(node.text)
+        if symbol is None or symbol.name != node.text:
+            return False
+        return not (self.is_ordered and complaints.is_below(node, symbol, scope))
 
     def _callable(self, signature: Signature) -> Symbol:
         if signature.node is None:

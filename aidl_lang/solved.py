@@ -78,6 +78,7 @@ class SolvedGeometry:
     parts   the named parts of a compound shape
     recipe  how the curves of an outline come from others
     source  the path of what it is a copy of
+    attributes  name → argument values as written: `note`, and in a drawing `color`
     """
 
     name: str
@@ -90,6 +91,7 @@ class SolvedGeometry:
     span: Span | None
     recipe: Recipe | None = None
     source: str | None = None
+    attributes: dict[str, tuple[Scalar, ...]] = field(default_factory=dict)
 
     def walk(self) -> Iterator[SolvedGeometry]:
         """This geometry and all its parts."""

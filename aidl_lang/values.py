@@ -218,6 +218,14 @@ def members(value: Value) -> Sequence[Value] | None:
             return None
 
 
+def holds(value: Value, kind: type) -> bool:
+    """Whether a value is of a kind, or a list with something of it."""
+    if isinstance(value, kind):
+        return True
+    items = members(value)
+    return items is not None and any(holds(item, kind) for item in items)
+
+
 def type_of(value: Value) -> Type:
     """The type by which overloads are chosen."""
     make = _types().get(type(value))

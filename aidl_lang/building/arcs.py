@@ -23,7 +23,7 @@ _HINT = "name them: `center`, `start` and `end`, or `start`, `mid` and `end`"
 
 
 def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, Value]) -> None:
-    """Warn of an arc whose first point is read as its centre unnamed, and whose others are not as far from it."""
+    """Warn of an arc whose first point is its centre for want of a name, and not as far from both others."""
     if any(a.name is not None and a.name.text == "center" for a in node.arguments):
         return
     a, b, c = (arguments.get(name) for name in _BY_CENTER)
@@ -39,8 +39,8 @@ def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, V
     meant, other = (_BY_MIDDLE, _BY_CENTER) if is_through else (_BY_CENTER, _BY_MIDDLE)
     it.report(
         _CODE,
-        f"the points of `{node.callee.text}` are centre, start and end, and here the start is {start:g} from the "
-        f"centre and the end {end:g}",
+        f"the points of `{node.callee.text}` are centre, start and end, and here the start is {start:g} "
+        f"from the centre and the end {end:g}",
         node,
         hints=[f"or write `{_named(node, other)}` if that is meant" if is_plain else _HINT],
         fix=_fix(node, meant) if is_plain else None,

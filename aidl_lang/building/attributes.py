@@ -1,26 +1,91 @@
-"""Attributes of structures: which there are, and what they take."""
+"""Attributes of structures and of geometry: which there are, and what they take."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from aidl_lang import ast, units
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.builtins import ATTRIBUTES, WORDED
-from aidl_lang.model import Structure
+from aidl_lang.model import Geometry, Structure
 from aidl_lang.names import find
 from aidl_lang.values import (
     Nothing,
     Num,
     Text,
     Value,
+    holds,
+    members,
 )
 
 
 def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attribute], scope: Scope) -> None:
     """Read what the checker has found to be attributes."""
+    for name, values, attribute in _read(it, attributes, Env(scope, s.parent or s, Reach.OWN)):
+        if _fits(it, name, values, attribute):
+            s.attributes[name] = tuple(values)
+
+
+def read_own_attributes(
+    it: Interpreter, node: ast.Assign, value: Value, container: Structure | Geometry, scope: Scope
+) -> None:
+    """Read what is said of geometry alone; what holds for structures only is an error."""
+    things = list(_geometry_in(value))
+    here = container if isinstance(container, Structure) else container.owner
+    for name, values, attribute in _read(it, node.attributes, Env(scope, here, Reach.OWN)):
+        is_stroke = name == "color" and here is container and here.kind == "drawing"
+        if not things or not (name == "note" or is_stroke):
+            _misplaced(it, node, name, attribute, value, container)
+        elif _fits(it, name, values, attribute):
+            for thing in things:
+                thing.attributes = thing.attributes | {name: tuple(values)}
+
+
+def _geometry_in(value: Value) -> Iterator[Geometry]:
+    """The geometry that a value is, or is a list of; nothing if there is anything else in it."""
+    if isinstance(value, Geometry):
+        yield value
+    elif (items := members(value)) is not None:
+        found = [list(_geometry_in(item)) for item in items]
+        yield from (g for geometry in found for g in geometry if all(found))
+
+
+def _misplaced(
+    it: Interpreter,
+    node: ast.Assign,
+    name: str,
+    attribute: ast.Attribute,
+    value: Value,
+    container: Structure | Geometry,
+) -> None:
+    written, thing = attribute.span.one_line, node.name.text
+    if not any(_geometry_in(value)):
+        what = "there already" if holds(value, Structure) else "no part of the drawing"
+        why, hint = f"`{thing}` is {what}", "put it before the definition of what it is about"
+    elif isinstance(container, Geometry):
+        why = f"`{thing}` is a part of the shape `{container.type}`"
+        hint = f"put `{written}` before the structure that draws the shape"
+    else:
+        kind = container.kind if container.kind in ("drawing", "hole") else "solid"
+        why = f"`{thing}` is geometry of {container.kind} `{container.name}`"
+        hint = (
+            f"put it before `{container.name}`, or make `{thing}` a part of its own: "
+            f"`{written} {kind} {thing} {{ outline = {node.value.span.one_line} }}`"
+        )
+    it.report(
+        "E0520",
+        f"`@{attribute.name.text}` is said of a structure, and {why}",
+        attribute,
+        hints=[hint],
+    )
+
+
+def _read(
+    it: Interpreter, attributes: Iterable[ast.Attribute], env: Env
+) -> Iterator[tuple[str, list[Value], ast.Attribute]]:
+    """Attributes with the values of their arguments."""
     for attribute in attributes:
         name = find(attribute.name.text, dict.fromkeys(ATTRIBUTES))
         if name is None:
@@ -28,11 +93,10 @@ def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attr
         values: list[Value] = []
         for argument in attribute.arguments:
             value = argument.value
-            if name in WORDED and isinstance(value, ast.Name) and scope.find(value.text) is None:
+            if name in WORDED and isinstance(value, ast.Name) and env.scope.find(value.text) is None:
                 value = ast.String(value.text, span=value.span)
-            values.append(evaluate(it, value, Env(scope, s.parent or s, Reach.OWN)))
-        if _fits(it, name, values, attribute):
-            s.attributes["color" if name == "colour" else name] = tuple(values)
+            values.append(evaluate(it, value, env))
+        yield "color" if name == "colour" else name, values, attribute
 
 
 ORIENTATIONS = ("top", "front", "side")

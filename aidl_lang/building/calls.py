@@ -75,7 +75,7 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
     if site.makes_outline:
         candidates = usable(candidates, given, env)
         site = site_of(it, node, candidates)
-    chosen = site.meaning(given)
+    chosen, given = site.reading(given)
     if isinstance(chosen, list):
         no_overload(it, node, chosen, nodes, given)
         return NOTHING

@@ -268,8 +268,8 @@ def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 
 def _by_angles_if_round(a: Arguments) -> Arguments:
-    """Three literal points of one circle, rounded as numbers are by hand, are a radius and two angles: nothing is
-    left to be held equal. The radius is that of the start.
+    """Three literal points of one circle, rounded as numbers are by hand, are the radius of the start and two
+    angles: nothing is left to be held equal.
     """
     if not all(name in a and _is_literal(_written(a, name)) for name in ("center", "start", "end")):
         return a

@@ -129,7 +129,7 @@ def _geometry_in(value: Value | None) -> Iterator[Geometry]:
 # --- Where a thing is ------------------------------------------------------------------------------
 
 
-def centre_of(it: Interpreter, value: Value, node: ast.Call, env: Env) -> Place:
+def centre_of(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Place:
     """The place a thing turns and grows about: its centre if it has one, a structure's origin, else the
     middle of its box.
     """
@@ -155,7 +155,7 @@ def centre_of(it: Interpreter, value: Value, node: ast.Call, env: Env) -> Place:
     return x, y
 
 
-def _own_centre(it: Interpreter, g: Geometry, node: ast.Call, here: Structure) -> PointVal | None:
+def _own_centre(it: Interpreter, g: Geometry, node: ast.Node, here: Structure) -> PointVal | None:
     found: Value | None
     if isinstance(g.scope, Scope):
         binding = g.scope.values.get("center")

@@ -11,16 +11,17 @@ from aidl_lang.building.copies import centre_of
 from aidl_lang.building.derive import Copier
 from aidl_lang.building.edits import Edit, follows, motion_of, referred, refuse
 from aidl_lang.building.evaluate import evaluate
-from aidl_lang.building.motion import Motion
+from aidl_lang.building.motion import STILL, Motion, turned
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.model import Geometry
-from aidl_lang.primitives import DIRECTIONS
+from aidl_lang.primitives import DIRECTIONS, xy
 from aidl_lang.types import Binding, PointType
 from aidl_lang.units import ANGLE, LENGTH, UNITS
 from aidl_lang.values import (
     ListVal,
     Num,
     PointVal,
+    Status,
     Value,
     number,
 )
@@ -29,50 +30,100 @@ _CLOSE = 1e-9
 """How far two numbers may differ, relative to the size of the shape, and count as one."""
 
 
-def edited(it: Interpreter, node: ast.Assign, value: Value, edits: Sequence[Edit], env: Env) -> Value:
-    """What an assignment makes, with the edits below it applied."""
-    if not edits:
+@dataclass(frozen=True)
+class Placed:
+    """Where `at` and `rotated` put a geometry, and how exactly."""
+
+    at: PointVal
+    turn: Num | None
+
+    @property
+    def motion(self) -> Motion:
+        return turned(self.turn.expression if self.turn is not None else ex.ZERO, to=xy(self.at))
+
+    def point(self, p: PointVal) -> PointVal:
+        """A point as exact as what places it."""
+        return PointVal(self._as_exact(p.x, self.at.x), self._as_exact(p.y, self.at.y))
+
+    def direction(self, angle: Num) -> Num:
+        if self.turn is None:
+            return angle
+        if self.turn.status is Status.GUESS:
+            return replace(angle, status=Status.GUESS)
+        return self._as_exact(angle, self.turn)
+
+    @staticmethod
+    def _as_exact(n: Num, by: Num) -> Num:
+        return replace(n, status=by.status) if by.status >= max(n.status, Status.FIXED) else n
+
+
+def edited(
+    it: Interpreter,
+    node: ast.Assign,
+    value: Value,
+    edits: Sequence[Edit],
+    env: Env,
+    placed: Placed | None = None,
+) -> Value:
+    """What an assignment makes, where `at` puts it and with the edits below it applied."""
+    cause = edits[0].call if edits else node.placement
+    if cause is None or (not edits and placed is None):
         return value
     match value:
         case PointVal():
-            return _edited_point(it, node.name.text, value, edits, env)
+            return _edited_point(it, node.name.text, value, edits, env, cause, placed)
         case Geometry(source=None, recipe=None, name=None):
-            return _Editing(it, node, value, edits, env).run()
+            return _Editing(it, node, value, edits, env, cause, placed).run()
         case _:
-            refuse(it, edits[0].call, node.name.text, value)
+            refuse(it, cause, node.name.text, value)
             return value
 
 
-def _edited_point(it: Interpreter, name: str, at: PointVal, edits: Sequence[Edit], env: Env) -> Value:
+def _edited_point(
+    it: Interpreter,
+    name: str,
+    at: PointVal,
+    edits: Sequence[Edit],
+    env: Env,
+    cause: ast.Node,
+    placed: Placed | None,
+) -> Value:
     if (source := referred(at)) is not None:
-        follows(it, edits[0].call, name, source)
+        follows(it, cause, name, source)
         return at
-    return motion_of(it, edits, at, (at.x.expression, at.y.expression), env.here).point(at)
+    motion = placed.motion if placed is not None else STILL
+    moved = motion_of(it, edits, at, (at.x.expression, at.y.expression), env.here, motion).point(at)
+    return placed.point(moved) if placed is not None else moved
 
 
 @dataclass
 class _Editing:
-    """The making of one geometry that is edited. `first` is what the program would make without edits."""
+    """The making of one geometry that is placed or edited: `first` is what the program makes without that,
+    `cause` what asks for it.
+    """
 
     it: Interpreter
     node: ast.Assign
     first: Geometry
     edits: Sequence[Edit]
     env: Env
+    cause: ast.Node
+    placed: Placed | None = None
     refers: str | None = None
 
     def run(self) -> Value:
-        centre = centre_of(self.it, self.first, self.edits[0].call, self.env)
+        centre = centre_of(self.it, self.first, self.cause, self.env)
         written = ex.constant(centre[0].value), ex.constant(centre[1].value)
-        motion = motion_of(self.it, self.edits, self.first, written, self.env.here)
+        start = self.placed.motion if self.placed is not None else STILL
+        motion = motion_of(self.it, self.edits, self.first, written, self.env.here, start)
         if (made := self._by_arguments(motion)) is not None:
             return made
         if self.refers is not None:
-            follows(self.it, self.edits[0].call, self.node.name.text, self.refers)
+            follows(self.it, self.cause, self.node.name.text, self.refers)
             return self.first
         unturned = Motion(written, motion.place(*written), scale=motion.scale)
         if (made := self._by_arguments(unturned)) is not None:
-            centre = centre_of(self.it, made, self.edits[0].call, self.env)
+            centre = centre_of(self.it, made, self.cause, self.env)
             return self._as_whole(made, replace(motion, about=centre, to=centre, scale=ex.ONE))
         away = [ex.sub(b, a) for a, b in zip(written, motion.place(*written), strict=True)]
         to = ex.add(centre[0], away[0]), ex.add(centre[1], away[1])
@@ -81,6 +132,13 @@ class _Editing:
     def _as_whole(self, made: Geometry, motion: Motion) -> Geometry:
         """A shape that its arguments cannot turn: everything in it turns."""
         made.known_as = None
+        if (
+            self.placed is not None
+            and self.placed.turn is not None
+            and self.placed.turn.status is Status.GUESS
+        ):
+            turn = self.it.unknown(motion.turn.value, made, "rotation", owner=made.owner, dimension=ANGLE)
+            motion = replace(motion, turn=turn, cos=ex.cos(turn), sin=ex.sin(turn))
         turned = Copier(self.it, self.env.here, motion, span=made.span).geometry(made)
         turned.source = None  # it stands in the place of what was written, and is no copy to the author
         return turned
@@ -112,13 +170,15 @@ class _Editing:
         match value:
             case PointVal():
                 self._refuse(value)
-                return motion.point(value)
+                moved = motion.point(value)
+                return self.placed.point(moved) if self.placed is not None else moved
             case ListVal(items):
                 return ListVal(tuple(self._argument(name, item, motion) for item in items))
             case Num() if name in DIRECTIONS:
                 if motion.turn.value % 360.0 != 0.0:
                     self._refuse(value)
-                return replace(value, expression=motion.direction(value.expression))
+                seen = replace(value, expression=motion.direction(value.expression))
+                return self.placed.direction(seen) if self.placed is not None else seen
             case Num():
                 if motion.scale.value != 1.0:
                     self._refuse(value)

@@ -165,9 +165,16 @@ def _tried(it: Interpreter, action: Callable[[], T]) -> T | None:
 # --- What an edit does -----------------------------------------------------------------------------
 
 
-def motion_of(it: Interpreter, edits: Sequence[Edit], thing: Value, centre: Place, here: Structure) -> Motion:
-    """All edits together, as one motion in numbers; those that fail are reported and change nothing."""
-    motion = STILL
+def motion_of(
+    it: Interpreter,
+    edits: Sequence[Edit],
+    thing: Value,
+    centre: Place,
+    here: Structure,
+    placed: Motion = STILL,
+) -> Motion:
+    """All edits together, as one motion after that of `at`; one that fails is told and changes nothing."""
+    motion = placed
     for edit in edits:
         place = motion.place(*centre)
         now = thing
@@ -234,19 +241,30 @@ def _seeing(edit: Edit, thing: Value) -> Scope:
     return scope
 
 
-def follows(it: Interpreter, call: ast.Call, name: str, source: str) -> None:
-    word = call.callee.text
+def follows(it: Interpreter, cause: ast.Node, name: str, source: str) -> None:
+    word, other = _asked(cause, name)
     it.report(
         "E0330",
         f"`{name}` follows from {source}, so `{word}` has nothing to change there",
-        call,
-        hints=[f"change {source} instead, or make a copy: `other = {call.span.one_line}`"],
+        cause,
+        hints=[f"change {source} instead, or make a copy: `other = {other}`"],
     )
 
 
-def refuse(it: Interpreter, call: ast.Call, name: str, value: Value) -> None:
+def _asked(cause: ast.Node, name: str) -> tuple[str, str]:
+    """The word of an edit or a placement, and a copy of what it is about that is moved so."""
+    if isinstance(cause, ast.Call):
+        return cause.callee.text, cause.span.one_line
+    assert isinstance(cause, ast.Placement)
+    moved = (
+        f"copy({name}, by: {cause.at.span.one_line})" if cause.at is not None else f"copy({name}, angle: …)"
+    )
+    return "at" if cause.at is not None else "rotated", moved
+
+
+def refuse(it: Interpreter, cause: ast.Node, name: str, value: Value) -> None:
     """An edit of what has nothing of its own to change."""
-    word = call.callee.text
+    word, other = _asked(cause, name)
     source: Geometry | Structure | Instantiation | None = None
     if isinstance(value, Structure):
         source = value.source
@@ -258,19 +276,17 @@ def refuse(it: Interpreter, call: ast.Call, name: str, value: Value) -> None:
         it.report(
             "E0330",
             f"`{name}` follows from a pattern: its members have no place of their own",
-            call,
-            hints=[
-                f"change its centre, its pitch or its radius, or make a copy: `other = {call.span.one_line}`"
-            ],
+            cause,
+            hints=[f"change its centre, its pitch or its radius, or make a copy: `other = {other}`"],
         )
     elif source is not None:
         named = isinstance(source, Geometry | Structure) and source.name
-        follows(it, call, name, f"`{source.name}`" if named else "what it copies")  # type: ignore[union-attr]
+        follows(it, cause, name, f"`{source.name}`" if named else "what it copies")  # type: ignore[union-attr]
     else:
         it.report(
             "E0333",
             f"`{word}` changes a geometry or a structure, and `{name}` is {kind_of(value)}",
-            call,
+            cause,
             hints=["name one thing that is made in this body above the line"],
         )
 

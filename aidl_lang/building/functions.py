@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from aidl_lang import ast, units
 from aidl_lang import expression as ex
@@ -23,6 +23,7 @@ from aidl_lang.values import (
     ListVal,
     Num,
     PointVal,
+    RangeVal,
     Status,
     Text,
     Value,
@@ -182,11 +183,18 @@ def _half_up(value: float) -> float:
 
 
 def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    items = members(a["values"])
-    if items is None:
-        it.report("E0302", f"`len` counts the members of a list, and this is {kind_of(a['values'])}", node)
-        return NOTHING
-    return number(float(len(items)))
+    items: Sequence[Value] | None
+    match values := a["values"]:
+        case Text(text):
+            return number(float(len(text)))
+        case RangeVal():
+            items = lists.run(it, values, node)
+        case _:
+            items = members(values)
+            if items is None:
+                what = f"the members of a list or the letters of a text, and this is {kind_of(values)}"
+                it.report("E0302", f"`len` counts {what}", node)
+    return number(float(len(items))) if items is not None else NOTHING
 
 
 def _choice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
 from aidl_lang import ast
@@ -11,8 +11,11 @@ from aidl_lang.building.scopes import Candidate, Scope
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.builtins import OUTLINES, SIGNATURES, is_word
 from aidl_lang.names import find, nearest
+from aidl_lang.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.types import ANY, Binding, Given, Mismatch, Signature, Type, with_article
 from aidl_lang.values import Namespace, Text, Value, kind_of, type_of
+
+_NO_NAMES: Mapping[ast.Node, Symbol] = {}
 
 
 class Site:
@@ -20,15 +23,21 @@ class Site:
 
     nodes          its arguments
     words          for each of them, the text it is if it is a bare word
+    doubtful       the arguments, by index, that are such words and names in reach as well
     instantiates   whether an overload is a template
     makes_outline  whether the overloads are those of an outline made of others
     """
 
-    def __init__(self, node: ast.Call, signatures: list[Signature]) -> None:
+    def __init__(
+        self, node: ast.Call, signatures: list[Signature], names: Mapping[ast.Node, Symbol] = _NO_NAMES
+    ) -> None:
         self.signatures = signatures
         self.nodes = tuple(a.value for a in node.arguments)
+        words = [i for i, a in enumerate(node.arguments) if is_word(a, signatures)]
+        self.doubtful = [i for i in words if _is_declared(names.get(self.nodes[i]))]
         self.words = tuple(
-            Text(a.value.span.text) if is_word(a, signatures) else None for a in node.arguments
+            Text(n.span.text) if i in words and i not in self.doubtful else None
+            for i, n in enumerate(self.nodes)
         )
         self.instantiates = any(s.kind is ast.Structure for s in signatures)
         self.makes_outline = bool(signatures) and signatures[0].name in OUTLINES
@@ -52,6 +61,24 @@ class Site:
         self._last = kinds, known
         return known
 
+    def reading(self, values: list[Value]) -> tuple[Binding | list[Mismatch], list[Value]]:
+        """Which overload is meant, and the arguments: a name in reach is the word for an option only where it
+        does not fit.
+        """
+        chosen = self.meaning(values)
+        if isinstance(chosen, list) and self.doubtful:
+            before = len(values) - len(self.nodes)
+            worded = list(values)
+            for index in self.doubtful:
+                worded[before + index] = Text(self.nodes[index].span.text)
+            if isinstance(other := self.meaning(worded), Binding):
+                return other, worded
+        return chosen, values
+
+
+def _is_declared(symbol: Symbol | None) -> bool:
+    return symbol is not None and symbol.kind is not SymbolKind.WORD
+
 
 def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) -> Site:
     """What is known of a call whose name has these overloads; a body that runs again defines them anew."""
@@ -59,7 +86,11 @@ def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) ->
     known = it.sites.get(node)
     if known is None or known.signatures != signatures:
         is_standard = node.span.source in it.library_sources and all(s.standard for s in signatures)
-        made = _standard_site(node, tuple(signatures)) if is_standard else Site(node, signatures)
+        made = (
+            _standard_site(node, tuple(signatures))
+            if is_standard
+            else Site(node, signatures, it.program.resolution.uses)
+        )
         known = it.sites[node] = made
     return known
 

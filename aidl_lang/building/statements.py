@@ -7,11 +7,12 @@ from collections.abc import Mapping
 
 from aidl_lang import ast
 from aidl_lang import expression as ex
+from aidl_lang.building.attributes import read_own_attributes
 from aidl_lang.building.blocks import declared_names, run_block
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.construct import loose_point, refuses_measure
 from aidl_lang.building.declare import adopt, declare, give_name, index_values
-from aidl_lang.building.editing import edited
+from aidl_lang.building.editing import Placed, edited
 from aidl_lang.building.edits import check_edit, edits_on, is_edit
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.impose import record_assertion
@@ -19,7 +20,7 @@ from aidl_lang.building.params import read_param
 from aidl_lang.building.scopes import LetBinding, ParamBinding, Scope, VarBinding
 from aidl_lang.building.settle import Settling
 from aidl_lang.building.state import Env, Executor, Interpreter, Reach
-from aidl_lang.building.structures import build_structure
+from aidl_lang.building.structures import build_structure, place_of
 from aidl_lang.model import Geometry, Structure
 from aidl_lang.values import (
     NOTHING,
@@ -32,6 +33,8 @@ from aidl_lang.values import (
     PointVal,
     Status,
     StructureCopy,
+    Value,
+    holds,
     kind_of,
 )
 
@@ -40,42 +43,70 @@ def _assign(it: Interpreter, node: ast.Assign, scope: Scope, here: Structure) ->
     indices = index_values(it, node.indices, scope, here)
     if indices is None:
         return
-    env = Env(scope, here, Reach.OWN)
-    value = evaluate(it, node.value, env)
-    if not isinstance(value, Nothing | Instantiation):
-        value = edited(it, node, value, edits_on(it, node.name.text, indices, scope), env)
+    value = _made(it, node, scope, here, indices)
     if isinstance(value, Nothing):
         declare(it, scope, node.name, indices, NOTHING, node)
         return
     is_new = isinstance(value, Instantiation | StructureCopy | Pattern)
+    was_there = holds(value, Structure)
     value = Settling(it, node, scope, here).whole(value, indices)
-    if is_new:
-        declare(it, scope, node.name, indices, value, node)
+    container = scope.declaring().container or here
+    if not is_new:
+        value = _named(it, node, value, scope, here, indices)
+    if was_there or not holds(value, Structure):  # else they are those of the structures made here
+        read_own_attributes(it, node, value, container, scope)
+    if not indices and not isinstance(value, Array | Structure | Geometry | ListVal | PointVal):
+        scope.values[node.name.text] = LetBinding(node.value, scope)
         return
+    declare(it, scope, node.name, indices, value, node)
+
+
+def _made(
+    it: Interpreter, node: ast.Assign, scope: Scope, here: Structure, indices: tuple[int, ...]
+) -> Value:
+    """What an assignment makes: placed, and edited by the statements below it."""
+    env = Env(scope, here, Reach.OWN)
+    value = evaluate(it, node.value, env)
+    if isinstance(value, Nothing | Instantiation):
+        return value
+    placed = None
     if node.placement is not None:
-        it.report(
-            "E0509",
-            f"`at` and `rotated` place structures, and `{node.name.text}` is {kind_of(value)}",
-            node.placement,
-            hints=["geometry is placed by its own points, as in `center: (10, 0)`"],
-        )
+        if isinstance(value, Geometry | PointVal):
+            placed = Placed(*place_of(it, node.placement, env))
+        elif not isinstance(value, StructureCopy | Pattern):
+            it.report(
+                "E0509",
+                f"`at` and `rotated` place one structure or geometry, not {kind_of(value)}",
+                node.placement,
+                hints=["place each thing where it is made"],
+            )
+    return edited(it, node, value, edits_on(it, node.name.text, indices, scope), env, placed)
+
+
+def _named(
+    it: Interpreter,
+    node: ast.Assign,
+    value: Value,
+    scope: Scope,
+    here: Structure,
+    indices: tuple[int, ...],
+) -> Value:
+    """What is there under the name from now on: a literal point is geometry then."""
     container = scope.declaring().container or here
     if isinstance(value, PointVal) or (
         isinstance(value, ListVal) and not indices and _is_literal_point(node.value)
     ):
-        at = as_point(it, value, node.value, env)
-        if at is not None:
-            it.count_entity(node)
-            dot = Geometry("point", here, it.place(node))
-            value = dot
-            give_name(dot, node.name.text, indices, container, node)
-            dot.fields = {"at": loose_point(it, at, dot)}
-    elif isinstance(value, Geometry | ListVal):
+        at = as_point(it, value, node.value, Env(scope, here, Reach.OWN))
+        if at is None:
+            return value
+        it.count_entity(node)
+        dot = Geometry("point", here, it.place(node))
+        give_name(dot, node.name.text, indices, container, node)
+        dot.fields = {"at": loose_point(it, at, dot)}
+        return dot
+    if isinstance(value, Geometry | ListVal):
         adopt(value, node.name.text, indices, container, node)
-    elif (isinstance(value, Num | bool) or not isinstance(value, Array | Structure)) and not indices:
-        scope.values[node.name.text] = LetBinding(node.value, scope)
-        return
-    declare(it, scope, node.name, indices, value, node)
+    return value
 
 
 def _is_literal_point(node: ast.Expression) -> bool:

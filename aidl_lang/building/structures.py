@@ -144,15 +144,7 @@ def _place(
                 "W0502", "the root's frame is fixed, so `at` and `rotated` change nothing here", placement
             )
         return
-    env = Env(scope, s.parent, Reach.OWN)
-    at = None
-    if placement is not None and placement.at is not None:
-        value = evaluate(it, placement.at, env)
-        at = as_point(it, value, placement.at, env)
-        if at is None and not isinstance(value, Nothing):
-            it.report("E0302", f"`at` wants a point, not {kind_of(value)}", placement.at)
-    at = at or PointVal(number(0.0, LENGTH), number(0.0, LENGTH))
-    turn = _rotation(it, placement, env)
+    at, turn = place_of(it, placement, Env(scope, s.parent, Reach.OWN))
     if edits:
         at, turn = frame_edited(it, edits, s, at, turn)
     x, y = (
@@ -166,6 +158,17 @@ def _place(
         rotation = it.unknown(turn.value, s, "rotation", owner=s.parent, dimension=ANGLE, frame_of=s)
         it.became(turn, rotation, s, "rotation", ANGLE)
     s.frame = Frame(x, y, rotation)
+
+
+def place_of(it: Interpreter, placement: ast.Placement | None, env: Env) -> tuple[PointVal, Num | None]:
+    """What `at` and `rotated` say, the origin where they do not."""
+    at = None
+    if placement is not None and placement.at is not None:
+        value = evaluate(it, placement.at, env)
+        at = as_point(it, value, placement.at, env)
+        if at is None and not isinstance(value, Nothing):
+            it.report("E0302", f"`at` wants a point, not {kind_of(value)}", placement.at)
+    return at or PointVal(number(0.0, LENGTH), number(0.0, LENGTH)), _rotation(it, placement, env)
 
 
 def _rotation(it: Interpreter, placement: ast.Placement | None, env: Env) -> Num | None:

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 from aidl_lang import ast, units
 from aidl_lang.binding import outcomes
-from aidl_lang.builtins import COPYING, PATTERNS
+from aidl_lang.builtins import COPYING, PATTERNS, is_word
 from aidl_lang.checking import fields
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, Place, joined
 from aidl_lang.checking.habits import check_habits
 from aidl_lang.checking.misfits import no_overload
 from aidl_lang.checking.standard import CONSTANT, result
-from aidl_lang.resolving.symbols import SymbolKind
+from aidl_lang.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.types import (
     ANY,
     AnyType,
@@ -26,6 +26,7 @@ from aidl_lang.types import (
     NumberType,
     Signature,
     StructureType,
+    TextType,
     TruthType,
     Type,
 )
@@ -48,6 +49,13 @@ def call(check: Inference, node: ast.Call) -> Fact:
     given = _given(node, nodes, facts)
     found = outcomes(candidates, given)
     fits = [o for o in found if isinstance(o, Binding)]
+    if not fits and (words := _words(check, node, candidates)):
+        first = len(nodes) - len(node.arguments)
+        worded = [replace(g, type=TextType()) if i - first in words else g for i, g in enumerate(given)]
+        if fits := [o for o in outcomes(candidates, worded) if isinstance(o, Binding)]:
+            facts = [Fact(TextType()) if i - first in words else f for i, f in enumerate(facts)]
+            for index, word in words.items():
+                check.resolution.uses[node.arguments[index].value] = Symbol(word, SymbolKind.WORD)
     if not fits:
         check.rejected.append(node)
         no_overload(check, node, nodes, given, [o for o in found if isinstance(o, Mismatch)])
@@ -69,6 +77,15 @@ def call(check: Inference, node: ast.Call) -> Fact:
     if chosen.node is not None and (symbol := check.resolution.of_definition.get(chosen.node)) is not None:
         check.resolution.uses[node] = symbol
     return _result(check, chosen, nodes, facts, reads)
+
+
+def _words(check: Inference, node: ast.Call, candidates: Sequence[Signature]) -> dict[int, str]:
+    """The arguments, by index, that are names in reach and could be words for an option as well."""
+    return {
+        i: a.value.span.text
+        for i, a in enumerate(node.arguments)
+        if a.value in check.resolution.uses and is_word(a, candidates)
+    }
 
 
 def arguments(check: Inference, node: ast.Call) -> list[ast.Expression]:

@@ -112,6 +112,12 @@ def export(job: Job, suffix: str) -> Exported:
     _refuse(suffix, "--sheet", options.sheet is not None and not wanted.cuts)
     _refuse(suffix, "--kerf", options.kerf > 0 and not wanted.cuts)
     _refuse(suffix, "--tile", options.tile is not None and not wanted.tiles)
+    if options.dimension and options.for_cutter and wanted.cuts:
+        raise ExportError(
+            "E0924",
+            "`--dimension` explains the assembled drawing and has no place among what a cutter follows",
+            "write it to a file of its own, without `--cut`, `--sheet` and `--kerf`",
+        )
     jobs, notes = [job], [] if suffix == ".json" else _emptiness(job)
     if options.sheet is not None or options.kerf:
         from aidl_lang.export.sheets import prepared

@@ -192,6 +192,8 @@ def _geometry(g: SolvedGeometry) -> Json:
         entry |= {name: g.values[name] for name in fields if name in g.values}
     if g.construction:
         entry["construction"] = True
+    if g.attributes:
+        entry["attributes"] = {name: list(values) for name, values in g.attributes.items()}
     return entry
 
 

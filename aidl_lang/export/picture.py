@@ -34,7 +34,7 @@ def picture(job: Job) -> Picture:
     box = _picture_box(job.model, job.drawing, options.show)
     size = max(box[2] - box[0], box[3] - box[1]) or 1.0
     seen, dimensions = box, tuple[Group, ...]()
-    if options.dimension and not options.for_cutter:
+    if options.dimension:
         from aidl_lang.export.dimensioning import dimensioned
 
         seen, dimensions = dimensioned(job.model, job.drawing, box)

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 from aidl_lang.diagnostics import Diagnostic, ordered
@@ -305,17 +305,29 @@ def _inked(
     notes: list[Diagnostic],
 ) -> Iterator[Stroke]:
     """The strokes of a drawing; a warning if it was given the colour of what it lies on."""
-    lost = []
+    lost: dict[str, list[str]] = {}
     for shape in shapes:
+        look = _styled(style, shape.geometry, notes)
+        is_asked = is_own or look is not style
         numbers = [number for _, number in shape.leaves]
-        hidden = ground.hides(style.color, numbers)
-        if is_own and hidden and all(hidden):
-            lost.append(shape.geometry.name)
-        over = style.color if any(hidden) and not is_own else None
+        hidden = ground.hides(look.color, numbers)
+        if is_asked and look.color and hidden and all(hidden):
+            lost.setdefault(look.color, []).append(shape.geometry.name)
+        over = look.color if any(hidden) and not is_asked else None
         pieces = tuple(ground.network.curves[number] for number in numbers)
-        yield Stroke(drawing.path, shape.geometry.path, pieces, style, over=over)
-    if lost and style.color:
-        notes.append(unseen_note(drawing, lost, style.color))
+        yield Stroke(drawing.path, shape.geometry.path, pieces, look, over=over)
+    notes += [unseen_note(drawing, names, color) for color, names in lost.items()]
+
+
+def _styled(style: Style, geometry: SolvedGeometry, notes: list[Diagnostic]) -> Style:
+    """The style of a geometry: that of its structure, but for a colour of its own."""
+    values = geometry.attributes.get("color")
+    if not values:
+        return style
+    if (color := css_color(values)) is None:
+        notes.append(color_note(geometry, values))
+        return style
+    return replace(style, color=color)
 
 
 def _colored_drawings(root: SolvedStructure) -> set[str]:

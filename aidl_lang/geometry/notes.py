@@ -370,13 +370,13 @@ _MEASURES = ("radius", "rx", "width", "length", "size", "diameter", "module")
 """What a geometry may be held open by."""
 
 
-def color_note(structure: SolvedStructure, values: tuple[Scalar, ...]) -> Diagnostic:
+def color_note(of: SolvedStructure | SolvedGeometry, values: tuple[Scalar, ...]) -> Diagnostic:
     written = ", ".join(map(str, values))
     similar = similar_colors(str(values[0])) if len(values) == 1 else []
     hints = ["a colour is a CSS name, `#rrggbb`, or three numbers from 0 to 255"]
     if similar:
         hints.insert(0, f"did you mean {' or '.join(f'`{s}`' for s in similar)}?")
-    fix, span = None, structure.span
+    fix, span = None, of.span
     if (
         similar
         and span
@@ -386,7 +386,7 @@ def color_note(structure: SolvedStructure, values: tuple[Scalar, ...]) -> Diagno
         fix = Fix(f"write `{similar[0]}`", (Edit(place, similar[0]),))
     return Diagnostic(
         "W0707",
-        f"`{written}` is no colour; `{structure.path}` is drawn in its usual one",
+        f"`{written}` is no colour; `{of.path}` is drawn in its usual one",
         span,
         "",
         (),

@@ -10,7 +10,7 @@ from aidl_lang.builtins import WORDS
 from aidl_lang.diagnostics import Edit, Fix, Label
 from aidl_lang.names import fold, is_slip, nearest
 from aidl_lang.resolving.foreign import call_answer, value_hint
-from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind, word_meant
+from aidl_lang.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind, word_meant
 from aidl_lang.source import Span
 from aidl_lang.synonyms import FIELDS
 from aidl_lang.types import Signature
@@ -186,13 +186,21 @@ def check_aliases(resolver: Resolver, scope: Scope) -> None:
         )
 
 
+def is_below(node: ast.Name, symbol: Symbol, scope: Scope) -> bool:
+    """Whether what a name stands for exists from a later line on only."""
+    if symbol.kind not in UNKNOWNS or symbol.node is None or symbol.is_array:
+        return False
+    if symbol.scope is None or symbol.scope.homes != scope.homes:
+        return False
+    here, place = node.span, symbol.node.span
+    return here.source is place.source and here.start < place.end
+
+
 def check_order(resolver: Resolver, node: ast.Name, symbol: Symbol, scope: Scope) -> None:
     """Geometry and unknowns exist from their line on; those of other structures are judged by validity."""
-    if symbol.scope is None or symbol.scope.homes != scope.homes or symbol.is_array:
-        return
-    assert symbol.node is not None
-    here, place = node.span, symbol.node.span
-    if here.source is place.source and here.start < place.end:
+    if is_below(node, symbol, scope):
+        assert symbol.node is not None
+        here, place = node.span, symbol.node.span
         inside = here.start >= place.start
         resolver.report(
             "E0205",

@@ -160,6 +160,12 @@ def test_what_sheets_cannot_show(aidl: Aidl, box: Path) -> None:
         "error[E0924]: `--show dof,points` explains the assembled drawing and has no place on cut sheets",
         "  = hint: `--show names` puts the names of the parts on them",
     ]
+    for cutting in (sheet, ("--cut",), ("--kerf", "0.1")):
+        assert refused(aidl("compile", "box.aidl", "-o", "x.svg", "--dimension", *cutting)) == [
+            "error[E0924]: `--dimension` explains the assembled drawing and has no place among what a cutter "
+            "follows",
+            "  = hint: write it to a file of its own, without `--cut`, `--sheet` and `--kerf`",
+        ]
     assert refused(aidl("compile", "box.aidl", "-o", "x.svg", *sheet, "--spacing", "105")) == [
         "error[E0924]: a sheet of 210 × 297 mm has no room within a spacing of 105 mm",
         "  = hint: give a larger `--sheet` or a smaller `--spacing`",

@@ -709,7 +709,7 @@ export const about: Record<string, string> = {
   "floor": "The whole number at or below.",
   "ceil": "The whole number at or above.",
   "round": "The nearest whole number; a half goes up.",
-  "len": "How many members a list or an array has.",
+  "len": "How many members a list or an array has, or letters a text.",
   "range": "Whole numbers as in Python: from `start` (0) up to but not including `end`, by steps of `step`.",
   "enumerate": "The members of a list with their numbers: `for i, v in enumerate(list)`.",
   "zip": "Lists side by side: the first members together, the second ones, and so on to the end of the shortest.",
