@@ -1,37 +1,26 @@
-"""The standard library: the definitions of `stdlib/*.aidl`, parsed once and kept in the user's cache.
+"""The standard library: the definitions of `stdlib/*.aidl`, parsed once, when the package is built.
 
-A compile touches few of the library's definitions, so each is pickled for itself and unpickled when its name
-is first asked for; opening the library reads one file and decodes its index. The cache is named after a
-digest of everything the trees depend on, hence it is never stale, only unused. It holds nothing but syntax
-trees: the unpickler knows no other classes, and a file that another user could have written is not opened at
-all.
+A compile touches few of the library's definitions, so each is kept for itself, as JSON, and decoded when its
+name is first asked for; opening the library reads one file and decodes its index. An installation brings
+that file along, a checkout makes it anew when anything it depends on has changed (`resources.derived`).
 """
 
 from __future__ import annotations
 
 import functools
-import hashlib
-import io
-import os
-import pickle
-import stat
-import struct
-import sys
-import tempfile
-import zlib
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 from aidl_lang import ast, resources
 from aidl_lang.diagnostics import Diagnostic
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.source import SourceFile
+from aidl_lang.syntax import plain
 from aidl_lang.types import ANY, Signature, Type, parameter_type, type_named
 
-_FORMAT = b"aidl-library-3\n"
-_HEAD = struct.Struct(">II32s")
-_Place: TypeAlias = tuple[int, int, int]
+DERIVED = "library.jsonl"
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,17 +48,34 @@ class Library:
 
 @functools.cache
 def load() -> Library:
-    """The standard library of this installation."""
-    files = sorted(resources.resource("stdlib").glob("*.aidl"))
-    sources = tuple(SourceFile(f"stdlib/{path.name}", path.read_text("utf-8")) for path in files)
-    cache = _cache_file(_digest(sources))
-    blob = _read_private(cache) if cache else None
-    if blob is not None and (library := _from_cache(blob, sources)) is not None:
-        return library
-    modules, diagnostics = _parse(sources)
-    if cache and not diagnostics:
-        _write_private(cache, _to_cache(modules, sources))
-    return from_modules(modules, diagnostics)
+    """The standard library of this installation, or of this checkout as it stands."""
+    try:
+        return _opened(resources.derived(DERIVED, _inputs, built), _sources())
+    except Unfinished as found:
+        return found.library
+
+
+class Unfinished(Exception):
+    """The library has mistakes, as while somebody edits it: they are in its diagnostics."""
+
+    def __init__(self, library: Library) -> None:
+        super().__init__("\n".join(d.message for d in library.diagnostics))
+        self.library = library
+
+
+def _sources() -> tuple[SourceFile, ...]:
+    return tuple(SourceFile(f"stdlib/{path.name}", path.read_text("utf-8")) for path in _files())
+
+
+def _files() -> list[Path]:
+    return sorted(resources.resource("stdlib").glob("*.aidl"))
+
+
+def _inputs() -> list[Path]:
+    """Everything that the data depends on."""
+    here = Path(__file__).parent
+    code = [here / name for name in ("ast.py", "library.py", "parser.py", "source.py")]
+    return [*code, *sorted((here / "syntax").glob("*.py")), resources.resource("grammar/aidl.lark"), *_files()]
 
 
 def from_modules(modules: Sequence[ast.Module], diagnostics: Sequence[Diagnostic] = ()) -> Library:
@@ -101,7 +107,7 @@ def signature(node: ast.Callable, shapes: Sequence[str] = (), *, standard: bool 
 
 
 class _Stored(Signature):
-    """A signature from the cache. Calls choose among many; the tree of the chosen one is decoded."""
+    """A signature from the data. Calls choose among many; the tree of the chosen one is decoded."""
 
     def __init__(
         self,
@@ -166,138 +172,63 @@ def _shape_names(definitions: Mapping[str, Sequence[ast.Callable]]) -> tuple[str
 
 
 def _parse(sources: Sequence[SourceFile]) -> tuple[tuple[ast.Module, ...], tuple[Diagnostic, ...]]:
-    from aidl_lang.parser import parse  # a warm start does not need the parser for the library
+    from aidl_lang.parser import parse  # an installation does not parse the library
 
     parsed = [parse(source) for source in sources]
     return tuple(p.module for p in parsed), tuple(d for p in parsed for d in p.diagnostics)
 
 
-# --- The cache -----------------------------------------------------------------------------------
+# --- The library as data -------------------------------------------------------------------------
 
 
-def _digest(sources: Sequence[SourceFile]) -> str:
-    """A name for everything the cached trees depend on."""
-    here = Path(__file__).parent
-    digest = hashlib.sha256(_FORMAT + sys.version.encode())
-    code = [here / name for name in ("ast.py", "parser.py", "source.py")]
-    for path in [*code, *sorted((here / "syntax").glob("*.py")), resources.resource("grammar/aidl.lark")]:
-        digest.update(hashlib.sha256(path.read_bytes()).digest())
-    for source in sources:
-        digest.update(hashlib.sha256(f"{source.name}\n{source.text}".encode()).digest())
-    return digest.hexdigest()
+def built() -> str:
+    """The library as data: a line for the index, then one for each tree.
 
-
-def _cache_file(digest: str) -> Path | None:
-    """Where the cache of this user lies; None where there is no home to keep it in."""
-    try:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    except RuntimeError:  # no home directory can be found out
-        return None
-    return base / "aidl" / f"library-{digest[:32]}.pickle" if base.is_absolute() else None
-
-
-def _is_private(path: Path) -> bool:
-    """Whether only this user can have written the file or directory, and it is not a link to elsewhere."""
-    state = path.lstat()
-    if stat.S_ISLNK(state.st_mode):
-        return False
-    if not hasattr(os, "getuid"):  # Windows keeps user directories private by access lists
-        return True
-    return state.st_uid == os.getuid() and not state.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
-
-
-def _read_private(path: Path) -> bytes | None:
-    try:
-        if _is_private(path.parent) and _is_private(path):
-            return path.read_bytes()
-    except OSError:
-        pass  # no cache yet, or none that can be read: the library is parsed instead
-    return None
-
-
-def _write_private(path: Path, blob: bytes) -> None:
-    """Write in one step, so that a reader sees the whole file or none. A cache that cannot be kept is no
-    harm.
+    The index maps a name to its overloads, each in brief and with the number of the line of its tree, and
+    each alias to its target. Raises Unfinished when the library has mistakes.
     """
-    temporary = ""
-    try:
-        path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        if not _is_private(path.parent):
-            return
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".library-")
-        with os.fdopen(handle, "wb") as file:
-            file.write(blob)
-        os.replace(temporary, path)
-        for old in path.parent.glob("library-*.pickle"):
-            if old != path:
-                old.unlink(missing_ok=True)
-    except OSError:
-        if temporary:
-            Path(temporary).unlink(missing_ok=True)
-
-
-def _to_cache(modules: Sequence[ast.Module], sources: Sequence[SourceFile]) -> bytes:
-    """The format line, the lengths of index and trees, a checksum of the index, the index, and the trees.
-
-    The index maps a name to its overloads, each in brief and with its place, and each alias to its target. A
-    place is where a tree begins and ends, and its checksum: what is not used is not read, however large the
-    library grows.
-    """
+    modules, diagnostics = _parse(_sources())
+    if diagnostics:
+        raise Unfinished(from_modules(modules, diagnostics))
     definitions, aliases, constants = _collect(modules)
-    body = bytearray()
+    lines: list[str] = []
 
-    def store(node: ast.Node) -> _Place:
-        start, tree = len(body), _encode(node, sources)
-        body.extend(tree)
-        return start, len(body), zlib.crc32(tree)
+    def store(node: ast.Node) -> int:
+        lines.append(json.dumps(plain.encoded(node), separators=(",", ":")))
+        return len(lines)
 
+    files = {module.source.name: number for number, module in enumerate(modules)}
     index = {
-        "definitions": {n: [(_brief(node), store(node)) for node in ns] for n, ns in definitions.items()},
+        "definitions": {
+            name: [(_brief(node), files[node.span.source.name], store(node)) for node in nodes]
+            for name, nodes in definitions.items()
+        },
         "shapes": _shape_names(definitions),
-        "constants": {name: store(node) for name, node in constants.items()},
+        "constants": {name: (files[node.span.source.name], store(node)) for name, node in constants.items()},
         "aliases": aliases,
     }
-    head = pickle.dumps(index, protocol=5)
-    return _FORMAT + _HEAD.pack(len(head), len(body), hashlib.sha256(head).digest()) + head + bytes(body)
+    return "\n".join([json.dumps(index, separators=(",", ":")), *lines])
 
 
-def _from_cache(blob: bytes, sources: tuple[SourceFile, ...]) -> Library | None:
-    """None when the file is not what `_to_cache` wrote. A tree that was damaged since is parsed anew."""
-    start = len(_FORMAT) + _HEAD.size
-    if not blob.startswith(_FORMAT) or len(blob) < start:
-        return None
-    length, rest, checksum = _HEAD.unpack_from(blob, len(_FORMAT))
-    head, body = blob[start : start + length], memoryview(blob)[start + length :]
-    if len(body) != rest or hashlib.sha256(head).digest() != checksum:
-        return None
-    index = _Trees(head, sources).load()
-    parsed = functools.cache(lambda: from_modules(*_parse(sources)))
+def _opened(text: str, sources: tuple[SourceFile, ...]) -> Library:
+    """The library that `built` wrote: a tree is decoded when its name is first asked for."""
+    lines = text.split("\n")
+    index = json.loads(lines[0])
 
-    def tree(place: _Place) -> Any:
-        """None if it was damaged."""
-        start, end, checksum = place
-        return _Trees(body[start:end], sources).load() if zlib.crc32(body[start:end]) == checksum else None
+    def tree(file: int, line: int) -> Any:
+        return plain.decoded(json.loads(lines[line]), sources[file])
 
     def overloads(name: str) -> tuple[Signature, ...]:
-        def decode(number: int, place: _Place) -> ast.Callable:
-            found: ast.Callable | None = tree(place) or parsed().callables[name][number].node
-            assert found is not None
-            return found
-
         return tuple(
-            _stored(name, brief, index["shapes"], functools.partial(decode, number, place))
-            for number, (brief, place) in enumerate(index["definitions"][name])
+            _stored(name, brief, index["shapes"], functools.partial(tree, file, line))
+            for brief, file, line in index["definitions"][name]
         )
-
-    def constant(name: str) -> ast.Let:
-        found: ast.Let = tree(index["constants"][name]) or parsed().constants[name]
-        return found
 
     return Library(
         sources=sources,
         callables=_Lazy(tuple(index["definitions"]), overloads),
         aliases=index["aliases"],
-        constants=_Lazy(tuple(index["constants"]), constant),
+        constants=_Lazy(tuple(index["constants"]), lambda name: tree(*index["constants"][name])),
         _modules=lambda: _parse(sources)[0],
     )
 
@@ -323,40 +254,3 @@ class _Lazy(Mapping[str, Any]):
 
     def __len__(self) -> int:
         return len(self._values)
-
-
-def _encode(node: ast.Node, sources: Sequence[SourceFile]) -> bytes:
-    """A tree without the text it was parsed from; spans as plain calls, which decode several times faster
-    than the state of a frozen dataclass with slots.
-    """
-    order = {id(source): i for i, source in enumerate(sources)}
-    buffer = io.BytesIO()
-    pickler = pickle.Pickler(buffer, protocol=5)
-    pickler.dispatch_table = {
-        Span: lambda span: (Span, (span.source, span.start, span.end)),
-        SourceFile: lambda source: (_source, (order[id(source)],)),
-    }
-    pickler.dump(node)
-    return buffer.getvalue()
-
-
-def _source(index: int) -> SourceFile:
-    """Stands in a pickle for the source file of that number; `_Trees` puts the file in its place."""
-    raise AssertionError(index)
-
-
-class _Trees(pickle.Unpickler):
-    """Decodes syntax trees and nothing else."""
-
-    def __init__(self, blob: bytes | memoryview, sources: Sequence[SourceFile]) -> None:
-        super().__init__(io.BytesIO(blob))
-        self._sources = sources
-
-    def find_class(self, module: str, name: str) -> Any:
-        if (module, name) == (__name__, "_source"):
-            return self._sources.__getitem__
-        if (module, name) == (Span.__module__, "Span"):
-            return Span
-        if module == ast.__name__ and isinstance(known := getattr(ast, name, None), type):
-            return known
-        raise pickle.UnpicklingError(f"{module}.{name} is not part of a syntax tree")

@@ -1,14 +1,21 @@
 """Where the files that ship with the package are: grammar, standard library, pages on diagnostics.
 
-In a wheel they lie in `aidl_lang/_data/`, in a checkout beside the package; nothing else needs to know.
+In a wheel they lie in `aidl_lang/_data/`, in a checkout beside the package; nothing else needs to know. What
+is worked out from them once (the parser's tables, the parsed library) is built into the wheel; a checkout
+keeps it in its own `build/derived/`. All of it is data, and nothing is kept anywhere else.
 """
 
 from __future__ import annotations
 
+import contextlib
+import os
+from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 
 _PACKAGE = Path(__file__).resolve().parent
+_SHIPPED = _PACKAGE / "_data"
+_CHECKOUT = _PACKAGE.parent
 
 
 @cache
@@ -17,7 +24,53 @@ def resource(name: str) -> Path:
 
     Raises FileNotFoundError when the installation is incomplete.
     """
-    for root in (_PACKAGE / "_data", _PACKAGE.parent):
+    for root in (_SHIPPED, _CHECKOUT):
         if (path := root / name).exists():
             return path
     raise FileNotFoundError(f"{name} is missing from this installation of aidl_lang")
+
+
+def derived(name: str, inputs: Callable[[], Iterable[Path]], make: Callable[[], str]) -> str:
+    """The text that `make` gives, worked out once.
+
+    An installation has it among its files. A checkout makes it again when one of the `inputs` has changed; what
+    `make` raises is passed on.
+    """
+    if _SHIPPED.exists():
+        return resource(f"derived/{name}").read_text("utf-8")
+    kept = _kept(name, inputs())
+    try:
+        return kept.read_text("utf-8")
+    except FileNotFoundError:
+        text = make()
+    except (OSError, UnicodeDecodeError):
+        return make()
+    # Where a checkout cannot be written, each run makes it anew.
+    with contextlib.suppress(OSError):
+        _keep(kept, text)
+    return text
+
+
+def _kept(name: str, inputs: Iterable[Path]) -> Path:
+    """The file of a checkout whose name holds a digest of everything its text depends on."""
+    import hashlib
+
+    digest = hashlib.sha256()
+    for path in inputs:
+        digest.update(hashlib.sha256(f"{path.name}\n".encode() + path.read_bytes()).digest())
+    stem, suffix = os.path.splitext(name)
+    return _CHECKOUT / "build" / "derived" / f"{stem}-{digest.hexdigest()[:32]}{suffix}"
+
+
+def _keep(path: Path, text: str) -> None:
+    """Write beside the file and move into place, so that a reader sees the whole or nothing; what an older
+    state of the checkout left goes.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary.write_text(text, "utf-8")
+    os.replace(temporary, path)
+    stem = path.name.rpartition("-")[0]
+    for old in path.parent.glob(f"{stem}-*{path.suffix}"):
+        if old != path:
+            old.unlink(missing_ok=True)
