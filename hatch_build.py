@@ -1,6 +1,5 @@
-"""What `pip` runs to build the package: the parser's tables and the parsed library are worked out here, once,
-and go into the wheel as data. Nobody who installs it computes them, and nothing of the sort is kept in a user's
-folders.
+"""What runs when the package is built: the parser's tables and the parsed library are worked out here, once,
+and go into the wheel as data.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ class DerivedData(BuildHookInterface[Any]):
         self.folder = Path(tempfile.mkdtemp(prefix="aidl-derived-"))
         for part in (tables, library):
             path = self.folder / part.DERIVED
-            path.write_text(part.built(), "utf-8")
+            path.write_bytes(part.built())
             build_data["force_include"][str(path)] = f"aidl_lang/_data/derived/{part.DERIVED}"
 
     def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:

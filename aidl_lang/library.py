@@ -51,11 +51,11 @@ def load() -> Library:
     """The standard library of this installation, or of this checkout as it stands."""
     try:
         return _opened(resources.derived(DERIVED, _inputs, built), _sources())
-    except Unfinished as found:
+    except MistakenLibraryError as found:
         return found.library
 
 
-class Unfinished(Exception):
+class MistakenLibraryError(Exception):
     """The library has mistakes, as while somebody edits it: they are in its diagnostics."""
 
     def __init__(self, library: Library) -> None:
@@ -75,7 +75,8 @@ def _inputs() -> list[Path]:
     """Everything that the data depends on."""
     here = Path(__file__).parent
     code = [here / name for name in ("ast.py", "library.py", "parser.py", "source.py")]
-    return [*code, *sorted((here / "syntax").glob("*.py")), resources.resource("grammar/aidl.lark"), *_files()]
+    code += sorted((here / "syntax").glob("*.py"))
+    return [*code, resources.resource("grammar/aidl.lark"), *_files()]
 
 
 def from_modules(modules: Sequence[ast.Module], diagnostics: Sequence[Diagnostic] = ()) -> Library:
@@ -181,47 +182,50 @@ def _parse(sources: Sequence[SourceFile]) -> tuple[tuple[ast.Module, ...], tuple
 # --- The library as data -------------------------------------------------------------------------
 
 
-def built() -> str:
-    """The library as data: a line for the index, then one for each tree.
+def built() -> bytes:
+    """The library as data: a line of JSON for the index, then one for each tree.
 
-    The index maps a name to its overloads, each in brief and with the number of the line of its tree, and
-    each alias to its target. Raises Unfinished when the library has mistakes.
+    The index maps a name to its overloads, each in brief and with its place, and each alias to its target. A
+    place is the number of the file, and where the tree begins and ends behind the index: what is not used is
+    not read, however large the library grows. Raises MistakenLibraryError.
     """
     modules, diagnostics = _parse(_sources())
     if diagnostics:
-        raise Unfinished(from_modules(modules, diagnostics))
+        raise MistakenLibraryError(from_modules(modules, diagnostics))
     definitions, aliases, constants = _collect(modules)
-    lines: list[str] = []
+    numbers = {module.source.name: number for number, module in enumerate(modules)}
+    body = bytearray()
 
-    def store(node: ast.Node) -> int:
-        lines.append(json.dumps(plain.encoded(node), separators=(",", ":")))
-        return len(lines)
+    def store(node: ast.Node) -> tuple[int, int, int]:
+        start = len(body)
+        body.extend(_line(plain.encoded(node)))
+        return numbers[node.span.source.name], start, len(body)
 
-    files = {module.source.name: number for number, module in enumerate(modules)}
     index = {
-        "definitions": {
-            name: [(_brief(node), files[node.span.source.name], store(node)) for node in nodes]
-            for name, nodes in definitions.items()
-        },
+        "definitions": {n: [(_brief(node), *store(node)) for node in ns] for n, ns in definitions.items()},
         "shapes": _shape_names(definitions),
-        "constants": {name: (files[node.span.source.name], store(node)) for name, node in constants.items()},
+        "constants": {name: store(node) for name, node in constants.items()},
         "aliases": aliases,
     }
-    return "\n".join([json.dumps(index, separators=(",", ":")), *lines])
+    return _line(index) + bytes(body)
 
 
-def _opened(text: str, sources: tuple[SourceFile, ...]) -> Library:
-    """The library that `built` wrote: a tree is decoded when its name is first asked for."""
-    lines = text.split("\n")
-    index = json.loads(lines[0])
+def _line(value: object) -> bytes:
+    return json.dumps(value, separators=(",", ":")).encode() + b"\n"
 
-    def tree(file: int, line: int) -> Any:
-        return plain.decoded(json.loads(lines[line]), sources[file])
+
+def _opened(data: bytes, sources: tuple[SourceFile, ...]) -> Library:
+    """The library that `built` made into data: a tree is decoded when its name is first asked for."""
+    trees = data.index(b"\n") + 1
+    index = json.loads(data[:trees])
+
+    def tree(file: int, start: int, end: int) -> Any:
+        return plain.decoded(json.loads(data[trees + start : trees + end]), sources[file])
 
     def overloads(name: str) -> tuple[Signature, ...]:
         return tuple(
-            _stored(name, brief, index["shapes"], functools.partial(tree, file, line))
-            for brief, file, line in index["definitions"][name]
+            _stored(name, brief, index["shapes"], functools.partial(tree, *place))
+            for brief, *place in index["definitions"][name]
         )
 
     return Library(

@@ -30,45 +30,45 @@ def resource(name: str) -> Path:
     raise FileNotFoundError(f"{name} is missing from this installation of aidl_lang")
 
 
-def derived(name: str, inputs: Callable[[], Iterable[Path]], make: Callable[[], str]) -> str:
-    """The text that `make` gives, worked out once.
+def derived(name: str, inputs: Callable[[], Iterable[Path]], make: Callable[[], bytes]) -> bytes:
+    """What `make` gives, worked out once.
 
-    An installation has it among its files. A checkout makes it again when one of the `inputs` has changed; what
-    `make` raises is passed on.
+    An installation has it among its files. A checkout makes it again when one of the `inputs` has changed;
+    what `make` raises is passed on.
     """
     if _SHIPPED.exists():
-        return resource(f"derived/{name}").read_text("utf-8")
+        return resource(f"derived/{name}").read_bytes()
     kept = _kept(name, inputs())
     try:
-        return kept.read_text("utf-8")
-    except FileNotFoundError:
-        text = make()
-    except (OSError, UnicodeDecodeError):
-        return make()
+        return kept.read_bytes()
+    except OSError:
+        data = make()
     # Where a checkout cannot be written, each run makes it anew.
     with contextlib.suppress(OSError):
-        _keep(kept, text)
-    return text
+        _keep(kept, data)
+    return data
 
 
 def _kept(name: str, inputs: Iterable[Path]) -> Path:
-    """The file of a checkout whose name holds a digest of everything its text depends on."""
+    """The file of a checkout whose name holds a digest of everything its content depends on."""
     import hashlib
 
     digest = hashlib.sha256()
     for path in inputs:
-        digest.update(hashlib.sha256(f"{path.name}\n".encode() + path.read_bytes()).digest())
+        data = path.read_bytes()
+        digest.update(f"{path.name} {len(data)}\n".encode())
+        digest.update(data)
     stem, suffix = os.path.splitext(name)
     return _CHECKOUT / "build" / "derived" / f"{stem}-{digest.hexdigest()[:32]}{suffix}"
 
 
-def _keep(path: Path, text: str) -> None:
+def _keep(path: Path, data: bytes) -> None:
     """Write beside the file and move into place, so that a reader sees the whole or nothing; what an older
     state of the checkout left goes.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    temporary.write_text(text, "utf-8")
+    temporary.write_bytes(data)
     os.replace(temporary, path)
     stem = path.name.rpartition("-")[0]
     for old in path.parent.glob(f"{stem}-*{path.suffix}"):

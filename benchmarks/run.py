@@ -10,7 +10,6 @@ moment of the machine meets all of them.
 from __future__ import annotations
 
 import argparse
-import gc
 import os
 import platform
 import subprocess
@@ -21,7 +20,6 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from statistics import median, quantiles
-from unittest import mock
 
 from aidl_lang import library, pipeline
 from aidl_lang.source import SourceFile
@@ -89,39 +87,26 @@ def print_warm(program: Path, runs: int) -> None:
 
 
 def print_library(runs: int) -> None:
-    """Opening the standard library without and with its cache, and its size."""
+    """Building the standard library, opening it and decoding it, and its size."""
     names = library.load().callables
     count = sum(len(overloads) for overloads in names.values())
     text = sum(len(source.text.encode()) for source in library.load().sources)
-    with tempfile.TemporaryDirectory() as folder, mock.patch.dict(os.environ, XDG_CACHE_HOME=folder):
-        cache = Path(folder) / "aidl"
-        times: dict[str, list[float]] = {}
-        for _ in range(runs + 1):
-            for kept in cache.glob("library-*"):
-                kept.unlink()
-            times.setdefault("cold cache: parsed and kept", []).append(_seconds_to_open())
-            times.setdefault("warm cache", []).append(_seconds_to_open())
-            times.setdefault("warm cache, all definitions read", []).append(_seconds_to_open(read=True))
-        size = sum(kept.stat().st_size for kept in cache.glob("library-*"))
-    _print_table("library", {name: taken[1:] for name, taken in times.items()})
+    calls: dict[str, Callable[[], object]] = {
+        "built: parsed and turned into data": library.built,
+        "opened": library.load.__wrapped__,
+        "opened, every definition decoded": _decode_all,
+    }
+    _print_table("library", sample(calls, runs))
     print(
         f"The library has {count} definitions of {len(names)} names in {text} bytes of text; "
-        f"its cache has {size} bytes."
+        f"as data it has {len(library.built())} bytes."
     )
 
 
-def _seconds_to_open(*, read: bool = False) -> float:
-    """As in a new process: the last library is let go before, and no garbage is looked for meanwhile."""
-    library.load.cache_clear()
-    gc.collect()
-    gc.disable()
-    start = time.perf_counter()
-    opened = library.load()
-    if read:
-        list(opened.callables.values())
-    taken = time.perf_counter() - start
-    gc.enable()
-    return taken
+def _decode_all() -> None:
+    for overloads in library.load.__wrapped__().callables.values():
+        for overload in overloads:
+            assert overload.node
 
 
 def sample(calls: Mapping[str, Callable[[], object]], runs: int) -> dict[str, list[float]]:

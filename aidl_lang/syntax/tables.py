@@ -62,7 +62,7 @@ def load_tables() -> Tables:
     return decoded(derived(DERIVED, _inputs, built))
 
 
-def built() -> str:
+def built() -> bytes:
     """The tables as data. Raises lark's GrammarError where the grammar cannot be read."""
     from aidl_lang.syntax.construction import build_tables
 
@@ -76,7 +76,7 @@ def _inputs() -> Iterator[Path]:
     yield resource("grammar/aidl.lark")
 
 
-def encoded(tables: Tables) -> str:
+def encoded(tables: Tables) -> bytes:
     """The tables as JSON. A state has its reductions by the sets of symbols they are made before: there are
     few such sets, and they are most of an automaton.
     """
@@ -89,7 +89,7 @@ def encoded(tables: Tables) -> str:
                 before.setdefault(target, []).append(symbol)
         reductions = [(target, sets.setdefault(tuple(found), len(sets))) for target, found in before.items()]
         states.append([{s: t for s, t in row.items() if t >= 0}, *(x for pair in reductions for x in pair)])
-    return json.dumps(
+    data = json.dumps(
         {
             "start": tables.start,
             "end": tables.end,
@@ -98,16 +98,17 @@ def encoded(tables: Tables) -> str:
             "rules": [(r.origin, r.size, r.action, r.passes, r.kept) for r in tables.rules],
             "patterns": tables.patterns,
             "ignored": tables.ignored,
-            **{name: sorted(getattr(tables, name)) for name in _SETS},
+            "literals": sorted(tables.literals),
+            "reserved": sorted(tables.reserved),
+            "soft_words": sorted(tables.soft_words),
+            "statement_states": sorted(tables.statement_states),
         },
         separators=(",", ":"),
     )
+    return data.encode()
 
 
-_SETS = ("literals", "reserved", "soft_words", "statement_states")
-
-
-def decoded(text: str) -> Tables:
+def decoded(text: bytes) -> Tables:
     """The tables that `encoded` made into JSON."""
     data = json.loads(text)
     sets: list[list[str]] = data["sets"]
@@ -120,8 +121,11 @@ def decoded(text: str) -> Tables:
         start=data["start"],
         end=data["end"],
         actions=tuple(actions),
-        rules=tuple(Rule(*rule[:-1], tuple(rule[-1])) for rule in data["rules"]),
+        rules=tuple(Rule(o, n, action, passes, tuple(kept)) for o, n, action, passes, kept in data["rules"]),
         patterns=data["patterns"],
         ignored=tuple(data["ignored"]),
-        **{name: frozenset(data[name]) for name in _SETS},
+        literals=frozenset(data["literals"]),
+        reserved=frozenset(data["reserved"]),
+        soft_words=frozenset(data["soft_words"]),
+        statement_states=frozenset(data["statement_states"]),
     )

@@ -1,9 +1,7 @@
-"""The standard library and its cache."""
+"""The standard library, parsed once."""
 
 from __future__ import annotations
 
-import os
-import pickle
 from pathlib import Path
 
 import pytest
@@ -11,6 +9,7 @@ import pytest
 from aidl_lang import ast, library, parser, resources
 from aidl_lang.resolve import resolve
 from aidl_lang.source import SourceFile
+from aidl_lang.syntax import plain
 from aidl_lang.typecheck import check
 
 SMALL = """
@@ -24,23 +23,23 @@ solid washer(outer = 3) { rim = circle(radius: outer) }
 
 
 @pytest.fixture
-def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty cache, and a small library beside it."""
+def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A checkout in which nothing was made yet, with a small library."""
     stdlib = tmp_path / "stdlib"
     stdlib.mkdir()
     (stdlib / "small.aidl").write_text(SMALL)
     real = resources.resource
     monkeypatch.setattr(resources, "resource", lambda name: stdlib if name == "stdlib" else real(name))
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    return tmp_path / "aidl"
+    monkeypatch.setattr(resources, "_CHECKOUT", tmp_path)
+    return tmp_path
 
 
 def fresh() -> library.Library:
     return library.load.__wrapped__()
 
 
-def files(cache: Path) -> list[Path]:
-    return sorted(cache.glob("library-*"))
+def kept(checkout: Path) -> list[Path]:
+    return sorted((checkout / "build" / "derived").glob("library-*"))
 
 
 def test_the_library_itself_checks_clean() -> None:
@@ -52,107 +51,68 @@ def test_the_library_itself_checks_clean() -> None:
     assert [(d.message, d.span and d.span.source.line(d.span.line)) for d in found] == []
 
 
-def test_what_was_kept_is_what_was_parsed(cache: Path) -> None:
-    cold, warm = fresh(), fresh()
-    assert len(files(cache)) == 1
-    assert isinstance(cold.callables, dict)
-    assert not isinstance(warm.callables, dict)
-    assert list(cold.callables) == list(warm.callables)
-    assert (dict(cold.aliases), list(cold.constants)) == (dict(warm.aliases), list(warm.constants))
-    for name, overloads in cold.callables.items():
-        for a, b in zip(overloads, warm.callables[name], strict=True):
-            assert (a.name, a.parameters) == (b.name, b.parameters)
-            assert ast.same(a.node, b.node)
+def test_what_was_kept_is_what_was_parsed(checkout: Path) -> None:
+    parsed, opened = library.from_modules(library._parse(library._sources())[0]), fresh()
+    assert len(kept(checkout)) == 1
+    assert list(parsed.callables) == list(opened.callables)
+    assert (dict(parsed.aliases), list(parsed.constants)) == (dict(opened.aliases), list(opened.constants))
+    for name, overloads in parsed.callables.items():
+        for a, b in zip(overloads, opened.callables[name], strict=True):
+            assert (a.name, a.parameters, a.kind) == (b.name, b.parameters, b.kind)
             assert a.node is not None
             assert b.node is not None
-            assert (a.node.span.start, b.node.span.source.name) == (
-                b.node.span.start,
-                a.node.span.source.name,
-            )
-    assert ast.same(cold.modules[0], warm.modules[0])
+            assert ast.same(a.node, b.node)
+            assert _places(a.node) == _places(b.node)
+    for name, constant in parsed.constants.items():
+        assert ast.same(opened.constants[name], constant)
+    assert ast.same(parsed.modules[0], opened.modules[0])
 
 
-def test_definitions_are_decoded_once_and_when_asked_for(cache: Path) -> None:
+def _places(node: ast.Node) -> list[tuple[str, int, int]]:
+    return [(n.span.source.name, n.span.start, n.span.end) for n in ast.walk(node)]
+
+
+def test_every_tree_of_the_library_survives_as_data() -> None:
+    for module in library.load().modules:
+        for node in module.statements:
+            again = plain.decoded(plain.encoded(node), module.source)
+            assert ast.same(node, again)
+            assert _places(node) == _places(again)
+
+
+def test_only_trees_become_data() -> None:
+    with pytest.raises(TypeError, match="SourceFile is no part of a syntax tree"):
+        plain.encoded((SourceFile("", ""),))
+
+
+def test_definitions_are_decoded_once(checkout: Path) -> None:
+    opened = fresh()
+    assert opened.callables["rectangle"] is opened.callables["rectangle"]
+    assert opened.callables["rectangle"][0].node is opened.callables["rectangle"][0].node
+
+
+def test_a_changed_library_is_parsed_anew(checkout: Path) -> None:
     fresh()
-    warm = fresh()
-    assert warm.callables["rectangle"] is warm.callables["rectangle"]
-
-
-def test_a_changed_library_is_parsed_anew(cache: Path) -> None:
-    fresh()
-    (old,) = files(cache)
-    (cache.parent / "stdlib" / "more.aidl").write_text("fn more(n) = n + 1")
+    (old,) = kept(checkout)
+    (checkout / "stdlib" / "more.aidl").write_text("fn more(n) = n + 1")
     assert "more" in fresh().callables
-    (new,) = files(cache)
+    (new,) = kept(checkout)
     assert old != new
 
 
-def test_a_warm_start_parses_nothing(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_second_start_parses_nothing(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     known = set(fresh().callables)
     monkeypatch.setattr(library, "_parse", None)
     assert known
     assert set(fresh().callables) == known
 
 
-@pytest.mark.parametrize("damage", [b"", b"nonsense", None])
-def test_a_damaged_cache_is_parsed_anew(cache: Path, damage: bytes | None) -> None:
-    fresh()
-    (kept,) = files(cache)
-    whole = kept.read_bytes()
-    kept.write_bytes(whole[: len(whole) // 2] if damage is None else damage)
-    assert "rectangle" in fresh().callables
-    assert kept.read_bytes() == whole
-
-
-def test_a_damaged_tree_is_parsed_anew(cache: Path) -> None:
-    fresh()
-    (kept,) = files(cache)
-    whole = bytearray(kept.read_bytes())
-    for place in range(len(whole) // 2, len(whole)):  # the trees, not the index before them
-        whole[place] ^= 1
-    kept.write_bytes(whole)
-    damaged = fresh()
-    parsed = library.from_modules(damaged.modules)
-    for name, overloads in parsed.callables.items():
-        assert [str(s) for s in damaged.callables[name]] == [str(s) for s in overloads]
-    for name, constant in parsed.constants.items():
-        assert ast.same(damaged.constants[name], constant)
-
-
-def test_a_cache_that_others_can_write_is_not_opened(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    fresh()
-    (kept,) = files(cache)
-    kept.chmod(0o666)
-    opened: list[bytes] = []
-    monkeypatch.setattr(library, "_from_cache", lambda blob, sources: opened.append(blob))
-    fresh()
-    assert opened == []
-    cache.chmod(0o777)
-    fresh()
-    assert opened == []
-
-
-def test_a_link_in_place_of_the_cache_is_not_followed(cache: Path, tmp_path: Path) -> None:
-    fresh()
-    (kept,) = files(cache)
-    elsewhere = tmp_path / "elsewhere"
-    kept.rename(elsewhere)
-    kept.symlink_to(elsewhere)
-    assert isinstance(fresh().callables, dict)
-
-
-class _Harm:
-    def __reduce__(self) -> tuple[object, tuple[str]]:
-        return os.system, ("exit 1",)
-
-
-def test_only_syntax_trees_are_decoded() -> None:
-    with pytest.raises(pickle.UnpicklingError):
-        library._Trees(pickle.dumps(_Harm()), ()).load()
-
-
-def test_no_place_for_a_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    blocked = tmp_path / "file"
-    blocked.write_text("")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
-    assert "rectangle" in fresh().callables
+def test_what_is_wrong_in_the_library_is_told_and_not_kept(checkout: Path) -> None:
+    (checkout / "stdlib" / "small.aidl").write_text(SMALL + "shape half_done(")
+    for _ in range(2):
+        opened = fresh()
+        assert {d.span and d.span.source.name for d in opened.diagnostics} == {"stdlib/small.aidl"}
+        assert "rectangle" in opened.callables
+    assert kept(checkout) == []
+    with pytest.raises(library.MistakenLibraryError):
+        library.built()
