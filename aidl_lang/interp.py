@@ -6,7 +6,7 @@ touches passes on in silence, so that one run reports all errors and still yield
 
 The work is told in `building/`: `modules` (files and roots), `structures`, `statements`, `evaluate`
 (expressions), `overloads` and `calls` (definitions), `construct` (geometry and the exactness of its numbers),
-`stated` and `impose` (constraints).
+`stated` and `impose` (constraints), `placing` and `anchors` (what they move first).
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from aidl_lang import ast
+from aidl_lang.building.anchors import anchored
 from aidl_lang.building.calls import call
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.modules import run_module
@@ -54,7 +55,8 @@ def interpret(
             copier.finish()
     except Stop:
         root = it.root or Structure("assembly", "model", None, None)
-    model = Model(root, it.constraints, it.assertions, it.unknowns, it.knobs, it.readings, it.literals)
+    constraints = anchored(it.constraints)
+    model = Model(root, constraints, it.assertions, it.unknowns, it.knobs, it.readings, it.literals)
     return Interpretation(model, it.diagnostics, it.written)
 
 

@@ -352,9 +352,12 @@ def convert_angle(angle: Expression, source: Structure, target: Structure) -> Ex
 class Comparison:
     """`left REL right`, REL one of `== != <= >= < >`, with boxes spelled out.
 
-    `moved` are the unknowns that may move first where a call decides that; else the left side does.
-    `boxes` are the structures of whose boxes it speaks, `beside` the unknowns it mentions beside these; None
-    where it speaks of no structure's box.
+    moved    the unknowns that may move first where a call decides that; else the left side does
+    parties  of a call over equals (`row`, `symmetric`, `same_width`, a list that is aligned) the unknowns
+             that place each of them, in the order of the arguments: none is held by its place. Once the whole
+             program is known, `moved` is what they have but for the anchor (see `building.anchors`)
+    boxes    the structures of whose boxes it speaks
+    beside   the unknowns it mentions beside these; None where it speaks of no structure's box
     """
 
     relation: str
@@ -364,6 +367,7 @@ class Comparison:
     moved: frozenset[Unknown] | None = None
     boxes: frozenset[Structure] = frozenset()
     beside: frozenset[Unknown] | None = None
+    parties: tuple[frozenset[Unknown], ...] = ()
 
     @property
     def placed(self) -> frozenset[Unknown]:

@@ -133,6 +133,8 @@ PARAMETER_TYPES: Mapping[str, Type] = {
     "boolean": TruthType(),
     "point": PointType(),
     "list": ListType(ANY),
+    "peer": ANY,
+    "peers": ListType(ANY),
     "points": ListType(PointType()),
     "record": RecordType(),
     "geometry": GeometryType(""),
@@ -141,6 +143,9 @@ PARAMETER_TYPES: Mapping[str, Type] = {
     **{name: GeometryType(name) for name in PRIMITIVES if name != "point"},
 }
 """The words that may stand behind `:` in a parameter; the name of a shape may stand there too."""
+
+PEERS = ("peer", "peers")
+"""Those that say of things, or of members of a list, that a constraint holds none of them by its place."""
 
 
 def parameter_type(parameter: ast.Parameter, shapes: Iterable[str] = ()) -> Type | None:

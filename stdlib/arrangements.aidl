@@ -1,6 +1,6 @@
 // Relations of several boxes: lined up, of one size, in rows and columns, evenly spaced.
 
-/// The left sides of all agree; the last one is held. `inset` moves the others inwards, `by` to the right.
+/// The left sides of all agree; the last one named is held. `inset` moves the others inwards, `by` to the right.
 ///
 /// ```aidl
 /// drawing d {
@@ -14,7 +14,7 @@ constraint align_left(things: list, inset: length = 0, by: length = 0) {
     for i in 0..<len(things) - 1 { box(things[i]).left == box(things[-1]).left + inset + by }
 }
 
-/// The right sides of all agree; the last one is held. `inset` moves the others inwards, `by` to the right.
+/// The right sides of all agree; the last one named is held. `inset` moves the others inwards, `by` to the right.
 ///
 /// ```aidl
 /// drawing d {
@@ -27,7 +27,7 @@ constraint align_right(things: list, inset: length = 0, by: length = 0) {
     for i in 0..<len(things) - 1 { box(things[i]).right == box(things[-1]).right - inset + by }
 }
 
-/// The tops of all agree; the last one is held. `inset` moves the others inwards, `by` upwards.
+/// The tops of all agree; the last one named is held. `inset` moves the others inwards, `by` upwards.
 ///
 /// ```aidl
 /// drawing d {
@@ -40,7 +40,7 @@ constraint align_top(things: list, inset: length = 0, by: length = 0) {
     for i in 0..<len(things) - 1 { box(things[i]).top == box(things[-1]).top - inset + by }
 }
 
-/// The bottoms of all agree; the last one is held. `inset` moves the others inwards, `by` upwards.
+/// The bottoms of all agree; the last one named is held. `inset` moves the others inwards, `by` upwards.
 ///
 /// ```aidl
 /// drawing d {
@@ -109,17 +109,17 @@ constraint flush(things: list, side: text, by: length = 0) {
 ///     constrain row(book, gap: 2, align: bottom)
 /// }
 /// ```
-constraint row(things: list, gap: length, align: text = "free") {
+constraint row(things: peers, gap: length, align: text = "free") {
     for i in 1..<len(things) {
         right_of(box(things[i]), box(things[i - 1]), gap: gap, align: align)
     }
 }
-constraint row(things: list, at_least: length = 0, align: text = "free") {
+constraint row(things: peers, at_least: length = 0, align: text = "free") {
     for i in 1..<len(things) {
         right_of(box(things[i]), box(things[i - 1]), at_least: at_least, align: align)
     }
 }
-constraint row(things: list, pitch: length, align: text = "free") {
+constraint row(things: peers, pitch: length, align: text = "free") {
     for i in 1..<len(things) {
         box(things[i]).center_x == box(things[i - 1]).center_x + pitch
         level_up(box(things[i]), box(things[i - 1]), align)
@@ -136,15 +136,15 @@ constraint row(things: list, pitch: length, align: text = "free") {
 ///     constrain column(line_of_text, gap: 3, align: left)
 /// }
 /// ```
-constraint column(things: list, gap: length, align: text = "free") {
+constraint column(things: peers, gap: length, align: text = "free") {
     for i in 1..<len(things) { below(box(things[i]), box(things[i - 1]), gap: gap, align: align) }
 }
-constraint column(things: list, at_least: length = 0, align: text = "free") {
+constraint column(things: peers, at_least: length = 0, align: text = "free") {
     for i in 1..<len(things) {
         below(box(things[i]), box(things[i - 1]), at_least: at_least, align: align)
     }
 }
-constraint column(things: list, pitch: length, align: text = "free") {
+constraint column(things: peers, pitch: length, align: text = "free") {
     for i in 1..<len(things) {
         box(things[i]).center_y == box(things[i - 1]).center_y - pitch
         lined_up(box(things[i]), box(things[i - 1]), align)
@@ -153,7 +153,8 @@ constraint column(things: list, pitch: length, align: text = "free") {
 
 /// Equal gaps in the order written, along `axis`, or else where the first guesses spread most.
 ///
-/// `gap` (or `spacing`) says how wide they are, `pitch` the way from centre to centre.
+/// Along x the order is from left to right; along y upwards, or downwards if the first guesses run so. `gap` (or
+/// `spacing`) says how wide the gaps are, `pitch` the way from centre to centre; else nothing overlaps.
 ///
 /// ```aidl
 /// drawing d {
@@ -165,36 +166,32 @@ constraint column(things: list, pitch: length, align: text = "free") {
 ///     }
 /// }
 /// ```
-constraint evenly_spaced(things: list) { evenly_spaced(things, axis: longer_way(things)) }
-constraint evenly_spaced(things: list, axis: text) {
-    let way = choice(axis, ["x", "y"])
-    let up = way_along(things, way) >= 0
-    for i in 2..<len(things) {
-        let one = room_between(things[i - 2], things[i - 1], way, up)
-        room_between(things[i - 1], things[i], way, up) == one
+constraint evenly_spaced(things: peers) { evenly_spaced(things, axis: longer_way(things)) }
+constraint evenly_spaced(things: peers, axis: text) {
+    let line = in_order(things, choice(axis, ["x", "y"]))
+    for i in 2..<len(line) {
+        room(line[i - 1], line[i], axis) == room(line[i - 2], line[i - 1], axis)
     }
+    if len(line) > 1 { room(line[0], line[1], axis) >= 0 }
 }
-constraint evenly_spaced(things: list, gap: length) {
+constraint evenly_spaced(things: peers, gap: length) {
     evenly_spaced(things, gap: gap, axis: longer_way(things))
 }
-constraint evenly_spaced(things: list, gap: length, axis: text) {
-    let way = choice(axis, ["x", "y"])
-    let up = way_along(things, way) >= 0
-    for i in 1..<len(things) { room_between(things[i - 1], things[i], way, up) == gap }
+constraint evenly_spaced(things: peers, gap: length, axis: text) {
+    let line = in_order(things, choice(axis, ["x", "y"]))
+    for i in 1..<len(line) { room(line[i - 1], line[i], axis) == gap }
 }
-constraint evenly_spaced(things: list, spacing: length) { evenly_spaced(things, gap: spacing) }
-constraint evenly_spaced(things: list, spacing: length, axis: text) {
+constraint evenly_spaced(things: peers, spacing: length) { evenly_spaced(things, gap: spacing) }
+constraint evenly_spaced(things: peers, spacing: length, axis: text) {
     evenly_spaced(things, gap: spacing, axis: axis)
 }
-constraint evenly_spaced(things: list, pitch: length) {
+constraint evenly_spaced(things: peers, pitch: length) {
     evenly_spaced(things, pitch: pitch, axis: longer_way(things))
 }
-constraint evenly_spaced(things: list, pitch: length, axis: text) {
-    let way = choice(axis, ["x", "y"])
-    let onwards = if way_along(things, way) >= 0 then pitch else -pitch
-    for i in 1..<len(things) {
-        let before = place_along(things[i - 1], way)
-        place_along(things[i], way) == before + onwards
+constraint evenly_spaced(things: peers, pitch: length, axis: text) {
+    let line = in_order(things, choice(axis, ["x", "y"]))
+    for i in 1..<len(line) {
+        place_along(line[i], axis) == place_along(line[i - 1], axis) + pitch
     }
 }
 
@@ -205,10 +202,16 @@ fn way_along(things: list, axis: text) = if len(things) < 2 then 0mm else writte
 fn place_along(a: box, axis: text) = if axis == "x" then a.center_x else a.center_y
 fn longer_way(a: list) = if abs(way_along(a, "x")) < abs(way_along(a, "y")) then "y" else "x"
 
-// The gap from one thing to the next, which lies beyond it (`up`) or before it along the axis.
+// The things as they follow along an axis: in their order, unless they were written downwards.
+fn in_order(things: list, axis: text) =
+    if axis == "y" and way_along(things, axis) < 0 then reversed(things) else things
+
+// The gap from one thing to the next along an axis.
+fn room(a: box, b: box, axis: text) = if axis == "x" then b.left - a.right else b.bottom - a.top
+
+// The same where the next lies beyond it (`up`) or before it.
 fn room_between(a: box, b: box, axis: text, up: bool) =
     if up then room(a, b, axis) else room(b, a, axis)
-fn room(a: box, b: box, axis: text) = if axis == "x" then b.left - a.right else b.bottom - a.top
 
 alias left_aligned = align_left
 alias align_lefts = align_left

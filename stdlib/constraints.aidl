@@ -259,7 +259,7 @@ constraint in_line(p, l: line) { offset_from(center_of(p), l) == 0 }
 
 /// The same size: lengths of lines, radii of round things, the lengths that make a shape; or the same number.
 ///
-/// The last one is held. Of structures the boxes have the same width and height.
+/// Of structures the boxes have the same width and height.
 ///
 /// ```aidl
 /// drawing d {
@@ -273,7 +273,7 @@ constraint in_line(p, l: line) { offset_from(center_of(p), l) == 0 }
 ///     }
 /// }
 /// ```
-constraint equal(things: list) {
+constraint equal(things: peers) {
     for i in 0..<len(things) - 1 { like(things[i], things[-1]) }
 }
 constraint like(a: line, b: line) { a.length == b.length }
@@ -317,7 +317,7 @@ constraint like(n: length, l: line) { refuse("a line and a number: write `l.leng
 ///     constrain equal_length(a, b, c)
 /// }
 /// ```
-constraint equal_length(things: list) {
+constraint equal_length(things: peers) {
     for i in 0..<len(things) - 1 { things[i].length == things[-1].length }
 }
 
@@ -331,7 +331,7 @@ constraint equal_length(things: list) {
 ///     constrain equal_radius(a, c, b)
 /// }
 /// ```
-constraint equal_radius(things: list) {
+constraint equal_radius(things: peers) {
     for i in 0..<len(things) - 1 { things[i].radius == things[-1].radius }
 }
 

@@ -3,7 +3,8 @@
 /// One thing is the mirror image of another: points, lines, arcs, circles, curves, boxes, or lists of them.
 ///
 /// `about` is a line, an axis or a point. The first thing is placed and the second one held; ends of lines and
-/// Béziers are matched as they lie nearest. Of compound shapes and structures the boxes mirror each other.
+/// Béziers are matched as they lie nearest. Of compound shapes and structures the boxes mirror each other, of things
+/// of two kinds the centres.
 ///
 /// ```aidl
 /// drawing ears {
@@ -49,9 +50,13 @@ constraint mirror_of(a: bezier, b: bezier, about) {
 }
 constraint mirror_of(a: structure, b: structure, about) { mirrored_box(a, b, about: about) }
 constraint mirror_of(a: geometry, b: geometry, about) {
-    both_shapes(a, b)
-    mirrored_box(a, b, about: about)
+    if is_primitive(a) or is_primitive(b) {
+        mirror_of(center_of(a), center_of(b), about: about)
+    } else {
+        mirrored_box(a, b, about: about)
+    }
 }
+constraint mirror_of(a, b, about) { mirror_of(center_of(a), center_of(b), about: about) }
 constraint mirrored_box(a: box, b: box, about) {
     a.center == mirror(b.center, about: about)
     a.width == b.width

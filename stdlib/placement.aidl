@@ -3,7 +3,7 @@
 /// The centres of things lie on a circle: one that is there, or about `center` with a `radius` or `diameter`.
 ///
 /// They stand at equal steps in their written order, the first at `start` if that is said; `evenly: false`
-/// leaves them where they are along the circle.
+/// leaves them (with `start` all but the first) where they are along the circle.
 ///
 /// ```aidl
 /// solid flange {
@@ -14,7 +14,7 @@
 ///     constrain on_circle(bolt, center: rim.center, diameter: 60, start: 30deg)
 /// }
 /// ```
-constraint on_circle(things: list, center: point, radius: length, evenly: bool = true) {
+constraint on_circle(things: peers, center: point, radius: length, evenly: bool = true) {
     for i in 0..<len(things) {
         let way = box(things[i]).center - center
         if evenly and i > 0 {
@@ -24,21 +24,41 @@ constraint on_circle(things: list, center: point, radius: length, evenly: bool =
         }
     }
 }
-constraint on_circle(things: list, center: point, diameter: length, evenly: bool = true) {
+constraint on_circle(things: peers, center: point, diameter: length, evenly: bool = true) {
     on_circle(things, center: center, radius: diameter / 2, evenly: evenly)
 }
-constraint on_circle(things: list, center: point, radius: length, start: angle) {
+constraint on_circle(
+    things: peers,
+    center: point,
+    radius: length,
+    start: angle,
+    evenly: bool = true
+) {
     let turn = turn_around(things, center)
-    for i in 0..<len(things) { box(things[i]).center == center + polar(radius, start + turn * i) }
+    for i in 0..<len(things) {
+        if evenly or i == 0 {
+            box(things[i]).center == center + polar(radius, start + turn * i)
+        } else {
+            norm(box(things[i]).center - center) == radius
+        }
+    }
 }
-constraint on_circle(things: list, center: point, diameter: length, start: angle) {
-    on_circle(things, center: center, radius: diameter / 2, start: start)
+constraint on_circle(
+    things: peers,
+    center: point,
+    diameter: length,
+    start: angle,
+    evenly: bool = true
+) {
+    on_circle(things, center: center, radius: diameter / 2, start: start, evenly: evenly)
 }
-constraint on_circle(things: list, around: circle, evenly: bool = true) {
+constraint on_circle(things: peers, around: circle, evenly: bool = true) {
     on_circle(things, center: around.center, radius: around.radius, evenly: evenly)
 }
-constraint on_circle(things: list, around: circle, start: angle) {
-    on_circle(things, center: around.center, radius: around.radius, start: start)
+constraint on_circle(things: peers, around: circle, start: angle, evenly: bool = true) {
+    on_circle(
+        things, center: around.center, radius: around.radius, start: start, evenly: evenly
+    )
 }
 
 // The angle from one thing to the next: the sense in which most of the first guesses run.
@@ -60,10 +80,10 @@ fn turn_around(things: list, center: point) = if len(things) < 2 then 0deg else 
 ///     constrain at_corners(screw, body, inset: 8)
 /// }
 /// ```
-constraint at_corners(things: list, of: box, inset: length = 0) {
+constraint at_corners(things: peers, of: box, inset: length = 0) {
     at_corners(things, of, inset: (inset, inset))
 }
-constraint at_corners(things: list, of: box, inset: point) {
+constraint at_corners(things: peers, of: box, inset: point) {
     if len(things) == 4 {
         let spots = [
             of.bottom_left + inset,
@@ -84,40 +104,52 @@ fn quarter(a: box, of: box) = if written(a.center_y - of.center_y) < 0 then if w
     a.center_x - of.center_x
 ) < 0 then 0 else 1 else if written(a.center_x - of.center_x) < 0 then 3 else 2
 
-/// Things are spread through a box in their written order, from border to border with equal gaps.
+/// Things are spread through a box with equal gaps in their order, along `axis` or where it is longer for them.
 ///
-/// `margin` keeps the first and the last off the border; `axis` is where the first guesses spread most, unless
-/// it is said.
+/// Without `margin` the room before the first and behind the last is as wide as a gap; with it, they stand that
+/// far from the border (`margin: 0`: flush). Nothing overlaps, and nothing stands out. Along x the order is
+/// from left to right; along y upwards, or downwards if the first guesses run so. One thing is centred.
 ///
 /// ```aidl
 /// solid panel {
 ///     body = rectangle(center: origin, width: 120, height: 40)
 ///     for i in 0..4 { hole slit[i] { cut = slot(start: (9 * i, -8), end: (9 * i, 8), width: 6) } }
 ///     constrain {
-///         spread(slit, inside: body, margin: 10)
+///         spread(slit, inside: body)
 ///         align_center_y(slit, body)
 ///     }
 /// }
 /// ```
-constraint spread(things: list, inside: box, margin: length = 0) {
+constraint spread(things: peers, inside: box) {
+    spread(things, inside: inside, axis: longer_way(things))
+}
+constraint spread(things: peers, inside: box, margin: length) {
     spread(things, inside: inside, axis: longer_way(things), margin: margin)
 }
-constraint spread(things: list, inside: box, axis: text, margin: length = 0) {
-    let way = choice(axis, ["x", "y"])
-    if len(things) > 0 {
-        let up = way_along(things, way) >= 0
-        let first = box(if up then things[0] else things[-1])
-        let last = box(if up then things[-1] else things[0])
-        if way == "x" {
-            first.left == inside.left + margin
-            if len(things) > 1 { last.right == inside.right - margin }
-        } else {
-            first.bottom == inside.bottom + margin
-            if len(things) > 1 { last.top == inside.top - margin }
-        }
-        evenly_spaced(things, axis: way)
+constraint spread(things: peers, inside: box, axis: text) {
+    let line = in_order(things, choice(axis, ["x", "y"]))
+    if len(line) == 1 {
+        place_along(line[0], axis) == place_along(inside, axis)
+    } else if len(line) > 1 {
+        evenly_spaced(things, axis: axis)
+        room_before(line[0], inside, axis) == room(line[0], line[1], axis)
+        room_behind(line[-1], inside, axis) == room(line[-2], line[-1], axis)
     }
 }
+constraint spread(things: peers, inside: box, axis: text, margin: length) {
+    let line = in_order(things, choice(axis, ["x", "y"]))
+    if len(line) == 1 {
+        place_along(line[0], axis) == place_along(inside, axis)
+    } else if len(line) > 1 {
+        room_before(line[0], inside, axis) == margin
+        room_behind(line[-1], inside, axis) == margin
+        evenly_spaced(things, axis: axis)
+    }
+}
+fn room_before(a: box, inside: box, axis: text) =
+    if axis == "x" then a.left - inside.left else a.bottom - inside.bottom
+fn room_behind(a: box, inside: box, axis: text) =
+    if axis == "x" then inside.right - a.right else inside.top - a.top
 
 /// The point between two things, points or centres: half the way from a to b, or a share of it.
 ///

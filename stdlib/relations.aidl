@@ -115,12 +115,15 @@ constraint beside(a: box, b: box, at_least: length = 0, align: text = "free") {
     }
 }
 
-/// a stands on b: touching, and over it sideways, or as `align` says (left, center, right).
+/// a stands on b: its bottom on the top of b, and not beside it.
+///
+/// Sideways a may stand anywhere over b, as long as they overlap by a tenth of the narrower one;
+/// `align` (left, center, right) lines them up. Nothing is centred by itself: that is `stacked_on`.
 ///
 /// ```aidl
 /// drawing d {
 ///     table  = rectangle(center: fixed((0, 0)), width: 80, height: 8)
-///     bottle = rectangle(center: (60, 30), width: 12, height: 30)
+///     bottle = rectangle(center: (32, 30), width: 12, height: 30)
 ///     book   = rectangle(center: (-20, 30), width: 30, height: 6)
 ///     constrain {
 ///         on_top_of(bottle, table)
@@ -130,10 +133,21 @@ constraint beside(a: box, b: box, at_least: length = 0, align: text = "free") {
 /// ```
 constraint on_top_of(a: box, b: box) {
     a.bottom == b.top
-    a.center_x >= b.left
-    a.center_x <= b.right
+    share_width(a, b)
 }
 constraint on_top_of(a: box, b: box, align: text) { above(a, b, gap: 0, align: align) }
+
+// Two boxes have a stretch in common, seen from above and from the side: a tenth of the smaller one or more.
+constraint share_width(a: box, b: box) {
+    let least = min(a.width, b.width) / 10
+    a.left + least <= b.right
+    a.right - least >= b.left
+}
+constraint share_height(a: box, b: box) {
+    let least = min(a.height, b.height) / 10
+    a.bottom + least <= b.top
+    a.top - least >= b.bottom
+}
 
 /// a stands on b, both centred.
 ///
@@ -260,7 +274,7 @@ constraint amid(a: box, from: box, to: box, axis: text) {
 
 // --- Contact ---------------------------------------------------------------------------------------
 
-/// The boxes share a border: the nearest pair of sides meets.
+/// The boxes share a border, not only a corner: the nearest pair of sides meets.
 ///
 /// ```aidl
 /// drawing d {
@@ -285,11 +299,9 @@ constraint touching(a: box, b: box) {
         a.right == b.left
     }
     if over == most or under == most {
-        a.left <= b.right
-        a.right >= b.left
+        share_width(a, b)
     } else {
-        a.bottom <= b.top
-        a.top >= b.bottom
+        share_height(a, b)
     }
 }
 
@@ -312,7 +324,7 @@ constraint no_overlap(things: list, at_least: length = 0) {
     }
 }
 
-/// The boxes share a part, or touch.
+/// The boxes have an area in common, not only a border: a tenth of the smaller one or more, both ways.
 ///
 /// ```aidl
 /// drawing d {
@@ -322,10 +334,8 @@ constraint no_overlap(things: list, at_least: length = 0) {
 /// }
 /// ```
 constraint overlapping(a: box, b: box) {
-    a.left <= b.right
-    a.right >= b.left
-    a.bottom <= b.top
-    a.top >= b.bottom
+    share_width(a, b)
+    share_height(a, b)
 }
 
 alias over = above

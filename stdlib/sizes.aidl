@@ -5,7 +5,7 @@ fn extent_of(of) = box(of)
 fn extent_of(p: point) = has_no_size(p)
 fn has_no_size(p: point) = refuse("a point has neither width nor height")
 
-/// All are as wide as the last.
+/// All are equally wide.
 ///
 /// ```aidl
 /// drawing d {
@@ -14,11 +14,11 @@ fn has_no_size(p: point) = refuse("a point has neither width nor height")
 ///     constrain same_width(a, b)
 /// }
 /// ```
-constraint same_width(things: list) {
+constraint same_width(things: peers) {
     for i in 0..<len(things) - 1 { extent_of(things[i]).width == extent_of(things[-1]).width }
 }
 
-/// All are as tall as the last.
+/// All are equally tall.
 ///
 /// ```aidl
 /// drawing d {
@@ -27,11 +27,11 @@ constraint same_width(things: list) {
 ///     constrain same_height(a, b)
 /// }
 /// ```
-constraint same_height(things: list) {
+constraint same_height(things: peers) {
     for i in 0..<len(things) - 1 { extent_of(things[i]).height == extent_of(things[-1]).height }
 }
 
-/// All are as wide and as tall as the last.
+/// All are equally wide and equally tall.
 ///
 /// ```aidl
 /// drawing d {
@@ -40,7 +40,7 @@ constraint same_height(things: list) {
 ///     constrain same_size(a, b)
 /// }
 /// ```
-constraint same_size(things: list) {
+constraint same_size(things: peers) {
     same_width(things)
     same_height(things)
 }

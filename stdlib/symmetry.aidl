@@ -2,7 +2,9 @@
 
 /// Mirror images of each other: about a line, a point, an axis (`x_axis`, `y_axis`, `axis: y`) or an x.
 ///
-/// Of two lists, the members by pairs. One thing alone is symmetric in itself.
+/// Two of a kind are images of each other, sizes and all; of things of two kinds (a hole and a circle, a rectangle
+/// and a point) the centres are. Two lists are so by pairs. One thing alone is symmetric in itself; one list as a
+/// whole, the first with the last, and so on inwards.
 ///
 /// ```aidl
 /// drawing d {
@@ -15,12 +17,12 @@
 ///     }
 /// }
 /// ```
-constraint symmetric(a, b, about: line) { image(a, b, about: about) }
-constraint symmetric(a, b, about: point) { turned_image(a, b, about: about) }
-constraint symmetric(a, b, about: length) { image(a, b, about: upright_through((about, 0))) }
-constraint symmetric(a, b, about: text) { image(a, b, about: axis_of(about)) }
-constraint symmetric(a, b, axis: text) { image(a, b, about: axis_of(axis)) }
-constraint symmetric(a, b, about: point, axis: text) {
+constraint symmetric(a: peer, b: peer, about: line) { image(a, b, about: about) }
+constraint symmetric(a: peer, b: peer, about: point) { turned_image(a, b, about: about) }
+constraint symmetric(a: peer, b: peer, about: length) { image(a, b, about: upright_through((about, 0))) }
+constraint symmetric(a: peer, b: peer, about: text) { image(a, b, about: axis_of(about)) }
+constraint symmetric(a: peer, b: peer, axis: text) { image(a, b, about: axis_of(axis)) }
+constraint symmetric(a: peer, b: peer, about: point, axis: text) {
     image(
         a,
         b,
@@ -29,14 +31,14 @@ constraint symmetric(a, b, about: point, axis: text) {
         )
     )
 }
-constraint symmetric(a, b, axis: length) { image(a, b, about: upright_through((axis, 0))) }
-constraint symmetric(a, b, axis: line) { image(a, b, about: axis) }
-constraint symmetric(a, about: line) {
+constraint symmetric(a: peer, b: peer, axis: length) { image(a, b, about: upright_through((axis, 0))) }
+constraint symmetric(a: peer, b: peer, axis: line) { image(a, b, about: axis) }
+constraint symmetric(a: peer, about: line) {
     if is_list(a) { own_images(a, about: about) } else { own_image(a, about: about) }
 }
-constraint symmetric(a, about: text) { symmetric(a, about: axis_of(about)) }
-constraint symmetric(a, axis: text) { symmetric(a, about: axis_of(axis)) }
-constraint symmetric(a, axis: line) { symmetric(a, about: axis) }
+constraint symmetric(a: peer, about: text) { symmetric(a, about: axis_of(about)) }
+constraint symmetric(a: peer, axis: text) { symmetric(a, about: axis_of(axis)) }
+constraint symmetric(a: peer, axis: line) { symmetric(a, about: axis) }
 
 // The axis that a word means, and the endless lines through a point.
 fn axis_of(word: text) =
@@ -104,15 +106,17 @@ constraint image(a: structure, b: structure, about: line) {
     image_of_box(a, b, about: about)
 }
 constraint image(a: geometry, b: geometry, about: line) {
-    both_shapes(a, b)
-    image_of_box(a, b, about: about)
+    if is_primitive(a) or is_primitive(b) {
+        image(center_of(a), center_of(b), about: about)
+    } else {
+        image_of_box(a, b, about: about)
+    }
 }
+// Of things of two kinds only the centres are images.
+constraint image(a, b, about: line) { image(center_of(a), center_of(b), about: about) }
 constraint image_of_box(a: box, b: box, about: line) {
     image(a.center, b.center, about: about)
     same_size(a, b)
-}
-constraint both_shapes(a, b) {
-    if is_primitive(a) or is_primitive(b) { refuse("a thing has an image of its own kind only") }
 }
 fn is_primitive(of) = false
 fn is_primitive(p: point) = true
@@ -166,8 +170,14 @@ constraint turned_image(a: structure, b: structure, about: point) {
     turned_box(a, b, about: about)
 }
 constraint turned_image(a: geometry, b: geometry, about: point) {
-    both_shapes(a, b)
-    turned_box(a, b, about: about)
+    if is_primitive(a) or is_primitive(b) {
+        turned_image(center_of(a), center_of(b), about: about)
+    } else {
+        turned_box(a, b, about: about)
+    }
+}
+constraint turned_image(a, b, about: point) {
+    turned_image(center_of(a), center_of(b), about: about)
 }
 constraint turned_box(a: box, b: box, about: point) {
     (a.center + b.center) / 2 == about

@@ -9,13 +9,14 @@ from aidl_lang.boxes import box_of
 from aidl_lang.building.arguments import arranged
 from aidl_lang.building.blocks import run_block
 from aidl_lang.building.coerce import as_point, edge_coordinate
-from aidl_lang.building.conditions import all_of, replace_placed, value_unknowns
+from aidl_lang.building.conditions import all_of
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, refuses_measure, size, turn
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.lists import run
 from aidl_lang.building.outlines import remember, usable
 from aidl_lang.building.overloads import find_candidates, no_overload, site_of, unknown_callable
+from aidl_lang.building.placing import placing, spliced
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.builtins import COPYING
@@ -104,7 +105,7 @@ def bound(
     signature = binding.signature
     for name, kind, indices in binding.taken:
         if name == binding.gathered:
-            result[name] = ListVal(tuple(item for i in indices for item in _spliced(values[i])))
+            result[name] = ListVal(tuple(item for i in indices for item in spliced(values[i])))
             continue
         at = nodes[indices[0]]
         value = _as_kind(it, values[indices[0]], kind, at, env)
@@ -128,11 +129,6 @@ def _is_flag(signature: Signature, name: str) -> bool:
 def _follows_measure(it: Interpreter, value: Value, node: ast.Node) -> bool:
     numbers = (value.x, value.y) if isinstance(value, PointVal) else (value,)
     return any(isinstance(number, Num) and refuses_measure(it, number, node.span) for number in numbers)
-
-
-def _spliced(value: Value) -> Sequence[Value]:
-    items = members(value)
-    return items if items is not None else [value]
 
 
 def _as_kind(it: Interpreter, value: Value, kind: Type, node: ast.Node, env: Env) -> Value | None:
@@ -192,7 +188,7 @@ def invoke(
             condition = run_items(it, definition.body, Env(scope, env.here, env.reach))
             if condition is True and binding.gathered and len(values) == len(binding.arguments) == 1:
                 _says_nothing(it, node, values[0])
-            return _placing(condition, definition, binding, values, env)
+            return placing(condition, definition, binding, values, env)
         case ast.ShapeDefinition():
             return _shape(it, candidate, definition, arguments, node, env)
         case ast.Structure():
@@ -273,31 +269,6 @@ def hoist_lets(scope: Scope, block: ast.Block) -> None:
     for statement in block.statements:
         if isinstance(statement, ast.Let | ast.Assign):
             scope.values[statement.name.text] = LetBinding(statement.value, scope)
-
-
-def _placing(
-    condition: Value,
-    definition: ast.ConstraintDefinition,
-    binding: Binding,
-    values: Sequence[Value],
-    env: Env,
-) -> Value:
-    """In a call the last positional argument is held on the first try and those before it are placed. A
-    definition that only calls another leaves the choice to that one (`contains` holds its first).
-    """
-    statements = definition.body.statements
-    delegates = len(statements) == 1 and (
-        isinstance(only := statements[0], ast.ExpressionStatement) and isinstance(only.value, ast.Call)
-    )
-    if not isinstance(condition, Condition) or delegates:
-        return condition
-    positional = [values[i] for i in binding.positional]
-    if len(positional) > 2 and isinstance(positional[-1], Num) and not isinstance(positional[-2], Num):
-        positional.pop()  # the value that a measure is set to
-    flat = [item for value in positional for item in _spliced(value)] if binding.gathered else positional
-    placed = flat[:-1] if len(flat) > 1 else flat
-    unknowns = frozenset(u for value in placed for u in value_unknowns(value, env.here))
-    return replace_placed(condition, unknowns) if unknowns else condition
 
 
 # --- Shapes --------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from typing import TypeAlias
 
 from aidl_lang import ast, units
 from aidl_lang import expression as ex
@@ -214,18 +215,21 @@ def holds(
             return not all(parts)
 
 
-def placed_by(comparison: Comparison, placed: frozenset[Unknown]) -> Comparison:
-    return replace(comparison, moved=placed)
+Parties: TypeAlias = tuple[frozenset[Unknown], ...]
 
 
-def replace_placed(condition: Condition, placed: frozenset[Unknown]) -> Condition:
+def placed_by(comparison: Comparison, placed: frozenset[Unknown], parties: Parties = ()) -> Comparison:
+    return replace(comparison, moved=placed, parties=parties)
+
+
+def replace_placed(condition: Condition, placed: frozenset[Unknown], parties: Parties = ()) -> Condition:
     """The same condition, with other unknowns moving first."""
     return Condition(
         condition.operator,
         tuple(
-            placed_by(p, placed)
+            placed_by(p, placed, parties)
             if isinstance(p, Comparison)
-            else replace_placed(p, placed)
+            else replace_placed(p, placed, parties)
             if isinstance(p, Condition)
             else p
             for p in condition.parts

@@ -12,6 +12,7 @@ from aidl_lang import ast, library
 from aidl_lang.names import fold
 from aidl_lang.types import (
     PARAMETER_TYPES,
+    PEERS,
     PRIMITIVES,
     NumberType,
     Signature,
@@ -145,6 +146,11 @@ def held(node: ast.Callable, callables: Mapping[str, Sequence[Signature]]) -> st
         return ""
     if any(p.name.text == VALUE for p in node.parameters):
         return "the value"
+    peers = [p.name.text for p in node.parameters if p.type is not None and fold(p.type.text) in PEERS]
+    if gathers(node) and peers:
+        return f"one that is placed, else the last of `{peers[0]}`"
+    if peers:
+        return f"one that is placed, else `{peers[-1]}`" if len(peers) > 1 else ""
     name = _held_parameter(node, callables, ())
     return "" if name is None else f"the last of `{name}`" if gathers(node) else f"`{name}`"
 

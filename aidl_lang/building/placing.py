@@ -1,0 +1,76 @@
+"""What a call places and what it holds.
+
+A relation that puts one thing where another is (`above(a, b)`, `centered_in(a, b)`) holds the other. One over
+equals holds nobody by its place: that is what a parameter of the type `peer` says of one thing, and `peers` of
+a list, in the library as in a program. So it is of a list that is given as one: `align_left(slits)`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from aidl_lang import ast
+from aidl_lang.building.conditions import replace_placed, value_unknowns
+from aidl_lang.building.state import Env
+from aidl_lang.model import Condition
+from aidl_lang.names import fold
+from aidl_lang.types import PEERS, Binding
+from aidl_lang.values import Num, Value, members
+
+
+def placing(
+    condition: Value,
+    definition: ast.ConstraintDefinition,
+    binding: Binding,
+    values: Sequence[Value],
+    env: Env,
+) -> Value:
+    """The condition of a call with what it places. The last positional argument is held on the first try and
+    those before it are placed; equals are parties of one rank. A definition that only calls another leaves
+    the choice to that one (`contains` holds its first), unless it gathered what it hands on.
+    """
+    if not isinstance(condition, Condition):
+        return condition
+    equals = _equals(definition, binding, values)
+    if equals:
+        parties = tuple(frozenset(value_unknowns(value, env.here)) for value in equals)
+        return replace_placed(condition, frozenset().union(*parties), parties)
+    positional = [values[i] for i in binding.positional]
+    if _delegates(definition) and not (binding.gathered and len(positional) > 1):
+        return condition
+    if len(positional) > 2 and isinstance(positional[-1], Num) and not isinstance(positional[-2], Num):
+        positional.pop()  # the value that a measure is set to
+    flat = [item for value in positional for item in spliced(value)] if binding.gathered else positional
+    placed = flat[:-1] if len(flat) > 1 else flat
+    unknowns = frozenset(u for value in placed for u in value_unknowns(value, env.here))
+    return replace_placed(condition, unknowns) if unknowns else condition
+
+
+def _equals(definition: ast.ConstraintDefinition, binding: Binding, values: Sequence[Value]) -> list[Value]:
+    """The things of one rank in a call, in the order of its arguments; none where it holds one of them."""
+    given = binding.arguments
+    declared = [
+        values[i]
+        for parameter in definition.parameters
+        if parameter.type is not None and fold(parameter.type.text) in PEERS
+        for i in given.get(parameter.name.text, ())
+    ]
+    if not declared and binding.signature.gathers and len(binding.positional) == 1:
+        (only,) = given.get(binding.signature.parameters[0][0], (None,))
+        declared = [values[only]] if only is not None and members(values[only]) is not None else []
+    return [item for value in declared for item in spliced(value)]
+
+
+def _delegates(definition: ast.ConstraintDefinition) -> bool:
+    """Whether it consists of one call, which then decides."""
+    match definition.body.statements:
+        case (ast.ExpressionStatement(value=ast.Call()),):
+            return True
+        case _:
+            return False
+
+
+def spliced(value: Value) -> Sequence[Value]:
+    """The members of a list, or the one thing."""
+    items = members(value)
+    return items if items is not None else [value]
