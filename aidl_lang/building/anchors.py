@@ -2,8 +2,8 @@
 
 A call over equals says of none that it stays. Whichever of them something else places is the anchor, so this
 can be told only when all constraints are known. Where nothing places any, the one stays that is dearest to
-move: whose content is exact in its frame, then one by which others are placed, then the last. What is held this
-way moves later, and not never: it is what the solver tries first.
+move: whose content is exact in its frame, then one by which others are placed, then the last. What is held
+this way moves later, and not never: it is what the solver tries first.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """What a call places and what it holds.
 
 A relation that puts one thing where another is (`above(a, b)`, `centered_in(a, b)`) holds the other. One over
-equals holds nobody by its place: that is what a parameter of the type `peer` says of one thing, and `peers` of
-a list, in the library as in a program. So it is of a list that is given as one: `align_left(slits)`.
+equals holds nobody by its place: that is what a parameter of the type `peer` says of one thing, and `peers`
+of a list, in the library as in a program. So it is of a list that is given as one: `align_left(slits)`.
 """
 
 from __future__ import annotations
