@@ -22,6 +22,8 @@ class Reason(StrEnum):
     NOT_TEXT = "it is not UTF-8 text"
     TOO_LARGE = "it is too large for a program"
     UNREADABLE = "it cannot be read"
+    ANOTHER_KIND = "it leads to another kind of file"
+    NOT_A_PROGRAM = "it is no program without mistakes"
 
 
 class FileError(OSError):
@@ -88,6 +90,8 @@ class DiskWorld:
                 raise FileError(path, Reason.OUTSIDE)
             if not file.is_file():
                 raise FileError(path, Reason.MISSING)
+            if file.suffix != PurePosixPath(path).suffix:  # by a link: what is no program is not shown as one
+                raise FileError(path, Reason.ANOTHER_KIND)
             if file.stat().st_size > MAX_BYTES:
                 raise FileError(path, Reason.TOO_LARGE)
             return file.read_text(encoding="utf-8")

@@ -11,6 +11,7 @@ from aidl_lang.agents import model as models
 from aidl_lang.agents.results import Body, Contact, Drawn, Export, Knob, Status, findings, joined
 from aidl_lang.agents.workspace import Limits, refusal
 from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.discretion import Reader
 from aidl_lang.names import nearest
 from aidl_lang.pipeline import Compiled
 from aidl_lang.remedies import short
@@ -24,9 +25,17 @@ _TEXTS = ("svg", "dxf")
 
 
 def drawn(
-    compiled: Compiled, formats: Sequence[str], path: str | None, limits: Limits, *, dimensioned: bool
+    compiled: Compiled,
+    reader: Reader,
+    formats: Sequence[str],
+    path: str | None,
+    limits: Limits,
+    *,
+    dimensioned: bool,
 ) -> Drawn:
-    """The result of a program in some formats. Raises RefusalError where there is no structure at `path`."""
+    """The result of a program in some formats, for its reader. Raises RefusalError where there is nothing at
+    `path`.
+    """
     making = _Making(compiled, limits, dimensioned)
     model, shortened = making.model(path) if "model" in formats else (None, None)
     files = [f for f in dict.fromkeys(formats) if f not in ("png", "model")]
@@ -34,7 +43,7 @@ def drawn(
     png = making.png() if "png" in formats else None
     bodies, contacts = _bodies(compiled), _contacts(compiled)
     left = _left_out(compiled)
-    diagnostics = [*compiled.diagnostics, *making.notes]
+    diagnostics = [*compiled.diagnostics, *reader.diagnostics(making.notes)]
     return Drawn(
         compiled.ok,
         status(compiled),

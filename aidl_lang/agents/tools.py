@@ -31,6 +31,7 @@ from aidl_lang.agents.results import (
 )
 from aidl_lang.agents.workspace import RefusalError, Workspace, refusal
 from aidl_lang.diagnostics import Edit, has_errors
+from aidl_lang.discretion import Reader
 from aidl_lang.mending import Mended, mend
 from aidl_lang.pipeline import Compiled
 from aidl_lang.render import compact
@@ -70,19 +71,20 @@ class Tools:
         """
         source, world = self.workspace.open(program, files)
         settings = self.workspace.limits.settings
-        found = pipeline.check(source, world, settings)
+        found = world.reader(source).diagnostics(pipeline.check(source, world, settings))
         mended = mend(source, world, settings) if any(d.fix for d in found) else Mended(source, found)
         is_changed = bool(mended.fixes)
+        left_over = world.reader(mended.source).diagnostics(mended.diagnostics)
         blocks = [compact(found) or "no mistakes found"]
         if is_changed:
-            left = compact(mended.diagnostics) or "nothing is left to mend"
+            left = compact(left_over) or "nothing is left to mend"
             blocks += [f"With these fixes: {', '.join(mended.fixes)}.", mended.source.text, f"Then: {left}"]
         return Checked(
             not has_errors(found),
             findings(found),
             list(mended.fixes),
             mended.source.text if is_changed else None,
-            findings(mended.diagnostics) if is_changed else None,
+            findings(left_over) if is_changed else None,
             report=joined(blocks),
         )
 
@@ -101,8 +103,8 @@ class Tools:
         how they lie to each other, and what can still move. Look at the picture: a program that solves need
         not look right.
         """
-        _, compiled = self._compiled(program, params, files)
-        return drawing.drawn(compiled, formats, path, self.workspace.limits, dimensioned=dimensioned)
+        _, compiled, reader = self._compiled(program, params, files)
+        return drawing.drawn(compiled, reader, formats, path, self.workspace.limits, dimensioned=dimensioned)
 
     def guide(
         self,
@@ -166,7 +168,7 @@ class Tools:
         """
         from aidl_lang.survey import NothingThereError, survey
 
-        _, compiled = self._compiled(program, params, files)
+        _, compiled, reader = self._compiled(program, params, files)
         if not compiled.ok or compiled.model is None or compiled.drawing is None:
             raise RefusalError(*(d for d in compiled.diagnostics if d.is_error))
         try:
@@ -177,7 +179,7 @@ class Tools:
         pairs = [Contact(p.a, p.b, p.relation, p.gap, p.area) for p in found.pairs[:most]]
         parts, whole = found.parts[:most], found.whole
         is_all = not found.is_partial and len(found.pairs) <= most
-        diagnostics = [*compiled.diagnostics, *found.notes]
+        diagnostics = [*compiled.diagnostics, *reader.diagnostics(found.notes)]
         report = joined(
             [
                 "\n".join(drawing.measured(part) for part in [whole, *(p for p in parts if p is not whole)]),
@@ -208,12 +210,12 @@ class Tools:
         """Change the default of a param in the text of an AIDL program and nothing else; solve both versions
         and tell what moved, grew and changed. Refuses a value outside the range of the param.
         """
-        source, before = self._compiled(program, None, files)
+        source, before, _ = self._compiled(program, None, files)
         if before.status == "wrong":
             raise RefusalError(*(d for d in before.diagnostics if d.is_error))
         edit = knobs.edit_of(knobs.find(before.knobs, name), source, value)
         text = _edited(source, edit)
-        changed, after = self._compiled(text, None, files)
+        changed, after, _ = self._compiled(text, None, files)
         start = edit.span.start
         knobs.require_in_range(after, Span(changed, start, start + len(edit.replacement)))
         replacement = Replacement(place(edit.span), edit.span.text, edit.replacement)
@@ -237,7 +239,7 @@ class Tools:
         """
         source, world = self.workspace.open(program, files)
         settings = self.workspace.limits.settings
-        compiled = pipeline.compile(source, world, params, settings)
+        compiled = world.reader(source).compiled(pipeline.compile(source, world, params, settings))
         remedies = conflicts.Remedies(source, world, params, settings)
         found = [remedies.conflict(conflict) for conflict in compiled.conflicts()]
         others = [d for d in compiled.diagnostics if not (found and d.code in conflicts.CODES)]
@@ -253,9 +255,12 @@ class Tools:
             report=joined(blocks),
         )
 
-    def _compiled(self, program: str, params: Params, files: Files) -> tuple[SourceFile, Compiled]:
+    def _compiled(self, program: str, params: Params, files: Files) -> tuple[SourceFile, Compiled, Reader]:
+        """What came of a program, as far as whoever sent it may see that."""
         source, world = self.workspace.open(program, files)
-        return source, pipeline.compile(source, world, params, self.workspace.limits.settings)
+        reader = world.reader(source)
+        compiled = pipeline.compile(source, world, params, self.workspace.limits.settings)
+        return source, reader.compiled(compiled), reader
 
 
 def _edited(source: SourceFile, edit: Edit) -> str:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from aidl_lang.building.state import Limits as BuildingLimits
 from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.discretion import Programs, Reader
 from aidl_lang.parser import Limits as TextLimits
 from aidl_lang.pipeline import Settings
 from aidl_lang.solver.problem import Settings as SolverSettings
@@ -66,19 +67,25 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class _Layered:
-    """The files given, and where there is none of a name, those below a folder."""
+class Surroundings:
+    """What a program sees: the files given with it, and where there is none of a name, the programs below a
+    folder.
+    """
 
     given: MemoryWorld
-    disk: DiskWorld
+    disk: World | None = None
 
     def read(self, path: str) -> str:
         try:
             return self.given.read(path)
         except FileError as error:
-            if error.reason is not Reason.MISSING:
+            if error.reason is not Reason.MISSING or self.disk is None:
                 raise
         return self.disk.read(path)
+
+    def reader(self, source: SourceFile) -> Reader:
+        """Whoever sent the program and the files that were given with it."""
+        return Reader({**self.given.files, source.name: source.text})
 
 
 @dataclass(frozen=True)
@@ -88,8 +95,8 @@ class Workspace:
     root: Path | None = None
     limits: Limits = field(default_factory=Limits)
 
-    def open(self, program: str, files: Mapping[str, str] | None) -> tuple[SourceFile, World]:
-        """The program as a source, and the world that it sees. Raises RefusalError."""
+    def open(self, program: str, files: Mapping[str, str] | None) -> tuple[SourceFile, Surroundings]:
+        """The program as a source, and what it sees. Raises RefusalError."""
         files = files or {}
         self._measure(program, files)
         try:
@@ -100,8 +107,8 @@ class Workspace:
                 f"the file name `{error.path[:200]}` cannot be used: {error.reason}",
                 "name files as the program imports them, as `parts/bolt.aidl`",
             ) from None
-        world = given if self.root is None else _Layered(given, DiskWorld(self.root))
-        return SourceFile(PROGRAM, program.removeprefix("\ufeff")), world
+        disk = None if self.root is None else Programs(DiskWorld(self.root))
+        return SourceFile(PROGRAM, program.removeprefix("\ufeff")), Surroundings(given, disk)
 
     def _measure(self, program: str, files: Mapping[str, str]) -> None:
         characters, most = len(program) + sum(map(len, files.values())), self.limits.characters

@@ -125,7 +125,10 @@ def _task(arguments: argparse.Namespace) -> Task:
 def _language(arguments: argparse.Namespace) -> Language:
     from aidl_lang.llm.aidl import Aidl
 
-    return Aidl(world=files.world(arguments.edit) if arguments.edit else None)
+    if not arguments.edit:
+        return Aidl()
+    language = Aidl(world=files.world(arguments.edit))
+    return language if arguments.edit == files.STANDARD else replace(language, file=Path(arguments.edit).name)
 
 
 class _Run:

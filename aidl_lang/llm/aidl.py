@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from aidl_lang import ast, parser, pipeline
 from aidl_lang.diagnostics import apply_fixes, has_errors
+from aidl_lang.discretion import Programs, Reader
 from aidl_lang.export import Options
 from aidl_lang.llm import feedback
 from aidl_lang.llm.intent import Ledger, Loss, request
@@ -20,7 +21,6 @@ from aidl_lang.source import SourceFile
 from aidl_lang.variants import Variant
 from aidl_lang.world import World
 
-_FILE = "part.aidl"
 _PIXELS = 512
 """Larger side of the picture of a plan."""
 _ASKED = 2
@@ -42,10 +42,13 @@ _PLANNED = (
 
 @dataclass(frozen=True)
 class Aidl:
-    """AIDL or a subset of it. `world` is where programs may import from; None for nowhere."""
+    """AIDL or a subset of it. `world` is where programs may import from, None for nowhere, and `file` what a
+    program is called there.
+    """
 
     variant: Variant = Variant.FULL
     world: World | None = None
+    file: str = "part.aidl"
     suffix: str = ".aidl"
     fences: tuple[str, ...] = ("aidl",)
 
@@ -58,7 +61,7 @@ class Aidl:
 
     def reads(self, text: str) -> bool:
         """Whether the parser takes a text that has a root structure."""
-        parsed = parser.parse(SourceFile(_FILE, text))
+        parsed = parser.parse(SourceFile(self.file, text))
         is_rooted = any(isinstance(statement, ast.Structure) for statement in parsed.module.statements)
         return is_rooted and not has_errors(parsed.diagnostics)
 
@@ -79,15 +82,16 @@ class AidlConversation:
 
     def __post_init__(self) -> None:
         self.settings = pipeline.Settings(variant=self.language.variant)
-        self.ledger = Ledger(self.language.world, self.settings)
+        self.world = self.language.world and Programs(self.language.world)
+        self.ledger = Ledger(self.world, self.settings)
 
     def begin_with(self, program: str) -> None:
         """The program that is to be changed: what it means shall stay."""
-        source = SourceFile(_FILE, program)
+        source = self._source(program)
         self.ledger.note(source, self._compiled(source))
 
     def judge(self, program: str) -> Verdict:
-        mended = mend(SourceFile(_FILE, program), self.language.world, self.settings)
+        mended = mend(self._source(program), self.world, self.settings)
         compiled = self._compiled(mended.source)
         self.ledger.note(mended.source, compiled)
         verdict = self._verdict(mended.source, compiled, mended.fixes)
@@ -98,7 +102,7 @@ class AidlConversation:
 
     def finish(self, verdict: Verdict) -> Verdict:
         """The last word: fixes of constraints that conflict, then what fits back of what was lost."""
-        source, fixes = SourceFile(_FILE, verdict.program), verdict.fixes
+        source, fixes = self._source(verdict.program), verdict.fixes
         compiled = verdict.compiled or self._compiled(source)
         if not compiled.ok:
             source, compiled, made = self._forced(source, compiled)
@@ -107,19 +111,23 @@ class AidlConversation:
         if compiled.ok:
             restored = self.ledger.restore(source)
             if restored.items:
-                source = SourceFile(_FILE, restored.text)
+                source = self._source(restored.text)
                 compiled = self._compiled(source)
                 self.ledger.note(source, compiled)
                 fixes += tuple(f"put back {item}" for item in restored.items)
         return self._verdict(source, compiled, fixes)
 
+    def _source(self, program: str) -> SourceFile:
+        return SourceFile(self.language.file, program)
+
     def _compiled(self, source: SourceFile) -> Compiled:
-        return pipeline.compile(source, self.language.world, settings=self.settings)
+        compiled = pipeline.compile(source, self.world, settings=self.settings)
+        return Reader.of(source).compiled(compiled)
 
     def _forced(self, source: SourceFile, compiled: Compiled) -> tuple[SourceFile, Compiled, tuple[str, ...]]:
         """The program with the fixes that choose among conflicting constraints, if that makes it right."""
         text, made = apply_fixes(source, compiled.diagnostics)
-        forced = SourceFile(_FILE, text)
+        forced = self._source(text)
         result = self._compiled(forced) if made else compiled
         if not made or not result.ok:
             return source, compiled, ()

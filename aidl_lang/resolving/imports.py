@@ -1,7 +1,8 @@
 """Imports: the files that a program stands on, each read and parsed once.
 
-A path is relative to the file that imports it and may not leave the project, which is the folder of the
-program and all below it. What is wrong inside an imported file is reported at its place there.
+A path is relative to the file that imports it, ends in `.aidl`, and may not leave the project, which is the
+folder of the program and all below it. No other file is read, as what is said of a file quotes it. What is
+wrong inside an imported file is reported at its place there.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from pathlib import PurePosixPath
 from aidl_lang import ast
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.source import SourceFile, Span
-from aidl_lang.world import FileError, World, relative_to
+from aidl_lang.world import FileError, Reason, World, relative_to
 
 SUFFIX = ".aidl"
 MAX_FILES = 200
@@ -112,13 +113,18 @@ class _Loader:
                 "E0210", f"`{written}` cannot be imported: only this text is at hand", statement.path
             )
             return None
+        if PurePosixPath(path).suffix != SUFFIX:
+            hints = f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`", "the library needs no import"
+            message = f"`{path}` cannot be imported: its name does not end in `{SUFFIX}`"
+            self._report("E0210", message, statement.path, *hints)
+            return None
         try:
             return self.world.read(path)
         except FileError as error:
-            hints = ["paths are relative to the file that imports"]
-            if not path.endswith(SUFFIX):
-                hints = [f"programs end in `{SUFFIX}`: `{written}{SUFFIX}`", "the library needs no import"]
-            self._report("E0210", f"`{path}` cannot be imported: {error.reason}", statement.path, *hints)
+            hint = "paths are relative to the file that imports"
+            if error.reason is Reason.NOT_A_PROGRAM:
+                hint = f"`aidl check {path}` tells what is wrong in it"
+            self._report("E0210", f"`{path}` cannot be imported: {error.reason}", statement.path, hint)
             return None
 
     def _report(self, code: str, message: str, node: ast.Node, *hints: str) -> None:

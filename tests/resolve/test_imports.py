@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from aidl_lang import library, parser
 from aidl_lang.resolve import resolve
 from aidl_lang.source import SourceFile
@@ -76,9 +78,35 @@ def test_errors_are_shown_in_the_file_they_are_in() -> None:
 
 
 def test_missing_files_and_no_world() -> None:
-    assert messages('import "a"') == ["E0210 1: `a` cannot be imported: there is no such file"]
+    assert messages('import "a.aidl"') == ["E0210 1: `a.aidl` cannot be imported: there is no such file"]
     module = parser.parse(SourceFile("<stdin>", 'import "a.aidl"')).module
     assert [d.code for d in resolve(module, None, library.load()).diagnostics] == ["E0210"]
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        ".env",
+        "a",
+        "notes.txt",
+        "a.AIDL",
+        "a.aidl.txt",
+        ".aidl",
+        "a.aidl/.env",
+        "a.aidl\x00.env",
+        "a.aidl ",
+        "b\\.env",
+    ],
+)
+def test_nothing_but_programs_is_read(name: str) -> None:
+    class Untouched:
+        def read(self, path: str) -> str:
+            raise AssertionError(path)
+
+    source = SourceFile("main.aidl", f'import "{name}"\nsolid s {{ c = circle(radius: 1) }}')
+    (found,) = resolve(parser.parse(source).module, Untouched(), library.load()).diagnostics
+    assert found.code == "E0210"
+    assert found.message.endswith(" cannot be imported: its name does not end in `.aidl`")
 
 
 def test_limits() -> None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.discretion import Reader
 from aidl_lang.llm.intent.changes import Changes, Fate
 from aidl_lang.llm.intent.inventory import Inventory, Item, Kind
 from aidl_lang.llm.intent.placing import put_back
@@ -78,7 +79,7 @@ class Prober:
     def compiled(self, source: SourceFile) -> Compiled:
         """A compilation that counts."""
         self.left -= 1
-        return compile(source, self.world, settings=self.settings)
+        return Reader.of(source).compiled(compile(source, self.world, settings=self.settings))
 
     def tried(self, item: Item, changes: Changes, base: Compiled | None, is_first: bool = False) -> Trial:
         """What comes of putting an item back into the later program, which came out as `base`. If more is to
