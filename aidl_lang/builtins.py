@@ -152,6 +152,9 @@ WORDS = frozenset(
 EVERYWHERE = ("self", "origin", "x_axis", "y_axis")
 """Names that every structure has."""
 
+ROTATION = "rotation"
+"""What a structure is asked for its turn against the one around it."""
+
 MATH = ("math", "np", "numpy")
 """Modules of other languages whose functions are known here by the same names: `math.sqrt(2)`, `np.pi`."""
 

@@ -39,7 +39,7 @@ class Unknown:
     cell      stands for a number argument, and may still be read as a constant while building
     exact     a constant after all: read while building, or locked and named by no constraint
     outline   a side of the box of an empty structure
-    locked    an angle that stays zero until a constraint names it
+    locked    an angle that stays as written until a constraint asks it to turn
     since     for the way to a literal point, the name of the one before it
     """
 

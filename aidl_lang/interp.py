@@ -24,9 +24,10 @@ from aidl_lang.building.modules import run_module
 from aidl_lang.building.scopes import Binding, Candidate, LetBinding, Scope
 from aidl_lang.building.state import DEFAULT_LIMITS, Interpreter, Limits, Stop
 from aidl_lang.building.statements import EXECUTORS
-from aidl_lang.builtins import MATH, SIGNATURES
+from aidl_lang.builtins import MATH, ROTATION, SIGNATURES
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.model import Model, Structure
+from aidl_lang.names import fold
 from aidl_lang.typecheck import Program
 from aidl_lang.values import NOTHING, Namespace
 
@@ -48,6 +49,7 @@ def interpret(
     """Run a program. Never raises for what a program says; errors are among the diagnostics."""
     it = Interpreter(program, overrides or {}, limits, EXECUTORS, evaluate, call)
     it.deadline = time.monotonic() + limits.seconds
+    it.frames_turn = any(map(_speaks_of_rotation, program.resolution.modules))
     it.watched = frozenset(node for violation in program.violations for node in violation.nodes)
     try:
         root = run_module(it, _library_scope(program))
@@ -58,6 +60,13 @@ def interpret(
     constraints = anchored(it.constraints)
     model = Model(root, constraints, it.assertions, it.unknowns, it.knobs, it.readings, it.literals)
     return Interpretation(model, it.diagnostics, it.written)
+
+
+def _speaks_of_rotation(module: ast.Module) -> bool:
+    """Whether a file asks something for its rotation."""
+    if fold(ROTATION) not in fold(module.source.text):
+        return False
+    return any(isinstance(n, ast.Member) and fold(n.name.text) == ROTATION for n in ast.walk(module))
 
 
 def _library_scope(program: Program) -> Scope:

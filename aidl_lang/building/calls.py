@@ -19,6 +19,7 @@ from aidl_lang.building.overloads import find_candidates, no_overload, site_of, 
 from aidl_lang.building.placing import placing, spliced
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
+from aidl_lang.building.turning import ask_to_turn, unlock
 from aidl_lang.builtins import COPYING
 from aidl_lang.model import Condition, Geometry
 from aidl_lang.types import (
@@ -182,17 +183,27 @@ def invoke(
             return FUNCTIONS[name](it, arguments, node, env)
         case ast.FunctionDefinition():
             scope = _body_scope(it, candidate, arguments, definition.parameters, env)
-            return evaluate(it, definition.value, Env(scope, env.here, env.reach))
+            value = evaluate(it, definition.value, Env(scope, env.here, env.reach))
+            if candidate.signature.name == "angle" and isinstance(value, Num) and _constrains(it, node, env):
+                unlock(value.expression)
+            return value
         case ast.ConstraintDefinition():
             scope = _body_scope(it, candidate, arguments, definition.parameters, env)
             condition = run_items(it, definition.body, Env(scope, env.here, env.reach))
             if condition is True and binding.gathered and len(values) == len(binding.arguments) == 1:
                 _says_nothing(it, node, values[0])
+            if isinstance(condition, Condition) and _constrains(it, node, env):
+                ask_to_turn(candidate.signature, condition)
             return placing(condition, definition, binding, values, env)
         case ast.ShapeDefinition():
             return _shape(it, candidate, definition, arguments, node, env)
         case ast.Structure():
             return Instantiation(candidate.signature, candidate.scope, definition, arguments, node)
+
+
+def _constrains(it: Interpreter, node: ast.Call, env: Env) -> bool:
+    """Whether the author asks for something by a call, rather than the library on the way."""
+    return env.reach is Reach.SUBTREE and it.place(node) is node.span
 
 
 def _body_scope(

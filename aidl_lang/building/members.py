@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from aidl_lang import ast, boxes, primitives
-from aidl_lang import expression as ex
 from aidl_lang.boxes import Box
 from aidl_lang.building.coerce import as_written, may_read
 from aidl_lang.building.lists import entry
@@ -22,7 +21,8 @@ from aidl_lang.building.scopes import (
 )
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.templates import read_passed
-from aidl_lang.builtins import FINISHES
+from aidl_lang.building.turning import unlock
+from aidl_lang.builtins import FINISHES, ROTATION
 from aidl_lang.diagnostics import Edit, Fix, Label
 from aidl_lang.model import Condition, Geometry, Structure
 from aidl_lang.names import find, fold, nearest
@@ -38,6 +38,7 @@ from aidl_lang.values import (
     Pattern,
     PointVal,
     RecordVal,
+    Status,
     Value,
     kind_of,
     members,
@@ -205,8 +206,20 @@ def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, 
         # Points kept as they are (`origin`, an argument) are in the structure's own frame.
         is_own = isinstance(binding, PointVal | PassedBinding)
         return primitives.translate(key, value, s, env.here) if is_own else value
+    if fold(name) == ROTATION and s.parent is not None:
+        return _rotation(it, s, s.parent, node, env)
     box = boxes.box_of(s, env.here)
     return _box_field(it, box, name, node, env) if box else None
+
+
+def _rotation(it: Interpreter, s: Structure, around: Structure, node: ast.Node, env: Env) -> Value:
+    """How a structure is turned; a constraint that asks for it lets it turn."""
+    turn = primitives.translate("angle", Num(s.frame.rotation, ANGLE, Status.REFERENCE), around, env.here)
+    if not may_read(it, s, node, env):
+        return as_written(turn)
+    if env.reach is Reach.SUBTREE:
+        unlock(s.frame.rotation)
+    return turn
 
 
 def _geometry_member(it: Interpreter, g: Geometry, name: str, node: ast.Node, env: Env) -> Value | None:
@@ -218,6 +231,9 @@ def _geometry_member(it: Interpreter, g: Geometry, name: str, node: ast.Node, en
         key = find(name, fields) or name
         reached = may_read(it, g.bound_to, node, env)
         value = primitives.field(g, key, env.here)
+        if reached and key == "angle" and env.reach is Reach.SUBTREE and it.place(node) is node.span:
+            assert isinstance(value, Num)
+            unlock(value.expression)
         if value is not None:
             return value if reached else as_written(value)
     box = boxes.box_of(g, env.here)
@@ -232,16 +248,9 @@ def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: E
     if isinstance(value, Num | PointVal) and not is_same_everywhere(value):
         if not may_read(it, g.bound_to, node, env):
             return as_written(value)
-        if env.reach is Reach.SUBTREE and isinstance(value, Num):
-            _unlock(value)
+        if env.reach is Reach.SUBTREE and isinstance(value, Num) and value.dimension == ANGLE:
+            unlock(value.expression)
     return value
-
-
-def _unlock(value: Num) -> None:
-    """A constraint names an angle that was exact only because nothing asked it to turn."""
-    if value.dimension == ANGLE:
-        for unknown in ex.unknowns([value.expression]):
-            unknown.exact &= not unknown.locked
 
 
 def _box_field(it: Interpreter, box: Box, name: str, node: ast.Node, env: Env) -> Value | None:

@@ -116,6 +116,8 @@ class Interpreter:
     """of the definitions of bodies"""
     sites: dict[ast.Call, Site] = field(default_factory=dict)
     """what is known of calls from their text and the overloads of their names"""
+    frames_turn: bool = False
+    """whether the program speaks of the rotation of structures, which a constraint on it frees"""
     root: Structure | None = None
     entities: int = 0
     turns: int = 0

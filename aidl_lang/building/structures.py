@@ -17,7 +17,7 @@ from aidl_lang.building.scopes import Scope, indexed
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.stated import read_constraint
 from aidl_lang.building.templates import passed
-from aidl_lang.builtins import FINISHES
+from aidl_lang.builtins import FINISHES, ROTATION
 from aidl_lang.model import Frame, Geometry, Structure
 from aidl_lang.units import ANGLE, LENGTH
 from aidl_lang.values import (
@@ -155,8 +155,12 @@ def _place(
     )
     rotation = solvable(it, turn, s.span) if turn is not None else ex.ZERO
     if turn is not None and turn.status is Status.GUESS:
-        rotation = it.unknown(turn.value, s, "rotation", owner=s.parent, dimension=ANGLE, frame_of=s)
-        it.became(turn, rotation, s, "rotation", ANGLE)
+        rotation = it.unknown(turn.value, s, ROTATION, owner=s.parent, dimension=ANGLE, frame_of=s)
+        it.became(turn, rotation, s, ROTATION, ANGLE)
+    elif it.frames_turn and (turn is None or turn.status is Status.NUMBER) and rotation.is_constant:
+        rotation = it.unknown(rotation.value, s, ROTATION, owner=s.parent, dimension=ANGLE, frame_of=s)
+        assert isinstance(rotation.payload, ex.Unknown)
+        rotation.payload.locked = rotation.payload.exact = True
     s.frame = Frame(x, y, rotation)
 
 

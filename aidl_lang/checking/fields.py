@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from aidl_lang.builtins import FINISHES
+from aidl_lang.builtins import FINISHES, ROTATION
 from aidl_lang.names import fold
 from aidl_lang.types import (
     ANY,
@@ -49,6 +49,7 @@ STRUCTURE: Mapping[str, Type] = {
     "origin": _POINT,
     "x_axis": GeometryType("line"),
     "y_axis": GeometryType("line"),
+    ROTATION: _ANGLE,
 }
 
 PATTERN: Mapping[str, Mapping[str, Type]] = {
