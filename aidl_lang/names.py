@@ -29,14 +29,50 @@ def find(name: str, table: Mapping[str, T]) -> str | None:
     return alike[0] if len(alike) == 1 else None
 
 
+_OPPOSITES = tuple(
+    tuple(tuple(words.split()) for words in line.split(" | "))
+    for line in """
+smaller narrower shorter less fewer | larger bigger wider taller longer greater more
+lower under below beneath | higher over above
+left | right
+top | bottom
+up | down
+inside inner within | outside outer
+horizontal level | vertical upright
+parallel | perpendicular
+start first begin | end last
+min | max
+near | far
+row | column
+front | back
+before | after
+most | least
+convex | concave
+clockwise | counterclockwise anticlockwise
+""".strip().splitlines()
+)
+"""Words that mean the reverse of those on the other side of the bar."""
+
+
+def are_opposite(a: str, b: str) -> bool:
+    """Whether two names differ by a word and the reverse of it, as `align_left` and `align_right` do."""
+    one, other = fold(a), fold(b)
+    return any(
+        any(w in one and w not in other for w in here) and any(w in other and w not in one for w in there)
+        for pair in _OPPOSITES
+        for here, there in (pair, pair[::-1])
+    )
+
+
 def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
-    """Known names that `name` may be a misspelling of, best first."""
+    """Known names that `name` may be a misspelling of, best first; never one that means the reverse."""
     folded: dict[str, str] = {}
     for key in known:
         folded.setdefault(fold(key), key)
     likeness = 0.6 if len(name) < 5 else 0.7  # one wrong letter weighs more in a short name
     wanted = fold(name)
-    matches = get_close_matches(wanted, folded, n=count + _WIDER, cutoff=likeness)
+    found = get_close_matches(wanted, folded, n=count + _WIDER, cutoff=likeness)
+    matches = [match for match in found if not are_opposite(wanted, match)]
     matches.sort(key=lambda match: _distance(wanted, match))
     return [folded[match] for match in matches[:count]]
 
@@ -49,11 +85,19 @@ def is_spelled_in(letters: str, word: str) -> bool:
 
 def is_slip(name: str, meant: str) -> bool:
     """Whether one name is so near to the other that nobody need be asked: a letter wrong, missing, too many
-    or exchanged with its neighbour, two in a long name; but no word more or less, as in `same_center_x`.
+    or exchanged with its neighbour, two in a long name but not in a short word of it; and no word more or less,
+    as in `same_center_x`.
     """
-    a, b = fold(name), fold(meant)
-    slips = _distance(a, b)
-    return slips == 0 or (name.count("_") == meant.count("_") and slips <= (1 if len(a) < 8 else 2))
+    if fold(name) == fold(meant):
+        return True
+    words, others = name.casefold().split("_"), meant.casefold().split("_")
+    if len(words) != len(others) or _distance(fold(name), fold(meant)) > _most_slips(fold(name)):
+        return False
+    return all(_distance(x, y) <= _most_slips(x) for x, y in zip(words, others, strict=True))
+
+
+def _most_slips(word: str) -> int:
+    return 1 if len(word) < 8 else 2
 
 
 def _distance(a: str, b: str) -> int:

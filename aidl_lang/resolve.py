@@ -29,7 +29,7 @@ from aidl_lang.resolving.declare import Declarer, is_definition, made_by
 from aidl_lang.resolving.foreign import without_idle
 from aidl_lang.resolving.imports import ImportedModules, load_imports, with_inner_imports
 from aidl_lang.resolving.resolution import Resolution, library_scope
-from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind, word_meant
+from aidl_lang.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind, word_meant
 from aidl_lang.types import Signature
 
 if TYPE_CHECKING:
@@ -257,9 +257,14 @@ class Resolver:
                 )
             for argument in attribute.arguments:
                 value = argument.value
-                is_bare = isinstance(value, ast.Name) and scope.value(value.text) is None
-                if not (is_bare and word_meant(name, WORDED)):  # `@orientation(front)`
+                # `@orientation(front)`, also where a part has that name
+                is_bare = isinstance(value, ast.Name) and not self._is_constant(scope.value(value.text))
+                if not (is_bare and word_meant(name, WORDED)):
                     self._unordered(scope, value)
+
+    @staticmethod
+    def _is_constant(symbol: Symbol | None) -> bool:
+        return symbol is not None and symbol.kind not in UNKNOWNS
 
     # --- Expressions ---------------------------------------------------------------------------
 

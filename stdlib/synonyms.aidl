@@ -32,3 +32,23 @@ alias anchored = fixed
 
 // An angle has its unit already.
 fn degrees(angle: angle) = angle
+
+// Geometry is made by its name alone.
+alias make_point = point
+alias make_line = line
+alias make_arc = arc
+alias make_circle = circle
+alias make_ellipse = ellipse
+alias make_bezier = bezier
+alias make_rectangle = rectangle
+alias make_square = square
+alias make_triangle = triangle
+alias make_polygon = polygon
+alias make_polyline = polyline
+alias make_path = path
+alias make_text = text
+
+alias arcsin = asin
+alias arccos = acos
+alias arctan = atan
+alias arctan2 = atan2

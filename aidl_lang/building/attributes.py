@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 
 from aidl_lang import ast, units
 from aidl_lang.building.evaluate import evaluate
@@ -93,7 +93,9 @@ def _read(
         values: list[Value] = []
         for argument in attribute.arguments:
             value = argument.value
-            if name in WORDED and isinstance(value, ast.Name) and env.scope.find(value.text) is None:
+            is_bare = isinstance(value, ast.Name) and value not in it.program.resolution.uses
+            if name in WORDED and is_bare:
+                assert isinstance(value, ast.Name)
                 value = ast.String(value.text, span=value.span)
             values.append(evaluate(it, value, env))
         yield "color" if name == "colour" else name, values, attribute
@@ -102,14 +104,14 @@ def _read(
 ORIENTATIONS = ("top", "front", "side")
 
 
-def _fits(it: Interpreter, name: str, values: Sequence[Value], attribute: ast.Attribute) -> bool:
-    """Whether an attribute is given what it takes."""
+def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attribute) -> bool:
+    """Whether an attribute is given what it takes; an orientation is spelled as it is known."""
     if any(isinstance(value, Nothing) for value in values):
         return False
     wanted = ""
     match name, *values:
-        case ("orientation", Text(word)) if word in ORIENTATIONS:
-            pass
+        case ("orientation", Text(word)) if (meant := find(word, dict.fromkeys(ORIENTATIONS))) is not None:
+            values[:] = [Text(meant)]
         case ("orientation", *_):
             wanted = "one of `top`, `front` and `side`, as in `@orientation(front)`"
         case ("thickness", Num() as thickness) if thickness.dimension in (None, units.LENGTH):

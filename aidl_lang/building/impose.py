@@ -21,7 +21,12 @@ from aidl_lang.values import Array, ListVal, Nothing, Num, PointVal, Text, Value
 
 def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None = None) -> None:
     """`constrain EXPR` or, with a weight, `prefer EXPR`: constant conditions are checked on the spot."""
-    if isinstance(node, ast.Call) and _named(it, node) == "fixed":
+    handed = _handed_over(it, node)
+    if any(_holds_place(it, inner) for inner in handed):
+        for inner in handed:
+            impose(it, inner, env, weight)
+        return
+    if isinstance(node, ast.Call) and _holds_place(it, node):
         value = _held(it, node, env)
     else:
         value = _read(it, node, env)
@@ -47,6 +52,18 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
                 node,
                 hints=["compare it (`== 20`), or call a relation such as `above(a, b)`"],
             )
+
+
+def _holds_place(it: Interpreter, node: ast.Expression) -> bool:
+    return isinstance(node, ast.Call) and _named(it, node) == "fixed"
+
+
+def _handed_over(it: Interpreter, node: ast.Expression) -> list[ast.Expression]:
+    """What `AddConstraint(…)` is given, of which `fixed(p)` is no condition by itself."""
+    if not isinstance(node, ast.Call) or node.receiver is not None or _named(it, node) != "add_constraint":
+        return []
+    values = [a.value for a in node.arguments]
+    return [item for v in values for item in (v.items if isinstance(v, ast.List) else (v,))]
 
 
 def _as_relation(node: ast.Expression) -> ast.Expression:

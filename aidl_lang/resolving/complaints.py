@@ -12,7 +12,7 @@ from aidl_lang.names import fold, is_slip, nearest
 from aidl_lang.resolving.foreign import call_answer, value_hint
 from aidl_lang.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind, word_meant
 from aidl_lang.source import Span
-from aidl_lang.synonyms import FIELDS
+from aidl_lang.synonyms import FIELDS, PARAMETERS
 from aidl_lang.types import Signature
 
 if TYPE_CHECKING:
@@ -106,13 +106,29 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: Scope) -> None:
     if is_condition and not (like and is_slip(name, like[0])):
         like = nearest(name, [n for n in scope.callable_names() if _may_hold(scope, n)])
     hint = _RELATIONS if is_condition else "define it with `fn`, `shape` or as a template"
+    is_meant = bool(like) and not _is_spelled_right(name, like[0], scope)
+    is_safe = is_meant and (is_condition or not _only_holds(scope, like[0]))
     resolver.report(
         "E0203",
         f"there is no function, shape or constraint `{name}`" + did_you_mean(like),
         node.callee,
         hints=() if like else (hint,),
-        fix=respell(node.callee, like),
+        fix=respell(node.callee, like) if is_safe else None,
     )
+
+
+def _is_spelled_right(name: str, meant: str, scope: Scope) -> bool:
+    """Whether a word in which two names differ is a known one: `same_side` is no slip for `same_size`."""
+    known = {word for other in scope.callable_names() for word in other.casefold().split("_")}
+    known |= PARAMETERS.keys() | FIELDS
+    words, others = name.casefold().split("_"), meant.casefold().split("_")
+    return any(w in known for w, other in zip(words, others, strict=False) if w != other)
+
+
+def _only_holds(scope: Scope, name: str) -> bool:
+    """Whether a callable is a constraint and nothing else: it makes nothing."""
+    found = scope.called(name)
+    return found is not None and all(kind_of(s) is SymbolKind.CONSTRAINT for s in found[1])
 
 
 _RELATIONS = (

@@ -60,6 +60,11 @@ _CALLS: Mapping[str, str] = {
         ("circular_pattern", "copies about a centre are made by `polar_array(…)`"),
         ("if_then_else ternary select", "a choice is written `if c then a else b`"),
         (
+            "smaller larger bigger smaller_than larger_than bigger_than",
+            "sizes compare by `wider`, `narrower`, `taller` and `shorter`, or as numbers: "
+            "`a.width <= b.width`",
+        ),
+        (
             "connect connects connected attach attaches attached join joins joined weld welded glue glued "
             "snap snapped mate mated fasten fastened link linked bond meet meets hinge hinged pinned",
             "points become one by `coincident(a.end, b.start)`, "
