@@ -131,6 +131,14 @@ EDITS = frozenset({"move", "translate", "rotate", "scale"})
 PATTERNS = frozenset({"linear_array", "grid", "polar_array"})
 """Operations that make members of an array."""
 
+CUTS = frozenset(
+    (
+        *("clearance_hole", "through_hole", "tap_hole", "tapped_hole", "counterbore", "countersink"),
+        *("hex_pocket", "nut_trap", "nut_pocket", "bearing_seat"),
+    )
+)
+"""Ready-made cuts of the library: holes in a solid or an assembly, outlines elsewhere."""
+
 COPYING = frozenset({"mirror", "copy"}) | EDITS
 """Operations that give what they are given, elsewhere."""
 

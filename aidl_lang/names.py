@@ -85,8 +85,8 @@ def is_spelled_in(letters: str, word: str) -> bool:
 
 def is_slip(name: str, meant: str) -> bool:
     """Whether one name is so near to the other that nobody need be asked: a letter wrong, missing, too many
-    or exchanged with its neighbour, two in a long name but not in a short word of it; and no word more or less,
-    as in `same_center_x`.
+    or exchanged with its neighbour, two in a long name but not in a short word of it. A word more is none:
+    `same_center_x`.
     """
     if fold(name) == fold(meant):
         return True

@@ -25,6 +25,7 @@ from aidl_lang.diagnostics import Diagnostic, Fix, Label, ordered
 from aidl_lang.library import Library
 from aidl_lang.names import nearest
 from aidl_lang.resolving import complaints
+from aidl_lang.resolving.cuts import hole_calls, meant, with_placed_cuts
 from aidl_lang.resolving.declare import Declarer, is_definition, made_by
 from aidl_lang.resolving.foreign import without_idle
 from aidl_lang.resolving.imports import ImportedModules, load_imports, with_inner_imports
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 
 def resolve(module: ast.Module, world: World | None, library: Library) -> Resolution:
     """Find what every name of a file, and of the files it imports, means. Never raises for what they say."""
-    module, misplaced = with_inner_imports(module)
+    module, misplaced = with_inner_imports(with_placed_cuts(module))
     loaded = load_imports(module, world)
     main, notes = without_idle(module, loaded.modules)
     modules = tuple(main if m is module else m for m in loaded.modules)
@@ -66,10 +67,12 @@ class Resolver:
         self.is_ordered = True
         self.argument: ast.Call | None = None
         self.condition: ast.Expression | None = None  # what stands among constraints by itself
+        self.hole_calls: frozenset[ast.Call] = frozenset()
 
     # --- Files and definitions -----------------------------------------------------------------
 
     def module(self, module: ast.Module, loaded: ImportedModules) -> None:
+        self.hole_calls = hole_calls(module)
         scope = Scope(module, self._imported(module, loaded), (module,))
         self.resolution.scopes[module] = scope
         self._declare(scope, module.statements)
@@ -313,7 +316,7 @@ class Resolver:
         if found is None:
             complaints.unknown_callable(self, node, where)
         else:
-            name, signatures = found
+            name, signatures = found[0], meant(found[1], node in self.hole_calls)
             self.resolution.candidates[node] = tuple(signatures)
             self.resolution.uses[node] = self._callable(signatures[0])
             if name != callee.text:

@@ -95,7 +95,7 @@ fn clearance_of(
     screw: record, fit: text
 ) = if fit == "close" or fit == "fine" then screw.close else if fit == "medium" or fit == "normal" then screw.clearance else screw.loose
 
-/// The through hole of a screw, as a circle: `fit` is close, medium or loose.
+/// The through hole of a screw, placed with `at`; in a `hole` its rim, a circle. `fit` is close, medium or loose.
 ///
 /// ```aidl
 /// solid plate {
@@ -107,8 +107,11 @@ fn clearance_of(
 /// ```
 fn clearance_hole(size, center: point = (0, 0), fit: text = "medium") =
     circle(center: center, diameter: clearance_diameter(size, fit))
+hole clearance_hole(size, fit: text = "medium") {
+    rim = clearance_hole(size, center: fixed((0, 0)), fit: fit)
+}
 
-/// The hole to be drilled for the thread of a screw, as a circle.
+/// The hole to be drilled for the thread of a screw, placed with `at`; in a `hole` its rim, a circle.
 ///
 /// ```aidl
 /// solid block {
@@ -117,8 +120,11 @@ fn clearance_hole(size, center: point = (0, 0), fit: text = "medium") =
 /// }
 /// ```
 fn tap_hole(size, center: point = (0, 0)) = circle(center: center, diameter: screw(size).tap)
+hole tap_hole(size) {
+    rim = tap_hole(size, center: fixed((0, 0)))
+}
 
-/// The bore that takes in the head of a socket head cap screw, as a circle (DIN 974-1).
+/// The bore that takes in the head of a socket head cap screw (DIN 974-1), placed with `at`; in a `hole` its rim.
 ///
 /// ```aidl
 /// assembly clamp {
@@ -134,8 +140,11 @@ fn tap_hole(size, center: point = (0, 0)) = circle(center: center, diameter: scr
 /// ```
 fn counterbore(size, center: point = (0, 0)) =
     circle(center: center, diameter: screw(size).counterbore)
+hole counterbore(size) {
+    rim = counterbore(size, center: fixed((0, 0)))
+}
 
-/// The rim of a countersink in which a flat head lies flush, as a circle.
+/// A countersink in which a flat head lies flush, as wide as at its top, placed with `at`; in a `hole` its rim.
 ///
 /// ```aidl
 /// solid hinge_leaf {
@@ -147,8 +156,11 @@ fn counterbore(size, center: point = (0, 0)) =
 /// ```
 fn countersink(size, center: point = (0, 0)) =
     circle(center: center, diameter: screw(size).countersink)
+hole countersink(size) {
+    rim = countersink(size, center: fixed((0, 0)))
+}
 
-/// A pocket that holds a hexagon nut, `play` wider than the nut across its flats.
+/// A pocket that holds a hexagon nut, `play` wider than it across its flats, placed with `at`; in a `hole` its outline.
 ///
 /// ```aidl
 /// solid knob {
@@ -169,6 +181,9 @@ shape hex_pocket(
     )
     let corner = outline.corner
     let edges = outline.edges
+}
+hole hex_pocket(size, angle: angle = 0deg, play: length = 0.2) {
+    outline = hex_pocket(size, center: fixed((0, 0)), angle: angle, play: play)
 }
 
 /// A hole for a screw to go through, to be placed with `at`.

@@ -185,7 +185,7 @@ fn bearing(number: text) = bearings["b" + choice(
 )]
 fn bearing(number: integer) = bearing(str(number))
 
-/// The hole that a ball bearing is pressed into, as a circle, `play` wider than the bearing.
+/// The hole that a ball bearing is pressed into, `play` wider than it, placed with `at`; in a `hole` its rim.
 ///
 /// ```aidl
 /// solid wheel {
@@ -195,6 +195,9 @@ fn bearing(number: integer) = bearing(str(number))
 /// ```
 fn bearing_seat(number, center: point = (0, 0), play: length = 0) =
     circle(center: center, diameter: fixed(bearing(number).outside + play))
+hole bearing_seat(number, play: length = 0) {
+    rim = bearing_seat(number, center: fixed((0, 0)), play: play)
+}
 
 alias bolt_pattern = bolt_circle
 alias corner_holes = hole_rectangle

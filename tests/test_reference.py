@@ -39,7 +39,7 @@ FOR_THE_LIBRARY = {
 NOT_WORDS = frozenset({"comprehension"})
 """Sections on the language that are not headed by a word of it, a kind or an attribute."""
 
-TOKENS = 6000
+TOKENS = 7000
 """What the guide may take of a model's attention."""
 
 

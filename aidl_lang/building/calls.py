@@ -15,7 +15,7 @@ from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.lists import run
 from aidl_lang.building.outlines import remember, usable
-from aidl_lang.building.overloads import find_candidates, no_overload, site_of, unknown_callable
+from aidl_lang.building.overloads import candidates_of, no_overload, site_of, unknown_callable
 from aidl_lang.building.placing import placing, spliced
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
@@ -56,7 +56,7 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
         receiver = evaluate(it, node.receiver, env)
         if isinstance(receiver, Nothing):
             return NOTHING
-    candidates = find_candidates(it, node.callee.text, env.scope, receiver)
+    candidates = candidates_of(it, node, env.scope, receiver)
     if not candidates:
         unknown_callable(it, node, env)
         return NOTHING

@@ -9,8 +9,9 @@ from aidl_lang import ast
 from aidl_lang.binding import select
 from aidl_lang.building.scopes import Candidate, Scope
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.builtins import OUTLINES, SIGNATURES, is_word
+from aidl_lang.builtins import CUTS, OUTLINES, SIGNATURES, is_word
 from aidl_lang.names import find, nearest
+from aidl_lang.resolving.cuts import meant
 from aidl_lang.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.types import ANY, Binding, Given, Mismatch, Signature, Type, with_article
 from aidl_lang.values import Namespace, Text, Value, kind_of, type_of
@@ -102,6 +103,17 @@ def _standard_site(node: ast.Call, signatures: tuple[Signature, ...]) -> Site:
 
 
 _MOST_MEANINGS = 100  # of one call; lists of every length are types of their own
+
+
+def candidates_of(it: Interpreter, node: ast.Call, scope: Scope, receiver: Value | None) -> list[Candidate]:
+    """The callables that a call may mean where it stands."""
+    found = find_candidates(it, node.callee.text, scope, receiver)
+    if not found or found[0].signature.name not in CUTS:
+        return found
+    of_context = it.program.resolution.candidates.get(node)
+    signatures = [c.signature for c in found]
+    wanted = meant(signatures, of_context is not None and any(s.kind is ast.Structure for s in of_context))
+    return found if wanted is signatures else [c for c in found if c.signature in wanted]
 
 
 def find_candidates(it: Interpreter, name: str, scope: Scope, receiver: Value | None) -> list[Candidate]:

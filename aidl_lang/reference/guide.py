@@ -21,6 +21,7 @@ from itertools import groupby
 from pathlib import Path
 
 from aidl_lang import ast
+from aidl_lang.builtins import CUTS
 from aidl_lang.reference.collect import Entry, reference
 from aidl_lang.reference.pages import entry_blocks, short_calls
 from aidl_lang.reference.signatures import parts
@@ -80,7 +81,12 @@ def _entries(variant: Variant, topics: tuple[str, ...]) -> list[Entry]:
         raise KeyError(f"the guide asks for topics that do not exist: {', '.join(unknown)}")
     absent = _WITHOUT.get(variant, ())
     entries = [entry for topic in topics for entry in reference().of_topic(topic)]
-    kept = [tuple(o for o in entry.overloads if not isinstance(o.node, absent)) for entry in entries]
+
+    def is_told(entry: Entry, node: object) -> bool:
+        # A cut is a hole or an outline by where it stands, and takes the same arguments.
+        return not isinstance(node, absent) and not (entry.name in CUTS and isinstance(node, ast.Structure))
+
+    kept = [tuple(o for o in entry.overloads if is_told(entry, o.node)) for entry in entries]
     return [replace(e, overloads=forms) for e, forms in zip(entries, kept, strict=True) if forms]
 
 

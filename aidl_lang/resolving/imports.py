@@ -13,6 +13,7 @@ from pathlib import PurePosixPath
 
 from aidl_lang import ast
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.resolving.cuts import with_placed_cuts
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.world import FileError, Reason, World, relative_to
 
@@ -101,7 +102,7 @@ class _Loader:
         from aidl_lang.parser import parse
 
         parsed = parse(SourceFile(path, text))
-        module, misplaced = with_inner_imports(parsed.module)
+        module, misplaced = with_inner_imports(with_placed_cuts(parsed.module))
         self.result.diagnostics += parsed.diagnostics + misplaced
         self.visit(module, path)
         return module

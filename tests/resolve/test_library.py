@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from aidl_lang import ast, library, parser, resources
+from aidl_lang.builtins import CUTS
 from aidl_lang.resolve import resolve
 from aidl_lang.source import SourceFile
 from aidl_lang.syntax import plain
@@ -116,3 +117,10 @@ def test_what_is_wrong_in_the_library_is_told_and_not_kept(checkout: Path) -> No
     assert kept(checkout) == []
     with pytest.raises(library.MistakenLibraryError):
         library.built()
+
+
+def test_ready_made_cuts_are_those_with_an_outline_and_a_template() -> None:
+    standard = library.load()
+    kinds = {name: {s.kind for s in found} for name, found in standard.callables.items()}
+    both = {name for name, sorts in kinds.items() if ast.Structure in sorts and len(sorts) > 1}
+    assert both | {name for name, target in standard.aliases.items() if target in both} == CUTS

@@ -91,12 +91,13 @@
     "channel_profile" "circular_sector" "circular_segment" "corner_holes" "curved_slot" "d_hole"
     "d_shaft" "diamond" "disc" "disk" "donut" "double_d_shape" "doughnut" "four_holes" "h_profile"
     "half_circle" "half_disc" "hex" "i_beam" "i_profile" "isosceles_triangle" "kerf_bend" "l_profile"
-    "lattice_hinge" "lettering" "lune" "moon" "nema_mount" "ngon" "nut_pocket" "nut_trap" "oblong"
-    "obround" "oval" "pie" "pie_slice" "pill" "plus" "plus_shape" "point2" "point2d" "pt" "quadrant"
-    "rect" "reuleaux_triangle" "right_angled_triangle" "ring_gear" "round_rect" "round_rectangle"
-    "rounded_rect" "spur_gear" "stadium" "superellipse" "t_profile" "tapped_hole" "teardrop"
-    "through_hole" "trapezium" "two_headed_arrow" "u_profile" "vesica" "vesica_piscis" "wedge"
-    "z_profile"))
+    "lattice_hinge" "lettering" "lune" "make_arc" "make_bezier" "make_circle" "make_ellipse" "make_line"
+    "make_path" "make_point" "make_polygon" "make_polyline" "make_rectangle" "make_square" "make_text"
+    "make_triangle" "moon" "nema_mount" "ngon" "nut_pocket" "nut_trap" "oblong" "obround" "oval" "pie"
+    "pie_slice" "pill" "plus" "plus_shape" "point2" "point2d" "pt" "quadrant" "rect" "reuleaux_triangle"
+    "right_angled_triangle" "ring_gear" "round_rect" "round_rectangle" "rounded_rect" "spur_gear"
+    "stadium" "superellipse" "t_profile" "tapped_hole" "teardrop" "through_hole" "trapezium"
+    "two_headed_arrow" "u_profile" "vesica" "vesica_piscis" "wedge" "z_profile"))
 
 ((call_expression function: [(identifier) @function.builtin (member_expression property: (identifier) @function.builtin)])
   (#any-of? @function.builtin
@@ -110,9 +111,9 @@
     "diameter" "between" "anchor" "vertical_through" "horizontal_through" "clearance" "screw"
     "clearance_diameter" "nema" "bearing" "mesh_angle" "polar" "norm" "dot" "cross" "unit" "lerp"
     "turned" "vector" "direction" "radians" "circumcenter" "anchor_point" "anchored" "angle_between"
-    "dist" "distance_x" "distance_y" "fix" "ground" "grounded" "horizontal_axis" "lock"
-    "outline_distance" "point_between" "translate" "vec" "vec2" "vec2d" "vector2" "vector2d"
-    "vertical_axis" "x_distance" "y_distance"))
+    "arccos" "arcsin" "arctan" "arctan2" "dist" "distance_x" "distance_y" "fix" "ground" "grounded"
+    "horizontal_axis" "lock" "outline_distance" "point_between" "translate" "vec" "vec2" "vec2d"
+    "vector2" "vector2d" "vertical_axis" "x_distance" "y_distance"))
 
 ((call_expression function: [(identifier) @function.builtin (member_expression property: (identifier) @function.builtin)])
   (#any-of? @function.builtin
