@@ -19,7 +19,7 @@ from aidl_lang.building.overloads import candidates_of, no_overload, site_of, un
 from aidl_lang.building.placing import placing, spliced
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.turning import ask_to_turn, unlock
+from aidl_lang.building.turning import ask_to_turn, is_of_directions
 from aidl_lang.builtins import COPYING
 from aidl_lang.model import Condition, Geometry
 from aidl_lang.types import (
@@ -183,18 +183,16 @@ def invoke(
             return FUNCTIONS[name](it, arguments, node, env)
         case ast.FunctionDefinition():
             scope = _body_scope(it, candidate, arguments, definition.parameters, env)
-            value = evaluate(it, definition.value, Env(scope, env.here, env.reach))
-            if candidate.signature.name == "angle" and isinstance(value, Num) and _constrains(it, node, env):
-                unlock(value.expression)
-            return value
+            return evaluate(it, definition.value, Env(scope, env.here, env.reach))
         case ast.ConstraintDefinition():
             scope = _body_scope(it, candidate, arguments, definition.parameters, env)
             condition = run_items(it, definition.body, Env(scope, env.here, env.reach))
             if condition is True and binding.gathered and len(values) == len(binding.arguments) == 1:
                 _says_nothing(it, node, values[0])
-            if isinstance(condition, Condition) and _constrains(it, node, env):
-                ask_to_turn(candidate.signature, condition)
-            return placing(condition, definition, binding, values, env)
+            condition = placing(condition, definition, binding, values, env)
+            if is_of_directions(candidate.signature) and _constrains(it, node, env):
+                ask_to_turn(condition.comparisons() if isinstance(condition, Condition) else ())
+            return condition
         case ast.ShapeDefinition():
             return _shape(it, candidate, definition, arguments, node, env)
         case ast.Structure():

@@ -11,6 +11,7 @@ from aidl_lang.building.coerce import as_point
 from aidl_lang.building.conditions import RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.turning import ask_to_turn
 from aidl_lang.building.wording import Wording
 from aidl_lang.model import Assertion, Comparison, Condition, Constraint, Geometry, Measurement, Structure
 from aidl_lang.names import fold
@@ -126,6 +127,8 @@ def _impose_condition(
             return
         if isinstance(part, Comparison):
             comparisons.append(part)
+    if any(map(_is_angle, ast.walk(node))):
+        ask_to_turn(comparisons)
     measured = ex.nodes((e for c in comparisons for e in (c.left, c.right) if e.is_open), only_open=True)
     found = [n.payload for n in measured if isinstance(n.payload, Measurement)]
     if found and found[0].kind in SIDES:
@@ -158,6 +161,14 @@ def _impose_condition(
                 Wording(node, it, env, _read),
             )
         )
+
+
+def _is_angle(node: ast.Node) -> bool:
+    """Whether a part of a statement asks for the direction of something."""
+    match node:
+        case ast.Member(name=name) | ast.Call(callee=name):
+            return fold(name.text) == "angle"
+    return False
 
 
 def _box_unknown(it: Interpreter, box: Measurement, node: ast.Expression) -> None:

@@ -231,9 +231,6 @@ def _geometry_member(it: Interpreter, g: Geometry, name: str, node: ast.Node, en
         key = find(name, fields) or name
         reached = may_read(it, g.bound_to, node, env)
         value = primitives.field(g, key, env.here)
-        if reached and key == "angle" and env.reach is Reach.SUBTREE and it.place(node) is node.span:
-            assert isinstance(value, Num)
-            unlock(value.expression)
         if value is not None:
             return value if reached else as_written(value)
     box = boxes.box_of(g, env.here)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression
-from aidl_lang.model import Condition
+from aidl_lang.model import Comparison
 from aidl_lang.types import Signature
 
 _OF_DIRECTIONS = frozenset({"parallel", "perpendicular", "angle", "collinear"})
@@ -19,14 +21,22 @@ def unlock(*of: Expression) -> None:
         unknown.exact &= not unknown.locked
 
 
-def ask_to_turn(definition: Signature, condition: Condition) -> None:
-    """Let shapes turn whose edges a constraint gives a direction; not those that it finds level both."""
-    if not definition.standard or definition.name not in _OF_DIRECTIONS:
-        return
-    for comparison in condition.comparisons():
-        sides = comparison.left, comparison.right
-        found = list(ex.unknowns(sides))
-        level = {u.holder for u in found if u.locked and u.exact}
-        is_decided = all(u.holder in level for u in found)
-        if not (is_decided and abs(comparison.left.value - comparison.right.value) < _SMALL):
-            unlock(*sides)
+def is_of_directions(definition: Signature) -> bool:
+    """Whether a constraint is about the directions of lines, which may be edges."""
+    return definition.standard and definition.name in _OF_DIRECTIONS
+
+
+def ask_to_turn(comparisons: Iterable[Comparison]) -> None:
+    """Let shapes turn whose edges a constraint gives a direction: those that it places, and one that it holds
+    only if nothing else could give way. Two that are level both stay so.
+    """
+    for comparison in comparisons:
+        found = list(ex.unknowns([comparison.left, comparison.right]))
+        level = [u for u in found if u.locked and u.exact]
+        shapes = {u.holder for u in level}
+        others = [u for u in found if u.holder not in shapes]
+        if not others and abs(comparison.left.value - comparison.right.value) < _SMALL:
+            continue
+        placed = [u for u in level if u in comparison.placed]
+        for unknown in placed or ([] if others else level):
+            unknown.exact = False
