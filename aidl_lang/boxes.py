@@ -138,20 +138,27 @@ def boxes_in(*roots: Expression) -> tuple[frozenset[Structure], frozenset[Unknow
     return frozenset(structures), frozenset(beside)
 
 
-def spelled_out(*roots: Expression) -> tuple[Expression, ...]:
-    """The expressions of one comparison with every side of a box replaced by what it is there."""
+def spelled_out(*roots: Expression, equal: bool = False) -> tuple[Expression, ...]:
+    """The expressions of one comparison with every side of a box replaced by what it is there. If they are
+    the same sides of an assembly of parts and of one of these, and shall be `equal`, that one is the
+    outermost: it is not left out.
+    """
     if not any(root.is_open for root in roots):
         return roots
     order = list(ex.nodes(roots, only_open=True))
     sides = [n.payload for n in order if isinstance(n.payload, _Side)]
     if not sides:
         return roots
+    flush = equal and len({root.payload.name for root in roots if isinstance(root.payload, _Side)}) == 1
+    flush = flush and all(isinstance(root.payload, _Side) for root in roots)
     used = {s for side in sides for s in side.box.sources if isinstance(s, Structure)}
     replaced: dict[Expression, Expression] = {}
     for node in order:
         if isinstance(node.payload, _Side):
             tops = [s for s in node.payload.box.sources if isinstance(s, Structure)]
-            ignored = frozenset(u for u in used for t in tops if u is not t and u.is_within(t))
+            ignored = frozenset(
+                u for u in used for t in tops if u is not t and u.is_within(t) and (t.geometry or not flush)
+            )
             replaced[node] = extent(node.payload, ignored)
         elif any(a in replaced for a in node.args):
             replaced[node] = ex.apply(node.op, *[replaced.get(a, a) for a in node.args])

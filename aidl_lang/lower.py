@@ -6,10 +6,11 @@ a frame that no constraint mentions, an argument that was read while building, a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
@@ -102,6 +103,8 @@ class _Lowering:
             parent=np.array(parents, dtype=np.int64),
             **constraint_arrays(constraints),
             named=True,
+            standing=np.array([self._stands(u) for u in found], dtype=np.bool_),
+            thing=_numbered((u.holder, u.field if u.kept else u.field.rpartition(".")[0]) for u in found),
             observables=observables,
             names=tuple(u.path for u in found),
         )
@@ -144,6 +147,15 @@ class _Lowering:
     def _scale(self, unknown: Unknown) -> float:
         """One millimetre, or the turn that moves a point at the size of the model by as much."""
         return _RADIAN / self.size if unknown.angular else 1.0
+
+    def _stands(self, unknown: Unknown) -> bool:
+        """Whether it places a frame that lies on its parent's, with something in it at an exact place: that
+        is exact in the parent, too, as long as the frame stays.
+        """
+        s = unknown.frame_of
+        if s is None or not s.frame.x.value == s.frame.y.value == s.frame.rotation.value == 0.0:
+            return False
+        return any(len(at) == 2 and all(e.is_constant for e in at) for _, _, at in seen(s))
 
     # --- Expressions ---------------------------------------------------------------------------
 
@@ -274,6 +286,12 @@ def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:
             yield f"{geometry.path}.{name}", (value.expression,)
     for part in own_geometry(geometry.parts, geometry):
         yield from _seen_geometry(part)
+
+
+def _numbered(keys: Iterable[Hashable]) -> NDArray[np.int64]:
+    """A number for each key, the same for equal ones."""
+    numbers: dict[Hashable, int] = {}
+    return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.int64)
 
 
 def _extent(seen: Iterable[_Seen]) -> float:

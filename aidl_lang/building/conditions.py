@@ -103,7 +103,7 @@ def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.No
             hints=[_dimension_hint(a, b)],
         )
         return NOTHING
-    left, right = spelled_out(a.expression, b.expression)
+    left, right = spelled_out(a.expression, b.expression, equal=relation == "==")
     if left.is_constant and right.is_constant:
         return _relates(relation, left.value, right.value, dimension == ANGLE, _EXACT, strict=True)
     boxes, beside = boxes_in(a.expression, b.expression)

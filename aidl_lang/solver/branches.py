@@ -10,20 +10,21 @@ Inequalities join the system when they are violated; those that hold all along h
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections import deque
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from aidl_lang.solver import newton
 from aidl_lang.solver.array_freezing import ZERO
 from aidl_lang.solver.array_program import ArrayProgram
-from aidl_lang.solver.freezing import Branch, Frozen, Root, freeze
+from aidl_lang.solver.freezing import Branch, Freezer, Frozen, Root
 from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Floats, Op
 from aidl_lang.solver.problem import Relation, Row, Settings
-from aidl_lang.solver.program import Program
+from aidl_lang.solver.program import AffineProgram, Program
 from aidl_lang.solver.valuation import Cone, Valuation
 
 TIGHTER = 0.5
@@ -32,6 +33,10 @@ LAZY_ROUNDS = 4
 """Rounds of adding violated inequalities before all of them are taken into account."""
 NEIGHBOURS = 12
 """Combinations of other branches tried as a last resort, for each perturbed start that the stage is worth."""
+DEEPEST = 6
+"""Branches that are turned together at most."""
+SHARE = 1e-7
+"""Part of the greatest factor below which a row has no part in a contradiction."""
 
 
 @dataclass(frozen=True)
@@ -51,10 +56,17 @@ class Task:
 
 @dataclass(frozen=True)
 class Verdict:
-    """`violation` is the greatest scaled violation of a hard row at the values that were left."""
+    """How an attempt ended.
+
+    violation  the greatest scaled violation of a hard row at the values that were left
+    proof      for rows by their number in the task, factors with which their sum is the same wherever the
+               free unknowns are, though it would have to vanish (Farkas): no branch is left to choose in
+               these rows, and no start could satisfy them. Empty if that is not known.
+    """
 
     end: End
     violation: float
+    proof: Mapping[int, float] = field(default_factory=dict)
 
     @property
     def satisfied(self) -> bool:
@@ -96,15 +108,24 @@ class _Attempt:
         self, task: Task, values: Valuation, metric: Metric, settings: Settings, clock: Clock
     ) -> None:
         self.task, self.values, self.metric, self.settings, self.clock = task, values, metric, settings, clock
-        self.cone: Cone = values.cone(row.expression for row in task.rows)
-        self.free = sorted(task.free & self.cone.unknowns)
+        everything = values.cone(row.expression for row in task.rows)
+        values.refresh(everything)
+        self.cone: Cone = values.narrowed(everything, task.free)
+        self.free = sorted(self.cone.unknowns)
         self.origin = [values.unknowns[unknown] for unknown in self.free]
         self.considered: list[int] = []
         """The equations, and the inequalities that were violated at some time."""
         self.joins = 0
+        self.blamed: dict[int, float] = {}
+        """The rows that contradicted each other in the last branch, with their factors."""
+        self.steady = True
+        """Whether none of them hangs on a choice of branches."""
+
+    @cached_property
+    def freezer(self) -> Freezer:
+        return Freezer(self.values, self.free, self.cone)
 
     def run(self) -> Verdict:
-        self._move_to(self.origin)
         tolerance = self.settings.tolerance
         self.considered = [
             i
@@ -112,7 +133,7 @@ class _Attempt:
             if row.relation is Relation.EQUAL or not holds(row, self.values, tolerance)
         ]
         verdict = self._follow_branches()
-        return verdict if verdict.satisfied else self._try_neighbours(verdict)
+        return verdict if verdict.satisfied or verdict.proof else self._try_neighbours(verdict)
 
     # -- branches
 
@@ -122,6 +143,8 @@ class _Attempt:
         base = self.origin
         while True:
             verdict, branches, crossed = self._solve_in_branch(base, frozenset())
+            if verdict.proof:
+                return verdict
             if not verdict.satisfied and not crossed:
                 # No solution with these branches; where the search ended others may be active.
                 crossed = self._active() != branches
@@ -132,9 +155,7 @@ class _Attempt:
 
     def _active(self) -> tuple[Branch, ...]:
         """The branches active at the current values."""
-        return freeze(
-            self.values, [self.task.rows[i].expression for i in self.considered], self.free
-        ).branches
+        return self.freezer.freeze([self.task.rows[i].expression for i in self.considered]).branches
 
     def _solve_in_branch(
         self, base: list[float], flipped: frozenset[int]
@@ -145,10 +166,12 @@ class _Attempt:
         while True:
             self._move_to(base)
             roots: list[Root] = [self.task.rows[i].expression for i in self.considered]
-            frozen = freeze(self.values, [*roots, *region], self.free, flipped)
+            frozen = self.freezer.freeze([*roots, *region], flipped)
             verdict = self._judge(self._solve(frozen, base, 0 if flipped else self.task.restarts))
             if verdict.satisfied:
                 return verdict, frozen.branches, False
+            if self.blamed and self.steady:
+                return replace(verdict, proof=self.blamed), frozen.branches, False
             if self._join_violated() and not self.clock.expired:
                 continue
             crossed, border = self._crossed(frozen.branches)
@@ -181,74 +204,90 @@ class _Attempt:
         return (0.0 if a == ZERO else nodes[a]) - nodes[b]
 
     def _try_neighbours(self, verdict: Verdict) -> Verdict:
-        """The last resort: one branching node takes its other branch, or two of them do. Those that decide
-        most about a row that could not be met (the outermost) come first.
+        """The last resort: a branching node takes its other branch, then another with it. A branch that has
+        no part in what contradicts itself would not help, so only those below the rows to blame are turned;
+        those that decide most about them (the outermost) come first.
         """
-        if not self._hold_without_branches():
-            return verdict
-        reached = self._current()
-        tolerance = self.settings.tolerance
-        unmet = [row.expression for row in self.task.rows if not holds(row, self.values, tolerance)]
-        self._move_to(self.origin)
-        nodes = self._branching(unmet)
-        others = self._branching(row.expression for row in self.task.rows)
-        others = [node for node in others if node not in nodes]
-        flips = itertools.chain(
-            itertools.combinations(nodes, 1),
-            itertools.combinations(nodes[:NEIGHBOURS], 2),
-            itertools.combinations(others, 1),
-            itertools.product(nodes[:NEIGHBOURS], others),
-        )
-        for flipped in itertools.islice(flips, NEIGHBOURS * max(1, self.task.restarts)):
-            if self.clock.expired:
-                break
-            other, _, _ = self._solve_in_branch(self.origin, frozenset(flipped))
-            if other.satisfied:
-                return other
+        reached, blamed = self._current(), self.blamed
+        proof = self._proof_without_branches()
+        if proof is None or proof:
+            self._move_to(reached)
+            return replace(verdict, proof=proof or {})
+        self._move_to(reached)
+        waiting = deque([(frozenset[int](), self._turning(blamed))])
+        known = {frozenset[int]()}
+        left = NEIGHBOURS * max(1, self.task.restarts)
+        while waiting:
+            turned, nodes = waiting.popleft()
+            for node in nodes:
+                flipped = turned ^ {node}
+                if flipped in known:
+                    continue
+                if self.clock.expired or not left:
+                    self._move_to(reached)
+                    return verdict
+                known.add(flipped)
+                left -= 1
+                other, _, _ = self._solve_in_branch(self.origin, flipped)
+                if other.satisfied:
+                    return other
+                if len(flipped) < DEEPEST:
+                    waiting.append((flipped, self._turning(self.blamed)))
         self._move_to(reached)
         return verdict
 
-    def _hold_without_branches(self) -> bool:
-        """Whether the rows that no other branch could help can be met by themselves."""
-        reached = self._current()
+    def _turning(self, blamed: Mapping[int, float]) -> list[int]:
+        """The branching nodes that may help where the rows `blamed` contradict each other, or, if none is to
+        blame, those that do not hold at the current values.
+        """
+        rows, tolerance = self.task.rows, self.settings.tolerance
+        unmet = [rows[i].expression for i in blamed] or [
+            row.expression for row in rows if not holds(row, self.values, tolerance)
+        ]
+        nodes = self.freezer.choices(unmet)
+        if not blamed:
+            others = self.freezer.choices(row.expression for row in rows)
+            nodes += [node for node in others if node not in nodes]
+        return nodes
+
+    def _proof_without_branches(self) -> Mapping[int, float] | None:
+        """Nothing if the rows that no other branch could help can be met by themselves; else why not, or None
+        if that is not known or if there are no other rows.
+        """
         self._move_to(self.origin)
-        steady = [i for i, row in enumerate(self.task.rows) if not self._branching([row.expression])]
-        if len(steady) == len(self.task.rows):
-            self._move_to(reached)
-            return False
         rows, softness = self.task.rows, self.task.softness
+        frozen = self.freezer.freeze([row.expression for row in rows])
+        steady = sorted(frozen.steady)
+        if len(steady) == len(rows):
+            return None
         alone = Task([rows[i] for i in steady], [softness[i] for i in steady], self.task.free)
-        met = attempt(alone, self.values, self.metric, self.settings, self.clock).satisfied
-        self._move_to(reached)
-        return met
-
-    def _branching(self, roots: Iterable[int]) -> list[int]:
-        """The nodes below that choose a branch which the free unknowns decide, outermost first."""
-        branches = freeze(self.values, list(roots), self.free).branches
-        return sorted((node for node, _ in branches if self._can_flip(node)), reverse=True)
-
-    def _can_flip(self, node: int) -> bool:
-        return not self.values.cone([node]).unknowns.isdisjoint(self.free)
+        found = attempt(alone, self.values, self.metric, self.settings, self.clock)
+        if found.satisfied:
+            return {}
+        return {steady[i]: factor for i, factor in found.proof.items()} or None
 
     # -- solving with fixed branches
 
     def _solve(self, frozen: Frozen, base: list[float], restarts: int) -> End:
         """Solves each program by itself and moves to the result; the worst end of them."""
         ends = [End.CONVERGED]
-        if frozen.constant and not self._constants_hold(frozen):
+        self.blamed, self.steady = {}, True
+        if failing := self._failing_constants(frozen):
+            self._blame(frozen, dict.fromkeys(failing[:1], 1.0))
             if restarts <= 1:
                 return End.INFEASIBLE
             ends.append(End.INFEASIBLE)
         start = dict(zip(self.free, base, strict=True))
         origin = dict(zip(self.free, self.origin, strict=True))
         for program in frozen.programs:
-            ends.append(self._solve_program(program, start, origin, restarts))
+            ends.append(self._solve_program(frozen, program, start, origin, restarts))
         self.values.refresh(self.cone)
         return next((end for end in (End.EXHAUSTED, End.INFEASIBLE) if end in ends), End.CONVERGED)
 
     def _solve_program(
         self,
-        program: Program | ArrayProgram,
+        frozen: Frozen,
+        program: AffineProgram | Program | ArrayProgram,
         start: dict[int, float],
         origin: dict[int, float],
         restarts: int,
@@ -263,11 +302,12 @@ class _Attempt:
         metric, columns = self.metric, program.columns
         scale = metric.scale[columns]
         anchor = np.array([origin[unknown] for unknown in program.columns])
+        row_scale = np.array([row.scale if row else 1.0 for row in rows])
         system = System(
             program,
             anchor,
             scale,
-            np.array([row.scale if row else 1.0 for row in rows]),
+            row_scale,
             np.array([row is None or row.relation is Relation.AT_MOST for row in rows]),
             np.array(softness) if any(softness) else None,
             None if metric.longest is None else metric.longest[columns],
@@ -283,16 +323,32 @@ class _Attempt:
             z,
             restarts,
         )
+        if outcome.contradiction is not None:
+            factors = outcome.contradiction / row_scale
+            taking_part = np.flatnonzero(np.abs(outcome.contradiction) > SHARE).tolist()
+            self._blame(frozen, {int(program.rows[i]): float(factors[i]) for i in taking_part})
         x = anchor + scale * outcome.z[: len(scale)]
         if np.isfinite(x).all():
             self.values.assign(zip(program.columns, x.tolist(), strict=True))
         return outcome.end
 
-    def _constants_hold(self, frozen: Frozen) -> bool:
-        """Whether the hard rows that no free unknown moves hold as they are."""
-        indices = [self.considered[i] for i in frozen.constant if i < len(self.considered)]
-        rows = [self.task.rows[i] for i in indices if not self.task.softness[i]]
-        return all(holds(row, self.values, self.settings.tolerance) for row in rows)
+    def _blame(self, frozen: Frozen, factors: Mapping[int, float]) -> None:
+        """Notes rows that contradict each other; what hangs on no branch is worth more than what does."""
+        count = len(self.considered)
+        steady = frozen.steady.issuperset(factors) and max(factors) < count
+        if not self.blamed or (steady and not self.steady):
+            self.blamed = {self.considered[i]: factor for i, factor in factors.items() if i < count}
+            self.steady = steady
+
+    def _failing_constants(self, frozen: Frozen) -> list[int]:
+        """The hard rows that no free unknown moves and that do not hold as they are."""
+        return [
+            i
+            for i in frozen.constant
+            if i < len(self.considered)
+            and not self.task.softness[self.considered[i]]
+            and not holds(self.task.rows[self.considered[i]], self.values, self.settings.tolerance)
+        ]
 
     def _judge(self, end: End) -> Verdict:
         """The verdict of the original expressions at the current values."""

@@ -84,6 +84,19 @@ def explain(
     return _Search(hierarchy, scope, before).explain(group, best)
 
 
+def conflict(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) -> tuple[list[int], bool]:
+    """A set among the constraints of `scope` that cannot hold together with its unknowns free, starting from
+    `before`, and whether it is known to be minimal; an empty set if all of them can.
+    """
+    hierarchy.values.assign(before.items())
+    search = _Search(hierarchy, scope, before)
+    trial = search._try(tuple(sorted(scope.constraints)))
+    if trial.holds:
+        return [], True
+    found = search._conflict(trial.reached)
+    return found, not search._spent
+
+
 @dataclass
 class _Search:
     hierarchy: Hierarchy

@@ -20,6 +20,10 @@ NOISE = 1e-10
 """Part of a right-hand side, in units of its rows, that is below what any row is asked to meet."""
 INDEPENDENT = 1e-4
 """Least pivot of Cholesky's method, relative to the greatest, at which no row is in doubt."""
+GIVE = 1e-9
+"""Give of rows that depend on each other, relative to the longest."""
+GIVING_STEPS = 6
+"""Steps by which it is taken away."""
 LARGE = 3000
 """Number of entries above which damped steps are solved for one by one."""
 SMALL = 300
@@ -46,7 +50,7 @@ def least_norm(jacobian: Floats, y: Floats) -> LeastNorm:
     """The shortest z with J z = y."""
     if len(y) == 1:
         return _least_norm_of_one(jacobian, y)
-    if jacobian.size > SMALL and (solved := _least_norm_by_cholesky(jacobian, y)):
+    if jacobian.size > SMALL and (solved := _least_norm_by_cholesky(jacobian, y) or _by_giving(jacobian, y)):
         return solved
     u, sigma, vt = np.linalg.svd(jacobian, full_matrices=False)
     rank = int(np.count_nonzero(sigma > RANK * sigma[0])) if sigma.any() else 0
@@ -85,6 +89,39 @@ def _least_norm_by_cholesky(jacobian: Floats, y: Floats) -> LeastNorm | None:
     if error > 1e-10 * float(np.abs(y).max()):
         return None
     return LeastNorm(point, multipliers, None, len(y) == jacobian.shape[1])
+
+
+def _by_giving(jacobian: Floats, y: Floats) -> LeastNorm | None:
+    """For rows that depend on each other, by the normal equations with a little give, which is taken away
+    again (the proximal point method). What is found is proved: a point that is a combination of the rows and
+    meets them is the shortest; what no column reaches, and yet is part of `y`, cannot be met. None where
+    neither is clear.
+    """
+    gram = jacobian @ jacobian.T
+    if not np.isfinite(gram).all():
+        return None
+    largest = float(gram.diagonal().max())
+    size = float(np.abs(y).max())
+    if not 0.0 < largest < np.inf or size == 0.0:
+        return None
+    giving = np.linalg.inv(gram + GIVE * largest * np.eye(len(y)))
+    lengths, rest = np.zeros(len(y)), y
+    for _ in range(GIVING_STEPS):
+        lengths = lengths + giving @ rest
+        before, rest = rest, y - gram @ lengths
+        if float(np.abs(rest).max()) <= 1e-12 * size or float(np.abs(rest - before).max()) <= 1e-13 * size:
+            break
+    left = float(np.abs(rest).max())
+    multipliers = -lengths
+    if left <= 1e-11 * size:
+        unique = len(y) >= jacobian.shape[1] and _well_conditioned(jacobian.T @ jacobian)
+        return LeastNorm(jacobian.T @ lengths, multipliers, None, unique)
+    slope = float(np.abs(jacobian.T @ rest).max())
+    if left > max(CONSISTENT * size, NOISE) and slope <= 1e-9 * left * float(np.sqrt(largest)):
+        lengths = giving @ (y - rest)
+        lengths = lengths + giving @ (y - rest - gram @ lengths)
+        return LeastNorm(jacobian.T @ lengths, -lengths, rest, False)
+    return None
 
 
 def _well_conditioned(gram: Floats) -> bool:

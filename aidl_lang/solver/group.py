@@ -3,42 +3,58 @@
 At a group every unknown of its subtree has a tier, which says at which stage it becomes free:
 
     (1, 0)  own position that a constraint of the group places
+    (1, 1)  own position that only a bound which holds anyway would place
     (2, 0)  own position, or translation of a child's frame (owned by the group, too)
+    (2, 1)  the same of a frame that stands where its content counts as exact
     (3, d)  translation of a frame, owned by a group d levels below
     (4, d)  other position of a group d levels below
-    (5, 0)  kept size that a constraint places, at any level
-    (5, 1)  own kept size
-    (5, 1 + d)  kept size of a group d levels below
+    (5, d)  position of what rides along with its parent, since no constraint names it
+    (6, 0)  kept size that a constraint places, at any level
+    (6, 1)  own kept size
+    (6, 1 + d)  kept size of a group d levels below
 
 A stage frees all tiers up to its own, as far as they are mentioned: by the group's constraints, or by
 constraints of descendants that mention something free. Those constraints are the ones that a move could
-break, and they join the system; a descendant that nothing outside mentions therefore never moves.
+break, and they join the system; a descendant that nothing outside mentions therefore never moves. Where a
+stage leaves a choice, as few things move as can be found (`thinning`).
+
+A stage whose rows contradict each other says so with a proof. The stages after it are only tried if what they
+free has a share in that proof, and among the kept sizes only those that have are freed, one after another.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from aidl_lang.solver import conflicts
+from aidl_lang.solver.freezing import Affine, Freezer
 from aidl_lang.solver.gradients import gradients
 from aidl_lang.solver.preferences import prefer
-from aidl_lang.solver.solution import StageReport
+from aidl_lang.solver.problem import Relation
+from aidl_lang.solver.solution import Giving, StageReport
+from aidl_lang.solver.thinning import thin
 
 if TYPE_CHECKING:
+    from aidl_lang.solver.branches import Verdict
     from aidl_lang.solver.hierarchy import Hierarchy
 
 Tier: TypeAlias = tuple[int, int]
 Best: TypeAlias = tuple[float, dict[int, float]]
 """The least violation reached so far, and the values there."""
+Proof: TypeAlias = Mapping[int, float]
+"""Factors of tape nodes whose sum shows that rows contradict each other; empty if that is not known."""
 
+PLACED: Tier = (1, 1)
 OWN: Tier = (2, 0)
-POSITIONS: Tier = (5, -1)
+RIDING: Tier = (5, -1)
+"""Before the first tier of what rides along."""
+POSITIONS: Tier = (6, -1)
 """Before the first tier of kept sizes."""
-SIZES: Tier = (5, 0)
+SIZES: Tier = (6, 0)
 FLAT = 1e-9
 """A slope below this is none: coordinates that cancel, as in the width of a box."""
 LAST_RESTARTS = 5
@@ -46,15 +62,24 @@ LAST_RESTARTS = 5
 MOST_FAILURES = 20
 """Conflicts that are explained and worked around; after that, only the best effort is kept."""
 
-NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "sizes"}
+MOST_SIZES = 8
+"""Kept sizes that are freed one after another before all are."""
+SHARE = 1e-9
+"""Slope, relative to those that it is the sum of, below which an unknown has no share in a proof."""
+
+NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "riding", 6: "sizes"}
 
 
 def stage_name(tier: Tier) -> str:
-    """`placed`, `own`, `translations 1`, `positions 2`, `placed sizes`, `own sizes`, `sizes 1`, …"""
+    """`placed`, `placed bounds`, `own`, `own standing`, `translations 1`, `positions 2`, `riding 1`,
+    `placed sizes`, `own sizes`, `sizes 1`, …
+    """
     kind, level = tier
-    if kind == 5:
+    if tier >= SIZES:
         return ("placed sizes", "own sizes")[level] if level < 2 else f"sizes {level - 1}"
-    return NAMES[kind] if kind < 3 else f"{NAMES[kind]} {level}"
+    if kind < 3:
+        return NAMES[kind] + ("", (" bounds", " standing")[kind - 1])[level]
+    return f"{NAMES[kind]} {level}"
 
 
 @dataclass(frozen=True)
@@ -73,13 +98,27 @@ class Group:
         held = hierarchy.held_by(group)
         self.hard = [index for index in held if hierarchy.is_hard(index)]
         self.soft = [index for index in held if not hierarchy.is_hard(index)]
-        self.placed = frozenset().union(*(self._placed_by(index) for index in self.hard))
+        self.placed: Mapping[int, int] = {}
+        """Which own positions, and sizes, constraints place, and the level at which: 0, or 1 for what only
+        bounds that hold anyway would place.
+        """
         self._tiers: dict[int, Tier] = {}
 
-    def _placed_by(self, index: int) -> frozenset[int]:
-        """What a constraint places, as far as it depends on it."""
-        hierarchy = self.hierarchy
-        return hierarchy.problem.constraints[index].placed & hierarchy.cones[index].unknowns
+    def _place(self, indices: Iterable[int]) -> None:
+        """Takes up what these constraints place: what they name first and what has a share in them. A width
+        places nothing that shifts.
+        """
+        hierarchy, found = self.hierarchy, dict[int, int]()
+        for index in indices:
+            placed = hierarchy.problem.constraints[index].placed & hierarchy.cones[index].unknowns
+            if placed:
+                reached = placed.intersection(u for row in self._reached(index) for u in row)
+                is_bound = all(row.relation is Relation.AT_MOST for row in hierarchy.rows([index]))
+                level = int(is_bound and hierarchy.satisfied(index))
+                for unknown in reached:
+                    found[unknown] = min(level, found.get(unknown, level))
+        self.placed = found
+        self._tiers.clear()
 
     def solve(self, reached: Tier = (0, 0)) -> None:
         """Satisfies the constraints. Those that share nothing that could ever move are problems of their own:
@@ -108,6 +147,7 @@ class Group:
         solved. None when it is not known what to leave out.
         """
         hierarchy = self.hierarchy
+        self._place(part)
         while True:
             violated = [index for index in part if not hierarchy.satisfied(index)]
             if not violated:
@@ -135,14 +175,16 @@ class Group:
             found = self._tiers[unknown] = self.hierarchy.tier(self.group, unknown, self.placed)
         return found
 
-    def scope(self, last: Tier, seeds: Iterable[int]) -> Scope:
-        """The unknowns up to tier `last` that `seeds` mention, what binds those, what that mentions, …"""
+    def scope(self, last: Tier, seeds: Iterable[int], further: Collection[int] = ()) -> Scope:
+        """The unknowns up to tier `last`, or in `further`, that `seeds` mention, what binds those, what that
+        mentions, …
+        """
         hierarchy = self.hierarchy
         constraints, free = set(seeds), set[int]()
         stack = list(constraints)
         while stack:
             for unknown in hierarchy.cones[stack.pop()].unknowns:
-                if unknown in free or self.tier(unknown) > last:
+                if unknown in free or (self.tier(unknown) > last and unknown not in further):
                     continue
                 free.add(unknown)
                 for index in hierarchy.solved_mentioning(unknown, self.group):
@@ -167,45 +209,126 @@ class Group:
                 positions = [tier for tier in tiers if tier <= POSITIONS]
                 if all(map(hierarchy.satisfied, seeds)):
                     return SIZES
-                reached, best = self._climb(positions, seeds, best)
+                reached, best, _ = self._climb(positions, seeds, best)
                 if reached is not None:
                     return SIZES
                 hierarchy.values.assign(before.items())
-            tiers = [tier for tier in tiers if tier > POSITIONS]
-        reached, best = self._climb(tiers, part, best)
+            positions = []
+        else:
+            positions = [tier for tier in tiers if tier <= POSITIONS]
+        reached, best, obstacle = self._climb(positions, part, best)
+        if reached is None:
+            reached = self._resize(part, obstacle)
+        if reached is None:
+            reached, best, _ = self._climb([tier for tier in tiers if tier > POSITIONS], part, best)
         if reached is None:
             self._fail(violated, everything, before, best[1])
         return reached
 
-    def _climb(self, tiers: list[Tier], seeds: list[int], best: Best) -> tuple[Tier | None, Best]:
+    def _climb(
+        self, tiers: list[Tier], seeds: list[int], best: Best
+    ) -> tuple[Tier | None, Best, tuple[Tier, Proof]]:
         """Tries the stages in order; the first that satisfies `seeds` and all that binds what it moves, or
-        None and the values that came nearest.
+        None and the values that came nearest. With the last stage that was tried and why it failed.
         """
         hierarchy = self.hierarchy
         everything = self.scope((9, 0), seeds).free
         before = hierarchy.save(everything)
         violated = [index for index in seeds if not hierarchy.satisfied(index)]
         tried: frozenset[int] = frozenset()
+        obstacle: tuple[Tier, Proof] = ((1, 0), {})
         for tier in tiers:
             if not self._promising(violated, tier):
                 continue
             scope = self.scope(tier, seeds)
-            if scope.free == tried:
+            if scope.free == tried or self._stands(obstacle[1], scope.free):
                 continue
             tried = scope.free
             # What builds on a part that failed is drawn as well as it goes, and not searched for long.
             last = tier == tiers[-1] and not hierarchy.failures
             verdict = hierarchy.attempt(scope, LAST_RESTARTS if last else 1)
-            self._report(stage_name(tier), scope, verdict.satisfied)
+            self._report(tier, scope, before if verdict.satisfied else None)
             if verdict.satisfied:
-                return tier, best
+                return tier, best, obstacle
             if verdict.violation < 0.99 * best[0]:
                 best = (verdict.violation, hierarchy.save(everything))
+            obstacle = tier, self._proof(scope, verdict)
             hierarchy.values.assign(before.items())
             if hierarchy.clock.expired:
                 hierarchy.timed_out = True
                 break
-        return None, best
+        return None, best, obstacle
+
+    # -- what stands in the way
+
+    def _proof(self, scope: Scope, verdict: Verdict) -> Proof:
+        rows = self.hierarchy.rows(scope.constraints)
+        return {rows[i].expression: factor for i, factor in verdict.proof.items()}
+
+    def _stands(self, proof: Proof, free: frozenset[int]) -> bool:
+        """Whether the proof holds with more unknowns free: whether none of them has a share in it."""
+        if not proof:
+            return False
+        values = self.hierarchy.values
+        cone = values.cone(proof)
+        values.refresh(cone)
+        cone = values.narrowed(cone, free)
+        freezer = Freezer(values, cone.unknowns, cone)
+        total: dict[int, float] = {}
+        sizes: dict[int, float] = {}
+        for node, factor in proof.items():
+            form = freezer.form(node)
+            if form is None:
+                return False
+            for slot, slope in form.terms.items() if isinstance(form, Affine) else ():
+                total[slot] = total.get(slot, 0.0) + factor * slope
+                sizes[slot] = sizes.get(slot, 0.0) + abs(factor * slope)
+        return all(abs(slope) <= SHARE * sizes[slot] for slot, slope in total.items())
+
+    def _resize(self, seeds: list[int], obstacle: tuple[Tier, Proof]) -> Tier | None:
+        """Frees the kept sizes that have a share in what stands in the way, one after another, with the
+        positions of the last stage that was tried; the stage at which that satisfies everything, or None.
+        """
+        hierarchy = self.hierarchy
+        last, proof = obstacle
+        before = hierarchy.save(self.scope((9, 0), seeds).free)
+        freed: set[int] = set()
+        while proof and len(freed) < MOST_SIZES and not hierarchy.clock.expired:
+            size = self._cheapest(proof, freed)
+            if size is None:
+                break
+            freed.add(size)
+            scope = self.scope(last, seeds, freed)
+            verdict = hierarchy.attempt(scope, 1)
+            level = max(map(self.tier, freed))
+            self._report(level, scope, before if verdict.satisfied else None)
+            if verdict.satisfied:
+                return level
+            hierarchy.values.assign(before.items())
+            proof = self._proof(scope, verdict)
+        return None
+
+    def _cheapest(self, proof: Proof, freed: set[int]) -> int | None:
+        """The kept size that would mend what a proof says by the smallest part of itself, of the first stage
+        at which one has a share in it.
+        """
+        hierarchy = self.hierarchy
+        for index in self.scope((9, 0), self.hard).constraints:
+            hierarchy.values.refresh(hierarchy.cones[index])
+        slopes: dict[int, float] = {}
+        for node, gradient in gradients(hierarchy.values, proof).items():
+            for unknown, slope in gradient.items():
+                slopes[unknown] = slopes.get(unknown, 0.0) + proof[node] * slope
+        lack = sum(factor * hierarchy.values.nodes[node] for node, factor in proof.items())
+        choices = []
+        for unknown, slope in slopes.items():
+            tier = self.tier(unknown)
+            if tier > POSITIONS and unknown not in freed and abs(slope) > FLAT:
+                size, change = hierarchy.values.unknowns[unknown], -lack / slope
+                vanishes = size * (size + change) <= 0.0
+                share = abs(change / size) if size else np.inf
+                choices.append((vanishes, tier, round(float(share), 6), hierarchy.name(unknown), unknown))
+        return min(choices)[-1] if choices else None
 
     # -- sizes that no position can help
 
@@ -240,7 +363,7 @@ class Group:
         positions = frozenset(unknown for unknown in reached if self.tier(unknown) <= POSITIONS)
         sizes = frozenset(unknown for unknown in mentioned if self.tier(unknown) > POSITIONS)
         unmet = [index for index in rigid if not hierarchy.satisfied(index)]
-        placed = sizes & frozenset().union(*(self._placed_by(index) for index in unmet))
+        placed = sizes & frozenset().union(*(hierarchy.problem.constraints[i].placed for i in unmet))
         levels = sorted({self.tier(unknown) for unknown in sizes})
         stages = [(level, frozenset(u for u in sizes if self.tier(u) <= level)) for level in levels]
         tried: frozenset[int] = frozenset()
@@ -251,7 +374,7 @@ class Group:
             before = hierarchy.save(free)
             scope = Scope(free, tuple(sorted(rigid)))
             satisfied = hierarchy.attempt(scope, 1).satisfied
-            self._report(stage_name(level), scope, satisfied)
+            self._report(level, scope, before if satisfied else None)
             if satisfied:
                 moved = [u for u in free if hierarchy.values.unknowns[u] != before[u]]
                 touched = {i for u in moved for i in hierarchy.solved_mentioning(u, self.group)} - set(part)
@@ -264,10 +387,27 @@ class Group:
         cones = self.hierarchy.cones
         return all(any(self.tier(unknown) <= tier for unknown in cones[index].unknowns) for index in violated)
 
-    def _report(self, stage: str, scope: Scope, succeeded: bool) -> None:
-        rows = len(self.hierarchy.rows(scope.constraints))
-        report = StageReport(self.group, stage, len(scope.free), rows, succeeded)
-        self.hierarchy.stages.append(report)
+    def _report(self, tier: Tier, scope: Scope, before: dict[int, float] | None) -> None:
+        """Reports a stage. If it succeeded, from the values `before`, what need not move is held first."""
+        hierarchy, gave = self.hierarchy, None
+        if before is not None:
+            before = hierarchy.since(before, scope.free)
+            thin(hierarchy, scope, before, self.tier)
+            moved = frozenset(u for u in scope.free if self._is_dear(u) and hierarchy.moved(u, before[u]))
+            if moved:
+                values = np.array(hierarchy.values.unknowns)
+                values[list(before)] = list(before.values())
+                gave = Giving(moved, scope.free, scope.constraints, values)
+        rows = len(hierarchy.rows(scope.constraints))
+        report = StageReport(self.group, stage_name(tier), len(scope.free), rows, before is not None, gave)
+        hierarchy.stages.append(report)
+
+    def _is_dear(self, unknown: int) -> bool:
+        """Whether it is told that an unknown moved: a kept size, what rides along, and a frame that stood
+        where its content is exact, unless a constraint places it.
+        """
+        tier = self.tier(unknown)
+        return tier > RIDING or (tier > PLACED and bool(self.hierarchy.problem.standing[unknown]))
 
     def _fail(
         self, violated: list[int], everything: Scope, before: dict[int, float], best: dict[int, float]
@@ -300,8 +440,7 @@ class Group:
         if all(hierarchy.satisfied(index) for index in soft):
             return
         preferences = tuple(sorted(soft))
-        self.placed = self.placed.union(*(self._placed_by(index) for index in preferences))
-        self._tiers.clear()
+        self._place([*self.hard, *preferences])
         for tier in sorted({min(max(reached, (1, 0)), POSITIONS), limit}):
             if prefer(hierarchy, self.scope(tier, preferences), preferences):
                 break

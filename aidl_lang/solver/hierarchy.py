@@ -17,6 +17,7 @@ from aidl_lang.solver import conflicts
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
 from aidl_lang.solver.group import Group, Scope, Tier, stage_name
 from aidl_lang.solver.memory import Recollection
+from aidl_lang.solver.naming import rides
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Bools, Floats
 from aidl_lang.solver.problem import Problem, Row, Settings, depths, violations
@@ -62,6 +63,22 @@ class Hierarchy:
     @cached_property
     def _frame(self) -> list[bool]:
         return list(map(bool, self.problem.frame_of >= 0))
+
+    @cached_property
+    def _rides(self) -> list[int]:
+        """Of each unknown, the depth of the innermost group around it, or of the one whose frame it places,
+        that no constraint around that one names: for groups above it rides along with its parent. 0 where
+        all are named.
+        """
+        return list(map(int, rides(self.problem, self._group_depths)))
+
+    @cached_property
+    def _standing(self) -> list[bool]:
+        return list(map(bool, self.problem.standing))
+
+    @cached_property
+    def _depth_of_group(self) -> list[int]:
+        return list(map(int, self._group_depths))
 
     @cached_property
     def _hard(self) -> list[bool]:
@@ -185,13 +202,16 @@ class Hierarchy:
 
     # -- what groups ask
 
-    def tier(self, group: int, unknown: int, placed: frozenset[int]) -> Tier:
+    def tier(self, group: int, unknown: int, placed: Mapping[int, int]) -> Tier:
         """When `unknown` becomes free at `group`, whose constraints place `placed`."""
-        level = self._depth[unknown] - int(self._group_depths[group])
+        depth = self._depth_of_group[group]
+        level = self._depth[unknown] - depth
         if self._kept[unknown]:
-            return (5, 0 if unknown in placed else 1 + level)
+            return (6, 0 if unknown in placed else 1 + level)
+        if self._rides[unknown] > depth:
+            return (5, level)
         if level == 0:
-            return (1, 0) if unknown in placed else (2, 0)
+            return (1, placed[unknown]) if unknown in placed else (2, int(self._standing[unknown]))
         return (3, level) if self._frame[unknown] else (4, level)
 
     @cached_property
@@ -255,6 +275,16 @@ class Hierarchy:
 
     def save(self, unknowns: Iterable[int]) -> dict[int, float]:
         return {unknown: self.values.unknowns[unknown] for unknown in unknowns}
+
+    def since(self, before: Mapping[int, float], unknowns: Iterable[int]) -> dict[int, float]:
+        """The values that `unknowns` had; `before` may lack those that have not moved since."""
+        return {unknown: before.get(unknown, self.values.unknowns[unknown]) for unknown in unknowns}
+
+    def moved(self, unknown: int, before: float) -> bool:
+        return abs(self.values.unknowns[unknown] - before) > CHANGED * float(self.problem.scale[unknown])
+
+    def name(self, unknown: int) -> str:
+        return self.problem.names[unknown] if self.problem.names else ""
 
 
 class _Cones(dict[int, Cone]):

@@ -1,9 +1,10 @@
-"""All groups of one depth at once: the stages of `hierarchy` for models of many parts.
+"""All groups of one depth at once: the first stages of `hierarchy` for models of many parts.
 
 Groups of one depth have nothing in common that either could move, so what is done for one can be done for all
 in the same sweep over arrays: which constraints are violated, what becomes free, the systems that follow and
 their solution. A part for which the plain course fails is left untouched for `hierarchy`, which knows more
-ways; whether a result counts is decided by the original expressions in either case.
+ways; whether a result counts is decided by the original expressions in either case. So is a part in which
+more moved than its rows ask for, unless it is so large that the nearest point has to do.
 """
 
 from __future__ import annotations
@@ -19,10 +20,13 @@ from aidl_lang.solver.array_program import ArrayProgram
 from aidl_lang.solver.branches import TIGHTER, Metric
 from aidl_lang.solver.components import components
 from aidl_lang.solver.group import NAMES
+from aidl_lang.solver.naming import rides
 from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Bools, Floats, Ints
 from aidl_lang.solver.problem import Problem, Settings, depths, violations
 from aidl_lang.solver.schedule import Schedule
+from aidl_lang.solver.thinning import MANY as MOST
+from aidl_lang.solver.thinning import STILL
 
 ROUNDS = 4
 """Rounds of taking up inequalities that came to be violated."""
@@ -31,6 +35,8 @@ STACKED = 4096
 KINDS = {name: kind for kind, name in NAMES.items()}
 DEPTHS = 1 << 20
 """A tier (kind, level) as one number is kind * DEPTHS + level."""
+STANDING = KINDS["own"] * DEPTHS + 1
+"""The first tier whose members give way only if they have to, and are told of then."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +62,8 @@ class Levels:
         depth = depths(problem.parent)
         self._holder_depth = depth[problem.holder]
         self._unknown_depth = depth[problem.group]
+        self._rides = rides(problem, depth)
+        self._has_things = bool(problem.thing.any())
         self._hard = np.isnan(problem.weight)
         self.binding = self._hard.copy()
         """The hard constraints that have not been given up."""
@@ -102,7 +110,7 @@ class Levels:
         group_of = np.zeros(len(left), dtype=np.int64)
         group_of[of_constraint[held]] = problem.holder[held]
         tried = np.zeros(len(left), dtype=np.int64)
-        for code in sorted(set(tier[mentioned & (tier < KINDS["sizes"] * DEPTHS)].tolist())):
+        for code in sorted(set(tier[mentioned & (tier < STANDING)].tolist())):
             hopeful = left & self._promising(violated, of_constraint, tier <= code, len(left))
             scope, free = self._scope(active, held & hopeful[of_constraint], tier <= code)
             count = np.bincount(of_unknown[free], minlength=len(left))
@@ -159,7 +167,8 @@ class Levels:
             placed[pairs[1, within]] = True
         kind = np.where(problem.frame_of >= 0, KINDS["translations"], KINDS["positions"])
         kind = np.where(level == 0, np.where(placed, KINDS["placed"], KINDS["own"]), kind)
-        tier = kind * DEPTHS + np.where(level == 0, 0, level)
+        tier = kind * DEPTHS + np.where(level == 0, problem.standing & ~placed, level)
+        tier = np.where(self._rides > depth, KINDS["riding"] * DEPTHS + level, tier)
         sizes = KINDS["sizes"] * DEPTHS + np.where(placed, 0, 1 + level)
         tier = np.where(problem.kept, sizes, tier)
         return np.where(level < 0, (KINDS["sizes"] + 1) * DEPTHS, tier)
@@ -216,6 +225,7 @@ class Levels:
             unmet = np.zeros(len(left), dtype=np.bool_)
             unmet[part[~holds]] = True
             accepted = left & ~unmet
+            accepted &= ~self._leaves_a_choice(x, free, of_unknown, part[considered & varying])
             moved = free & accepted[of_unknown]
             self.x[moved] = x[moved]
             if np.array_equal(self.x, x):
@@ -228,6 +238,17 @@ class Levels:
             left &= more
             considered |= fresh
         return solved, hopeless
+
+    def _leaves_a_choice(self, x: Floats, free: Bools, of_unknown: Ints, part: Ints) -> Bools:
+        """Which of the parts (p,) moved more unknowns than they have rows, `part` (k,) telling whose each
+        row is, and are small enough for it to be found out which of them can be held.
+        """
+        moved = free & (np.abs(x - self.x) > STILL * self.metric.scale)
+        parts = int(of_unknown.max(initial=0)) + 1
+        movers = np.bincount(of_unknown[moved], minlength=parts)
+        rows = np.bincount(part, minlength=parts)
+        found: Bools = (movers > rows[: len(movers)]) & (movers <= MOST) & self._has_things
+        return found
 
     def _solve_rows(
         self, freezing: ArrayFreezing, rows: Ints, part: Ints, parts: int

@@ -51,6 +51,21 @@ def naming(problem: Problem) -> Naming:
     return Naming(frames, inside, whole)
 
 
+def rides(problem: Problem, depths: Ints) -> Ints:
+    """For each unknown (n,), the depth of the innermost group around it, or of the one whose frame it
+    places, that no constraint around that group names; 0 where all are. Above that depth it rides along with
+    its parent.
+    """
+    found = np.zeros(len(problem.parent), dtype=np.int64)
+    if problem.named:
+        frames = naming(problem).frames
+        for group, parent in enumerate(problem.parent.tolist()):
+            if parent >= 0:
+                found[group] = found[parent] if frames[group] else depths[group]
+    placed: Ints = found[np.where(problem.frame_of >= 0, problem.frame_of, problem.group)]
+    return placed
+
+
 def _marked(numbers: Ints, count: int) -> Bools:
     found = np.zeros(count, dtype=np.bool_)
     found[numbers] = True

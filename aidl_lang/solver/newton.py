@@ -68,11 +68,16 @@ class End(Enum):
 
 @dataclass(frozen=True)
 class Outcome:
-    """`z` (k,) is the solution, or the best point reached; `violation` its greatest scaled violation."""
+    """`z` (k,) is the solution, or the best point reached; `violation` its greatest scaled violation.
+
+    `contradiction` (r,), of affine rows that have no solution: factors, the greatest of them 1 or -1, with
+    which the sum of the rows is the same everywhere, though it would have to vanish.
+    """
 
     z: Floats
     end: End
     violation: float
+    contradiction: Floats | None = None
 
     @property
     def converged(self) -> bool:
@@ -256,7 +261,11 @@ class _Newton:
             if not np.isfinite(violation):
                 return Outcome(z, End.INFEASIBLE, violation)
             jacobian = system.jacobian()
-            z = nearest(jacobian, jacobian @ z - residuals, system.inequality).point
+            found = nearest(jacobian, jacobian @ z - residuals, system.inequality)
+            z = found.point
+            if found.contradiction is not None:
+                violation = self._greatest(system.residuals(z))
+                return Outcome(z, End.INFEASIBLE, violation, found.contradiction)
         violation = self._greatest(system.residuals(z))
         holds = violation <= self.tolerance
         return Outcome(z, End.CONVERGED if holds else End.INFEASIBLE, violation)

@@ -94,9 +94,13 @@ class Problem:
     whole    (2, k) pairs of a constraint and a group that it names as a whole, by its box or its place
     inside   (2, k) pairs of a constraint and a group in which it names something
     named    whether these pairs are known; else there is nothing but what the rows mention (see `naming`)
+    standing (n,) True for a frame that was written where its content counts as exact: held when others can
+             move
+    thing    (n,) the same number for unknowns that are one thing to move, as the coordinates of a point:
+             as few things as can be found are moved. If all are one, what is nearest is sought and no more.
     observables: (group, tape node) for each coordinate that a reader of the drawing could see move, in the
-             root's frame: degrees of freedom are counted on these, so that a frame and its contents moving
-             against each other do not count.
+             root's frame: degrees of freedom are counted on these, so that a frame and its contents
+             moving against each other do not count.
     """
 
     tape: Tape
@@ -114,8 +118,20 @@ class Problem:
     inside: NDArray[np.int64]
     named: bool = False
     longest: Floats | None = None
+    standing: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+    thing: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     observables: tuple[tuple[int, int], ...] = ()
     names: tuple[str, ...] = field(default=(), repr=False)
+
+    def __post_init__(self) -> None:
+        """Without being told otherwise nothing stands, and all is one thing."""
+        count = len(self.initial)
+        for name, usual in (
+            ("standing", np.zeros(count, dtype=np.bool_)),
+            ("thing", np.zeros(count, dtype=np.int64)),
+        ):
+            if len(getattr(self, name)) != count:
+                object.__setattr__(self, name, usual)
 
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:

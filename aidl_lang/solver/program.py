@@ -1,15 +1,15 @@
 """Some rows as functions of their free unknowns, ready for quick evaluation.
 
-Straight-line code on plain floats: for the ten to some hundred unknowns that a structure has, it is quicker
-than arrays, whose price is paid per operation. Derivatives are accumulated in reverse, row by row, along a
-schedule made once.
+Affine rows are a matrix. Others are straight-line code on plain floats: for the ten to some hundred unknowns
+that a structure has, it is quicker than arrays, whose price is paid per operation. Derivatives are
+accumulated in reverse, row by row, along a schedule made once.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,15 +35,41 @@ class Sweep:
     merging: bool
 
 
+@dataclass(frozen=True)
+class AffineProgram:
+    """Some rows that are affine functions of their free unknowns, with branches fixed.
+
+    rows     (r,) which of the roots given to the freezer
+    columns  (k,) the unknowns, ascending
+    matrix   (r, k) the slopes
+    constant (r,) the values where all unknowns are 0
+    """
+
+    rows: list[int]
+    columns: list[int]
+    matrix: Floats
+    constant: Floats
+    linear: ClassVar[bool] = True
+
+    def residuals(self, x: Floats) -> Floats:
+        """The r rows at the k unknowns `x`."""
+        with np.errstate(all="ignore"):
+            values: Floats = self.matrix @ x + self.constant
+        return values
+
+    def jacobian(self, row_factors: Floats, column_factors: Floats) -> Floats:
+        """The (r, k) partial derivatives, times these factors."""
+        with np.errstate(all="ignore"):
+            matrix: Floats = self.matrix * row_factors[:, None] * column_factors
+        return matrix
+
+
 @dataclass
 class Program:
     """Some rows as functions of their free unknowns, with branches fixed.
 
-    The programs of one `freeze` share `values` and `weights`, each writing to slots of its own.
-
-    rows    (r,) which of the roots given to `freeze`
+    rows    (r,) which of the roots given to the freezer
     columns (k,) the unknowns, ascending
-    linear  whether every row is an affine function of the unknowns
     """
 
     rows: list[int]
@@ -52,7 +78,7 @@ class Program:
     slots: list[int]
     values: list[float] = field(repr=False)
     weights: list[float] = field(repr=False)
-    linear: bool = True
+    linear: ClassVar[bool] = False
     code: list[Compiled] = field(default_factory=list, repr=False)
     partials: list[Partial] = field(default_factory=list, repr=False)
     sweeps: list[Sweep] = field(default_factory=list, repr=False)

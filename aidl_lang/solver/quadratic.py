@@ -30,19 +30,24 @@ class Nearest:
     multipliers (m,) point == -J.T @ multipliers; not negative for inequalities
     feasible    whether the rows can hold together
     unique      whether there is no other point at which they do, beyond doubt
+    contradiction (m,) where they cannot: factors, the greatest of them 1 or -1 and none of an inequality
+                negative, with which the rows add up to `0 = c` or `0 <= c` for a c that is not; None if not
+                known
     """
 
     point: Floats
     multipliers: Floats
     feasible: bool
     unique: bool = False
+    contradiction: Floats | None = None
 
 
 def nearest(jacobian: Matrix, y: Floats, inequality: NDArray[np.bool_]) -> Nearest:
     """The nearest point for `jacobian` (m, n), `y` (m,); `inequality` (m,) marks the rows that are <=."""
     if not inequality.any():
         found = least_norm(jacobian, y)
-        return Nearest(found.point, found.multipliers, found.outside is None, found.unique)
+        outside = None if found.outside is None else _scaled(found.outside)
+        return Nearest(found.point, found.multipliers, outside is None, found.unique, outside)
     if np.count_nonzero(inequality) > MANY:
         quick = _DualActiveSet(jacobian, y, inequality).solve(together=True)
         if quick.feasible:
@@ -57,6 +62,7 @@ class _DualActiveSet:
         self.multipliers = np.zeros(len(y))
         self.point = np.zeros(jacobian.shape[1])
         self.slack = 1e-12 * max(1.0, float(np.abs(y).max(initial=0.0)))
+        self.contradiction: Floats | None = None
 
     def solve(self, together: bool = False) -> Nearest:
         """`together`: all violated rows enter at once, which is quicker for many, but may come to no end."""
@@ -70,7 +76,7 @@ class _DualActiveSet:
                 return Nearest(self.point, self.multipliers, True)
             self.active[violation > self.slack if together else worst] = True
             feasible = self._settle()
-        return Nearest(self.point, self.multipliers, False)
+        return Nearest(self.point, self.multipliers, False, contradiction=self.contradiction)
 
     def _settle(self) -> bool:
         """Brings the multipliers of the active rows to the optimum, dropping rows on the way. False: none."""
@@ -88,6 +94,9 @@ class _DualActiveSet:
             if blocking is None:
                 self.point = found.point
                 self.multipliers[rows] = found.multipliers
+                if found.outside is not None:
+                    self.contradiction = np.zeros(len(self.y))
+                    self.contradiction[rows] = -_scaled(found.outside)
                 return found.outside is None
             self.multipliers[rows] += step * direction
             self.multipliers[blocking] = 0.0
@@ -106,3 +115,9 @@ class _DualActiveSet:
         steps = current[candidates] / -direction[candidates]
         first = int(np.argmin(steps))
         return int(rows[candidates[first]]), max(float(steps[first]), 0.0)
+
+
+def _scaled(factors: Floats) -> Floats:
+    """Factors in units of the greatest."""
+    scaled: Floats = factors / np.abs(factors).max()
+    return scaled

@@ -79,6 +79,23 @@ class GroupFailure:
         return tuple(member.index for member in self.members)
 
 
+@dataclass(frozen=True, eq=False)
+class Giving:
+    """What moved at a stage though it is dear: kept sizes, frames that stood where their content is exact,
+    what rides along. The values (n,) were those before the stage; `reasons.reasons` finds who left no other
+    way.
+
+    unknowns    those that gave way
+    free        all that could move
+    constraints those that bound them
+    """
+
+    unknowns: frozenset[int]
+    free: frozenset[int]
+    constraints: tuple[int, ...]
+    values: Floats
+
+
 @dataclass(frozen=True)
 class StageReport:
     """One stage tried while solving one group; for tracing and for tests of the order of stages."""
@@ -88,6 +105,7 @@ class StageReport:
     unknowns: int
     rows: int
     succeeded: bool
+    gave: Giving | None = None
 
 
 @dataclass(frozen=True)

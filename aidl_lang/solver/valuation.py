@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
@@ -43,7 +43,20 @@ class Valuation:
         ops, operands = self.tape.op_list, self.tape.operand_lists
         inputs = [(node, operands[node][0]) for node in nodes if ops[node] == Op.UNKNOWN]
         code = [self._compiled(node) for node in nodes if ops[node] > Op.UNKNOWN]
-        return Cone(frozenset([unknown for _, unknown in inputs]), inputs, code)
+        return Cone(frozenset([unknown for _, unknown in inputs]), inputs, code, nodes)
+
+    def narrowed(self, cone: Cone, free: Container[int]) -> Cone:
+        """What of a cone changes with the unknowns `free`."""
+        ops, operands = self.tape.op_list, self.tape.operand_lists
+        inputs = [pair for pair in cone.inputs if pair[1] in free]
+        varying = {node for node, _ in inputs}
+        nodes = [node for node, _ in inputs]
+        for node in cone.nodes:
+            if ops[node] > Op.UNKNOWN and not varying.isdisjoint(operands[node]):
+                varying.add(node)
+                nodes.append(node)
+        code = [self._compiled(node) for node in nodes[len(inputs) :]]
+        return Cone(frozenset([unknown for _, unknown in inputs]), inputs, code, nodes)
 
     def _compiled(self, node: int) -> Compiled:
         code = self._code[node]
@@ -61,9 +74,18 @@ class Valuation:
 
 @dataclass(frozen=True)
 class Cone:
+    """What some roots are made of.
+
+    unknowns  those among it
+    inputs    (node, unknown) for each of them
+    code      what brings the other nodes up to date
+    nodes     all nodes, operands first
+    """
+
     unknowns: frozenset[int]
     inputs: list[tuple[int, int]]
     code: list[Compiled]
+    nodes: list[int]
 
 
 def compiled(op: int, out: int, operands: tuple[int, ...]) -> Compiled:

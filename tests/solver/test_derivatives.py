@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from aidl_lang.solver import Problem, arrays
 from aidl_lang.solver.array_freezing import ArrayFreezing
-from aidl_lang.solver.freezing import freeze
+from aidl_lang.solver.freezing import Freezer
 from aidl_lang.solver.gradients import linearise
 from aidl_lang.solver.operations import ARITY, BRANCHING, PARTIALS, VALUE, Op
 from aidl_lang.solver.schedule import Schedule
@@ -54,7 +54,7 @@ def by_program(problem: Problem, nodes: list[int], x: np.ndarray) -> np.ndarray:
     values = Valuation(problem.tape, x.tolist())
     values.refresh(values.cone(nodes))
     found = np.zeros((len(nodes), len(x)))
-    for program in freeze(values, nodes, range(len(x))).programs:
+    for program in Freezer(values, range(len(x)), values.cone(nodes)).freeze(nodes).programs:
         program.residuals(x[program.columns])
         found[np.ix_(program.rows, program.columns)] = program.jacobian(
             np.ones(len(program.rows)), np.ones(len(program.columns))

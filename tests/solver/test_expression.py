@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from aidl_lang.solver.expression import Tape, TapeBuilder
-from aidl_lang.solver.freezing import freeze
+from aidl_lang.solver.freezing import Freezer
 from aidl_lang.solver.valuation import Valuation
 
 from .build import Model, call
@@ -66,7 +66,7 @@ def gradient(tape: Tape, root: int, x: list[float]) -> np.ndarray:
     values = Valuation(tape, x)
     values.refresh(values.cone([root]))
     result = np.zeros(len(x))
-    for program in freeze(values, [root], range(len(x))).programs:
+    for program in Freezer(values, range(len(x)), values.cone([root])).freeze([root]).programs:
         program.residuals(np.array([x[i] for i in program.columns]))
         result[program.columns] = program.jacobian(np.ones(1), np.ones(len(program.columns)))[0]
     return result

@@ -1,0 +1,129 @@
+"""As few things move as can be found, rather than all a little.
+
+The nearest point at which some rows hold spreads a change over everything that is free. Where that leaves a
+choice, the columns of the linearised rows are looked through from what is cheapest to move to what is
+dearest, and only those are kept that reach further than the ones before them (a basis, as in the simplex
+method). What the rows need is then a combination of these columns, and things without a share in it are held.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from aidl_lang.solver.freezing import Freezer
+from aidl_lang.solver.operations import Floats
+from aidl_lang.solver.problem import Relation
+
+if TYPE_CHECKING:
+    from aidl_lang.solver.branches import Verdict
+    from aidl_lang.solver.group import Scope
+    from aidl_lang.solver.hierarchy import Hierarchy
+
+STILL = 1e-9
+"""What moved less than this, in units of its scale, did not move."""
+TIGHT = 10.0
+"""An inequality is on its bound if it is off by no more than so many times its tolerance."""
+INDEPENDENT = 1e-7
+"""Part of a column that others have to leave for it to reach further than they do."""
+REACHED = 1e-6
+"""Part of a change by which two are taken to be the same."""
+MANY = 400
+"""Unknowns that moved, above which the nearest point is left as it is."""
+
+Rank: TypeAlias = "Callable[[int], tuple[int, ...]]"
+"""How dear it is to move an unknown."""
+
+
+def thin(hierarchy: Hierarchy, scope: Scope, before: dict[int, float], rank: Rank) -> None:
+    """Holds what need not move among the unknowns of `scope`, which were `before` at these values and at the
+    current ones satisfy its constraints.
+    """
+    moved = _moved(hierarchy, before)
+    if len({int(hierarchy.problem.thing[unknown]) for unknown in moved}) < 2 or len(moved) > MANY:
+        return
+    needed = _needed(hierarchy, scope, moved, rank)
+    if len(needed) == len(moved):
+        return
+    reached = hierarchy.save(scope.free)
+    hierarchy.values.assign(before.items())
+    verdict: Verdict = hierarchy.attempt(replace(scope, free=frozenset(needed)), 0)
+    if not verdict.satisfied:
+        hierarchy.values.assign(reached.items())
+
+
+def _moved(hierarchy: Hierarchy, before: dict[int, float]) -> dict[int, float]:
+    """How far each unknown that moved did, in units of its scale."""
+    scale, unknowns = hierarchy.problem.scale, hierarchy.values.unknowns
+    found = {u: float((unknowns[u] - x) / scale[u]) for u, x in before.items()}
+    return {u: step for u, step in found.items() if abs(step) > STILL}
+
+
+def _needed(hierarchy: Hierarchy, scope: Scope, moved: dict[int, float], rank: Rank) -> set[int]:
+    """The unknowns among those that moved that are enough."""
+    tolerance, values = hierarchy.settings.tolerance, hierarchy.values
+    rows = hierarchy.rows(scope.constraints)
+    cone = values.cone(row.expression for row in rows)
+    values.refresh(cone)
+    roots = [
+        row.expression
+        for row in rows
+        if row.relation is Relation.EQUAL or values.nodes[row.expression] > -TIGHT * tolerance * row.scale
+    ]
+    thing = hierarchy.problem.thing
+    needed: set[int] = set()
+    for program in Freezer(values, moved, values.narrowed(cone, moved)).freeze(roots).programs:
+        columns = [int(unknown) for unknown in program.columns]
+        steps = np.array([moved[unknown] for unknown in columns])
+        program.residuals(np.array([values.unknowns[unknown] for unknown in columns]))
+        matrix = program.jacobian(np.ones(len(program.rows)), hierarchy.problem.scale[columns])
+        if not isinstance(matrix, np.ndarray):  # large, and left as it is
+            needed.update(columns)
+            continue
+        things: dict[int, list[int]] = {}
+        for column, unknown in enumerate(columns):
+            things.setdefault(int(thing[unknown]), []).append(column)
+        dearness = {
+            number: (
+                max(rank(columns[i]) for i in members),
+                -round(float(np.abs(steps[members]).max()), 6),
+                min(hierarchy.name(columns[i]) for i in members),
+                members,
+            )
+            for number, members in things.items()
+        }
+        order = [column for number in sorted(things, key=dearness.__getitem__) for column in things[number]]
+        share = _combination(matrix, matrix @ steps, order)
+        for members in things.values():
+            if any(share[i] for i in members):
+                needed.update(columns[i] for i in members)
+    return needed
+
+
+def _combination(matrix: Floats, target: Floats, order: list[int]) -> list[bool]:
+    """Which columns (k,) of a matrix (r, k) have a share in a combination that gives `target` (r,), if those
+    that come first in `order` are used up first.
+    """
+    used: list[int] = []
+    directions = np.zeros((0, len(target)))
+    rest, size = target.copy(), float(np.abs(target).max(initial=0.0))
+    for column in order:
+        if float(np.abs(rest).max(initial=0.0)) <= REACHED * size:
+            break
+        vector = matrix[:, column]
+        length = float(np.linalg.norm(vector))
+        for _ in range(2):  # twice is enough (Giraud, Langou, Rozloznik, doi:10.1016/j.camwa.2005.08.009)
+            vector = vector - directions.T @ (directions @ vector)
+        if (left := float(np.linalg.norm(vector))) > INDEPENDENT * length > 0.0:
+            used.append(column)
+            directions = np.vstack((directions, vector / left))
+            rest = rest - directions[-1] * float(directions[-1] @ rest)
+    found = [False] * matrix.shape[1]
+    if used:
+        factors = np.linalg.lstsq(matrix[:, used], target, rcond=None)[0]
+        for column, factor in zip(used, factors.tolist(), strict=True):
+            found[column] = abs(factor) > REACHED * float(np.abs(factors).max())
+    return found
