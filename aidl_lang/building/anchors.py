@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from zlib import crc32
 
 from aidl_lang import expression as ex
 from aidl_lang.building.conditions import holds
@@ -26,19 +27,19 @@ Unknowns = frozenset[Unknown]
 
 def anchored(constraints: Sequence[Constraint]) -> list[Constraint]:
     """The constraints, each over equals with its anchor held: `moved` of its comparisons is without it."""
-    ties = [tie for c in constraints if any(p.parties for p in c.comparisons) for tie in _ties(c)]
-    if not ties:
+    over_equals = [c for c in constraints if any(p.parties for p in c.comparisons)]
+    if not over_equals:
         return list(constraints)
+    senses = {holder: _Senses(holder) for holder in dict.fromkeys(c.holder for c in over_equals)}
+    ties = [tie for c in over_equals for tie in _ties(c, senses[c.holder])]
     of_interest = frozenset(u for tie in ties for party in tie.parties for u in party.near)
-    standings: dict[Structure, _Standing] = {}
+    standings = {holder: _Standing(sense) for holder, sense in senses.items()}
     for constraint in constraints:
-        if constraint.weight is None:
-            standing = standings.setdefault(constraint.holder, _Standing())
+        if constraint.weight is None and (standing := standings.get(constraint.holder)) is not None:
             for comparison in constraint.comparisons:
-                standing.learn(comparison, constraint.holder, of_interest)
-    for holder in dict.fromkeys(tie.constraint.holder for tie in ties):
-        own = [tie for tie in ties if tie.constraint.holder is holder]
-        _choose(own, standings.setdefault(holder, _Standing()))
+                standing.learn(comparison, of_interest)
+    for holder, standing in standings.items():
+        _choose([tie for tie in ties if tie.constraint.holder is holder], standing)
     moved: dict[Comparison, frozenset[Unknown]] = {c: tie.moved for tie in ties for c in tie.comparisons}
     return [_with_moved(c, moved) for c in constraints]
 
@@ -88,18 +89,19 @@ class _Tie:
 class _Standing:
     """What the constraints of one structure say of what they mention, calls over equals aside."""
 
+    senses: _Senses
     placed: set[Unknown] = field(default_factory=set)
     mentioned: set[Unknown] = field(default_factory=set)
 
-    def learn(self, comparison: Comparison, holder: Structure, of_interest: Unknowns) -> None:
-        if comparison.parties:
+    def learn(self, comparison: Comparison, of_interest: Unknowns) -> None:
+        if comparison.parties or _idle(comparison):
             return
-        mentioned = frozenset(ex.unknowns((comparison.left, comparison.right)))
-        if mentioned.isdisjoint(of_interest) or _idle(comparison):
+        mentioned = self.senses.mentioned(comparison)
+        if mentioned.isdisjoint(of_interest):
             return
-        placed = _near(comparison, mentioned & comparison.placed, holder)
+        placed = self.senses.near(comparison, mentioned & comparison.placed)
         self.placed |= placed
-        self.mentioned |= _near(comparison, mentioned - placed, holder)
+        self.mentioned |= self.senses.near(comparison, mentioned - placed)
 
     def dearness(self, party: _Party) -> tuple[bool, bool]:
         """How dear it is to move a party that nothing places."""
@@ -138,13 +140,13 @@ def _dearest(tie: _Tie, standing: _Standing) -> _Party | None:
     return max(order, key=lambda item: (standing.dearness(item[1]), item[0]), default=(0, None))[1]
 
 
-def _ties(constraint: Constraint) -> Iterator[_Tie]:
+def _ties(constraint: Constraint, senses: _Senses) -> Iterator[_Tie]:
     """The comparisons of a call over equals, put together where they concern the same coordinates."""
     groups: list[tuple[set[Unknown], list[tuple[Comparison, list[_Party]]]]] = []
     for comparison in constraint.comparisons:
         if not comparison.parties:
             continue
-        parties = list(_parties(comparison, constraint.holder))
+        parties = list(_parties(comparison, senses))
         touched = {u for p in parties for u in p.near}
         here = [(comparison, parties)]
         apart = []
@@ -169,26 +171,46 @@ def _ties(constraint: Constraint) -> Iterator[_Tie]:
         )
 
 
-def _parties(comparison: Comparison, holder: Structure) -> Iterator[_Party]:
+def _parties(comparison: Comparison, senses: _Senses) -> Iterator[_Party]:
     """The parties that a comparison could move."""
-    mentioned = frozenset(ex.unknowns((comparison.left, comparison.right)))
+    mentioned = senses.mentioned(comparison)
     for every in dict.fromkeys(comparison.parties):
-        if near := _near(comparison, mentioned & every, holder):
+        if near := senses.near(comparison, mentioned & every):
             yield _Party(every, near)
 
 
-def _near(comparison: Comparison, unknowns: Unknowns, holder: Structure) -> Unknowns:
-    """Those of some unknowns that would move first to satisfy a comparison: positions in the holder itself,
-    then those below, then kept sizes. Positions that cancel, as in a width, are none of it.
+class _Senses:
+    """What comparisons of one structure feel of positions: all are nudged, each by an amount of its own, and
+    a comparison is worked out anew. What comparisons share is worked out once.
     """
-    unknowns = frozenset(u for u in unknowns if not u.exact)
-    positions = frozenset(u for u in unknowns if not u.kept)
-    own = frozenset(u for u in positions if _placer(u) is holder)
-    sizes = unknowns - positions
-    for candidates in (own, positions - own):
-        if candidates and ((not sizes and candidates == unknowns) or _felt(comparison, candidates)):
-            return candidates
-    return sizes
+
+    def __init__(self, holder: Structure) -> None:
+        self.holder = holder
+        self.own: dict[Unknown, float] = {}
+        self.every: dict[Unknown, float] = {}
+        self._of_own, self._of_every = ex.Evaluator(self.own), ex.Evaluator(self.every)
+
+    def mentioned(self, comparison: Comparison) -> Unknowns:
+        found = frozenset(u for u in ex.unknowns((comparison.left, comparison.right)) if not u.exact)
+        for unknown in found:
+            if not unknown.kept and unknown not in self.every:
+                nudged = unknown.guess + _NUDGE * (1 + crc32(unknown.path.encode()) / 2**32)
+                self.every[unknown] = nudged
+                if _placer(unknown) is self.holder:
+                    self.own[unknown] = nudged
+        return found
+
+    def near(self, comparison: Comparison, unknowns: Unknowns) -> Unknowns:
+        """Those of some unknowns it mentions that would move first to satisfy a comparison: positions in
+        the holder itself, then those below, then kept sizes. Positions that cancel, as in a width, are no
+        part of it.
+        """
+        sizes = frozenset(u for u in unknowns if u.kept)
+        own = unknowns & self.own.keys()
+        if own and (own == unknowns or _felt(comparison, self._of_own)):
+            return own
+        below = unknowns - sizes - own
+        return below if below and (below == unknowns or _felt(comparison, self._of_every)) else sizes
 
 
 def _placer(unknown: Unknown) -> Structure | None:
@@ -196,15 +218,11 @@ def _placer(unknown: Unknown) -> Structure | None:
     return unknown.owner.parent or unknown.owner if unknown.outline else unknown.owner
 
 
-def _felt(comparison: Comparison, positions: Unknowns) -> bool:
+def _felt(comparison: Comparison, evaluate: ex.Evaluator) -> bool:
     """Whether a comparison feels it when positions move."""
-    order = sorted(positions, key=lambda u: u.path)
-    nudged = {u: u.guess + _NUDGE * (1 + 0.37 * i) for i, u in enumerate(order)}
-    now, then = (
-        evaluate(comparison.left) - evaluate(comparison.right)
-        for evaluate in (ex.Evaluator({}), ex.Evaluator(nudged))
-    )
-    return not abs(then - now) <= _FLAT * max(1.0, abs(now))
+    left, right = comparison.left, comparison.right
+    now, then = left.value - right.value, evaluate(left) - evaluate(right)
+    return not abs(then - now) <= _FLAT * max(1.0, abs(left.value), abs(right.value))
 
 
 def _with_moved(constraint: Constraint, moved: dict[Comparison, Unknowns]) -> Constraint:
