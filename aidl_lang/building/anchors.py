@@ -62,6 +62,7 @@ class _Tie:
     constraint: Constraint
     comparisons: list[Comparison]
     parties: list[_Party]
+    is_tied: bool
     moved: Unknowns = frozenset()
 
     @property
@@ -69,13 +70,6 @@ class _Tie:
         """What tells it from others whatever the order in which constraints are written."""
         c = self.constraint
         return c.holder.path, c.text, c.label, sorted(u.path for p in self.parties for u in p.near)
-
-    @property
-    def places_all(self) -> bool:
-        """Whether it says too much to leave one where it is: each of those spread through a box is placed."""
-        equations = sum(c.relation == "==" for c in self.comparisons)
-        spare = [len(p.near) for p in self.parties]
-        return equations > sum(spare) - max(spare, default=0)
 
     def hold(self, anchor: _Party | None) -> Unknowns:
         """Lets all but the anchor move; what these would move first."""
@@ -92,6 +86,7 @@ class _Standing:
     senses: _Senses
     placed: set[Unknown] = field(default_factory=set)
     mentioned: set[Unknown] = field(default_factory=set)
+    held: set[Unknown] = field(default_factory=set)
 
     def learn(self, comparison: Comparison, of_interest: Unknowns) -> None:
         if comparison.parties or _idle(comparison):
@@ -122,17 +117,23 @@ def _choose(ties: Iterable[_Tie], standing: _Standing) -> None:
     """
     waiting = sorted(ties, key=lambda tie: tie.key)
     while waiting:
-        ready = [t for t in waiting if t.places_all or _anchor(t, standing) is not None]
+        ready = [t for t in waiting if t.is_tied or _anchor(t, standing) is not None]
         for tie in ready or waiting[:1]:
-            anchor = None if tie.places_all else _anchor(tie, standing) or _dearest(tie, standing)
+            anchor = None if tie.is_tied else _anchor(tie, standing) or _dearest(tie, standing)
             standing.placed |= tie.hold(anchor)
+            standing.held |= anchor.near if anchor is not None else frozenset()
         done = set(map(id, ready or waiting[:1]))
         waiting = [t for t in waiting if id(t) not in done]
 
 
 def _anchor(tie: _Tie, standing: _Standing) -> _Party | None:
-    """The party that something else places."""
-    return next((p for p in tie.parties if not standing.placed.isdisjoint(p.near)), None)
+    """The party that an earlier tie holds for its equals, or one that something else places."""
+    held = standing.held - standing.placed
+    for known in (held, standing.placed):
+        for party in tie.parties:
+            if not known.isdisjoint(party.near):
+                return party
+    return None
 
 
 def _dearest(tie: _Tie, standing: _Standing) -> _Party | None:
@@ -168,6 +169,7 @@ def _ties(constraint: Constraint, senses: _Senses) -> Iterator[_Tie]:
             constraint,
             [comparison for comparison, _ in members],
             [_Party(every, together[every]) for every in known],
+            any(len(parties) == 1 for _, parties in members),
         )
 
 

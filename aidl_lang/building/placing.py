@@ -14,7 +14,7 @@ from aidl_lang.building.conditions import replace_placed, value_unknowns
 from aidl_lang.building.state import Env
 from aidl_lang.model import Condition
 from aidl_lang.names import fold
-from aidl_lang.types import PEERS, Binding
+from aidl_lang.types import PEERS, Binding, BoxType, GeometryType, PointType, StructureType
 from aidl_lang.values import Num, Value, members
 
 
@@ -34,7 +34,8 @@ def placing(
     equals = _equals(definition, binding, values)
     if equals:
         parties = tuple(frozenset(value_unknowns(value, env.here)) for value in equals)
-        return replace_placed(condition, frozenset().union(*parties), parties)
+        every = frozenset().union(*parties)
+        return replace_placed(condition, every, () if _is_given_a_place(definition, binding) else parties)
     positional = [values[i] for i in binding.positional]
     if _delegates(definition) and not (binding.gathered and len(positional) > 1):
         return condition
@@ -59,6 +60,18 @@ def _equals(definition: ast.ConstraintDefinition, binding: Binding, values: Sequ
         (only,) = given.get(binding.signature.parameters[0][0], (None,))
         declared = [values[only]] if only is not None and members(values[only]) is not None else []
     return [item for value in declared for item in spliced(value)]
+
+
+def _is_given_a_place(definition: ast.ConstraintDefinition, binding: Binding) -> bool:
+    """Whether what is done to a list is told by another thing, as in `spread(list, inside: box)`: then all
+    are placed and there is no anchor among them.
+    """
+    related = {name for name, kind, _ in binding.taken if isinstance(kind, _PLACES)}
+    word = definition.parameters[0].type
+    return word is not None and fold(word.text) == "peers" and bool(related)
+
+
+_PLACES = BoxType | PointType | GeometryType | StructureType
 
 
 def _delegates(definition: ast.ConstraintDefinition) -> bool:

@@ -148,6 +148,8 @@ def held(node: ast.Callable, callables: Mapping[str, Sequence[Signature]]) -> st
         return "the value"
     peers = [p.name.text for p in node.parameters if p.type is not None and fold(p.type.text) in PEERS]
     if gathers(node) and peers:
+        if others := [p.name.text for p in things(node) if p.name.text not in peers]:
+            return f"`{others[-1]}`"
         return f"one that is placed, else the last of `{peers[0]}`"
     if peers:
         return f"one that is placed, else `{peers[-1]}`" if len(peers) > 1 else ""

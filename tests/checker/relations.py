@@ -261,8 +261,22 @@ def _symmetric(ev: Evaluator, a: Any, b: Any = None, about: Any = None, axis: An
     return _images(ev, a, a, about)
 
 
+def _kind(of: Any) -> str:
+    """What a thing is when its image is sought: shapes are of one kind, curves each of their own."""
+    if isinstance(of, list | Array):
+        return "list"
+    if isinstance(of, Node):
+        return "structure"
+    curves = ("point", "line", "circle", "arc", "ellipse", "bezier")
+    return "point" if not isinstance(of, Geo) else of.type if of.type in curves else "shape"
+
+
 def _images(ev: Evaluator, a: Any, b: Any, about: Any) -> list[float]:
-    """Whether two things are images: curves as they are drawn, of shapes and structures the boxes."""
+    """Whether two things are images: curves as they are drawn, of shapes and structures the boxes, of things
+    of two kinds the centres.
+    """
+    if _kind(a) != _kind(b):
+        return _apart(mirrored(ev, middle(ev, a), about), middle(ev, b))
     if isinstance(a, list | Array):
         pairs = zip(ev.items(a), ev.items(b), strict=True)
         return [r for p, q in pairs for r in _images(ev, p, q, about)]

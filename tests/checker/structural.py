@@ -88,12 +88,20 @@ def _agree(p: Box, q: Box, *sides: str) -> list[float]:
     return [abs(getattr(p, side) - getattr(q, side)) for side in sides]
 
 
+def _lack(p: Box, q: Box, axis: str) -> float:
+    """How much of a stretch in common is wanting: a tenth of the smaller one."""
+    low, high = ("left", "right") if axis == "x" else ("bottom", "top")
+    sizes = [getattr(b, high) - getattr(b, low) for b in (p, q)]
+    common = min(getattr(p, high), getattr(q, high)) - max(getattr(p, low), getattr(q, low))
+    return max(0.0, min(sizes) / 10 - common)
+
+
 def _on_top_of(ev: Evaluator, a: Any, b: Any, align: str | None = None) -> list[float]:
     def residual(p: Box, q: Box) -> list[float]:
         touch = abs(p.bottom - q.top)
         if align is not None:
             return [touch, *_agree(p, q, align if align in ("left", "right") else "center_x")]
-        return [touch, max(0.0, p.center_x - q.right, q.left - p.center_x)]
+        return [touch, _lack(p, q, "x")]
 
     return _pair(ev, a, b, residual)
 
@@ -139,7 +147,8 @@ def _centered(side: str) -> Relation:
 def _centered_between(ev: Evaluator, a: Any, b: Any, c: Any, axis: str | None = None) -> list[float]:
     """The same room on both sides, along the axis that is said, else along either."""
     p, q, r = (ev.box(x) for x in (b, a, c))
-    return [min(max(_uneven([p, q, r], way)) for way in ([axis] if axis else ["x", "y"]))]
+    ways = [_gaps([p, q, r] if p.left <= r.left else [r, q, p], w) for w in ([axis] if axis else ["x", "y"])]
+    return [min(abs(before - behind) for before, behind in ways)]
 
 
 def _align(side: str, inwards: int) -> Relation:
@@ -216,7 +225,7 @@ def _evenly_spaced(
     spacing: Any = None,
     pitch: Any = None,
 ) -> list[float]:
-    """Equal gaps in the order written, along the axis that is said, else along either."""
+    """Equal gaps in the order written, along the axis that is said, else along either; none is negative."""
     boxes = [ev.box(t) for t in _members(ev, things)]
     room = gap if spacing is None else spacing
     ways = [_evenly(ev, boxes, way, room, pitch) for way in ([axis] if axis else ["x", "y"])]
@@ -226,22 +235,25 @@ def _evenly_spaced(
 def _evenly(ev: Evaluator, boxes: list[Box], axis: str, gap: Any, pitch: Any) -> list[float]:
     if pitch is not None:
         centers = [getattr(b, f"center_{axis}") for b in boxes]
-        return [abs(abs(q - p) - _number(ev, pitch)) for p, q in pairwise(centers)]
+        steps = [q - p for p, q in pairwise(centers)]
+        back = -1 if axis == "y" and sum(steps) < 0 else 1
+        return [abs(back * step - _number(ev, pitch)) for step in steps]
     if gap is not None:
         return [abs(g - _number(ev, gap)) for g in _gaps(boxes, axis)]
     return _uneven(boxes, axis)
 
 
 def _gaps(boxes: list[Box], axis: str) -> list[float]:
+    """From one to the next: to the right along x, along y upwards or downwards."""
     low, high = ("left", "right") if axis == "x" else ("bottom", "top")
     first, last = (getattr(b, low) + getattr(b, high) for b in (boxes[0], boxes[-1]))
-    ordered = boxes if first <= last else boxes[::-1]
+    ordered = boxes if axis == "x" or first <= last else boxes[::-1]
     return [getattr(b, low) - getattr(a, high) for a, b in pairwise(ordered)]
 
 
 def _uneven(boxes: list[Box], axis: str) -> list[float]:
-    gaps = _gaps(boxes, axis) if len(boxes) > 2 else []
-    return [abs(g - gaps[0]) for g in gaps[1:]]
+    gaps = _gaps(boxes, axis)
+    return [max(0.0, -g) for g in gaps[:1]] + [abs(g - gaps[0]) for g in gaps[1:]]
 
 
 # --- Places ----------------------------------------------------------------------------------------
@@ -268,12 +280,12 @@ def _on_circle(
         r = _number(ev, radius) if diameter is None else _number(ev, diameter) / 2
     ways = [(p[0] - middle.xy[0], p[1] - middle.xy[1]) for p in (ev.box(t).center for t in found)]
     away = [abs(math.hypot(*w) - r) for w in ways]
-    if not evenly:
-        return away
     first = ways[0]
     if start is not None:
         t = math.radians(_number(ev, start))
         first = r * math.cos(t), r * math.sin(t)
+    if not evenly:
+        return [*away, math.dist(ways[0], first)]
     turns = [
         [math.dist(w, _turned(first, sense * math.tau * i / len(ways))) for i, w in enumerate(ways)]
         for sense in (1, -1)
@@ -302,15 +314,18 @@ def _at_corners(ev: Evaluator, *things: Any, of: Any = None, inset: Any = None) 
 def _spread(
     ev: Evaluator, *things: Any, inside: Any, axis: str | None = None, margin: Any = None
 ) -> list[float]:
-    """From border to border with equal gaps, along the axis that is said, else along either."""
-    m, frame = _number(ev, margin), ev.box(inside)
-    boxes = [ev.box(t) for t in _members(ev, things)]
+    """Equal gaps through a box, to its border too if no margin is said; along the axis, else along either."""
+    frame, boxes = ev.box(inside), [ev.box(t) for t in _members(ev, things)]
     ways = []
     for way in [axis] if axis else ["x", "y"]:
         low, high = ("left", "right") if way == "x" else ("bottom", "top")
-        start = min(getattr(b, low) for b in boxes) - getattr(frame, low) - m
-        end = getattr(frame, high) - max(getattr(b, high) for b in boxes) - m
-        ways.append([abs(start), *([abs(end)] if len(boxes) > 1 else []), *_uneven(boxes, way)])
+        start = min(getattr(b, low) for b in boxes) - getattr(frame, low)
+        end = getattr(frame, high) - max(getattr(b, high) for b in boxes)
+        if len(boxes) == 1:
+            ways.append([abs(start - end)])
+        else:
+            room = _gaps(boxes, way)[0] if margin is None else _number(ev, margin)
+            ways.append([abs(start - room), abs(end - room), *_uneven(boxes, way)])
     return min(ways, key=max)
 
 
@@ -320,7 +335,13 @@ def _separations(p: Box, q: Box) -> tuple[float, float]:
 
 
 def _touching(ev: Evaluator, a: Any, b: Any) -> list[float]:
-    return _pair(ev, a, b, lambda p, q: [abs(max(_separations(p, q)))])
+    """At a border, with a stretch of it in common."""
+
+    def residual(p: Box, q: Box) -> list[float]:
+        across, up = _separations(p, q)
+        return [abs(max(across, up)), _lack(p, q, "y" if across >= up else "x")]
+
+    return _pair(ev, a, b, residual)
 
 
 def _no_overlap(ev: Evaluator, *things: Any, at_least: Any = None) -> list[float]:
@@ -333,7 +354,7 @@ def _no_overlap(ev: Evaluator, *things: Any, at_least: Any = None) -> list[float
 
 
 def _overlapping(ev: Evaluator, a: Any, b: Any) -> list[float]:
-    return _pair(ev, a, b, lambda p, q: [max(0.0, *_separations(p, q))])
+    return _pair(ev, a, b, lambda p, q: [_lack(p, q, "x"), _lack(p, q, "y")])
 
 
 _LEVEL = {"top": "top", "bottom": "bottom", "center": "center_y"}
