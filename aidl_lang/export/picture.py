@@ -1,7 +1,7 @@
 """From a drawing to a picture: what is filled, outlined and written, in which ink.
 
-One group for each structure in order of writing; those of drawings come after all others, so that they lie on
-top, and what explains the picture lies above them all.
+One group for each structure in order of writing, so that later siblings lie over earlier ones; what explains
+the picture lies above them all.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def _groups(model: SolvedModel, drawing: Drawing, marks: Iterable[tuple[str, Mar
     of = defaultdict(list)
     for path, mark in marks:
         of[path].append(mark)
-    for structure in sorted(model.root.walk(), key=lambda s: s.kind == "drawing"):
+    for structure in model.root.walk():
         yield Group(structure.path, tuple(of[structure.path]), _identity(structure, drawing))
 
 

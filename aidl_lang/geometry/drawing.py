@@ -17,7 +17,7 @@ from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
-from aidl_lang.geometry.legibility import Ground, unseen_note
+from aidl_lang.geometry.legibility import Ground, Lying, covered_note, unseen_note
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import Network, exactly, union_bounds
 from aidl_lang.geometry.notes import color_note, detached_notes, finding_note, gap_note, unusable_note
@@ -134,7 +134,12 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
         for m in masses
         for path, pieces in visible_seams(network, m, traced)
     )
-    ground = Ground(network, [(b.style.color, m.section) for b, m in zip(bodies, masses, strict=True)])
+    order = {structure.path: place for place, structure in enumerate(model.root.walk())}
+    lying = [
+        Lying(b.path, order[b.path], b.style.color, m.section, b.box)
+        for b, m in zip(bodies, masses, strict=True)
+    ]
+    ground = Ground(network, sorted(lying, key=lambda body: body.place))
     strokes = tuple(_strokes(model.root, shapes, walk, styles, regions, ground, notes))
     plans = tuple(_plans(model.root))
     boxes = [b.box for b in bodies]
@@ -284,10 +289,10 @@ def _strokes(
     curves = walk.network.curves
     loose = {f.structure.path: f.curves for f in walk.findings if isinstance(f, LooseCurves)}
     own = _colored_drawings(root)
-    for structure in root.walk():
+    for place, structure in enumerate(root.walk()):
         path, style = structure.path, styles[structure.path]
         if structure.kind == "drawing":
-            yield from _inked(structure, shapes[path], style, ground, is_own=path in own, notes=notes)
+            yield from _inked(structure, shapes[path], style, ground, place, is_own=path in own, notes=notes)
         for leaf, number in loose.get(path, ()):
             yield Stroke(path, leaf.path, (curves[number],), style, "open")
     if root.kind == "hole" and root.path in regions:
@@ -300,23 +305,28 @@ def _inked(
     shapes: list[Shape],
     style: Style,
     ground: Ground,
+    place: int,
     *,
     is_own: bool,
     notes: list[Diagnostic],
 ) -> Iterator[Stroke]:
-    """The strokes of a drawing; a warning if it was given the colour of what it lies on."""
+    """The strokes of a drawing; a warning if it has the colour of what it lies on, or lies under a body."""
     lost: dict[str, list[str]] = {}
+    covered: dict[str, list[str]] = {}
     for shape in shapes:
         look = _styled(style, shape.geometry, notes)
         is_asked = is_own or look is not style
         numbers = [number for _, number in shape.leaves]
-        hidden = ground.hides(look.color, numbers)
+        hidden = ground.hides(look.color, numbers, place)
+        if (by := ground.covering(numbers, place)) is not None:
+            covered.setdefault(by, []).append(shape.geometry.name)
         if is_asked and look.color and hidden and all(hidden):
             lost.setdefault(look.color, []).append(shape.geometry.name)
         over = look.color if any(hidden) and not is_asked else None
         pieces = tuple(ground.network.curves[number] for number in numbers)
         yield Stroke(drawing.path, shape.geometry.path, pieces, look, over=over)
     notes += [unseen_note(drawing, names, color) for color, names in lost.items()]
+    notes += [covered_note(drawing, names, by) for by, names in covered.items()]
 
 
 def _styled(style: Style, geometry: SolvedGeometry, notes: list[Diagnostic]) -> Style:

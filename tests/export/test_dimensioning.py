@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
-from aidl_lang.export import Options
+from aidl_lang.export import ExportError, Options
 from aidl_lang.export.marks import Area, Curves, Group, Picture, Text
 from aidl_lang.export.picture import picture
 from aidl_lang.geometry.curves import Arc, Line
@@ -165,7 +165,9 @@ def test_the_body_is_as_without_dimensions():
 
 
 def test_cut_files_have_no_dimensions():
-    assert not dimensions(drawn(PLATE, cut=True))
+    with pytest.raises(ExportError) as caught:
+        pipeline.compile(SourceFile("a.aidl", PLATE)).export(".svg", Options(dimension=True, cut=True))
+    assert caught.value.diagnostic.code == "E0924"
 
 
 def test_programs_can_tell_what_is_dimensioned():

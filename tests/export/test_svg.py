@@ -50,7 +50,7 @@ PLATE = structure(
     layer=("cut",),
 )
 MARKS = structure("drawing", "marks", primitive("l", Line((0, 25), (100, 25))))
-ROOT = structure("assembly", "part", MARKS, PLATE)
+ROOT = structure("assembly", "part", PLATE, MARKS)
 
 
 def test_groups_carry_paths_kinds_and_layers():
@@ -74,7 +74,16 @@ def test_a_hole_is_cut_from_the_path():
     assert path.attrib["fill-rule"] == "evenodd"
 
 
-def test_drawings_are_stroked_on_top():
+def test_drawings_lie_in_the_order_of_the_text():
+    early = structure("drawing", "early", primitive("l", Line((-1, 0), (1, 0))))
+    inside = structure("drawing", "inside", primitive("l", Line((1, 1), (9, 9))))
+    late = structure("drawing", "late", primitive("l", Line((1, 9), (9, 1))))
+    plate = structure("solid", "plate", rectangle("r", 0, 0, 10, 10), inside)
+    svg = written(structure("assembly", "a", early, plate, late))
+    assert list(groups(svg)) == ["a", "a.early", "a.plate", "a.plate.inside", "a.late"]
+
+
+def test_drawings_are_stroked_on_what_holds_them():
     svg = written(ROOT)
     (path,) = list(svg.iter(f"{SVG}g"))[-1]
     assert (path.attrib["fill"], path.attrib["d"]) == ("none", "M0 -25L100 -25")
@@ -100,10 +109,13 @@ def test_strokes_that_take_the_colour_of_what_they_lie_on_are_drawn_in_another(f
 
 def test_what_lies_on_another_colour_keeps_its_own():
     mark = structure("drawing", "mark", primitive("l", Line((1, 1), (9, 9))))
-    below = structure("solid", "below", rectangle("r", 0, 0, 4, 4), mark, color=("navy",))
-    above = structure("solid", "above", rectangle("r", 0, 0, 10, 10), color=("gold",))
-    (path,) = groups(written(structure("assembly", "a", below, above)))["a.below.mark"]
+    plate = structure("solid", "plate", rectangle("r", 0, 0, 10, 10), color=("gold",))
+    (path,) = groups(written(structure("assembly", "a", plate, mark, color=("navy",))))["a.mark"]
     assert path.attrib["stroke"] == "navy"
+    lid = structure("solid", "lid", rectangle("r", 0, 0, 10, 10), color=("gold",))
+    late = structure("solid", "below", rectangle("r", 0, 0, 10, 10), mark, color=("navy",))
+    (path,) = groups(written(structure("assembly", "a", late, lid)))["a.below.mark"]
+    assert path.attrib["stroke"] == "#b4bfcc", "the lid is drawn over both"
 
 
 def test_path_commands():
