@@ -41,6 +41,7 @@ class Unknown:
     outline   a side of the box of an empty structure
     locked    an angle that stays as written until a constraint asks it to turn
     since     for the way to a literal point, the name of the one before it
+    implied   follows from literal points, and no number was written for it
     """
 
     guess: float
@@ -55,6 +56,7 @@ class Unknown:
     locked: bool = False
     outline: bool = False
     since: str = ""
+    implied: bool = False
 
     @property
     def path(self) -> str:

@@ -193,8 +193,8 @@ class _Report:
         turns: dict[Span, list[_Party]] = {}
         for party in self.parties:
             turns.setdefault(party.stated.span, []).append(party)
-        names = _listed([_name(parties) for parties in turns.values()])
-        names = names or _listed([unknown.told for unknown in self.sizes])
+        names = listed([_name(parties) for parties in turns.values()])
+        names = names or listed([unknown.told for unknown in self.sizes])
         several = len(self.parties) > 1
         match failure.reason:
             case Failure.CONTRADICTORY:
@@ -234,8 +234,8 @@ class _Report:
                 wordings = [w for party in self.parties if isinstance(w := party.stated.wording, Wording)]
                 held = dict.fromkeys(f"`{name}`" for wording in wordings for name in wording.held())
                 if held:
-                    moving = _listed([self.lowered.unknowns[i].told for i in self.failure.moving])
-                    yield f"{_listed(list(held))} cannot move, only {moving}: a `guess(…)` frees a number"
+                    moving = listed([self.lowered.unknowns[i].told for i in self.failure.moving])
+                    yield f"{listed(list(held))} cannot move, only {moving}: a `guess(…)` frees a number"
             case Failure.NOT_CONVERGED:
                 yield "the search starts from what is written: first guesses near to what is meant help it"
             case Failure.TIMED_OUT:
@@ -250,10 +250,10 @@ def _name(parties: Sequence[_Party]) -> str:
     return f"{first} [{label}]" if label else first
 
 
-def _listed(names: Sequence[str]) -> str:
+def listed(names: Sequence[str], most: int = _NAMED) -> str:
     """`a`; `a and b`; `a, b and c`; `a, b and 3 more`"""
-    if len(names) > _NAMED:
-        names = [*names[: _NAMED - 1], f"{len(names) - _NAMED + 1} more"]
+    if len(names) > most:
+        names = [*names[: most - 1], f"{len(names) - most + 1} more"]
     return " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
 
 

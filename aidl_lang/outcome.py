@@ -16,11 +16,12 @@ from aidl_lang.geometry.evaluate import bounds, inward
 from aidl_lang.geometry.measures import area, perimeter
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Region
+from aidl_lang.giving import GaveWay, giving_notes
 from aidl_lang.lower import Lowered
 from aidl_lang.model import Assertion, Comparison, Condition, Geometry, Measurement, Model, Structure
 from aidl_lang.remedies import short
 from aidl_lang.repetitions import repetition_notes
-from aidl_lang.solved import Change, Frame, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.solution import Solution, Status
 
@@ -29,45 +30,18 @@ _TOLERANCE = 1e-6
 
 
 def solution_notes(
-    lowered: Lowered, solution: Solution, freedom: Freedom, model: SolvedModel
+    lowered: Lowered,
+    solution: Solution,
+    freedom: Freedom,
+    model: SolvedModel,
+    given: Sequence[GaveWay],
 ) -> list[Diagnostic]:
-    """Failures as errors; for a model that solved, changed sizes and redundant constraints as notes."""
+    """Failures as errors; for a model that solved, what gave way and redundant constraints."""
     found = failure_notes(lowered, solution)
     if solution.status is not Status.SOLVED:
         return found
-    found += filter(None, map(_change_note, model.changed))
+    found += giving_notes(given, model)
     return found + repetition_notes(lowered, solution, freedom)
-
-
-def _change_note(change: Change) -> Diagnostic | None:
-    """That a size changed; a warning where so much that it is hardly meant."""
-    written, solved = short(change.written), short(change.solved)
-    if written == solved:
-        return None
-    message = f"{change.told} was written {written} and became {solved}"
-    label = "the constraints could not hold otherwise"
-    how = _distortion(change)
-    if not how:
-        hint = f"write {solved} to agree, or `fixed({written})` to insist"
-        return Diagnostic("N0601", message, change.span, label, hints=(hint,))
-    hints = (
-        "look for a constraint that says something else than you mean: `fixed(…)` around what was written "
-        "tells which of them leave no room for it",
-        "if it may become what it will, write it as a `guess(…)`",
-    )
-    return Diagnostic("W0601", f"{message}, {how}", change.span, label, hints=hints)
-
-
-def _distortion(change: Change) -> str:
-    """What became of a size that is hardly meant; "" for one that is little off, and for angles and offsets,
-    of which half says nothing.
-    """
-    share = change.solved / change.written if change.is_size and change.written else 1.0
-    if share < 0.0:
-        return "turned around"
-    if share < 0.5 - _TOLERANCE:
-        return "less than half"
-    return "more than twice as much" if share > 2.0 + _TOLERANCE else ""
 
 
 # --- Assertions ----------------------------------------------------------------------------------

@@ -55,12 +55,15 @@ _MISSING_NAMES = frozenset({"E0201", "E0203"})
 
 @dataclass(frozen=True)
 class Settings:
-    """Limits for programs that are not trusted, the solver's settings, and the subset of the language."""
+    """Limits for programs that are not trusted, the solver's settings, the subset of the language, and
+    whether it is an error that something gave way unasked.
+    """
 
     text: parser.Limits = parser.DEFAULT_LIMITS
     building: Limits = DEFAULT_LIMITS
     solving: SolverSettings = SolverSettings(tolerance=1e-10)
     variant: Variant = Variant.FULL
+    strict: bool = False
 
 
 @dataclass
@@ -358,6 +361,7 @@ def _finish(
     memory: Memory | None,
 ) -> Compiled:
     from aidl_lang.geometry.drawing import draw
+    from aidl_lang.giving import explained, gave_way, refused
     from aidl_lang.lower import lower
     from aidl_lang.outcome import assertion_notes, solution_notes
     from aidl_lang.readout import read_out
@@ -377,8 +381,12 @@ def _finish(
         model, wrong = _completed(replace(model, size_up=_sizes(built.model, evaluator)))
         drawing, notes = draw(model)
         notes = [*wrong, *notes]
+    with watch("reasons"):
+        given = gave_way(lowered, solution, settings.solving)
+        model = explained(model, given)
     with watch("asserts"):
-        found = solution_notes(lowered, solution, freedom, model)
+        found = solution_notes(lowered, solution, freedom, model, given)
+        found = list(map(refused, found)) if settings.strict else found
         found += assertion_notes(
             built.model, model, drawing, evaluator, solved_fully=solution.status.value == "solved"
         )

@@ -173,7 +173,9 @@ class ConstraintReport:
 
 @dataclass(frozen=True)
 class Change:
-    """A kept size that had to change. `told`: what it is, for people; `is_size`: no angle or offset."""
+    """A kept size that had to change. `told`: what it is, for people; `is_size`: no angle or offset;
+    `because`: the constraints, as written, that left no other way.
+    """
 
     path: str
     written: float
@@ -181,6 +183,7 @@ class Change:
     span: Span | None
     told: str = ""
     is_size: bool = True
+    because: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -234,6 +234,8 @@ def _line(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     made = polar(g.fields["start"], reach.expression, angle.expression)
     if end is not None:
         it.became_point(end, made, g, "end")
+        for unknown in ex.unknowns([reach.expression, angle.expression]):
+            unknown.implied = True
     g.fields |= {"end": made, "length": reach, "angle": angle}
 
 

@@ -232,7 +232,10 @@ class Interpreter:
         since: str = "",
     ) -> ex.Expression:
         """A new unknown, as an expression."""
-        made = Unknown(guess, owner, holder, name, kept, dimension == ANGLE, frame_of, cell, since=since)
+        angular, implied = dimension == ANGLE, since != ""
+        made = Unknown(
+            guess, owner, holder, name, kept, angular, frame_of, cell, since=since, implied=implied
+        )
         self.unknowns.append(made)
         return ex.unknown(made)
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from aidl_lang.cli.build import build
-from aidl_lang.cli.options import add_drawing, add_program, add_variant
+from aidl_lang.cli.options import add_drawing, add_program, add_strict, add_variant
 from aidl_lang.cli.report import say, show
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
     add_program(parser)
     add_drawing(parser)
     add_variant(parser)
+    add_strict(parser)
     parser.add_argument("--quiet", action="store_true", help="say nothing but errors")
     parser.add_argument("--timings", action="store_true", help="tell how long each stage took")
     parser.add_argument(

@@ -29,6 +29,14 @@ def add_variant(parser: argparse._ActionsContainer) -> None:
     )
 
 
+def add_strict(parser: argparse._ActionsContainer) -> None:
+    parser.add_argument(
+        "--strict",
+        action="store_true",
+        help="refuse what the constraints could only hold by changing what was written",
+    )
+
+
 def add_params(
     parser: argparse.ArgumentParser,
     option: str = "-D",

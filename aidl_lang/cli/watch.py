@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.cli import files
 from aidl_lang.cli.build import build, targets
-from aidl_lang.cli.options import add_drawing, add_program, add_variant
+from aidl_lang.cli.options import add_drawing, add_program, add_strict, add_variant
 from aidl_lang.cli.report import UseError, say
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
     add_program(parser)
     add_drawing(parser)
     add_variant(parser)
+    add_strict(parser)
     parser.set_defaults(run=run, timings=False)
 
 

@@ -95,7 +95,10 @@ def to_dict(
             {"kind": m.kind, "things": list(m.things), "words": m.words, "moves": dict(m.moves)}
             for m in model.motions
         ],
-        "changed": [{"path": c.path, "written": c.written, "solved": c.solved} for c in model.changed],
+        "changed": [
+            {"path": c.path, "written": c.written, "solved": c.solved, "because": list(c.because)}
+            for c in model.changed
+        ],
         "tolerance": tolerance,
         "bodies": [body.path for body in drawing.bodies],
         "regions": {

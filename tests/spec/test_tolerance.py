@@ -65,6 +65,8 @@ def solved(outcome: pipeline.Compiled) -> object:
     for item in [*document["constraints"], *document.get("readings", ())]:
         for word in ("text", "line", "column"):
             del item[word]
+    for change in document["changed"]:
+        del change["because"]
     del document["diagnostics"]
     return document
 
