@@ -33,8 +33,18 @@ class Picture:
     text: str
 
 
+_BUSY: Json = {"type": "busy"}
+_TOO_MUCH: Json = {
+    "type": "error",
+    "message": "this page asks for more than can be done at once: what it asked for last was left out",
+}
+_GIVEN_UP: Json = {"type": "error", "message": "the text has changed meanwhile: ask for it again"}
+MOST_UNTAKEN = 16
+"""Messages that wait for a page before it is heard again."""
+
+
 class Page:
-    """One page that is open. What it has not taken yet waits; of pictures only the newest."""
+    """One page that is open. What it has not taken yet waits; of pictures the newest, of equals one."""
 
     def __init__(self) -> None:
         self.show: frozenset[str] = frozenset()
@@ -42,14 +52,22 @@ class Page:
         """what it was sent last"""
         self.is_owed = False
         """whether it waits for a picture even if the text stays as it is"""
+        self.is_held_up = False
+        """whether it was told that it asks for too much, and nothing of it was taken since"""
         self._waiting: list[tuple[bool, str]] = []
         self._news = asyncio.Event()
 
     def post(self, text: str, *, is_picture: bool = False) -> None:
         if is_picture:
             self._waiting = [each for each in self._waiting if not each[0]]
-        self._waiting.append((is_picture, text))
+        if (is_picture, text) not in self._waiting:
+            self._waiting.append((is_picture, text))
         self._news.set()
+
+    @property
+    def is_behind(self) -> bool:
+        """Whether it asks for more than it takes."""
+        return len(self._waiting) >= MOST_UNTAKEN
 
     def take(self, picture: Picture) -> None:
         self.shown = picture
@@ -70,7 +88,7 @@ class Host:
     def __init__(self, program: Program) -> None:
         self.program = program
         self.pages: list[Page] = []
-        self._worker = Worker(Job(self._refreshed, partial(self._tell_all, {"type": "busy"}), self._trouble))
+        self._worker = Worker(Job(self._refreshed, partial(self._tell_all, _BUSY), self._trouble))
         self._trouble_told = ""
 
     async def run(self) -> None:
@@ -89,7 +107,7 @@ class Host:
 
     def leave(self, page: Page) -> None:
         self.pages.remove(page)
-        self._worker.forget(page)
+        self._worker.leave(page)
 
     # --- The text
 
@@ -153,6 +171,9 @@ class Host:
 
     def hear(self, page: Page, text: str) -> None:
         """Take a message; the answer comes when there is one."""
+        if page.is_behind:
+            self._hold_up(page)
+            return
         match messages.read(text):
             case Ready() | Cancel():
                 self._worker.forget(page)
@@ -162,49 +183,62 @@ class Host:
                 self._owe(page)
             case SetKnob(path, value, final):
                 if final:
-                    self._order(page, lambda: self.program.set_knob(path, value))
+                    self._edit(page, lambda: self.program.set_knob(path, value))
                 else:
                     self._attempt(page, lambda: self._tried_knob(page, path, value))
             case Drag(handle, to, final):
                 if final:
-                    self._order(page, lambda: self.program.drop(handle, to))
+                    self._edit(page, lambda: self.program.drop(handle, to))
                 else:
                     self._attempt(page, lambda: self._dragged(page, handle, to))
             case ApplyFix(problem, fix):
-                self._order(page, partial(self._fix, page.shown, problem, fix))
+                self._edit(page, partial(self._fix, page.shown, problem, fix))
             case Export(name):
-                self._worker.order(self._job(page, lambda: self._exported(page, name)))
+                self._order(page, lambda: self._exported(page, name))
             case None:
                 pass
 
     def _owe(self, page: Page) -> None:
         page.is_owed = True
-        self._worker.ask()
-
-    def _job(self, page: Page, do: Callable[[], Then]) -> Job:
-        return Job(do, partial(page.tell, {"type": "busy"}), partial(self._refused, page))
+        self._worker.ask(page)
 
     def _attempt(self, page: Page, do: Callable[[], Then]) -> None:
-        self._worker.attempt(page, self._job(page, do))
+        self._worker.attempt(page, Job(do, partial(page.tell, _BUSY), partial(self._refused, page)))
 
-    def _order(self, page: Page, edit: Callable[[], None]) -> None:
-        """An edit, after which the page gets the picture of the text."""
+    def _order(self, page: Page, do: Callable[[], Then], *, lasts: bool = False) -> None:
+        job = Job(do, partial(page.tell, _BUSY), partial(self._refused, page, is_order=True), lasts)
+        if self._worker.order(page, job):
+            page.is_held_up = False
+        else:
+            self._hold_up(page)
+
+    def _hold_up(self, page: Page) -> None:
+        """Leave out what it asks for; that is told once."""
+        if not page.is_held_up:
+            page.is_held_up = True
+            page.tell(_TOO_MUCH)
+            self._owe(page)
+
+    def _edit(self, page: Page, edit: Callable[[], None]) -> None:
+        """An order after which the page gets the picture of the text."""
 
         def do() -> Then:
             edit()
             return partial(self._edited, page)
 
         self._worker.forget(page)
-        self._worker.order(self._job(page, do))
+        self._order(page, do, lasts=True)
 
     def _edited(self, page: Page) -> None:
         page.is_owed = True
         self._worker.refresh()
 
-    def _refused(self, page: Page, error: BaseException) -> None:
-        """An attempt that was given up is followed by the picture of the text."""
+    def _refused(self, page: Page, error: BaseException, *, is_order: bool = False) -> None:
+        """What was given up is followed by the picture of the text."""
         if not isinstance(error, Cancelled):
             page.tell({"type": "error", "message": _told(error)})
+        elif is_order:
+            page.tell(_GIVEN_UP)
         self._owe(page)
 
     # --- In the thread of the worker

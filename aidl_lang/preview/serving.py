@@ -11,8 +11,10 @@ import uvicorn
 from aidl_lang.preview.host import Host
 from aidl_lang.preview.messages import LONGEST
 from aidl_lang.preview.program import Program, Write
-from aidl_lang.preview.site import site
+from aidl_lang.preview.site import MOST_PAGES, site
 
+_CONNECTIONS = 8 * MOST_PAGES
+"""A browser opens some more for the files of a page; beyond these it is answered that there are too many."""
 _GRACE = 1
 """Seconds that pages have to say goodbye."""
 
@@ -43,6 +45,7 @@ class Served:
             ws_per_message_deflate=False,
             proxy_headers=False,
             server_header=False,
+            limit_concurrency=_CONNECTIONS,
             timeout_graceful_shutdown=_GRACE,
         )
         uvicorn.Server(config).run(sockets=[self._listener])

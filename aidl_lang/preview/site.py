@@ -130,7 +130,7 @@ async def _socket(socket: WebSocket) -> None:
     host: Host = socket.app.state.host
     await socket.accept()
     if len(host.pages) >= MOST_PAGES:
-        await socket.close(_TRY_AGAIN)
+        await socket.close(_TRY_AGAIN, f"{MOST_PAGES} pages show this program already: close one of them.")
         return
     page = host.join()
     sending = asyncio.create_task(_send(socket, page))
@@ -153,7 +153,10 @@ async def _listen(socket: WebSocket, host: Host, page: Page) -> None:
     """Until the page goes, or sends what no page sends."""
     while (message := await socket.receive())["type"] == "websocket.receive":
         text = message.get("text")
-        if text is None or len(text) > LONGEST:
-            await socket.close(_NO_TEXT if text is None else _TOO_BIG)
+        if text is None:
+            await socket.close(_NO_TEXT, "This page sent what is no text.")
+            return
+        if len(text) > LONGEST:
+            await socket.close(_TOO_BIG, "This page sent a message that is too long.")
             return
         host.hear(page, text)

@@ -14,7 +14,7 @@ import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
 from starlette.websockets import WebSocketDisconnect
 
-from aidl_lang.preview.host import Host
+from aidl_lang.preview.host import MOST_UNTAKEN, Host, Page
 from aidl_lang.preview.program import Program
 from aidl_lang.preview.site import MOST_PAGES, PANE, site
 
@@ -243,12 +243,14 @@ def test_noise_is_passed_over(client: TestClient) -> None:
 def test_bytes_and_much_end_a_connection(client: TestClient) -> None:
     with talking(client) as page:
         page.socket.send_bytes(b"\xff")
-        with pytest.raises(WebSocketDisconnect):
+        with pytest.raises(WebSocketDisconnect) as refused:
             page.hear(type="never")
+    assert refused.value.reason == "This page sent what is no text."
     with talking(client) as page:
         page.socket.send_text("x" * 70_000)
-        with pytest.raises(WebSocketDisconnect):
+        with pytest.raises(WebSocketDisconnect) as refused:
             page.hear(type="never")
+    assert refused.value.reason == "This page sent a message that is too long."
     with talking(client) as page:
         page.say(type="ready")
         page.hear(type="picture")
@@ -258,8 +260,9 @@ def test_only_so_many_pages(client: TestClient) -> None:
     pages = [talking(client) for _ in range(MOST_PAGES)]
     for each in pages:
         each.__enter__()
-    with talking(client) as one_more, pytest.raises(WebSocketDisconnect):
+    with talking(client) as one_more, pytest.raises(WebSocketDisconnect) as refused:
         one_more.hear(type="never")
+    assert refused.value.reason == f"{MOST_PAGES} pages show this program already: close one of them."
     pages[0].__exit__(None, None, None)
     with talking(client) as page:
         page.say(type="ready")
@@ -276,6 +279,37 @@ def test_many_attempts_end_with_the_last(client: TestClient) -> None:
             page.say(type="knob", path="width", value=width, final=False)
         while page.hear(type="picture", tried=True)["box"][2] != pytest.approx(50):
             pass
+
+
+def test_a_page_that_asks_for_too_much_is_told_and_holds_up_no_other(client: TestClient) -> None:
+    with talking(client) as flood, talking(client) as page:
+        for _ in range(300):
+            flood.say(type="export", format="svg")
+        page.say(type="knob", path="width", value=50, final=False)
+        assert page.hear(type="picture", tried=True)["box"][2] == pytest.approx(25)
+        assert "more than can be done at once" in flood.hear(type="error")["message"]
+        page.say(type="export", format="dxf")
+        assert page.hear(type="export")["name"] == "part.dxf"
+    with talking(client) as page:
+        page.say(type="ready")
+        page.hear(type="picture")
+
+
+def test_a_page_that_takes_nothing_is_not_heard() -> None:
+    page = Page()
+    for number in range(MOST_UNTAKEN - 1):
+        page.tell({"type": "error", "message": str(number)})
+        page.tell({"type": "busy"})
+    assert page.is_behind
+    asked: list[str] = []
+    host = Host(Program(Path("none.aidl"), lambda path, data: None))
+    host.program.set_knob = lambda path, value: asked.append(path)  # type: ignore[method-assign]
+    for _ in range(100):
+        host.hear(page, '{"type": "knob", "path": "width", "value": 5, "final": true}')
+    messages = [json.loads(text) for _, text in page._waiting]
+    assert len(messages) == MOST_UNTAKEN + 1
+    assert "more than can be done at once" in messages[-1]["message"]
+    assert asked == []
 
 
 def test_a_file_that_is_gone_for_a_moment(client: TestClient, file: Path) -> None:

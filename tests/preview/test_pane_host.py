@@ -30,6 +30,7 @@ window.WebSocket = class extends EventTarget {
     }
 };
 """
+CROWDED = NOBODY.replace('new Event("close")', 'new CloseEvent("close", { reason: "There are too many." })')
 
 
 # Connections
@@ -68,6 +69,11 @@ def test_a_host_that_is_away_is_asked_ever_more_seldom(open_pane) -> None:
         pane.page.clock.run_for(50)
         attempts += 1
         assert pane.page.evaluate("() => window.attempts") == attempts
+
+
+def test_why_there_is_no_connection_is_told(open_pane) -> None:
+    banner = open_pane(script=CROWDED, has_clock=True).find("#disconnected")
+    expect(banner).to_contain_text("There are too many. The next try comes in 0.5 s.")
 
 
 def test_layers_are_asked_for_again_after_a_lost_connection(pane: Pane) -> None:

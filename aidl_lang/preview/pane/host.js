@@ -13,7 +13,8 @@
  * @typedef {object} Listener
  * @property {(message: FromHost) => void} message
  * @property {() => void} open the host is there, for the first time or again
- * @property {(seconds: number) => void} lost the connection is gone; the next try comes in so many seconds
+ * @property {(seconds: number, reason: string) => void} lost the connection is gone, for a reason if the host told
+ *   one; the next try comes in so many seconds
  */
 
 const FIRST_WAIT = 0.5;
@@ -77,18 +78,16 @@ class Socket {
   #open() {
     clearTimeout(this.#timer);
     const socket = (this.#socket = new WebSocket(this.url));
-    socket.addEventListener("open", () => {
-      this.#wait = FIRST_WAIT;
-      this.listener.open();
-    });
+    socket.addEventListener("open", () => this.listener.open());
     socket.addEventListener("message", (event) => {
+      this.#wait = FIRST_WAIT; // a host that takes no more pages opens the connection to say so
       const message = parsed(event.data);
       if (isMessage(message)) this.listener.message(message);
     });
-    socket.addEventListener("close", () => {
+    socket.addEventListener("close", ({ reason }) => {
       this.#socket = null;
       this.#timer = setTimeout(() => this.#open(), this.#wait * 1000);
-      this.listener.lost(this.#wait);
+      this.listener.lost(this.#wait, reason);
       this.#wait = Math.min(this.#wait * 2, LONGEST_WAIT);
     });
   }

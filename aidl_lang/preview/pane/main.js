@@ -43,7 +43,7 @@ class Pane {
   host = connect({
     message: (message) => this.receive(message),
     open: () => this.open(),
-    lost: (seconds) => this.lost(seconds),
+    lost: (seconds, reason) => this.lost(seconds, reason),
   });
 
   constructor() {
@@ -163,10 +163,13 @@ class Pane {
     return [...(this.layers?.() ?? []), ...(this.#isFreedomWanted ? /** @type {const} */ (["freedom"]) : [])];
   }
 
-  /** @param {number} seconds */
-  lost(seconds) {
+  /**
+   * @param {number} seconds
+   * @param {string} reason
+   */
+  lost(seconds, reason) {
     this.attempts.forget();
-    this.status.lost(seconds);
+    this.status.lost(seconds, reason);
     document.body.classList.add("lost");
   }
 

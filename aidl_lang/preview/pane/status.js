@@ -55,12 +55,16 @@ export class StatusView {
     this.#disconnected.hidden = true;
   }
 
-  /** @param {number} seconds until the next try */
-  lost(seconds) {
+  /**
+   * @param {number} seconds until the next try
+   * @param {string} reason why, if that is known
+   */
+  lost(seconds, reason) {
     this.#disconnected.hidden = false;
     this.#status.className = "status";
     tell(this.#status, "Not connected");
-    tell(this.#disconnectedText, `Is \u201caidl preview\u201d still running? The next try comes in ${shown(seconds, 1)} s.`);
+    const why = reason || "Is \u201caidl preview\u201d still running?";
+    tell(this.#disconnectedText, `${why} The next try comes in ${shown(seconds, 1)} s.`);
     this.busy(false);
   }
 
