@@ -16,6 +16,7 @@ from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
 from aidl_lang.model import (
     Comparison,
+    Condition,
     Constraint,
     Geometry,
     Model,
@@ -80,7 +81,9 @@ class _Lowering:
         stated: list[Constraint | None] = []
         constraints: list[SolverConstraint] = []
         # In an order of their own, so that the order of writing cannot show in the last digits.
-        for constraint in sorted(self.model.constraints, key=lambda c: (c.text, c.label, c.span.start)):
+        for constraint in sorted(
+            [*self.model.constraints, *self._bounds()], key=lambda c: (c.text, c.label, c.span.start)
+        ):
             if constraint.holder in self.groups:
                 constraints.append(self._constraint(constraint))
                 stated.append(constraint)
@@ -244,6 +247,20 @@ class _Lowering:
         length, angle = dimension or LENGTH
         return float(self.size**length * _RADIAN**angle)
 
+    def _bounds(self) -> Iterator[Constraint]:
+        """What shapes ask of their sizes and what holds as written, as constraints: no size becomes one that
+        its shape would refuse.
+        """
+        for asked in self.model.assertions:
+            parts = list(_comparisons(asked.condition)) if asked.shape else []
+            if not parts or not all(_is_bound(part) for part in parts):
+                continue
+            for part in parts:
+                if any(u in self.numbers for u in ex.unknowns([part.left, part.right])):
+                    yield Constraint(
+                        asked.holder, (part,), asked.text, asked.span, None, asked.label, is_inherent=True
+                    )
+
     def _never_vanishing(self) -> Iterator[SolverConstraint]:
         for unknown, number in self.numbers.items():
             if is_size(unknown.field.rpartition(".")[2]) and unknown.guess >= 0:
@@ -251,6 +268,25 @@ class _Lowering:
                 expression = self.tape.sub(self.tape.constant(least), self.tape.unknown(number))
                 row = Row(expression, Relation.AT_MOST, self.size)
                 yield SolverConstraint(self.groups[unknown.owner], (row,), frozenset())
+
+
+def _comparisons(condition: Condition | bool) -> Iterator[Comparison]:
+    """The comparisons that all have to hold for a condition; none where there is more to it."""
+    if not isinstance(condition, Condition) or condition.operator != "and":
+        return
+    for part in condition.parts:
+        if isinstance(part, Comparison):
+            yield part
+        else:
+            yield from _comparisons(part)
+
+
+def _is_bound(part: Comparison) -> bool:
+    """Whether it is an inequality that holds at the first guesses."""
+    if part.relation in ("==", "!=") or part.left.is_open or part.right.is_open:
+        return False
+    low, high = (part.left, part.right) if part.relation in ("<=", "<") else (part.right, part.left)
+    return low.value <= high.value
 
 
 def _places(structure: Structure, holder: Structure) -> Iterator[Expression]:
