@@ -46,12 +46,14 @@ class Task:
     softness unit of a slack for each row, 0 where the row is hard
     free     the unknowns that may move
     restarts perturbed starts to try at singular places
+    turning  whether branches may be turned as a last resort
     """
 
     rows: Sequence[Row]
     softness: Sequence[float]
     free: frozenset[int]
     restarts: int = 1
+    turning: bool = True
 
 
 @dataclass(frozen=True)
@@ -133,7 +135,9 @@ class _Attempt:
             if row.relation is Relation.EQUAL or not holds(row, self.values, tolerance)
         ]
         verdict = self._follow_branches()
-        return verdict if verdict.satisfied or verdict.proof else self._try_neighbours(verdict)
+        if verdict.satisfied or verdict.proof or not self.task.turning:
+            return verdict
+        return self._try_neighbours(verdict)
 
     # -- branches
 

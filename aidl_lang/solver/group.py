@@ -49,6 +49,8 @@ Proof: TypeAlias = Mapping[int, float]
 """Factors of tape nodes whose sum shows that rows contradict each other; empty if that is not known."""
 
 PLACED: Tier = (1, 1)
+DEEP: Tier = (3, 0)
+"""Before the first tier of what lies deeper than the group itself."""
 OWN: Tier = (2, 0)
 RIDING: Tier = (5, -1)
 """Before the first tier of what rides along."""
@@ -235,18 +237,23 @@ class Group:
         everything = self.scope((9, 0), seeds).free
         before = hierarchy.save(everything)
         violated = [index for index in seeds if not hierarchy.satisfied(index)]
-        tried: frozenset[int] = frozenset()
+        tried: dict[bool, frozenset[int]] = {}
         obstacle: tuple[Tier, Proof] = ((1, 0), {})
-        for tier in tiers:
+        # What lies deep is searched branch by branch only when the branches that are active lead nowhere.
+        near, deep = [t for t in tiers if t < DEEP], [t for t in tiers if t >= DEEP]
+        plan = [(t, True) for t in near] + [(t, False) for t in deep] + [(t, True) for t in deep]
+        for tier, turning in plan:
             if not self._promising(violated, tier):
                 continue
             scope = self.scope(tier, seeds)
-            if scope.free == tried or self._stands(obstacle[1], scope.free):
+            if scope.free in (tried.get(True), tried.get(turning)):
                 continue
-            tried = scope.free
+            if self._stands(obstacle[1], scope.free):
+                continue
+            tried[turning] = scope.free
             # What builds on a part that failed is drawn as well as it goes, and not searched for long.
-            last = tier == tiers[-1] and not hierarchy.failures
-            verdict = hierarchy.attempt(scope, LAST_RESTARTS if last else 1)
+            last = turning and tier == tiers[-1] and not hierarchy.failures
+            verdict = hierarchy.attempt(scope, LAST_RESTARTS if last else 1, turning=turning)
             self._report(tier, scope, before if verdict.satisfied else None)
             if verdict.satisfied:
                 return tier, best, obstacle

@@ -247,7 +247,9 @@ class Hierarchy:
             holds(row, self.values, self.settings.tolerance) for row in self.problem.constraints[index].rows
         )
 
-    def attempt(self, scope: Scope, restarts: int, clock: Clock | None = None) -> Verdict:
+    def attempt(
+        self, scope: Scope, restarts: int, clock: Clock | None = None, turning: bool = True
+    ) -> Verdict:
         """Tries to satisfy the constraints of `scope` as hard ones; leaves `values` at what was reached.
 
         A kept size is dearer than any position: first as few and as little of them change as will do, and
@@ -257,7 +259,7 @@ class Hierarchy:
         sizes = [unknown for unknown in scope.free if self._kept[unknown]]
         metric = self.firm if sizes else self.metric
         before = self.save(scope.free)
-        task = Task(rows, [0.0] * len(rows), scope.free, restarts)
+        task = Task(rows, [0.0] * len(rows), scope.free, restarts, turning)
         verdict = attempt(task, self.values, metric, self.settings, clock or self.clock)
         if sizes and not verdict.satisfied:
             # What is dear moves last in a search, too, which may end before that.
