@@ -7,8 +7,9 @@ meets the box of one of its descendants there leaves that descendant out (paper,
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
@@ -89,13 +90,14 @@ class _Side:
 
     box: Box
     name: str
-    _value: float | None = field(default=None)
 
     @property
     def value(self) -> float:
-        if self._value is None:
-            self._value = extent(self, frozenset()).value
-        return self._value
+        return self.spelled_out.value
+
+    @cached_property
+    def spelled_out(self) -> Expression:
+        return extent(self, frozenset())
 
     def unknowns(self) -> Iterator[Unknown]:
         for source in self.box.sources:
@@ -240,17 +242,38 @@ def _curve(primitive: Geometry, here: Structure, side: str) -> Iterator[Expressi
         case "ellipse":
             yield _ellipse_extreme(core, axis, positive)
         case "glyphs" if primitive.glyphs:
-            at = on_text(primitive, here)
-            left, bottom, right, top = box_around(primitive.glyphs)
-            for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
-                yield at(corner)[axis]
+            yield from _text_extremes(primitive, here, side)
         case "bezier":
-            controls = [xy(core[p])[axis] for p in ("p0", "p1", "p2", "p3")]
-            if positive:
-                yield ex.apply("cubic_max", *controls)
-            else:
-                opposite = [ex.apply("neg", c) for c in controls]
-                yield ex.apply("neg", ex.apply("cubic_max", *opposite))
+            yield _cubic_extreme([xy(core[p])[axis] for p in ("p0", "p1", "p2", "p3")], positive)
+
+
+def _cubic_extreme(controls: Sequence[Expression], positive: bool) -> Expression:
+    """The extreme of a cubic Bézier curve by one coordinate of its control points."""
+    if positive:
+        return ex.apply("cubic_max", *controls)
+    return ex.apply("neg", ex.apply("cubic_max", *[ex.apply("neg", c) for c in controls]))
+
+
+def _text_extremes(text: Geometry, here: Structure, side: str) -> Iterator[Expression]:
+    """Of a text that stands square to the axes, the corners of its ink; of one that is turned, what of its
+    silhouette reaches furthest, or all of that where it is not known how far it is turned.
+    """
+    at, angle = on_text(text, here), number(view(text, here)["angle"])
+    axis, positive = side in ("top", "bottom"), side in ("right", "top")
+    if angle.is_constant and angle.value % 90.0 == 0.0:
+        left, bottom, right, top = box_around(text.glyphs)
+        for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
+            yield at(corner)[axis]
+        return
+    reaching = [
+        reach[0] if len(reach) == 1 else _cubic_extreme(reach, positive)
+        for reach in ([at(p)[axis] for p in piece] for piece in text.silhouette)
+    ]
+    if angle.is_constant:
+        furthest = max if positive else min
+        yield furthest(reaching, key=lambda reach: reach.value)
+    else:
+        yield from reaching
 
 
 _AS_WIDE = frozenset({"hull", "union", "shell"})

@@ -11,7 +11,7 @@ the registry: `aidl explain` prints them and a test fails when a code and its pa
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -73,6 +73,34 @@ class Diagnostic:
     @property
     def is_error(self) -> bool:
         return self.severity is Severity.ERROR
+
+
+MOST_ERRORS = 100
+"""Errors of a program that are told. A stage need not look for more once it has found one more than these."""
+
+
+def is_too_many(diagnostics: Iterable[Diagnostic]) -> bool:
+    """Whether there are more errors than are told."""
+    return sum(d.is_error for d in diagnostics) > MOST_ERRORS
+
+
+def within_limit(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Diagnostics in order, up to the first error that is too many, in whose place that is said (E0803)."""
+    errors = 0
+    for index, found in enumerate(diagnostics):
+        errors += found.is_error
+        if errors > MOST_ERRORS:
+            return [*diagnostics[:index], too_many_errors(found.span, MOST_ERRORS)]
+    return list(diagnostics)
+
+
+def too_many_errors(span: Span | None, most: int) -> Diagnostic:
+    return Diagnostic(
+        "E0803",
+        f"more than {most} errors; what comes after this is not told",
+        span,
+        hints=("mend the first ones and check again: later ones often follow from them",),
+    )
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:

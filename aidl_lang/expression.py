@@ -18,6 +18,15 @@ if TYPE_CHECKING:
 
 DEGREE = math.pi / 180.0
 
+LARGEST = 1e30
+"""No number of a program is larger: squares and cubes of such numbers, and their sums, are still finite."""
+
+
+def is_number(value: float) -> bool:
+    """Whether a program may work with a value: not with NaN, infinity, or what lies beyond LARGEST."""
+    return abs(value) <= LARGEST
+
+
 _WAYS = {
     "length": "distance",
     "angle": "direction",
@@ -96,6 +105,11 @@ class Lazy(Protocol):
 
     @property
     def value(self) -> float: ...
+
+    @property
+    def spelled_out(self) -> Expression:
+        """What it is where nothing is left out of it."""
+        ...
 
     def unknowns(self) -> Iterable[Unknown]: ...
 
@@ -362,7 +376,7 @@ class Evaluator:
             node = stack[-1]
             if node in memo:
                 stack.pop()
-            elif missing := [a for a in node.args if a not in memo]:
+            elif missing := [a for a in _arguments(node) if a not in memo]:
                 stack.extend(missing)
             else:
                 memo[node] = self._node(node)
@@ -378,5 +392,14 @@ class Evaluator:
                 return self.values.get(node.payload, node.payload.guess)
             case "measure":
                 return self.measure(node.payload) if self.measure else math.nan
+            case "lazy":
+                return self._memo[_arguments(node)[0]]
             case _:
                 return EVALUATE[node.op](*[self._memo[a] for a in node.args])
+
+
+def _arguments(node: Expression) -> tuple[Expression, ...]:
+    """What the value of a node is worked out from."""
+    if node.op == "lazy":
+        return (node.payload.spelled_out,)  # type: ignore[attr-defined]
+    return node.args

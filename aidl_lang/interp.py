@@ -11,7 +11,6 @@ The work is told in `building/`: `modules` (files and roots), `structures`, `sta
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -25,6 +24,7 @@ from aidl_lang.building.scopes import Binding, Candidate, LetBinding, Scope
 from aidl_lang.building.state import DEFAULT_LIMITS, Interpreter, Limits, Stop
 from aidl_lang.building.statements import EXECUTORS
 from aidl_lang.builtins import MATH, ROTATION, SIGNATURES
+from aidl_lang.cancelling import limited_to
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.model import Model, Structure
 from aidl_lang.names import fold
@@ -48,15 +48,15 @@ def interpret(
 ) -> Interpretation:
     """Run a program. Never raises for what a program says; errors are among the diagnostics."""
     it = Interpreter(program, overrides or {}, limits, EXECUTORS, evaluate, call)
-    it.deadline = time.monotonic() + limits.seconds
     it.frames_turn = any(map(_speaks_of_rotation, program.resolution.modules))
     it.watched = frozenset(node for violation in program.violations for node in violation.nodes)
     try:
-        root = run_module(it, _library_scope(program))
-        for copier in it.copiers:
-            copier.finish()
+        with limited_to(limits.seconds):
+            root = run_module(it, _library_scope(program))
+            for copier in it.copiers:
+                copier.finish()
     except Stop:
-        root = it.root or Structure("assembly", "model", None, None)
+        root = it.root or _nothing()
     constraints = anchored(it.constraints)
     model = Model(root, constraints, it.assertions, it.unknowns, it.knobs, it.readings, it.literals)
     return Interpretation(model, it.diagnostics, it.written)
@@ -67,6 +67,15 @@ def _speaks_of_rotation(module: ast.Module) -> bool:
     if fold(ROTATION) not in fold(module.source.text):
         return False
     return any(isinstance(n, ast.Member) and fold(n.name.text) == ROTATION for n in ast.walk(module))
+
+
+def nothing_built() -> Interpretation:
+    """What comes of a program that is not run."""
+    return Interpretation(Model(_nothing(), [], [], [], [], [], []), [], {})
+
+
+def _nothing() -> Structure:
+    return Structure("assembly", "model", None, None)
 
 
 def _library_scope(program: Program) -> Scope:

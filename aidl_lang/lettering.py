@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Vec = tuple[float, float]
 Curve = tuple[Vec, ...]
-"""The two ends of a line, or the four control points of a cubic Bézier curve."""
+"""The two ends of a line, or the four control points of a cubic Bézier curve; a place is one of one point."""
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top."""
 
@@ -48,6 +48,61 @@ def box_around(glyphs: Sequence[Glyph]) -> Box:
     """The box of all of their ink."""
     lefts, bottoms, rights, tops = zip(*(g.box for g in glyphs), strict=True)
     return min(lefts), min(bottoms), max(rights), max(tops)
+
+
+def silhouette(glyphs: Sequence[Glyph]) -> tuple[Curve, ...]:
+    """Corners of the convex hull of the ink, each alone, and the curves of which a part may lie on it. In
+    whatever direction one of these reaches furthest; all that is left out lies between them.
+    """
+    curves = [curve for glyph in glyphs for curve in glyph.curves]
+    hull = _hull([p for curve in curves for p in _samples(curve)])
+    bent = [c for c in curves if len(c) > 2 and not all(_is_inside(p, hull) for p in c)]
+    ends = {p for c in curves for p in (c[0], c[-1])}
+    return (*((p,) for p in hull if p in ends), *bent)
+
+
+def _point(curve: Curve, t: float) -> Vec:
+    """The point of a cubic Bézier curve at a parameter."""
+    s = 1.0 - t
+    a, b, c, d = s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t
+    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = curve
+    return a * x0 + b * x1 + c * x2 + d * x3, a * y0 + b * y1 + c * y2 + d * y3
+
+
+_SAMPLES = 16
+"""Points of a curve by which it is judged which curves lie inside the hull of all."""
+
+
+def _samples(curve: Curve) -> Sequence[Vec]:
+    """Points of a curve, its exact ends among them."""
+    if len(curve) == 2:
+        return curve
+    between = [_point(curve, k / _SAMPLES) for k in range(1, _SAMPLES)]
+    return [curve[0], *between, curve[-1]]
+
+
+def _hull(points: Sequence[Vec]) -> list[Vec]:
+    """The corners of the convex hull, counter-clockwise (Andrew's monotone chain, 1979)."""
+    ordered = sorted(set(points))
+    chains: list[list[Vec]] = []
+    for run in (ordered, ordered[::-1]):
+        chain: list[Vec] = []
+        for p in run:
+            while len(chain) > 1 and _turn(chain[-2], chain[-1], p) <= 0.0:
+                chain.pop()
+            chain.append(p)
+        chains.append(chain[:-1])
+    return chains[0] + chains[1]
+
+
+def _turn(a: Vec, b: Vec, c: Vec) -> float:
+    """Twice the signed area of a triangle: positive where c lies left of the way from a to b."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _is_inside(p: Vec, hull: Sequence[Vec]) -> bool:
+    """Whether a point lies in a convex polygon or on its outline."""
+    return all(_turn(a, b, p) >= 0.0 for a, b in zip(hull, [*hull[1:], hull[0]], strict=True))
 
 
 def unknown_characters(text: str) -> list[str]:

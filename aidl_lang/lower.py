@@ -127,11 +127,11 @@ class _Lowering:
             is_variable = (
                 isinstance(unknown.holder, Structure) and unknown.frame_of is None and not unknown.outline
             )
-            if is_variable:
-                self.variables.setdefault(unknown.owner, []).append(unknown)
             live = is_variable or unknown in mentioned or unknown in drawn
             if live and not unknown.exact and unknown.owner in self.groups:
                 self.numbers[unknown] = len(self.numbers)
+                if is_variable:
+                    self.variables.setdefault(unknown.owner, []).append(unknown)
 
     def _placer(self, unknown: Unknown) -> Structure:
         """The structure at whose turn an unknown is placed: for the box of an empty structure that says

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression, Unknown
-from aidl_lang.lettering import Glyph
+from aidl_lang.lettering import Curve, Glyph, silhouette
 from aidl_lang.records import record
 from aidl_lang.source import Span
 from aidl_lang.units import MaybeDimension
@@ -119,6 +120,11 @@ class Geometry:
     attributes: dict[str, tuple[Value, ...]] = field(default_factory=dict)
     views: dict[Structure, dict[str, Value]] = field(default_factory=dict, repr=False)
     turns: dict[Structure, tuple[Expression, Expression]] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def silhouette(self) -> tuple[Curve, ...]:
+        """Of a text, in units of its height (see `lettering.silhouette`)."""
+        return silhouette(self.glyphs)
 
     @property
     def bound_to(self) -> Structure:

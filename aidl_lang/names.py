@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
+from itertools import accumulate
 from typing import TypeVar
 
 T = TypeVar("T")
 
 _WIDER = 6
 """Names beyond those wanted that are compared letter by letter."""
+_MOST_LETTERS = 200_000
+"""Pairs of letters that are compared in search of a name: some hundred names of ordinary length and more."""
 
 
 def fold(name: str) -> str:
@@ -64,6 +67,26 @@ def are_opposite(a: str, b: str) -> bool:
     )
 
 
+class Spellings:
+    """Answers `find` for a table that grows, without looking through the whole of it each time."""
+
+    def __init__(self, table: Mapping[str, object]) -> None:
+        self._table = table
+        self._known = 0
+        self._alike: dict[str, list[str]] = {}
+
+    def find(self, name: str) -> str | None:
+        if name in self._table:
+            return name
+        if len(self._table) != self._known:
+            self._known = len(self._table)
+            self._alike = {}
+            for key in self._table:
+                self._alike.setdefault(fold(key), []).append(key)
+        alike = self._alike.get(fold(name), ())
+        return alike[0] if len(alike) == 1 else None
+
+
 def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
     """Known names that `name` may be a misspelling of, best first; never one that means the reverse."""
     folded: dict[str, str] = {}
@@ -71,10 +94,18 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
         folded.setdefault(fold(key), key)
     likeness = 0.6 if len(name) < 5 else 0.7  # one wrong letter weighs more in a short name
     wanted = fold(name)
-    found = get_close_matches(wanted, folded, n=count + _WIDER, cutoff=likeness)
+    most = _MOST_LETTERS // max(len(wanted), 1)
+    found = get_close_matches(wanted, _within(folded, len(wanted), most), n=count + _WIDER, cutoff=likeness)
     matches = [match for match in found if not are_opposite(wanted, match)]
     matches.sort(key=lambda match: _distance(wanted, match))
     return [folded[match] for match in matches[:count]]
+
+
+def _within(names: Mapping[str, str], length: int, letters: int) -> list[str]:
+    """The names that are about so long, as many of them as have so many letters together."""
+    by_length = sorted(names, key=lambda each: abs(len(each) - length))
+    ends = accumulate(map(len, by_length))
+    return [each for each, end in zip(by_length, ends, strict=True) if end <= letters]
 
 
 def is_spelled_in(letters: str, word: str) -> bool:

@@ -12,7 +12,7 @@ from bisect import bisect_left
 from dataclasses import dataclass, replace
 
 from aidl_lang import ast
-from aidl_lang.diagnostics import Diagnostic, ordered
+from aidl_lang.diagnostics import MOST_ERRORS, Diagnostic, ordered, too_many_errors
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.automaton import Automaton, Checkpoint
 from aidl_lang.syntax.brackets import lists_as_statements
@@ -31,7 +31,7 @@ class Limits:
 
     max_characters: int = 2_000_000
     max_nesting: int = 200
-    max_errors: int = 100
+    max_errors: int = MOST_ERRORS
 
 
 DEFAULT_LIMITS = Limits()
@@ -113,7 +113,8 @@ class _Reader:
                 token = tokens[position] = Token(";", "", token.start, token.end)
             if not automaton.feed(token):
                 if len(self.diagnostics) >= limits.max_errors:
-                    return self._stop(_too_many(self.source, token, limits))
+                    here = Span(self.source, token.start, token.end)
+                    return self._stop(too_many_errors(here, limits.max_errors))
                 position = self._recover(position)
                 continue
             if token.kind == END:
@@ -307,13 +308,4 @@ def _too_deep(span: Span, limits: Limits) -> Diagnostic:
         f"this is nested more than {limits.max_nesting} levels deep",
         Span(span.source, span.start, min(span.end, span.start + 1)),
         hints=("give inner expressions names with `let`; add up many terms with `sum([...])`",),
-    )
-
-
-def _too_many(source: SourceFile, token: Token, limits: Limits) -> Diagnostic:
-    return Diagnostic(
-        "E0803",
-        f"more than {limits.max_errors} errors; the rest of the file was not read",
-        Span(source, token.start, token.end),
-        hints=("mend the first ones and check again: later ones often follow from them",),
     )

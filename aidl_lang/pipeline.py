@@ -6,6 +6,7 @@ Each stage hands over one value and its diagnostics; nothing here raises for wha
 from __future__ import annotations
 
 import gc
+import math
 import sys
 import threading
 import time
@@ -18,10 +19,10 @@ from typing import TYPE_CHECKING, TypeAlias
 from aidl_lang import library as library_module
 from aidl_lang import parser
 from aidl_lang.building.state import DEFAULT_LIMITS, Limits
-from aidl_lang.cancelling import checkpoint
+from aidl_lang.cancelling import OutOfTime, checkpoint, limited_to
 from aidl_lang.checking.subset import adapted
-from aidl_lang.diagnostics import Diagnostic, has_errors, ordered
-from aidl_lang.interp import Interpretation, interpret
+from aidl_lang.diagnostics import Diagnostic, has_errors, is_too_many, ordered, within_limit
+from aidl_lang.interp import Interpretation, interpret, nothing_built
 from aidl_lang.model import Knob, Model
 from aidl_lang.printer import format_module
 from aidl_lang.resolve import resolve
@@ -39,8 +40,10 @@ if TYPE_CHECKING:
     from aidl_lang.expression import Evaluator
     from aidl_lang.failures import Conflict
     from aidl_lang.geometry.drawing import Drawing
+    from aidl_lang.giving import GaveWay
     from aidl_lang.lower import Lowered
     from aidl_lang.solved import Dimension, SolvedModel
+    from aidl_lang.solver.analysis import Freedom
     from aidl_lang.solver.solution import Solution, StageReport
 
 _RECURSION = 20_000
@@ -57,6 +60,8 @@ _MISSING_NAMES = frozenset({"E0201", "E0203"})
 class Settings:
     """Limits for programs that are not trusted, the solver's settings, the subset of the language, and
     whether it is an error that something gave way unasked.
+
+    drawing  seconds of the processor's time for what comes after solving, and for writing each file
     """
 
     text: parser.Limits = parser.DEFAULT_LIMITS
@@ -64,6 +69,7 @@ class Settings:
     solving: SolverSettings = SolverSettings(tolerance=1e-10)
     variant: Variant = Variant.FULL
     strict: bool = False
+    drawing: float = 20.0
 
 
 @dataclass
@@ -86,6 +92,8 @@ class Compiled:
     built: Model | None = field(default=None, repr=False)
     """The structure tree with its expressions, of which `evaluate` tells the solved values."""
     evaluate: Evaluator | None = field(default=None, repr=False)
+    limit: float = math.inf
+    """Seconds of the processor's time for writing a file."""
 
     @property
     def ok(self) -> bool:
@@ -97,12 +105,18 @@ class Compiled:
         Raises KeyError for an unknown suffix, `ExportError` where the format cannot hold the drawing, and
         ValueError when there is nothing to export.
         """
-        from aidl_lang.export import Job, Options, export
+        from aidl_lang.export import ExportError, Job, Options, export
 
         if self.model is None or self.drawing is None:
             raise ValueError("the program is wrong, so there is no drawing")
         options = Options(self.show) if options is None else options
-        return export(Job(self.model, self.drawing, tuple(self.diagnostics), options), suffix)
+        try:
+            with limited_to(self.limit):
+                return export(Job(self.model, self.drawing, tuple(self.diagnostics), options), suffix)
+        except OutOfTime:
+            hint = "write a format that holds less: pictures without `--show`, outlines alone"
+            message = f"writing the drawing as `{suffix}` takes more than {self.limit:g} seconds"
+            raise ExportError("E0955", message, hint) from None
 
     def export(self, suffix: str, options: Options | None = None) -> bytes:
         """The content of the file alone (see `exported`)."""
@@ -188,12 +202,14 @@ def _build(
 ) -> tuple[Interpretation, list[Diagnostic]]:
     """Text → Model, with every diagnostic that does not need solving."""
     program, found = checked or _front(source, world, settings, watch)
+    if is_too_many(found):  # what would be built is of no use, and nothing of it would be told
+        return nothing_built(), within_limit(ordered(adapted(found, settings.variant)))
     static = list(found)
     with watch("interpret"):
         built = interpret(program, params, settings.building)
     static += [violation.diagnostic(built.written) for violation in program.violations]
     found = [*static, *_new(built.diagnostics, static)]
-    return built, ordered(adapted(found, settings.variant))
+    return built, within_limit(ordered(adapted(found, settings.variant)))
 
 
 def _new(found: Sequence[Diagnostic], known: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
@@ -327,6 +343,7 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
     What was said of the outcome stands as it was. Raises ValueError where nothing was built.
     """
     from aidl_lang.geometry.drawing import draw
+    from aidl_lang.geometry.placeless import with_places
     from aidl_lang.readout import read_out
     from aidl_lang.solver.analysis import analyse
 
@@ -339,7 +356,8 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
         with watch("read out"):
             model, evaluator = read_out(outcome.built, lowered, solution, freedom)
         with watch("regions"):
-            model, _ = _completed(replace(model, size_up=_sizes(outcome.built, evaluator)))
+            model, _ = with_places(replace(model, size_up=_sizes(outcome.built, evaluator)))
+            model, _ = _completed(model)
             drawing, _ = draw(model)
     return replace(
         outcome,
@@ -360,11 +378,8 @@ def _finish(
     show: frozenset[str],
     memory: Memory | None,
 ) -> Compiled:
-    from aidl_lang.geometry.drawing import draw
-    from aidl_lang.giving import explained, gave_way, refused
+    from aidl_lang.giving import gave_way, refused
     from aidl_lang.lower import lower
-    from aidl_lang.outcome import assertion_notes, solution_notes
-    from aidl_lang.readout import read_out
     from aidl_lang.repetitions import follows, preference
     from aidl_lang.solver import Status, solve
     from aidl_lang.solver.analysis import analyse
@@ -375,21 +390,16 @@ def _finish(
         solution = solve(lowered.problem, settings.solving, memory)
     with watch("freedom"):
         freedom = analyse(lowered.problem, solution, preference(lowered))
-    with watch("read out"):
-        model, evaluator = read_out(built.model, lowered, solution, freedom)
-    with watch("regions"):
-        model, wrong = _completed(replace(model, size_up=_sizes(built.model, evaluator)))
-        drawing, notes = draw(model)
-        notes = [*wrong, *notes]
     with watch("reasons"):
         given = gave_way(lowered, solution, settings.solving)
-        model = explained(model, given)
-    with watch("asserts"):
-        found = solution_notes(lowered, solution, freedom, model, given)
-        found = list(map(refused, found)) if settings.strict else found
-        found += assertion_notes(
-            built.model, model, drawing, evaluator, solved_fully=solution.status.value == "solved"
-        )
+    try:
+        with limited_to(settings.drawing):
+            model, evaluator, drawing, found, notes = _drawn(
+                built, lowered, solution, freedom, given, watch
+            )
+    except OutOfTime:
+        return Compiled("wrong", ordered([*diagnostics, _endless(settings)]), watch.seconds, known)
+    found = list(map(refused, found)) if settings.strict else found
     if solution.status is not Status.SOLVED:
         notes = []  # the parts are not where they belong
     notes = list(_beside(notes, found))
@@ -408,6 +418,45 @@ def _finish(
         partial(follows, lowered, solution),
         built.model,
         evaluator,
+        settings.drawing,
+    )
+
+
+def _drawn(
+    built: Interpretation,
+    lowered: Lowered,
+    solution: Solution,
+    freedom: Freedom,
+    given: tuple[GaveWay, ...],
+    watch: _Stopwatch,
+) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic], list[Diagnostic]]:
+    """The solved model and its drawing; what there is to say of the solution, and of what is drawn."""
+    from aidl_lang.geometry.drawing import draw
+    from aidl_lang.geometry.placeless import with_places
+    from aidl_lang.giving import explained
+    from aidl_lang.outcome import assertion_notes, solution_notes
+    from aidl_lang.readout import read_out
+
+    with watch("read out"):
+        model, evaluator = read_out(built.model, lowered, solution, freedom)
+    with watch("regions"):
+        model, placeless = with_places(replace(model, size_up=_sizes(built.model, evaluator)))
+        model, wrong = _completed(model)
+        drawing, notes = draw(model)
+    with watch("asserts"):
+        model = explained(model, given)
+        found = solution_notes(lowered, solution, freedom, model, given)
+        is_solved = solution.status.value == "solved"
+        found += assertion_notes(built.model, model, drawing, evaluator, solved_fully=is_solved)
+    return model, evaluator, drawing, found, [*placeless, *wrong, *notes]
+
+
+def _endless(settings: Settings) -> Diagnostic:
+    """What is drawn has so many curves, or so many that meet, that it would take too long to work it out."""
+    return Diagnostic(
+        "E0805",
+        f"drawing what this program says takes more than {settings.drawing:g} seconds",
+        hints=("it has too many curves, or too many that cross; the limit is a setting of the API",),
     )
 
 

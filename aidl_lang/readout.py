@@ -10,6 +10,7 @@ from typing import TypeAlias
 
 from aidl_lang import expression as ex
 from aidl_lang.building.scopes import ParamBinding, PassedBinding, Scope, VarBinding
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.expression import DEGREE, Evaluator, Unknown
 from aidl_lang.freedom import motions
 from aidl_lang.geometry import curves
@@ -111,6 +112,7 @@ class _Reader:
     states: Mapping[Structure, str]
 
     def structure(self, s: Structure) -> SolvedStructure:
+        checkpoint()
         geometry = tuple(self.geometry(g) for g in s.own())
         children = tuple(self.structure(child) for child in s.children)
         frame = s.frame
@@ -329,6 +331,7 @@ def _glyph(
     text: Geometry, name: str, outline: Sequence[Sequence[Vec]], at: Callable[[Vec], Vec]
 ) -> SolvedGeometry:
     """One character of a text, with its curves as parts."""
+    checkpoint()
     edges = tuple(_edge(text, f"{name}.edge[{i}]", [at(p) for p in c]) for i, c in enumerate(outline))
     return SolvedGeometry(name, f"{text.path}.{name}", "glyph", {}, None, edges, text.construction, text.span)
 

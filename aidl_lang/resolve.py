@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 from aidl_lang import ast
 from aidl_lang.builtins import ATTRIBUTES, WORDED, is_word
-from aidl_lang.diagnostics import Diagnostic, Fix, Label, ordered
+from aidl_lang.diagnostics import MOST_ERRORS, Diagnostic, Fix, Label, ordered
 from aidl_lang.library import Library
 from aidl_lang.names import nearest
 from aidl_lang.resolving import complaints
@@ -371,10 +371,16 @@ class Resolver:
         hints: Sequence[str] = (),
         fix: Fix | None = None,
     ) -> None:
-        if not self.is_library:
-            self.resolution.diagnostics.append(
-                Diagnostic(code, message, node.span, label, tuple(secondary), tuple(hints), fix)
-            )
+        if self.is_library or self.has_said_enough:
+            return
+        found = Diagnostic(code, message, node.span, label, tuple(secondary), tuple(hints), fix)
+        self.resolution.diagnostics.append(found)
+        self.resolution.errors += found.is_error
+
+    @property
+    def has_said_enough(self) -> bool:
+        """Whether there are more errors than will be told, so that none need be looked into."""
+        return self.resolution.errors > MOST_ERRORS
 
 
 def _note_missing(statement: ast.Import, scope: Scope) -> None:

@@ -102,6 +102,14 @@ class BoxType:
         return "box"
 
 
+@record()
+class ModuleType:
+    """The names of a file: no value, so no parameter asks for it."""
+
+    def __str__(self) -> str:
+        return "module"
+
+
 Type: TypeAlias = (
     AnyType
     | NumberType
@@ -114,6 +122,7 @@ Type: TypeAlias = (
     | GeometryType
     | StructureType
     | BoxType
+    | ModuleType
 )
 
 ANY = AnyType()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from enum import IntEnum
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -15,6 +15,7 @@ from aidl_lang.types import (
     ANY,
     BoxType,
     ListType,
+    ModuleType,
     PointType,
     RangeType,
     RecordType,
@@ -87,16 +88,49 @@ class RangeVal:
     step: Num | None = None
 
 
+class _Holding:
+    """A value that holds others: `weight` of them, counted with those inside and as often as they are met,
+    on `depth` levels. `kind` is its type, once that was asked for.
+    """
+
+    __slots__ = ("depth", "kind", "weight")
+
+    weight: int
+    depth: int
+    kind: Type | None
+
+    def _weigh(self, held: Iterable[Value]) -> None:
+        weight, depth = 0, 0
+        for value in held:
+            if isinstance(value, _Holding):
+                weight += value.weight
+                depth = max(depth, value.depth)
+            else:
+                weight += 1
+        self.weight, self.depth, self.kind = max(weight, 1), depth + 1, None
+
+    def is_of(self, kind: Type) -> Type:
+        """Keeps the type."""
+        self.kind = kind
+        return kind
+
+
 @record(slots=True)
-class ListVal:
+class ListVal(_Holding):
     items: tuple[Value, ...]
 
+    def __post_init__(self) -> None:
+        self._weigh(self.items)
+
 
 @record(slots=True)
-class RecordVal:
+class RecordVal(_Holding):
     """Values under names of their own: `record(clearance: 3.4, tap: 2.5)`."""
 
     fields: Mapping[str, Value]
+
+    def __post_init__(self) -> None:
+        self._weigh(self.fields.values())
 
 
 @record(eq=False)
@@ -251,9 +285,14 @@ def _types() -> Mapping[type, Callable[[Any], Type]]:
         **dict.fromkeys((bool, Condition), always(TruthType())),
         RangeVal: always(RangeType()),
         RecordVal: always(RecordType()),
-        ListVal: lambda v: _list_type(v.items),
+        Namespace: always(ModuleType()),
+        ListVal: _type_of_list,
         **dict.fromkeys((Array, Pattern), lambda v: _list_type(v.items())),
     }
+
+
+def _type_of_list(value: ListVal) -> Type:
+    return value.kind or value.is_of(_list_type(value.items))
 
 
 def _list_type(items: Sequence[Value]) -> Type:

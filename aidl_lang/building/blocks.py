@@ -52,8 +52,13 @@ def hoist_values(scope: Scope, statements: Iterable[ast.Statement], here: Struct
 
 def execute(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) -> None:
     """Do what a statement says; definitions were hoisted and say nothing here."""
-    if (run := it.executors.get(type(node))) is not None:
+    if (run := it.executors.get(type(node))) is None:
+        return
+    it.check_time(node)
+    try:
         run(it, node, scope, here)
+    except RecursionError:
+        it.too_deep(node)
 
 
 def declared_names(block: ast.Block, *, indexed: bool = False) -> Iterator[str]:

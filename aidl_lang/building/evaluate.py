@@ -38,6 +38,8 @@ from aidl_lang.values import (
 def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
     """The value of an expression; NOTHING after an error, which has been reported."""
     value = _EVALUATE[type(node)](it, node, env)
+    if type(value) in _UNBOUNDED:
+        it.check_extent(node, value)
     if it.watched and node in it.watched:
         if isinstance(value, Geometry):
             value = as_point(it, value, node, env) or value
@@ -46,16 +48,17 @@ def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
     return value
 
 
+_UNBOUNDED = frozenset({ListVal, RecordVal, Text})
+"""Values that can be made as large as one likes by joining them with themselves."""
+
+
 # --- Literals ------------------------------------------------------------------------------------
 
 
 def _number(it: Interpreter, node: ast.Number, env: Env) -> Value:
-    if not math.isfinite(node.value):
-        return _undefined(it, node)
-    if node.unit is None:
-        return Num(ex.literal(node.value, node))
-    factor, dimension = UNITS[node.unit]
-    return Num(ex.literal(node.value * factor, node), dimension)
+    factor, dimension = UNITS[node.unit] if node.unit is not None else (1.0, None)
+    value = node.value * factor
+    return Num(ex.literal(value, node), dimension) if ex.is_number(value) else _undefined(it, node)
 
 
 def _point(it: Interpreter, node: ast.Point, env: Env) -> Value:
@@ -299,14 +302,19 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
             return _undefined(it, node)
         return number(x - y * math.floor(x / y), dimension, status)
     result = _OPERATION[op](a.expression, b.expression)
-    if result.op == "constant" and not math.isfinite(result.value):
+    if result.op == "constant" and not ex.is_number(result.value):
         return _undefined(it, node)
     return Num(result, dimension, status)
 
 
 def _undefined(it: Interpreter, node: ast.Node) -> Nothing:
     text = node.span.one_line
-    it.report("E0504", f"`{text}` has no value: it divides by zero or leaves the range of numbers", node)
+    it.report(
+        "E0504",
+        f"`{text}` has no value: it divides by zero or leaves the range of numbers",
+        node,
+        hints=[f"numbers reach to {ex.LARGEST:g} in either direction"],
+    )
     return NOTHING
 
 

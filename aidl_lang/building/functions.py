@@ -37,7 +37,7 @@ Function = Callable[[Interpreter, Arguments, ast.Call, Env], Value]
 
 
 def _checked(it: Interpreter, result: Num, node: ast.Node) -> Value:
-    if result.expression.is_constant and not math.isfinite(result.value):
+    if result.expression.is_constant and not ex.is_number(result.value):
         it.report(
             "E0504", f"`{node.span.text}` has no value", node, label="outside the range of this function"
         )
@@ -108,7 +108,9 @@ def _hypot(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     if x is None or y is None:
         return NOTHING
     kind = _common(it, [x, y], node)
-    return Num(ex.apply("hypot", x.expression, y.expression), *kind) if kind is not None else NOTHING
+    if kind is None:
+        return NOTHING
+    return _checked(it, Num(ex.apply("hypot", x.expression, y.expression), *kind), node)
 
 
 def _numbers(it: Interpreter, a: Arguments, name: str, node: ast.Call, env: Env) -> list[Num] | None:
@@ -149,10 +151,13 @@ def _sum(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     if items and all(isinstance(i, PointVal) for i in items):
         x = [i.x for i in items if isinstance(i, PointVal)]
         y = [i.y for i in items if isinstance(i, PointVal)]
-        return PointVal(_total(x, LENGTH), _total(y, LENGTH))
+        sums = [_checked(it, _total(each, LENGTH), node) for each in (x, y)]
+        return PointVal(*sums) if all(isinstance(s, Num) for s in sums) else NOTHING  # type: ignore[arg-type]
     values = _numbers(it, a, "values", node, env)
     kind = _common(it, values, node) if values is not None else None
-    return _total(values, kind[0]) if values is not None and kind is not None else NOTHING
+    if values is None or kind is None:
+        return NOTHING
+    return _checked(it, _total(values, kind[0]), node)
 
 
 def _total(values: list[Num], dimension: MaybeDimension) -> Num:
@@ -168,7 +173,7 @@ def _rounded(function: Callable[[float], float]) -> Function:
         known = constant(it, value, node, f"what `{node.callee.text}` rounds") if value else None
         if value is None or known is None:
             return NOTHING
-        if not math.isfinite(known):
+        if not ex.is_number(known):
             return _checked(it, number(known), node)
         # 2.9999999999999996 is 3 that went through arithmetic.
         near = round(known)

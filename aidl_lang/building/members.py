@@ -281,7 +281,7 @@ def _refuse_own_box(it: Interpreter, node: ast.Node, env: Env) -> Value:
 
 def no_index(it: Interpreter, node: ast.Index, known: list[int], wanted: int) -> Value:
     name = node.value.span.text
-    is_run = known == list(range(known[0], known[-1] + 1)) if known else False
+    is_run = bool(known) and known[-1] - known[0] == len(known) - 1
     listed = f"{known[0]} to {known[-1]}" if is_run or len(known) > 8 else ", ".join(map(str, known))
     has = f"its indices are {listed}" if known else "it is empty"
     by_place = isinstance(node.index, ast.Number) and 0 <= wanted < len(known)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from aidl_lang import ast, units
+from aidl_lang import expression as ex
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.scopes import ParamBinding
 from aidl_lang.building.state import Env, Interpreter, Reach
@@ -204,7 +205,7 @@ def _parse(given: str | float | bool, written: Value) -> Value | None:
             if isinstance(given, bool):
                 return None
             if isinstance(given, int | float):
-                return number(float(given), dimension)
+                return number(float(given), dimension) if ex.is_number(given) else None
             matched = _NUMBER.fullmatch(given)
             if matched is None:
                 return None
@@ -212,7 +213,7 @@ def _parse(given: str | float | bool, written: Value) -> Value | None:
             if matched[2] and (unit is None or dimension not in (None, unit)):
                 return None
             value = float(matched[1]) * factor
-            return number(value, dimension) if abs(value) < 1e300 else None
+            return number(value, dimension) if ex.is_number(value) else None
         case _:
             return None
 

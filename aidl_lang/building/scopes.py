@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from aidl_lang import ast
 from aidl_lang.expression import Unknown
 from aidl_lang.model import Geometry, Structure
-from aidl_lang.names import find
+from aidl_lang.names import Spellings
 from aidl_lang.records import record
 from aidl_lang.types import Signature
 
@@ -114,6 +114,7 @@ class Scope:
     unbuilt: dict[str, ast.If] = field(default_factory=dict)
     supply: Callable[[str], Iterable[Candidate]] | None = None
     """looks up callables that are kept elsewhere (the library's)"""
+    _spellings: Spellings | None = field(default=None, repr=False)
 
     def chain(self) -> Iterable[Scope]:
         scope: Scope | None = self
@@ -129,7 +130,9 @@ class Scope:
                 return name, scope
             scope = scope.parent
         for scope in self.chain():
-            if (alike := find(name, scope.values)) is not None:
+            if scope._spellings is None:
+                scope._spellings = Spellings(scope.values)
+            if (alike := scope._spellings.find(name)) is not None:
                 return alike, scope
         return None
 

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.building.scopes import Scope
-from aidl_lang.cancelling import checkpoint
-from aidl_lang.diagnostics import Diagnostic, Fix, Label
+from aidl_lang.cancelling import OutOfTime, checkpoint
+from aidl_lang.diagnostics import MOST_ERRORS, Diagnostic, Fix, Label
 from aidl_lang.expression import Unknown
 from aidl_lang.model import Assertion, Comparison, Constraint, Geometry, Knob, Literal, Structure
 from aidl_lang.records import record
@@ -21,11 +20,15 @@ from aidl_lang.source import Span
 from aidl_lang.typecheck import Program
 from aidl_lang.types import Binding, Signature
 from aidl_lang.units import ANGLE, LENGTH, MaybeDimension
-from aidl_lang.values import Num, PointVal, Value
+from aidl_lang.values import ListVal, Num, PointVal, RecordVal, Text, Value
 
 if TYPE_CHECKING:
     from aidl_lang.building.derive import Copier
     from aidl_lang.building.overloads import Site
+
+
+_LARGEST_GUESS = 1e12
+"""Beyond this nothing is drawn (see `geometry.evaluate.LARGEST`), and the solver has no digits left."""
 
 
 class Reach(Enum):
@@ -119,9 +122,9 @@ class Interpreter:
     frames_turn: bool = False
     """whether the program speaks of the rotation of structures, which a constraint on it frees"""
     root: Structure | None = None
+    errors: int = 0
     entities: int = 0
     turns: int = 0
-    deadline: float = math.inf
 
     # --- Reporting -----------------------------------------------------------------------------
 
@@ -149,16 +152,21 @@ class Interpreter:
             message = f"`{span.one_line}` does not work out: {inner}"
             if any(d.code == code and d.span == span for d in self.diagnostics):
                 return  # one cause, met again further on
-        self.diagnostics.append(Diagnostic(code, message, span, label, tuple(secondary), tuple(hints), fix))
+        self._add(Diagnostic(code, message, span, label, tuple(secondary), tuple(hints), fix))
+
+    def _add(self, found: Diagnostic) -> None:
+        """Building ends when there are more errors than are told."""
+        self.diagnostics.append(found)
+        self.errors += found.is_error
+        if self.errors > MOST_ERRORS:
+            raise Stop
 
     def refuse(self, node: ast.Node, why: str, hints: Sequence[str] = ()) -> None:
         """A call makes no sense of its arguments; said of the call that the author wrote."""
         span = self.place(node)
         text = f"`{span.one_line}`" if span is not None else "this"
         if not any(d.code == "E0342" and d.span == span for d in self.diagnostics):
-            self.diagnostics.append(
-                Diagnostic("E0342", f"{text} says nothing: {why}", span, hints=tuple(hints))
-            )
+            self._add(Diagnostic("E0342", f"{text} says nothing: {why}", span, hints=tuple(hints)))
 
     @property
     def library_sources(self) -> tuple[object, ...]:
@@ -179,8 +187,9 @@ class Interpreter:
 
     def check_time(self, node: ast.Node) -> None:
         """Called wherever a program may go on for long."""
-        checkpoint()
-        if time.monotonic() > self.deadline:
+        try:
+            checkpoint()
+        except OutOfTime:
             self._stop(node, f"building this program takes more than {self.limits.seconds:g} seconds")
 
     def count_turn(self, node: ast.Node) -> None:
@@ -188,6 +197,19 @@ class Interpreter:
         self.turns += 1
         if self.turns > self.limits.turns:
             self._stop(node, f"the loops of this program take more than {self.limits.turns} turns")
+
+    def check_extent(self, node: ast.Node, value: Value) -> None:
+        """Stops at a list, record or text that is too large to be looked through again and again."""
+        most = self.limits.items
+        if isinstance(value, Text):
+            if len(value.value) > most:
+                self._stop(node, f"this text has {len(value.value)} characters; at most {most} are allowed")
+        elif isinstance(value, ListVal | RecordVal):
+            if value.weight > most:
+                kind = "list" if isinstance(value, ListVal) else "record"
+                self._stop(node, f"this {kind} holds more than {most} values, with those inside its members")
+            if value.depth > self.limits.depth:
+                self._stop(node, f"lists are nested more than {self.limits.depth} deep here")
 
     def add_constraint(self, constraint: Constraint) -> None:
         self.constraints.append(constraint)
@@ -216,6 +238,17 @@ class Interpreter:
         self.report("E0805", message, node, hints=[hint])
         raise Stop
 
+    def too_deep(self, node: ast.Node) -> NoReturn:
+        """Building ends at a statement whose value hangs on so many others that there is no room to tell."""
+        hint = "values that are worked out from each other one by one are made by a loop, or by `sum`"
+        self.report(
+            "E0806",
+            "what this says hangs on too many other values, one by way of the next",
+            node,
+            hints=[hint],
+        )
+        raise Stop
+
     # --- Unknowns ------------------------------------------------------------------------------
 
     def unknown(
@@ -232,12 +265,26 @@ class Interpreter:
         since: str = "",
     ) -> ex.Expression:
         """A new unknown, as an expression."""
+        if not abs(guess) <= _LARGEST_GUESS:
+            guess = self._tamed(guess, holder, name)
         angular, implied = dimension == ANGLE, since != ""
         made = Unknown(
             guess, owner, holder, name, kept, angular, frame_of, cell, since=since, implied=implied
         )
         self.unknowns.append(made)
         return ex.unknown(made)
+
+    def _tamed(self, guess: float, holder: Geometry | Structure, name: str) -> float:
+        """A first guess for what was written without one that the solver could begin at."""
+        if math.isnan(guess):
+            return guess
+        self.report(
+            "E0504",
+            f"`{holder.path}.{name}` begins at {guess:g}, which no drawing reaches",
+            holder.span,
+            hints=[f"lengths reach to {_LARGEST_GUESS:g} mm in either direction"],
+        )
+        return 0.0
 
     def became(
         self,

@@ -6,13 +6,13 @@ by the definitions themselves, those of a user as well as those of the library.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
 from typing import TypeVar
 
 from aidl_lang import ast
 from aidl_lang.building.state import Env, Interpreter, Stop
+from aidl_lang.cancelling import limited_to
 from aidl_lang.model import Comparison, Condition, Geometry
 from aidl_lang.values import Num, PointVal, Value
 
@@ -69,9 +69,9 @@ class Wording:
     def value(self, node: ast.Expression) -> Value | None:
         """What a part of the statement is where it stands; None if that takes too long."""
         it = self.it
-        it.deadline = time.monotonic() + it.limits.seconds
         try:
-            return self.read(it, node, self.env)
+            with limited_to(it.limits.seconds):
+                return self.read(it, node, self.env)
         except Stop:
             return None
 

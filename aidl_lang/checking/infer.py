@@ -13,7 +13,7 @@ from aidl_lang import ast, units
 from aidl_lang.checking import calls, members, named, operators
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, joined
 from aidl_lang.checking.wording import a, shown
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.diagnostics import MOST_ERRORS, Diagnostic, Edit, Fix, Label
 from aidl_lang.resolving.resolution import Resolution
 from aidl_lang.resolving.symbols import Symbol
 from aidl_lang.source import SourceFile, Span
@@ -54,6 +54,7 @@ class Inference:
         self._standard = frozenset(resolution.library.sources if standard is None else standard)
         self.running: set[ast.Node] = set()
         self._depth = 0
+        self._errors = 0
         self._served: dict[Symbol, tuple[MaybeDimension, ast.Node]] = {}
 
     # --- Reporting -----------------------------------------------------------------------------
@@ -69,10 +70,10 @@ class Inference:
         fix: Fix | None = None,
     ) -> Fact:
         """Say what is wrong in a program (the library has its own tests); nothing is known of the result."""
-        if not self.is_standard(node):
-            self.diagnostics.append(
-                Diagnostic(code, message, node.span, label, tuple(secondary), tuple(hints), fix)
-            )
+        if not self.is_standard(node) and self._errors <= MOST_ERRORS:
+            found = Diagnostic(code, message, node.span, label, tuple(secondary), tuple(hints), fix)
+            self.diagnostics.append(found)
+            self._errors += found.is_error
         return UNKNOWN
 
     def is_standard(self, node: ast.Node) -> bool:

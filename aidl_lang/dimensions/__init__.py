@@ -16,7 +16,7 @@ from aidl_lang.dimensions.patterns import pattern_pitches
 from aidl_lang.expression import Evaluator, Expression
 from aidl_lang.geometry.curves import Arc, Circle
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.evaluate import NO_LENGTH
+from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH
 from aidl_lang.model import Model, Structure
 from aidl_lang.solved import Dimension, Length, Opening, Roundness, SolvedModel
 from aidl_lang.values import Num
@@ -29,6 +29,7 @@ def sizes(model: Model, solved: SolvedModel, evaluate: Evaluator) -> tuple[Dimen
     """What the program states: exact sizes, what constraints measure, sizes that are kept."""
     names = _param_names(model.root)
     found = [*field_sizes(model, solved, evaluate, names), *stated_lengths(model, solved, evaluate, names)]
+    found = [d for d in found if abs(d.value) <= LARGEST]  # of what has a place
     return tuple(sorted(found, key=lambda d: RANKS.index(d.origin)))
 
 

@@ -20,9 +20,9 @@ def united(*regions: Region) -> Region:
     return _combined(regions, lambda *sections: union(sections))
 
 
-def without(a: Region, b: Region) -> Region:
-    """What lies in a and not in b."""
-    return _combined((a, b), difference)
+def without(a: Region, *others: Region) -> Region:
+    """What lies in a and in none of the others."""
+    return _combined((a, *others), lambda base, *sections: difference(base, union(sections)))
 
 
 def common(a: Region, b: Region) -> Region:
@@ -61,6 +61,8 @@ def section_of(network: Network, region: Region, number: int) -> Section:
     for loop in region.loops:
         uses = [use for k in range(len(loop.pieces)) for use in network.uses[number + k]]
         number += len(loop.pieces)
+        if not uses:  # too small to be seen beside the rest
+            continue
         polygons.append(network.polyline(uses))
         assert loop.is_whole or not any(map(is_closed, loop.pieces))
     return fill(polygons, "EvenOdd")

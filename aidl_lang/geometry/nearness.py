@@ -7,10 +7,14 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.cancelling import checkpoint, give_up
 from aidl_lang.geometry.evaluate import Bounds
 
 _AT_ONCE = 1 << 20
 """How many candidates are looked at in one step, which bounds the memory."""
+
+_MOST_PAIRS = 2_000_000
+"""Pairs of boxes that meet, beyond which no drawing is worked out in time."""
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -29,11 +33,15 @@ def near_pairs(boxes: Sequence[Bounds], margin: float) -> Iterator[tuple[int, in
     b = b[order]
     sweeps = [_sweep(b, axis, margin) for axis in (0, 1)]
     along, stops = min(sweeps, key=lambda sweep: int((sweep[1] - np.arange(len(b))).sum()))
-    found = []
+    found, total = [], 0
     for one, other in _windows(np.arange(1, len(b) + 1), stops):
         first, second = np.minimum(along[one], along[other]), np.maximum(along[one], along[other])
         meets = (b[first, 2:] + margin >= b[second, :2]).all(axis=1) & (b[first, 1] - margin <= b[second, 3])
         found.append((first[meets], second[meets]))
+        total += int(np.count_nonzero(meets))
+        if total > _MOST_PAIRS:
+            give_up()
+        checkpoint()
     firsts, seconds = (np.concatenate([pair[k] for pair in found]) for k in (0, 1))
     kept = np.lexsort((firsts, seconds))
     one, other = order[firsts[kept]], order[seconds[kept]]

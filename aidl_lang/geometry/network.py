@@ -18,6 +18,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import (
     TAU,
@@ -137,6 +138,7 @@ class Network:
                 node, middle = self.node(point(curve, loop[0])), sum(loop) / 2
                 own += [(loop[0], node), (middle, self.node(point(curve, middle))), (loop[1], node)]
         for i, j in near_pairs(self.boxes, self.tolerance):
+            checkpoint()
             self._cut_pair(i, j, cuts, own_ends)
         return [self._split(i, sorted_cuts(c)) for i, c in enumerate(cuts)]
 
@@ -328,6 +330,7 @@ def exactly(network: Network, work: Callable[[], T]) -> T:
     """What is made of a network, once more with finer chords where curves came too close for them."""
     network.may_refine = True
     while True:
+        checkpoint()
         try:
             result = work()
         except TooCoarse:

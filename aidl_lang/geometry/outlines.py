@@ -84,9 +84,19 @@ class _Outliner:
             geometry=geometry,
             structures=children,
             box=_box(s, geometry, children),
-            finishes=tuple(replace(f, corners=tuple(at)) for f, at in self.carried_out.items()),
+            finishes=tuple(self._with_corners(s.finishes)),
             finished=tuple(finished),
         )
+
+    def _with_corners(self, own: Sequence[Finish]) -> Iterator[Finish]:
+        """The finishes of a structure in their order, with the corners where they were carried out, if any;
+        then those that its geometry has as a copy.
+        """
+        left = dict(self.carried_out)
+        for f in own:
+            yield replace(f, corners=tuple(left.pop(f, ())))
+        for f, at in left.items():
+            yield replace(f, corners=tuple(at))
 
     # --- Outlines made of others -------------------------------------------------------------------
 
@@ -176,13 +186,9 @@ class _Outliner:
                 if not inner:
                     self.notes.append(notes.all_wall(g, recipe, _deepest(region, wall)))
             case "union":
-                result = region
-                for other in regions[1:]:
-                    result = united(result, other)
+                result = united(*regions)
             case "difference":
-                result = region
-                for other in regions[1:]:
-                    result = without(result, other)
+                result = without(*regions)
             case _:
                 result = region
                 for other in regions[1:]:

@@ -16,6 +16,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, bounds, ends, is_closed, locate, nearest, part, point, points
 from aidl_lang.geometry.measures import length, loop_area
@@ -78,6 +79,7 @@ def trace_all(network: Network, sections: Sequence[Section]) -> list[Traced]:
         used: set[int] = set()
         traced = []
         for face in section:
+            checkpoint()
             numbers = range(number, number + len(face))
             traced += _faces([loop for k in numbers for loop in _loops(network, sides, k, used)])
             number += len(face)

@@ -35,7 +35,7 @@ def no_declaration(resolver: Resolver, name: ast.Name, is_value: bool) -> None:
 def unknown_name(resolver: Resolver, node: ast.Name, scope: Scope) -> None:
     """A bare name that no scope has as a value."""
     name = node.text
-    if scope.may_be_missing(name):
+    if scope.may_be_missing(name) or resolver.has_said_enough:
         return
     given = resolver.argument.arguments if resolver.argument is not None else ()
     if any(a.value is node for a in given) and word_meant(name, WORDS) is not None:
@@ -73,7 +73,7 @@ def unknown_name(resolver: Resolver, node: ast.Name, scope: Scope) -> None:
 
 def unknown_callable(resolver: Resolver, node: ast.Call, scope: Scope) -> None:
     name = node.callee.text
-    if scope.may_be_missing(name):
+    if scope.may_be_missing(name) or resolver.has_said_enough:
         return
     value = scope.value(name)
     if value is not None and value.kind is not SymbolKind.BUILTIN:

@@ -30,6 +30,7 @@ class Resolution:
     symbols      every declaration of the program, in text order
     canonical    names → the spelling the printer shall write
     of_definition  functions, shapes, constraints and templates → their symbols
+    errors       how many the resolver has found so far
     scopes       structures, definitions, loops, comprehensions and files → their scopes
     """
 
@@ -43,6 +44,7 @@ class Resolution:
     canonical: dict[ast.Node, str] = field(default_factory=dict)
     scopes: dict[ast.Node, Scope] = field(default_factory=dict)
     diagnostics: list[Diagnostic] = field(default_factory=list)
+    errors: int = 0
     of_definition: dict[ast.Node, Symbol] = field(default_factory=dict)
     library_scope: Scope = field(default_factory=lambda: Scope(_NOWHERE))
     enter_library: Callable[[ast.Node], None] = lambda _: None

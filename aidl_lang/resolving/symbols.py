@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Literal
 
 from aidl_lang import ast
-from aidl_lang.names import find, nearest
+from aidl_lang.names import Spellings, find, nearest
 from aidl_lang.types import Signature
 
 
@@ -85,6 +86,13 @@ class Scope:
     spaces: dict[str, Scope] = field(default_factory=dict)
     own_name: Symbol | None = None
     missing: set[str] | None = field(default_factory=set)
+    _spellings: dict[str, Spellings] = field(default_factory=dict, repr=False)
+
+    def spelled_alike(self, kind: Literal["values", "callables", "aliases"], name: str) -> str | None:
+        """The name that one of the tables of this scope has for another spelling of it (see `names.find`)."""
+        if (known := self._spellings.get(kind)) is None:
+            known = self._spellings[kind] = Spellings(getattr(self, kind))
+        return known.find(name)
 
     def chain(self) -> Iterator[Scope]:
         scope: Scope | None = self
@@ -100,7 +108,7 @@ class Scope:
             if scope.own_name is not None and scope.own_name.name == name:
                 return scope.own_name
         for scope in self.chain():
-            if (alike := find(name, scope.values)) is not None:
+            if (alike := scope.spelled_alike("values", name)) is not None:
                 return scope.values[alike]
             if scope.own_name is not None and find(name, {scope.own_name.name: 0}):
                 return scope.own_name
@@ -135,7 +143,8 @@ class Scope:
                 (
                     k
                     for s in self.chain()
-                    if (k := find(name, s.callables) or find(name, s.aliases)) is not None
+                    if (k := s.spelled_alike("callables", name) or s.spelled_alike("aliases", name))
+                    is not None
                 ),
                 None,
             )

@@ -82,7 +82,10 @@ def _least_norm_by_cholesky(jacobian: Floats, y: Floats) -> LeastNorm | None:
     gram = jacobian @ jacobian.T
     if not _well_conditioned(gram):
         return None
-    first = np.linalg.solve(gram, -y)
+    try:
+        first = np.linalg.solve(gram, -y)
+    except np.linalg.LinAlgError:  # a pivot that LU meets as zero, though Cholesky's did not
+        return None
     multipliers: Floats = np.asarray(first - np.linalg.solve(gram, gram @ first + y), dtype=np.float64)
     point: Floats = -(jacobian.T @ multipliers)
     error = float(np.abs(jacobian @ point - y).max())

@@ -46,7 +46,10 @@ def unclosed_string(t: Trouble) -> Problem | None:
         return None
     kept = len(text.rstrip(" \t\r;,)]}")) if len(text) > 1 else 1
     end = t.token.start + max(kept, 1)
-    string = Token("STRING", t.source.text[t.token.start : end] + text[0], t.token.start, end)
+    written = t.source.text[t.token.start : end]
+    escapes = len(written) - len(written.rstrip("\\"))
+    closing = "\\" * (escapes % 2) + text[0]
+    string = Token("STRING", written + closing, t.token.start, end)
     rest = tokenize(t.source, end, t.token.end).tokens[:-1]
     place = Span(t.source, end, end)
     return Problem(
@@ -55,7 +58,7 @@ def unclosed_string(t: Trouble) -> Problem | None:
             f"this text is not closed: expected `{text[0]}` before the end of the line",
             Span(t.source, t.token.start, end),
             "the text begins here",
-            fix=replaced(f"close the text with `{text[0]}`", place, text[0]),
+            fix=replaced(f"close the text with `{text[0]}`", place, closing),
         ),
         Repair(t.position, t.position + 1, (string, *rest)),
     )

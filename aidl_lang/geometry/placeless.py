@@ -1,0 +1,112 @@
+"""Leaves out of a solved model what has no place in a drawing, so that every number after this is one that
+can be drawn, measured and written.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
+
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.geometry.evaluate import LARGEST, bounds
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.notes import unusable_note
+from aidl_lang.solved import Box, Frame, SolvedGeometry, SolvedModel, SolvedStructure
+
+
+def with_places(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
+    """The model without curves and numbers that are no numbers or beyond reach, and what was left out."""
+    if all(map(_is_sound, model.root.walk())):
+        return model, []
+    cleaner = _Cleaner()
+    return replace(model, root=cleaner.structure(model.root)), cleaner.notes
+
+
+def _is_sound(structure: SolvedStructure) -> bool:
+    frame, box = structure.frame, structure.box
+    return (
+        _is_within((frame.x, frame.y, frame.rotation))
+        and (box is None or _is_within((box.left, box.bottom, box.right, box.top)))
+        and all(map(_has_place, structure.geometry))
+    )
+
+
+def _has_place(geometry: SolvedGeometry) -> bool:
+    """Whether all of a geometry, what it is made of included, can be drawn."""
+    return (
+        _is_within(geometry.values.values())
+        and all(map(_has_place, geometry.parts))
+        and (geometry.recipe is None or _is_possible(geometry))
+    )
+
+
+def _is_possible(outline: SolvedGeometry) -> bool:
+    assert outline.recipe is not None
+    return _is_within(outline.recipe.numbers.values()) and all(
+        _has_place(g) for operand in outline.recipe.operands for g in operand
+    )
+
+
+def _is_within(value: object) -> bool:
+    """Whether every number in a value can be drawn."""
+    if isinstance(value, float):
+        return abs(value) <= LARGEST
+    return isinstance(value, str | int) or (isinstance(value, Iterable) and all(map(_is_within, value)))
+
+
+@dataclass
+class _Cleaner:
+    notes: list[Diagnostic] = field(default_factory=list)
+
+    def structure(self, s: SolvedStructure) -> SolvedStructure:
+        geometry = tuple(self._drawable(s, g) for g in s.geometry)
+        children = tuple(map(self.structure, s.structures))
+        frame, box = s.frame, s.box
+        if not _is_within((frame.x, frame.y, frame.rotation)):
+            frame = Frame(0.0, 0.0, 0.0, frame.mirrored)
+        if box is None or not s.is_empty:
+            box = _box_around(geometry, children)
+        elif not _is_within((box.left, box.bottom, box.right, box.top)):
+            box = None
+        return replace(s, geometry=geometry, structures=children, frame=frame, box=box)
+
+    def _drawable(self, s: SolvedStructure, whole: SolvedGeometry) -> SolvedGeometry:
+        if _has_place(whole):
+            return whole
+        lost = list(_lost(whole))
+        is_whole = all(g in lost for g in whole.walk() if not g.parts)
+        self.notes.append(unusable_note(s, lost[0], whole if is_whole else lost[0]))
+        return _stripped(whole)
+
+
+def _lost(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
+    """The innermost parts that have no place."""
+    inside = [lost for part in geometry.parts for lost in _lost(part)]
+    yield from inside
+    if not inside and not _has_place(geometry):
+        yield geometry
+
+
+def _stripped(geometry: SolvedGeometry) -> SolvedGeometry:
+    """A geometry with what of it has a place; its name stays."""
+    if _has_place(geometry):
+        return geometry
+    values = {name: value for name, value in geometry.values.items() if _is_within(value)}
+    is_primitive = len(values) < len(geometry.values) and not geometry.parts
+    return replace(
+        geometry,
+        values=values,
+        curve=None if is_primitive else geometry.curve,
+        parts=tuple(map(_stripped, geometry.parts)),
+        recipe=geometry.recipe if geometry.recipe is not None and _is_possible(geometry) else None,
+    )
+
+
+def _box_around(geometry: Iterable[SolvedGeometry], children: Iterable[SolvedStructure]) -> Box | None:
+    boxes = [bounds(curve) for g in geometry for curve in g.curves()]
+    boxes += [
+        (b.left, b.bottom, b.right, b.top) for c in children if (b := c.box) is not None and c.kind != "hole"
+    ]
+    boxes = [box for box in boxes if all(map(math.isfinite, box))]
+    return Box(*union_bounds(boxes)) if boxes else None

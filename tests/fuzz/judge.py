@@ -1,0 +1,195 @@
+"""What must hold of every program, whatever stands in it: it is answered in bounded time, without an exception,
+by diagnostics that can be shown or by files with numbers in them; fixes end; and formatting changes nothing.
+"""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+import signal
+import traceback
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from types import FrameType
+from typing import Any
+
+from aidl_lang import ast, pipeline
+from aidl_lang.building.state import Limits
+from aidl_lang.diagnostics import Diagnostic, has_errors
+from aidl_lang.export import ExportError, Options
+from aidl_lang.mending import mend
+from aidl_lang.parser import parse
+from aidl_lang.pipeline import Settings
+from aidl_lang.printer import format_module
+from aidl_lang.render.terminal import render
+from aidl_lang.source import SourceFile
+
+SETTINGS = replace(
+    Settings(),
+    building=Limits(entities=8000, turns=50_000, seconds=3.0),
+    solving=replace(Settings().solving, seconds=5.0),
+    drawing=4.0,
+)
+"""Tighter than what a user has, so that a program that asks for much is soon through."""
+LONGEST = {"check": 12.0, "fix": 60.0, "format": 15.0, "compile": 30.0, "write": 12.0}
+"""Seconds of the processor's time, well above what the limits of `SETTINGS` add up to."""
+LAYERS = frozenset({"names", "points", "bbox", "constraints", "dof", "plan"})
+
+_NO_NUMBER = re.compile(r"(?<![\w.#-])-?(?:nan|inf|infinity)(?![\w-])", re.IGNORECASE)
+_TEXT = re.compile(r"<text.*?</text>|<title>.*?</title>|<desc>.*?</desc>|=\"[^\"]*[A-Za-z]{4,}[^\"]*\"", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something that does not hold: `kind` is alike for findings with one cause, as far as that can be told."""
+
+    stage: str
+    kind: str
+    details: str
+
+    @property
+    def cause(self) -> tuple[str, str]:
+        return self.stage, self.kind
+
+
+class TooLong(BaseException):
+    """The processor's time for a step ran out."""
+
+
+@contextmanager
+def within(seconds: float) -> Iterator[None]:
+    """Raises TooLong in the main thread when so much of the processor's time has gone by."""
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise TooLong
+
+    before = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, before)
+
+
+class Judge:
+    """Tries programs; `counts` tells how many steps of each kind it took."""
+
+    def __init__(self) -> None:
+        self.counts: Counter[str] = Counter()
+
+    def finding(self, text: str, seed: int = 0) -> Finding | None:
+        """What is wrong with the answers to a program; None if nothing is."""
+        source = SourceFile("fuzz.aidl", text)
+        for stage, step in (
+            ("check", self._check),
+            ("fix", self._fix),
+            ("format", self._format),
+            ("compile", self._compile),
+        ):
+            self.counts[stage] += 1
+            found = attempt(stage, lambda step=step: step(source, seed))  # type: ignore[misc]
+            if found is not None:
+                return found
+        return None
+
+    def _check(self, source: SourceFile, seed: int) -> Finding | None:
+        return _shown("check", pipeline.check(source, settings=SETTINGS))
+
+    def _fix(self, source: SourceFile, seed: int) -> Finding | None:
+        mended = mend(source, settings=SETTINGS)
+        again = mend(mended.source, settings=SETTINGS)
+        if again.fixes:
+            return Finding("fix", f"goes on: {again.fixes[0]}", mended.source.text)
+        return None
+
+    def _format(self, source: SourceFile, seed: int) -> Finding | None:
+        parsed = parse(source)
+        if has_errors(parsed.diagnostics):
+            return None
+        once = SourceFile(source.name, format_module(parsed))
+        again = parse(once)
+        if has_errors(again.diagnostics) or not ast.same(parsed.module, again.module):
+            return Finding("format", "another program", once.text)
+        text, _ = pipeline.formatted(source)
+        if text is None:
+            return None
+        twice, _ = pipeline.formatted(SourceFile(source.name, text))
+        if text != twice:
+            return Finding("format", "another form the second time", f"{text}\n=== again\n{twice}")
+        before, after = (_errors(SourceFile(source.name, t)) for t in (source.text, text))
+        return Finding("format", f"{before} became {after}", text) if before != after else None
+
+    def _compile(self, source: SourceFile, seed: int) -> Finding | None:
+        compiled = pipeline.compile(source, settings=SETTINGS)
+        if (found := _shown("compile", compiled.diagnostics)) is not None:
+            return found
+        if compiled.status == "wrong" and not has_errors(compiled.diagnostics):
+            return Finding("compile", "wrong, and no error says why", "")
+        if compiled.model is None:
+            return None
+        suffixes = [".svg", ".json", *random.Random(seed).sample((".dxf", ".pdf", ".png", ".stl"), 1)]
+        for suffix in suffixes:
+            for options in (Options(), Options(show=LAYERS, dimension=True)):
+                if options.dimension and suffix not in (".svg", ".pdf", ".png"):
+                    continue
+                self.counts[f"write {suffix}"] += 1
+                found = attempt(
+                    f"write {suffix}",
+                    lambda suffix=suffix, options=options: _written(compiled, suffix, options),  # type: ignore[misc]
+                )
+                if found is not None:
+                    return found
+        return None
+
+
+def attempt(stage: str, step: Callable[[], Finding | None]) -> Finding | None:
+    """What a step finds, what it raises, or that it takes too long."""
+    try:
+        with within(LONGEST[stage.split()[0]]):
+            return step()
+    except TooLong:
+        return Finding(stage, "takes too long", traceback.format_exc(limit=-12))
+    except Exception as error:  # noqa: BLE001 (that it raises anything at all is what is looked for)
+        return Finding(stage, _cause(error), traceback.format_exc(limit=-20))
+
+
+def _cause(error: BaseException) -> str:
+    """The kind of an exception and the line of the project it comes from."""
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if "aidl_lang" in f.filename]
+    at = f" in {frames[-1].filename.rpartition('aidl_lang/')[2]}:{frames[-1].name}" if frames else ""
+    return f"{type(error).__name__}{at}"
+
+
+def _errors(source: SourceFile) -> list[str]:
+    """The codes of the errors that checking finds, in alphabetical order."""
+    return sorted(d.code for d in pipeline.check(source, settings=SETTINGS) if d.is_error)
+
+
+def _shown(stage: str, diagnostics: list[Diagnostic]) -> Finding | None:
+    for diagnostic in diagnostics:
+        text = render(diagnostic)
+        if not text.strip():
+            return Finding(stage, "an empty message", repr(diagnostic))
+    return None
+
+
+def _written(compiled: pipeline.Compiled, suffix: str, options: Options) -> Finding | None:
+    try:
+        data = compiled.export(suffix, options)
+    except ExportError:
+        return None
+    if suffix == ".json":
+        json.loads(data, parse_constant=_refuse)
+    elif suffix in (".svg", ".dxf"):
+        text = _TEXT.sub("", data.decode("utf-8"))
+        if (found := _NO_NUMBER.search(text)) is not None:
+            return Finding(f"write {suffix}", "a number that is none", text[max(0, found.start() - 80) :][:160])
+    return None
+
+
+def _refuse(word: str) -> Any:
+    raise ValueError(f"{word} is no JSON")
