@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-model lint format reference colours editors vscode test-vscode bench bench-editor bench-check bench-regions bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test fuzz test-model lint format reference colours editors vscode test-vscode bench bench-editor bench-check bench-regions bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -18,6 +18,9 @@ demo: $(READY) ## set up, then draw examples/telephone.aidl
 
 test: $(READY) ## run all tests
 	$(BIN)/python -m pytest -n auto
+
+fuzz: $(READY) ## try programs that ask for trouble, for MINUTES (2), from a SEED if one is given
+	$(BIN)/python -m tests.fuzz --minutes $(or $(MINUTES),2) $(if $(SEED),--seed $(SEED))
 
 test-model: $(READY) ## ask a real small model; installs it and llama.cpp into build/model, once
 	$(BIN)/python tests/model/install.py build/model

@@ -25,17 +25,26 @@ class Mended:
 def mend(
     source: SourceFile, world: World | None = None, settings: pipeline.Settings = pipeline.Settings()
 ) -> Mended:
-    """Apply fixes and look again until nothing changes, the text returns to an earlier one, or the limit."""
+    """Apply fixes and look again until nothing changes, the text returns to an earlier one, or the limit.
+    Fixes that undo each other are not made.
+    """
     fixes: list[str] = []
-    seen: set[str] = set()
+    seen: dict[object, Mended] = {}
     for _ in range(_ROUNDS):
         diagnostics = pipeline.check(source, world, settings)
-        seen.add(source.text)
+        now = Mended(source, diagnostics, tuple(fixes))
+        if (before := seen.setdefault(_outlook(now), now)) is not now:
+            return before  # what was done since undoes itself
         text, applied = apply_fixes(source, diagnostics)
-        if not applied or text in seen:
+        if not applied:
             break
         fixes += [d.fix.title for d in diagnostics if d.fix][:applied]
         source = SourceFile(source.name, text)
     else:
         diagnostics = pipeline.check(source, world, settings)
     return Mended(source, diagnostics, tuple(fixes))
+
+
+def _outlook(state: Mended) -> object:
+    """By what a state is known again: the text, blanks aside, and what there is to say of it."""
+    return "".join(state.source.text.split()), tuple(d.message for d in state.diagnostics)

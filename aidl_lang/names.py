@@ -88,7 +88,11 @@ class Spellings:
 
 
 def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
-    """Known names that `name` may be a misspelling of, best first; never one that means the reverse."""
+    """Known names that `name` may be a misspelling of, best first; never one that means the reverse. A single
+    letter is a misspelling of nothing.
+    """
+    if len(name) < 2:
+        return []
     folded: dict[str, str] = {}
     for key in known:
         folded.setdefault(fold(key), key)

@@ -153,7 +153,7 @@ class _Reader:
             for token in self.tokens[self.last.position : position]:
                 automaton.feed(token)
             automaton.enter_block()
-            if self._ends_statement(self.tokens[position]):
+            if self._ends_statement(position):
                 automaton.feed(Token(";", "", automaton.end, automaton.end))
         problem = explain(
             Trouble(self.source, self.tokens, position, self._statement_begin(position), automaton)
@@ -171,9 +171,11 @@ class _Reader:
                 return self.last.position
         return self._skip(position, problem.with_block)
 
-    def _ends_statement(self, token: Token) -> bool:
+    def _ends_statement(self, position: int) -> bool:
         """Whether a statement is complete and the token plainly belongs to what follows it."""
-        if token.kind not in _CERTAIN_WORDS and token.kind not in ("}", ")", "]", "@", "else"):
+        before, token = self.tokens[max(position - 1, 0)], self.tokens[position]
+        is_next = token.kind in _CERTAIN_WORDS or token.kind in ("}", ")", "]", "@", "else")
+        if not is_next and before.kind != "}":
             return False
         return not self.automaton.between_statements and self.automaton.accepts([";"])
 

@@ -16,8 +16,8 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
 
+from aidl_lang import ast, parser
 from aidl_lang import library as library_module
-from aidl_lang import parser
 from aidl_lang.building.state import DEFAULT_LIMITS, Limits
 from aidl_lang.cancelling import OutOfTime, checkpoint, limited_to
 from aidl_lang.checking.subset import adapted
@@ -279,8 +279,16 @@ def formatted(source: SourceFile, world: World | None = None) -> tuple[str | Non
         if has_errors(parsed.diagnostics):
             return None, parsed.diagnostics
         names = typecheck(resolve(parsed.module, world, library_module.load())).resolution
-    stated = {node for node, symbol in names.uses.items() if symbol.kind is SymbolKind.CONSTRAINT}
-    return format_module(parsed, names.canonical, stated), parsed.diagnostics
+        stated = {node for node, symbol in names.uses.items() if symbol.kind is SymbolKind.CONSTRAINT}
+        # What has a new name on its left was meant to declare it: that is said of `=`, not of `==`.
+        declaring = {
+            node
+            for node in ast.walk(parsed.module)
+            if isinstance(node, ast.Equation)
+            and isinstance(node.left, ast.Name)
+            and node.left not in names.uses
+        }
+        return format_module(parsed, names.canonical, stated, declaring), parsed.diagnostics
 
 
 def knobs(

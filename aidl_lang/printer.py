@@ -34,15 +34,17 @@ def format_module(
     parsed: Parsed | ast.Module,
     names: Mapping[ast.Node, str] | None = None,
     stated: Collection[ast.Node] = (),
+    declaring: Collection[ast.Node] = (),
 ) -> str:
     """The text of a program in canonical form.
 
-    `stated` are calls known to state a constraint, which get the keyword where they stand alone.
+    `stated` are calls known to state a constraint, which get the keyword where they stand alone, `declaring`
+    equations that mean nothing as such and stay as they are.
     `names` maps nodes (names, identifiers of members and callees) to the spelling to print in their place.
     What could not be parsed is not in the tree: do not write the text back over a program with syntax errors.
     """
     module = parsed if isinstance(parsed, ast.Module) else parsed.module
-    printer = _Printer(module, names, stated)
+    printer = _Printer(module, names, stated, declaring)
     printer.statements(module.statements, 0, len(module.source.text), 0, constraints=False)
     return printer.text()
 
@@ -63,9 +65,14 @@ class _Line:
 
 class _Printer:
     def __init__(
-        self, module: ast.Module, names: Mapping[ast.Node, str] | None, stated: Collection[ast.Node]
+        self,
+        module: ast.Module,
+        names: Mapping[ast.Node, str] | None,
+        stated: Collection[ast.Node],
+        declaring: Collection[ast.Node],
     ) -> None:
         self.stated = stated
+        self.declaring = declaring
         self.source = module.source.text
         self.comments = module.comments
         self.next_comment = 0
@@ -291,8 +298,7 @@ class _Printer:
                 bare = begins_statement(node.value) and (constraints or is_call)
                 return doc("" if bare else "constrain ", expression(node.value))
             case ast.Equation():
-                equation = node.meant
-                return doc("" if begins_statement(equation) else "constrain ", expression(equation))
+                return doc("" if begins_statement(node.meant) else "constrain ", self._equation(node))
             case ast.Constrain():
                 return doc("constrain") if node.braces else self._constrain(node)
             case ast.Prefer():
@@ -352,9 +358,15 @@ class _Printer:
         """`constrain` with its one item."""
         item = node.items.statements[0]
         if isinstance(item, ast.Equation):
-            return doc("constrain ", self.expressions.expression(item.meant))
+            return doc("constrain ", self._equation(item))
         assert isinstance(item, ast.ExpressionStatement)
         return doc("constrain ", self.expressions.expression(item.value))
+
+    def _equation(self, node: ast.Equation) -> Doc:
+        expression = self.expressions.expression
+        if node in self.declaring:
+            return doc(expression(node.left, SUM), " = ", expression(node.right, OR))
+        return expression(node.meant)
 
     def _import(self, node: ast.Import) -> Doc:
         path = string_text(node.path.value)

@@ -280,7 +280,7 @@ class Interpreter:
             return guess
         self.report(
             "E0504",
-            f"`{holder.path}.{name}` begins at {guess:g}, which no drawing reaches",
+            f"`{name}` begins at {guess:g} here, which no drawing reaches",
             holder.span,
             hints=[f"lengths reach to {_LARGEST_GUESS:g} mm in either direction"],
         )

@@ -1,5 +1,6 @@
-"""What must hold of every program, whatever stands in it: it is answered in bounded time, without an exception,
-by diagnostics that can be shown or by files with numbers in them; fixes end; and formatting changes nothing.
+"""What must hold of every program, whatever stands in it: it is answered in bounded time, without an
+exception, by diagnostics that can be shown or by files with numbers in them; fixes end; and formatting
+changes nothing.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import traceback
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from types import FrameType
 from typing import Any
 
@@ -21,9 +22,9 @@ from aidl_lang.building.state import Limits
 from aidl_lang.diagnostics import Diagnostic, has_errors
 from aidl_lang.export import ExportError, Options
 from aidl_lang.mending import mend
+from aidl_lang.names import fold
 from aidl_lang.parser import parse
 from aidl_lang.pipeline import Settings
-from aidl_lang.printer import format_module
 from aidl_lang.render.terminal import render
 from aidl_lang.source import SourceFile
 
@@ -39,12 +40,14 @@ LONGEST = {"check": 12.0, "fix": 60.0, "format": 15.0, "compile": 30.0, "write":
 LAYERS = frozenset({"names", "points", "bbox", "constraints", "dof", "plan"})
 
 _NO_NUMBER = re.compile(r"(?<![\w.#-])-?(?:nan|inf|infinity)(?![\w-])", re.IGNORECASE)
-_TEXT = re.compile(r"<text.*?</text>|<title>.*?</title>|<desc>.*?</desc>|=\"[^\"]*[A-Za-z]{4,}[^\"]*\"", re.DOTALL)
+_TEXT = re.compile(
+    r"<text.*?</text>|<title>.*?</title>|<desc>.*?</desc>|=\"[^\"]*[A-Za-z]{4,}[^\"]*\"", re.DOTALL
+)
 
 
 @dataclass(frozen=True)
 class Finding:
-    """Something that does not hold: `kind` is alike for findings with one cause, as far as that can be told."""
+    """Something that does not hold: `kind` is alike for findings with one cause, as far as one can tell."""
 
     stage: str
     kind: str
@@ -107,16 +110,12 @@ class Judge:
         return None
 
     def _format(self, source: SourceFile, seed: int) -> Finding | None:
-        parsed = parse(source)
-        if has_errors(parsed.diagnostics):
-            return None
-        once = SourceFile(source.name, format_module(parsed))
-        again = parse(once)
-        if has_errors(again.diagnostics) or not ast.same(parsed.module, again.module):
-            return Finding("format", "another program", once.text)
         text, _ = pipeline.formatted(source)
         if text is None:
             return None
+        trees = [_as_meant(parse(SourceFile(source.name, t)).module) for t in (source.text, text)]
+        if not ast.same(*trees):
+            return Finding("format", "another program", text)
         twice, _ = pipeline.formatted(SourceFile(source.name, text))
         if text != twice:
             return Finding("format", "another form the second time", f"{text}\n=== again\n{twice}")
@@ -144,6 +143,22 @@ class Judge:
                 if found is not None:
                     return found
         return None
+
+
+def _as_meant(node: ast.Node) -> ast.Node:
+    """A tree with the equations of its constraints as comparisons, and with names in one spelling."""
+    if isinstance(node, ast.Equation):
+        node = ast.ExpressionStatement(node.meant, span=node.span)
+    changed: dict[str, object] = {}
+    for part in fields(node):
+        value = getattr(node, part.name)
+        if isinstance(value, ast.Node):
+            changed[part.name] = _as_meant(value)
+        elif isinstance(value, tuple):
+            changed[part.name] = tuple(_as_meant(v) if isinstance(v, ast.Node) else v for v in value)
+        elif part.name == "text" and isinstance(node, ast.Name | ast.Identifier):
+            changed[part.name] = fold(value)
+    return replace(node, **changed)
 
 
 def attempt(stage: str, step: Callable[[], Finding | None]) -> Finding | None:
@@ -187,7 +202,9 @@ def _written(compiled: pipeline.Compiled, suffix: str, options: Options) -> Find
     elif suffix in (".svg", ".dxf"):
         text = _TEXT.sub("", data.decode("utf-8"))
         if (found := _NO_NUMBER.search(text)) is not None:
-            return Finding(f"write {suffix}", "a number that is none", text[max(0, found.start() - 80) :][:160])
+            return Finding(
+                f"write {suffix}", "a number that is none", text[max(0, found.start() - 80) :][:160]
+            )
     return None
 
 

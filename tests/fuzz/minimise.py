@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 from aidl_lang.source import SourceFile
 from aidl_lang.syntax.tokens import tokenize
@@ -33,7 +34,7 @@ def _lines(text: str) -> list[str]:
 
 def _tokens(text: str) -> list[str]:
     ends = [0, *(token.end for token in tokenize(SourceFile("fuzz", text)).tokens), len(text)]
-    return [text[a:b] for a, b in zip(ends, ends[1:], strict=False) if b > a]
+    return [text[a:b] for a, b in pairwise(ends) if b > a]
 
 
 def _reduced(parts: list[str], holds: Callable[[Sequence[str]], bool]) -> list[str]:

@@ -8,6 +8,7 @@ import random
 import re
 from collections.abc import Callable
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 from aidl_lang.reference.collect import reference
@@ -21,16 +22,53 @@ FOUND = Path(__file__).parent / "programs"
 """Programs that broke something once, as small as they could be made."""
 
 _NUMBERS = (
-    *("0", "1", "-1", "2", "0.5", "3.0", "100", "1000", "12000", "1e6", "1e9", "1e12", "1e30", "1e300", "1e308"),
+    *(
+        "0",
+        "1",
+        "-1",
+        "2",
+        "0.5",
+        "3.0",
+        "100",
+        "1000",
+        "12000",
+        "1e6",
+        "1e9",
+        "1e12",
+        "1e30",
+        "1e300",
+        "1e308",
+    ),
     *("1e-9", "1e-300", "15000000.0", "0.1", "1/0", "90deg", "360deg", "1e9deg", "5mm", "1e300mm", "-0.0"),
 )
 """Numbers that numbers are exchanged for."""
-_EXTRA = ("\\", '"', "'", "/", "/*", "*/", "//", "///", "\n", "}", "{", "(", ")", "[", "]", ",", ";", "@", "é", "\0")
+_EXTRA = (
+    "\\",
+    '"',
+    "'",
+    "/",
+    "/*",
+    "*/",
+    "//",
+    "///",
+    "\n",
+    "}",
+    "{",
+    "(",
+    ")",
+    "[",
+    "]",
+    ",",
+    ";",
+    "@",
+    "é",
+    "\0",
+)
 
 
 @cache
 def seeds() -> tuple[str, ...]:
-    """The programs of the project: examples, those in the library, the docs and the specs, and what was found."""
+    """The programs of the project: examples, those in the library, docs and specs, and what was found."""
     files = sorted([*(ROOT / "examples").glob("*.aidl"), *FOUND.glob("*.aidl")])
     texts = [path.read_text("utf-8") for path in files]
     pages = sorted([*(ROOT / "docs").rglob("*.md"), *(ROOT / "tests" / "spec").glob("*.md")])
@@ -43,7 +81,7 @@ def seeds() -> tuple[str, ...]:
 def _tokens(text: str) -> tuple[str, ...]:
     """The tokens of a text with the blanks and comments before each."""
     ends = [0, *(token.end for token in tokenize(SourceFile("seed", text)).tokens)]
-    return tuple(text[a:b] for a, b in zip(ends, ends[1:], strict=False) if b > a)
+    return tuple(text[a:b] for a, b in pairwise(ends) if b > a)
 
 
 @cache
@@ -129,9 +167,14 @@ def assembly(chance: random.Random) -> str:
     count = chance.randrange(2, 7)
     lines = ["assembly model {"]
     for k in range(count):
-        turn = chance.choice(("", "", f" rotated {chance.randrange(360)}deg", f" at ({chance.randrange(90)}, 5)"))
+        turn = chance.choice(
+            ("", "", f" rotated {chance.randrange(360)}deg", f" at ({chance.randrange(90)}, 5)")
+        )
         kind = chance.choice(("solid", "solid", "drawing", "assembly"))
-        lines += [f"  {kind} p{k}{turn} {{", *(f"    g{i} = {_shape(chance)}" for i in range(chance.randrange(3)))]
+        lines += [
+            f"  {kind} p{k}{turn} {{",
+            *(f"    g{i} = {_shape(chance)}" for i in range(chance.randrange(3))),
+        ]
         if chance.random() < 0.3:
             lines.append(f"    hole h {{ rim = {_shape(chance)} }}")
         lines.append("  }")

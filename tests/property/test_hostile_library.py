@@ -27,6 +27,7 @@ SCALE = int(os.environ.get("AIDL_EXAMPLES", "1"))
 LONGEST = 20.0
 """Seconds; what building and solving are allowed on a busy machine."""
 
+
 def no_number(text: str) -> float:
     raise ValueError(f"{text} is not JSON")
 

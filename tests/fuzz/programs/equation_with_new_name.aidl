@@ -1,0 +1,1 @@
+assembly a { solid shell {} constrain { plus = cross_shape() } }

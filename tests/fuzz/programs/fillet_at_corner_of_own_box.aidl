@@ -1,0 +1,1 @@
+solid plate { fillet(plate.top_left, 5) }

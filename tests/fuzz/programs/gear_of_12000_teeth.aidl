@@ -1,0 +1,1 @@
+solid s { g = gear(teeth: 12000, module: 2) }

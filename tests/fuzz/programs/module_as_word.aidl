@@ -1,0 +1,1 @@
+solid s { t = text("HH", height: 5, align: math) }
