@@ -402,9 +402,7 @@ def _finish(
         given = gave_way(lowered, solution, settings.solving)
     try:
         with limited_to(settings.drawing):
-            model, evaluator, drawing, found, notes = _drawn(
-                built, lowered, solution, freedom, given, watch
-            )
+            model, evaluator, drawing, found, notes = _drawn(built, lowered, solution, freedom, given, watch)
     except OutOfTime:
         return Compiled("wrong", ordered([*diagnostics, _endless(settings)]), watch.seconds, known)
     found = list(map(refused, found)) if settings.strict else found
