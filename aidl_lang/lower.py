@@ -107,6 +107,7 @@ class _Lowering:
             **constraint_arrays(constraints),
             named=True,
             standing=np.array([self._stands(u) for u in found], dtype=np.bool_),
+            spanned=np.array([_is_spanned(u) for u in found], dtype=np.bool_),
             thing=_numbered((u.holder, u.field if u.kept else u.field.rpartition(".")[0]) for u in found),
             observables=observables,
             names=tuple(u.path for u in found),
@@ -322,6 +323,11 @@ def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:
             yield f"{geometry.path}.{name}", (value.expression,)
     for part in own_geometry(geometry.parts, geometry):
         yield from _seen_geometry(part)
+
+
+def _is_spanned(unknown: Unknown) -> bool:
+    """Whether it is the length or the direction of a line that was written from one point to another."""
+    return unknown.implied and isinstance(unknown.holder, Geometry) and unknown.holder.type == "line"
 
 
 def _numbered(keys: Iterable[Hashable]) -> NDArray[np.int64]:

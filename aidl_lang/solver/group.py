@@ -4,10 +4,11 @@ At a group every unknown of its subtree has a tier, which says at which stage it
 
     (1, 0)  own position that a constraint of the group places
     (1, 1)  own position that only a bound which holds anyway would place
+    (1, 2)  own length or direction between two points of which a constraint places one
     (2, 0)  own position, or translation of a child's frame (owned by the group, too)
     (2, 1)  the same of a frame that stands where its content counts as exact
     (3, d)  translation of a frame, owned by a group d levels below
-    (4, d)  other position of a group d levels below
+    (4, d)  other position of a group d levels below, or such a length or direction
     (5, d)  position of what rides along with its parent, since no constraint names it
     (6, 0)  kept size that a constraint places, at any level
     (6, 1)  own kept size
@@ -24,6 +25,7 @@ free has a share in that proof, and among the kept sizes only those that have ar
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
@@ -48,7 +50,7 @@ Best: TypeAlias = tuple[float, dict[int, float]]
 Proof: TypeAlias = Mapping[int, float]
 """Factors of tape nodes whose sum shows that rows contradict each other; empty if that is not known."""
 
-PLACED: Tier = (1, 1)
+PLACED: Tier = (1, 2)
 DEEP: Tier = (3, 0)
 """Before the first tier of what lies deeper than the group itself."""
 OWN: Tier = (2, 0)
@@ -73,14 +75,14 @@ NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "riding", 
 
 
 def stage_name(tier: Tier) -> str:
-    """`placed`, `placed bounds`, `own`, `own standing`, `translations 1`, `positions 2`, `riding 1`,
-    `placed sizes`, `own sizes`, `sizes 1`, …
+    """`placed`, `placed bounds`, `placed spans`, `own`, `own standing`, `translations 1`, `positions 2`,
+    `riding 1`, `placed sizes`, `own sizes`, `sizes 1`, …
     """
     kind, level = tier
     if tier >= SIZES:
         return ("placed sizes", "own sizes")[level] if level < 2 else f"sizes {level - 1}"
     if kind < 3:
-        return NAMES[kind] + ("", (" bounds", " standing")[kind - 1])[level]
+        return NAMES[kind] + (("", " bounds", " spans"), ("", " standing"))[kind - 1][level]
     return f"{NAMES[kind]} {level}"
 
 
@@ -239,10 +241,12 @@ class Group:
         violated = [index for index in seeds if not hierarchy.satisfied(index)]
         tried: dict[bool, frozenset[int]] = {}
         obstacle: tuple[Tier, Proof] = ((1, 0), {})
-        # What lies deep is searched branch by branch only when the branches that are active lead nowhere.
+        # A stage is searched branch by branch only when the branches that are active lead nowhere: in none of
+        # the group's own stages, and in none of those that take apart what lies deeper.
         near, deep = [t for t in tiers if t < DEEP], [t for t in tiers if t >= DEEP]
-        plan = [(t, True) for t in near] + [(t, False) for t in deep] + [(t, True) for t in deep]
-        for tier, turning in plan:
+        for turning, tier in itertools.chain(
+            *(itertools.product((False, True), part) for part in (near, deep))
+        ):
             if not self._promising(violated, tier):
                 continue
             scope = self.scope(tier, seeds)
@@ -347,9 +351,16 @@ class Group:
             if all(self.tier(unknown) <= POSITIONS for unknown in hierarchy.cones[index].unknowns):
                 continue
             reached = [set(map(self.tier, unknowns)) for unknowns in self._reached(index)]
-            if any(tiers and min(tiers) > POSITIONS for tiers in reached):
+            if any(tiers and min(tiers) > POSITIONS for tiers in reached) and not self._choices(index):
                 found.append(index)
         return found
+
+    def _choices(self, index: int) -> bool:
+        """Whether positions choose a branch in a constraint, so that they may come to have a share in it."""
+        hierarchy, cone = self.hierarchy, self.hierarchy.cones[index]
+        free = frozenset(u for u in cone.unknowns if self.tier(u) <= POSITIONS)
+        freezer = Freezer(hierarchy.values, free, hierarchy.values.narrowed(cone, free))
+        return any(freezer.form(row.expression) is None for row in hierarchy.rows([index]))
 
     def _reached(self, index: int) -> Iterator[list[int]]:
         """For each row of a constraint the unknowns that change it where it is now."""

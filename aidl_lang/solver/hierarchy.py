@@ -77,6 +77,10 @@ class Hierarchy:
         return list(map(bool, self.problem.standing))
 
     @cached_property
+    def _spanned(self) -> list[bool]:
+        return list(map(bool, self.problem.spanned))
+
+    @cached_property
     def _depth_of_group(self) -> list[int]:
         return list(map(int, self._group_depths))
 
@@ -207,6 +211,8 @@ class Hierarchy:
         depth = self._depth_of_group[group]
         level = self._depth[unknown] - depth
         if self._kept[unknown]:
+            if self._spanned[unknown] and unknown in placed:
+                return (4, level) if level else (1, 2)
             return (6, 0 if unknown in placed else 1 + level)
         if self._rides[unknown] > depth:
             return (5, level)

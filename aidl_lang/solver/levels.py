@@ -171,6 +171,8 @@ class Levels:
         tier = np.where(self._rides > depth, KINDS["riding"] * DEPTHS + level, tier)
         sizes = KINDS["sizes"] * DEPTHS + np.where(placed, 0, 1 + level)
         tier = np.where(problem.kept, sizes, tier)
+        span = np.where(level == 0, KINDS["placed"] * DEPTHS + 2, KINDS["positions"] * DEPTHS + level)
+        tier = np.where(problem.spanned & placed, span, tier)
         return np.where(level < 0, (KINDS["sizes"] + 1) * DEPTHS, tier)
 
     def _promising(self, violated: Bools, of_constraint: Ints, free: Bools, parts: int) -> Bools:

@@ -96,6 +96,7 @@ class Problem:
     named    whether these pairs are known; else there is nothing but what the rows mention (see `naming`)
     standing (n,) True for a frame that was written where its content counts as exact: held when others can
              move
+    spanned  (n,) True for a kept size that was read off two places: what a constraint places, it may stretch
     thing    (n,) the same number for unknowns that are one thing to move, as the coordinates of a point:
              as few things as can be found are moved. If all are one, what is nearest is sought and no more.
     observables: (group, tape node) for each coordinate that a reader of the drawing could see move, in the
@@ -119,6 +120,7 @@ class Problem:
     named: bool = False
     longest: Floats | None = None
     standing: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+    spanned: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     thing: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     observables: tuple[tuple[int, int], ...] = ()
     names: tuple[str, ...] = field(default=(), repr=False)
@@ -128,6 +130,7 @@ class Problem:
         count = len(self.initial)
         for name, usual in (
             ("standing", np.zeros(count, dtype=np.bool_)),
+            ("spanned", np.zeros(count, dtype=np.bool_)),
             ("thing", np.zeros(count, dtype=np.int64)),
         ):
             if len(getattr(self, name)) != count:
