@@ -18,6 +18,7 @@ from aidl_lang.syntax.automaton import Automaton, Checkpoint
 from aidl_lang.syntax.brackets import lists_as_statements
 from aidl_lang.syntax.errors import explain, spaced_call
 from aidl_lang.syntax.functions import understood
+from aidl_lang.syntax.lines import begins_with_sign
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import END, Token, Tokens, tokenize
 from aidl_lang.syntax.tree import Builder
@@ -111,6 +112,8 @@ class _Reader:
                 return ()
             if self.passed_braces and token.kind == "}" and self._ends_passed_block():
                 token = tokens[position] = Token(";", "", token.start, token.end)
+            if token.kind == "-" and self._is_item(position):
+                self._begin_item(position)
             if not automaton.feed(token):
                 if len(self.diagnostics) >= limits.max_errors:
                     here = Span(self.source, token.start, token.end)
@@ -130,6 +133,20 @@ class _Reader:
                 if len(automaton.states) > 4 * limits.max_nesting:
                     return self._stop(_too_deep(Span(self.source, token.start, token.end), limits))
             position += 1
+
+    def _is_item(self, position: int) -> bool:
+        """Whether a `-` begins a constraint below one that is whole."""
+        if not begins_with_sign(self.source.text, self.tokens, position):
+            return False
+        return self.automaton.accepts((",", "constrain", "-"))  # commas stand among constraints alone
+
+    def _begin_item(self, position: int) -> None:
+        """End the constraint above, and begin one with the word that may stand before a sign."""
+        start = self.tokens[position].start
+        for kind in (",", "constrain"):
+            self.automaton.feed(Token(kind, "", start, start))
+        self.last = self.automaton.checkpoint(position)
+        self.repairs = 0
 
     def _stop(self, why: Diagnostic) -> tuple[ast.Statement, ...]:
         """Give up on the rest of the text; blocks end where they are."""

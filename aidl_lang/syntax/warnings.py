@@ -85,5 +85,8 @@ def _warning(source: SourceFile, place: int) -> Diagnostic:
         minus,
         "this subtracts from the expression above",
         hints=("if it was meant as a statement of its own, end the line above with `;`",),
-        fix=Fix("end the line above with `;`", (Edit(Span(source, before, before), ";"),)),
+        fix=Fix(
+            "end the line above with `;`",
+            (Edit(Span(source, before, before), ";"), Edit(Span(source, place, place), "constrain ")),
+        ),
     )

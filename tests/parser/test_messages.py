@@ -119,7 +119,7 @@ def test_message(text: str, code: str, at: tuple[int, int], message: str | None)
         ("x = f(a b, 3 4)", "x = f(a, b, 3, 4)"),
         ("param w 80", "param w = 80"),
         ("hole { todo }", "hole hole_1 { todo }"),
-        ("a == b\n-c == d", "a == b;\n-c == d"),
+        ("a == b\n-c == d", "a == b;\nconstrain -c == d"),
         ("let step = 3\nlet a = step", "let step_1 = 3\nlet a = step_1"),
     ],
 )
