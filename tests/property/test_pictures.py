@@ -32,6 +32,18 @@ def test_a_picture_that_is_determined_is_the_true_one(chance: random.Random) -> 
 
 
 @given(CHANCES)
+@profile(20)
+def test_a_picture_that_is_right_already_stays(chance: random.Random) -> None:
+    """Whether it is determined or not."""
+    true = picture(chance).exact
+    note(true.text())
+    model = aidl_lang.compile(true.text())
+    assert model.status == "solved"
+    assert not model.changed
+    assert off(document(model), true) < 1e-9
+
+
+@given(CHANCES)
 @profile(25)
 def test_the_order_of_a_picture_does_not_matter(chance: random.Random) -> None:
     true = picture(chance)
