@@ -5,7 +5,7 @@ virtualenv of its own, with a home in which there is nothing.
 
 First without any extra, then with each of them, from the source archive. Every command must end with the code
 that is expected of it, say what is expected, and show no traceback; none may write into the installation, or
-keep anything of AIDL's in the home. Prints the seconds of each.
+keep anything of AIDL's in the home. Prints the seconds of each, and those of the processor.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import argparse
 import contextlib
 import json
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -51,7 +52,7 @@ class Installation:
 
     folder: Path
     failures: list[str] = field(default_factory=list)
-    seconds: list[tuple[str, float]] = field(default_factory=list)
+    seconds: list[tuple[str, float, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         for path in (self.home, self.work):
@@ -157,11 +158,17 @@ class Installation:
 
     @contextlib.contextmanager
     def _timed(self, name: str) -> Iterator[None]:
-        start = time.perf_counter()
+        start, used = time.perf_counter(), _processor_time()
         try:
             yield
         finally:
-            self.seconds.append((name, time.perf_counter() - start))
+            self.seconds.append((name, time.perf_counter() - start, _processor_time() - used))
+
+
+def _processor_time() -> float:
+    """Of all processes that were started and have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def clean_copy(folder: Path) -> Path:
@@ -360,9 +367,9 @@ def main() -> None:
         if folder is None:
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="aidl-wheel-")))
         here = installed_and_run(folder.resolve())
-    print("\n| command | seconds |\n|---|--:|")
-    for name, seconds in here.seconds:
-        print(f"| `{name}` | {seconds:.2f} |")
+    print("\n| command | seconds | of the processor |\n|---|--:|--:|")
+    for name, seconds, used in here.seconds:
+        print(f"| `{name}` | {seconds:.2f} | {used:.2f} |")
     for failure in here.failures:
         print(f"\nfailed: {failure}", file=sys.stderr)
     sys.exit(bool(here.failures))

@@ -63,6 +63,17 @@ def test_links_lead_nowhere_else(tmp_path: Path) -> None:
             world.read(path)
 
 
+def test_a_link_leads_to_no_other_kind_of_file(tmp_path: Path) -> None:
+    (tmp_path / ".env").write_text("secret")
+    (tmp_path / "bolt.aidl").write_text("bolt")
+    (tmp_path / "link.aidl").symlink_to(tmp_path / ".env")
+    (tmp_path / "other.aidl").symlink_to(tmp_path / "bolt.aidl")
+    assert DiskWorld(tmp_path).read("other.aidl") == "bolt"
+    with pytest.raises(FileError) as caught:
+        DiskWorld(tmp_path).read("link.aidl")
+    assert caught.value.reason is Reason.ANOTHER_KIND
+
+
 def test_only_text_is_read(tmp_path: Path) -> None:
     (tmp_path / "bytes").write_bytes(b"\xff\xfe")
     with pytest.raises(FileError) as caught:
