@@ -102,6 +102,7 @@ class _Lowering:
             kept=np.array([u.kept for u in found], dtype=np.bool_),
             group=np.array([self.groups[self._placer(u)] for u in found], dtype=np.int64),
             frame_of=np.array([self._frame_of(u) for u in found], dtype=np.int64),
+            axis=np.array([_axis(u) for u in found], dtype=np.int64),
             longest=np.array([_LONGEST_TURN if u.angular else np.inf for u in found], dtype=np.float64),
             parent=np.array(parents, dtype=np.int64),
             **constraint_arrays(constraints),
@@ -109,6 +110,7 @@ class _Lowering:
             standing=np.array([self._stands(u) for u in found], dtype=np.bool_),
             spanned=np.array([_is_spanned(u) for u in found], dtype=np.bool_),
             thing=_numbered((u.holder, u.field if u.kept else u.field.rpartition(".")[0]) for u in found),
+            clinging=frozenset(self.groups[s] for s in self.structures if _clings(s)),
             observables=observables,
             names=tuple(u.path for u in found),
         )
@@ -117,18 +119,28 @@ class _Lowering:
     # --- Unknowns ------------------------------------------------------------------------------
 
     def _number_unknowns(self, observed: Iterable[Expression]) -> None:
-        """Unknowns that can move: those of what is drawn, and frames that a constraint mentions."""
+        """Unknowns that can move: those of what is drawn, and both coordinates of frames that a constraint
+        names, or that it mentions.
+        """
         mentioned = self.mentioned = set(
             ex.unknowns(
                 e for c in self.model.constraints for part in c.comparisons for e in (part.left, part.right)
             )
         )
         drawn = {u for u in ex.unknowns(observed) if u.frame_of is None}
+        named = {
+            s
+            for c in self.model.constraints
+            for structures in self._named(c)
+            for structure in structures
+            for s in chain(structure)
+            if s.is_within(c.holder) and s is not c.holder
+        }
         for unknown in self.model.unknowns:
             is_variable = (
                 isinstance(unknown.holder, Structure) and unknown.frame_of is None and not unknown.outline
             )
-            live = is_variable or unknown in mentioned or unknown in drawn
+            live = is_variable or unknown in mentioned or unknown in drawn or unknown.frame_of in named
             if live and not unknown.exact and unknown.owner in self.groups:
                 self.numbers[unknown] = len(self.numbers)
                 if is_variable:
@@ -204,14 +216,16 @@ class _Lowering:
         placed = frozenset(
             self.numbers[u] for c in constraint.comparisons for u in c.placed if u in self.numbers
         )
-        whole, inside = self._named(constraint)
+        whole, inside = (
+            frozenset(self.groups[s] for s in named if s in self.groups) for named in self._named(constraint)
+        )
         return SolverConstraint(
             self.groups[constraint.holder], rows, placed, constraint.weight, whole, inside
         )
 
-    def _named(self, constraint: Constraint) -> tuple[frozenset[int], frozenset[int]]:
-        """The groups that a constraint names as a whole, and those in which it names something. What a shape
-        asks of itself names nothing.
+    def _named(self, constraint: Constraint) -> tuple[set[Structure], set[Structure]]:
+        """The structures that a constraint names as a whole, and those in which it names something. What a
+        shape asks of itself names nothing.
         """
         whole: set[Structure] = set()
         inside: set[Structure] = set()
@@ -219,12 +233,13 @@ class _Lowering:
             mentioned = set(comparison.spoken_of)
             for structure in comparison.boxes:
                 whole.add(structure)
+                if structure.plan:  # its box is what there is in it
+                    inside.add(structure)
                 mentioned.update(ex.unknowns(_places(structure, constraint.holder)))
             for unknown in mentioned:
                 moved = unknown.owner if self._is_outline(unknown) else unknown.frame_of
                 (inside if moved is None else whole).add(moved or unknown.owner)
-        found = [frozenset(self.groups[s] for s in named if s in self.groups) for named in (whole, inside)]
-        return found[0], found[1]
+        return whole, inside
 
     def _row(self, comparison: Comparison) -> Row:
         tape = self.tape
@@ -288,6 +303,28 @@ def _is_bound(part: Comparison) -> bool:
         return False
     low, high = (part.left, part.right) if part.relation in ("<=", "<") else (part.right, part.left)
     return low.value <= high.value
+
+
+def _clings(s: Structure) -> bool:
+    """Whether a structure belongs to what is drawn around it: it lies in a part, or is a hole or a drawing
+    beside parts.
+    """
+    if s.parent is None:
+        return False
+    if s.parent.plan or any(not geometry.construction for geometry in s.parent.own()):
+        return True
+    return s.kind in _NO_BODY and any(other.kind not in _NO_BODY for other in s.parent.children)
+
+
+_NO_BODY = ("hole", "drawing")
+
+
+def _axis(unknown: Unknown) -> int:
+    """Along which axis a coordinate lies; -1 for what is no place."""
+    is_variable = isinstance(unknown.holder, Structure) and unknown.frame_of is None and not unknown.outline
+    if unknown.kept or unknown.angular or is_variable:
+        return -1
+    return {"x": 0, "y": 1, "left": 0, "bottom": 1}.get(unknown.field.rpartition(".")[2], -1)
 
 
 def _places(structure: Structure, holder: Structure) -> Iterator[Expression]:

@@ -67,10 +67,22 @@ def read_out(
     root = reader.structure(model.root)
     readings = tuple(dict.fromkeys(Reading(span, text) for span, text in model.readings))
     describe = partial(motions, model, lowered, freedom)
+    floating = tuple(_floating(lowered, freedom))
     solved = SolvedModel(
-        solution.status.value, root, reports, freedom.degrees, free, changed, readings, describe
+        solution.status.value, root, reports, freedom.degrees, free, changed, readings, floating, describe
     )
     return solved, evaluator
+
+
+def _floating(lowered: Lowered, freedom: Freedom) -> Iterator[str]:
+    """Structures that no constraint ties to what is around them, and that hold what was guessed."""
+    guessed: set[tuple[int, int]] = set()
+    problem = lowered.problem
+    if problem.axis is not None:
+        guessed.update(zip(problem.group.tolist(), problem.axis.tolist(), strict=True))
+    for group in freedom.loose:
+        if (group, 0) in guessed and (group, 1) in guessed:
+            yield lowered.groups[group]
 
 
 def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:

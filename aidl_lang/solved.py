@@ -190,16 +190,19 @@ class Change:
 class Motion:
     """A way in which something can still move.
 
-    kind   `slide`, `turn`, `grow`, `change` (a single parameter) or `together` (anything else)
-    things paths of what moves, the outermost that move as a whole
-    words  what they can do, as `slide left–right`
-    moves  parameters that take part, by path: how much each changes, relative to one another
+    kind    `slide`, `turn`, `grow`, `change` (a single parameter) or `together` (anything else); `place`
+            where the whole drawing does it
+    things  paths of what moves, the outermost that move as a whole
+    words   what they can do, as `slide along x`
+    moves   parameters that take part, by path: how much each changes, relative to one another
+    against the path of what is related to the things and does not go along; "" for nothing
     """
 
     kind: str
     things: tuple[str, ...]
     words: str
     moves: Mapping[str, float] = field(repr=False)
+    against: str = ""
 
 
 @dataclass(frozen=True)
@@ -282,8 +285,10 @@ class SolvedModel:
     free: tuple[str, ...]
     changed: tuple[Change, ...]
     readings: tuple[Reading, ...] = ()
+    floating: tuple[str, ...] = ()
+    """structures that no constraint ties to what is around them, and that are where they were guessed"""
     describe: Callable[[], tuple[Motion, ...]] = field(default=tuple, repr=False, compare=False)
-    """what `motions` is made by, when it is asked for"""
+    """what `ways` is made by, when it is asked for"""
     size_up: Callable[[SolvedModel], tuple[Dimension, ...]] = field(
         default=lambda _: (), repr=False, compare=False
     )
@@ -295,9 +300,16 @@ class SolvedModel:
         return any(s.finishes for s in self.root.walk()) or any(g.recipe for g in self.root.walk_geometry())
 
     @cached_property
-    def motions(self) -> tuple[Motion, ...]:
-        """Independent ways to move, the simplest that were found; the first hundreds of a large model."""
+    def ways(self) -> tuple[Motion, ...]:
+        """Independent ways to move, the simplest that were found; the first hundreds of a large model. Last
+        come those in which the whole drawing moves as one.
+        """
         return self.describe()
+
+    @cached_property
+    def motions(self) -> tuple[Motion, ...]:
+        """The ways in which something moves against the rest, the most interesting first."""
+        return tuple(way for way in self.ways if way.kind != "place")
 
     @cached_property
     def sizes(self) -> tuple[Dimension, ...]:

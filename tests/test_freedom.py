@@ -6,13 +6,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
 from aidl_lang import pipeline
-from aidl_lang.freedom import motions
+from aidl_lang.freedom import motions, report
+from aidl_lang.freedom.scene import Scene, X, Y
 from aidl_lang.interp import interpret
-from aidl_lang.lower import lower
-from aidl_lang.solver import Relation, solve
-from aidl_lang.solver.analysis import analyse
+from aidl_lang.lower import Lowered, lower
+from aidl_lang.model import Model
+from aidl_lang.solved import Motion, SolvedModel
+from aidl_lang.solver import Relation, Solution, solve
+from aidl_lang.solver.analysis import Freedom, analyse
 from aidl_lang.source import SourceFile
 from tests.solver.check import evaluate
 
@@ -20,38 +25,173 @@ EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.aidl"))
 STEP = 1e-4
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_every_motion_is_possible_and_new(path: Path) -> None:
-    program, _ = pipeline.front(SourceFile(path.name, path.read_text("utf-8")))
-    model = interpret(program).model
-    lowered = lower(model)
-    problem = lowered.problem
-    solution = solve(problem)
-    freedom = analyse(problem, solution)
-    told = motions(model, lowered, freedom)
-    number = {unknown.path: i for i, unknown in enumerate(lowered.unknowns)}
-    ways = np.zeros((len(told), len(number)))
-    for way, motion in zip(ways, told, strict=True):
+class Analysed:
+    """A program, and what is told of its freedom."""
+
+    def __init__(self, name: str, text: str) -> None:
+        program, _ = pipeline.front(SourceFile(name, text))
+        self.model: Model = interpret(program).model
+        self.lowered: Lowered = lower(self.model)
+        self.solution: Solution = solve(self.lowered.problem)
+        self.freedom: Freedom = analyse(self.lowered.problem, self.solution)
+        self.ways: tuple[Motion, ...] = motions(self.model, self.lowered, self.freedom)
+
+    def rates(self, motion: Motion) -> np.ndarray:
+        """How fast the unknowns change."""
+        number = {unknown.path: i for i, unknown in enumerate(self.lowered.unknowns)}
+        way = np.zeros(len(number))
         for name, rate in motion.moves.items():
             way[number[name]] = rate
-    equations = [
-        row
-        for c in problem.constraints
-        if c.weight is None
-        for row in c.rows
-        if row.relation is Relation.EQUAL
-    ]
-    for way in ways / np.abs(ways).max(axis=1, keepdims=True):
-        for row in equations:
-            ahead, behind = (
-                evaluate(problem, row.expression, solution.values + sign * STEP * way) for sign in (1, -1)
+        return way
+
+    def velocity(self, motion: Motion) -> np.ndarray:
+        """How fast the observables change, by finite differences."""
+        way, problem = self.rates(motion), self.lowered.problem
+        step = STEP / np.abs(way).max()
+        ends = [
+            np.array(
+                [evaluate(problem, node, self.solution.values + s * way) for _, node in problem.observables]
             )
-            assert abs(ahead - behind) / (2 * STEP) < 1e-5
-    seen = np.array(
-        [
-            [evaluate(problem, node, solution.values + way) - evaluate(problem, node, solution.values)
-             for _, node in problem.observables]
-            for way in STEP * ways
+            for s in (step, -step)
         ]
-    )  # fmt: skip
-    assert np.linalg.matrix_rank(seen / STEP, tol=1e-5) == len(told) == freedom.degrees
+        return (ends[0] - ends[1]) / (2 * step)
+
+    def residuals(self) -> list[tuple[float, float]]:
+        """Of every equation that holds, a step along and a step against every motion."""
+        problem = self.lowered.problem
+        equations = [
+            row
+            for c, holds in zip(problem.constraints, self.solution.satisfied, strict=True)
+            if c.weight is None and holds
+            for row in c.rows
+            if row.relation is Relation.EQUAL
+        ]
+        ways = [self.rates(motion) for motion in self.ways]
+        found = []
+        for way in [STEP * way / np.abs(way).max() for way in ways]:
+            for row in equations:
+                ahead, behind = (
+                    evaluate(problem, row.expression, self.solution.values + sign * way) for sign in (1, -1)
+                )
+                found.append((ahead, behind))
+        return found
+
+    def hold_true(self) -> None:
+        """Every motion disturbs no equation beyond the second order, and they are as many as are counted."""
+        assert all(abs(ahead - behind) / (2 * STEP) < 1e-5 for ahead, behind in self.residuals())
+        ways = self.ways
+        assert len(ways) == self.freedom.degrees
+        if ways:
+            seen = np.array([self.velocity(motion) for motion in self.ways])
+            scaled = seen / np.abs(seen).max(axis=1, keepdims=True)
+            assert np.linalg.matrix_rank(scaled, tol=1e-5) == len(ways)
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_every_motion_is_possible_and_new(path: Path) -> None:
+    Analysed(path.name, path.read_text("utf-8")).hold_true()
+
+
+# --- Random assemblies -----------------------------------------------------------------------------
+
+RELATIONS = (
+    "{a}.left == {b}.right + {n}",
+    "{a}.bottom == {b}.top + {n}",
+    "align_center_y({a}, {b})",
+    "centered_horizontally({a}, {b})",
+    "{a}.body.center == {b}.body.center + ({n}, 3)",
+    "{a}.rim.center.x - {b}.rim.center.x == {n}",
+    "{a}.left >= {b}.right - 500",
+    "distance({a}.body.center, {b}.body.center) == {d}",
+)
+
+
+@st.composite
+def assemblies(draw: st.DrawFn) -> str:
+    count = draw(st.integers(2, 5))
+    parts = []
+    for i in range(count):
+        x, y = 40 * i, draw(st.integers(-5, 5))
+        inner = "hole eye { rim = circle(center: (1, 2), radius: 2) }" if draw(st.booleans()) else ""
+        own = "constrain rim.center.y == body.center.y" if draw(st.booleans()) else ""
+        parts.append(
+            f"solid p{i} {{ body = rectangle(center: ({x}, {y}), width: 10, height: 8)"
+            f" rim = circle(center: ({x + 2}, {y}), radius: 2) {inner} {own} }}"
+        )
+    pairs = st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)).filter(lambda p: p[0] < p[1])
+    stated = []
+    for a, b in draw(st.lists(pairs, max_size=5, unique=True)):
+        relation = draw(st.sampled_from(RELATIONS))
+        stated.append(relation.format(a=f"p{b}", b=f"p{a}", n=draw(st.integers(-20, 20)), d=40 * (b - a)))
+    return "assembly top {\n" + "\n".join(parts) + "\nconstrain {\n" + "\n".join(stated) + "\n}\n}"
+
+
+@settings(max_examples=40, deadline=None)
+@given(assemblies())
+def test_what_is_told_of_random_assemblies_is_true(text: str) -> None:
+    analysed = Analysed("top.aidl", text)
+    # Where two things make the side of a box together, one of them is taken: no motion both ways is left.
+    assume(all(abs(ahead + behind) < 1e-2 * STEP for ahead, behind in analysed.residuals()))
+    analysed.hold_true()
+    scene = Scene(analysed.model, analysed.lowered, analysed.freedom.motions)
+    for motion in analysed.ways:
+        if motion.words not in ("slide along x", "slide along y"):
+            continue
+        seen = analysed.velocity(motion)
+        axis, across = (X, Y) if motion.words == "slide along x" else (Y, X)
+        own = np.concatenate([scene.own(scene.known[path]) for path in motion.things])
+        along = seen[own[scene.axis[own] == axis]]
+        assert np.ptp(along) < 1e-5 * np.abs(along).max()
+        assert np.abs(seen[own[scene.axis[own] == across]]).max() < 1e-5 * np.abs(along).max()
+        if motion.against:
+            other = scene.own(scene.known[motion.against])
+            assert np.abs(seen[other[scene.axis[other] == axis]] - along[0]).min() > 0.5 * abs(along[0])
+
+
+@settings(max_examples=20, deadline=None)
+@given(assemblies(), st.randoms(use_true_random=False))
+def test_the_order_of_constraints_does_not_change_what_is_counted(text: str, random: object) -> None:
+    head, stated = text.split("constrain {\n", 1)
+    lines = stated.removesuffix("\n}\n}").split("\n")
+    random.shuffle(lines)  # type: ignore[attr-defined]
+    other = head + "constrain {\n" + "\n".join(lines) + "\n}\n}"
+    degrees = [Analysed("top.aidl", each).freedom.degrees for each in (text, other)]
+    assert degrees[0] == degrees[1]
+
+
+# --- The report ------------------------------------------------------------------------------------
+
+
+def model(text: str) -> SolvedModel:
+    compiled = pipeline.compile(SourceFile("test.aidl", text))
+    assert compiled.model is not None
+    return compiled.model
+
+
+def test_lines_that_say_nothing_new_are_counted() -> None:
+    circles = "\n".join(f"c{'abcdefgh'[i]} = circle(center: ({9 * i}, 0), radius: 1)" for i in range(8))
+    found = model(f"drawing d {{ base = line(fixed((0, 0)), fixed((9, 0))) {circles} }}")
+    assert len(report(found)) == 8
+    assert report(found, 8) == report(found)
+    assert report(found, 4) == [*report(found)[:3], "… and 5 more like these"]
+    assert report(found, 2) == ["`ca` can slide along x and y", "… and 7 more like this"]
+
+
+def test_a_line_that_differs_in_kind_is_told_beyond_the_limit() -> None:
+    circles = "\n".join(f"c{'abcdefgh'[i]} = circle(center: ({9 * i}, 0), radius: 1)" for i in range(8))
+    told = report(
+        model(f"drawing d {{ {circles} pin = circle(center: fixed((0, 9)), radius: guess(3)) }}"), 4
+    )
+    assert told[1:] == ["`cb` can slide along x and y", "`pin.radius` can change", "… and 6 more like these"]
+
+
+def test_what_the_whole_drawing_does_is_not_told() -> None:
+    found = model(
+        "assembly a { solid p { c = circle(radius: 3) } solid q { c = circle(center: (9, 0), radius: 3) }"
+        " constrain { q.left == p.right; align_center_y(p, q) } }"
+    )
+    assert (found.degrees, report(found), found.motions) == (2, [], ())
+    assert [(way.kind, way.words) for way in found.ways] == [
+        ("place", "slide along x"),
+        ("place", "slide along y"),
+    ]

@@ -162,11 +162,9 @@ def freedom(compiled: Compiled) -> str:
 
 def motions(compiled: Compiled) -> list[str]:
     """What can still move, a sentence each."""
-    from aidl_lang.freedom import sentences
+    from aidl_lang.freedom import report
 
-    if compiled.model is None:
-        return []
-    return list(sentences(compiled.model.motions, compiled.model.root.path))[:MOST_LISTED]
+    return [] if compiled.model is None else report(compiled.model, MOST_LISTED)
 
 
 def _knob(knob: pipeline.Knob) -> Knob:
@@ -210,12 +208,11 @@ def _file(export: Export) -> str:
 
 
 def _left_out(compiled: Compiled) -> list[str]:
-    drawing, model = compiled.drawing, compiled.model
+    drawing = compiled.drawing
     counts = {
         "params": len(compiled.knobs),
         "bodies": len(drawing.bodies) if drawing else 0,
         "contacts": len(drawing.pairs) if drawing else 0,
-        "motions": len(model.motions) if model else 0,
     }
     return [said for what, count in counts.items() if (said := left_out(what, count - MOST_LISTED))]
 

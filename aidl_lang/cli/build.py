@@ -44,13 +44,10 @@ class Outcome:
 
     def motions(self, most: int) -> list[str]:
         """What can still move, one sentence a line."""
-        from aidl_lang.freedom import sentences
+        from aidl_lang.freedom import report
 
         model = self.compiled.model
-        if model is None or not self.compiled.ok:
-            return []
-        found = list(sentences(model.motions, model.root.path))
-        return found if len(found) <= most else [*found[: most - 1], "… and more"]
+        return [] if model is None or not self.compiled.ok else report(model, most)
 
     def line(self, program: str) -> str:
         """The outcome in a line."""

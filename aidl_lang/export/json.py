@@ -93,6 +93,7 @@ def to_dict(
         "free": list(model.free),
         "motions": [
             {"kind": m.kind, "things": list(m.things), "words": m.words, "moves": dict(m.moves)}
+            | ({"against": m.against} if m.against else {})
             for m in model.motions
         ],
         "changed": [

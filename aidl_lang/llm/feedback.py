@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import difflib
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
 from aidl_lang.diagnostics import Diagnostic
-from aidl_lang.freedom import sentences
+from aidl_lang.freedom import report
 from aidl_lang.llm.intent.probing import CONTACTS
 from aidl_lang.pipeline import Compiled
 from aidl_lang.render import compact
@@ -64,24 +63,14 @@ def remarks(compiled: Compiled, *, may_constrain: bool) -> str:
 
 
 def floats(model: SolvedModel) -> tuple[str, ...]:
-    """Paths, without the root, of structures that can slide anywhere and that no constraint around ties."""
-    root = model.root
-    ways = Counter(m.things[0] for m in model.motions if m.kind == "slide" and len(m.things) == 1)
-    tied = {
-        path
-        for constraint in model.constraints
-        for path in constraint.mentions
-        if not f"{constraint.path}.".startswith(f"{path}.")
-    }
-    inner = (s.path for s in root.walk() if s.path != root.path)
-    return tuple(p.removeprefix(f"{root.path}.") for p in inner if ways[p] > 1 and p not in tied)
+    """Paths, without the root, of structures of which no constraint says where they are."""
+    return tuple(path.removeprefix(f"{model.root.path}.") for path in model.floating)
 
 
 def _freedom(model: SolvedModel) -> str:
     degrees = "unknown" if model.degrees is None else str(model.degrees)
-    moves = list(sentences(model.motions[:_MOST], model.root.path))
     return f"Degrees of freedom left beside these constraints: {degrees}" + "".join(
-        f"\n- {each}" for each in moves
+        f"\n- {each}" for each in report(model, _MOST)
     )
 
 

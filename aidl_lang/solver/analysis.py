@@ -3,7 +3,7 @@
 A motion is a direction in the null space of the Jacobian of the equations that hold, over all unknowns that
 are not kept sizes. Only what can be seen counts: degrees of freedom are the rank of the observables'
 Jacobian on that space, so that a frame and its contents moving against each other do not count. An
-inequality takes no freedom away. A frame that no constraint mentions stays where it was written.
+inequality takes no freedom away. What no constraint names rides along, and adds none (see `riding`).
 """
 
 from __future__ import annotations
@@ -15,11 +15,12 @@ from enum import StrEnum
 import numpy as np
 
 from aidl_lang.solver.dependence import dependent_rows
-from aidl_lang.solver.gradients import Sparse, below, linearise
+from aidl_lang.solver.gradients import Sparse, linearise
 from aidl_lang.solver.mobility import SEEN, Mobility, Motions, Watch, mobility
-from aidl_lang.solver.operations import Bools, Floats, Ints, Op
+from aidl_lang.solver.operations import Bools, Floats, Ints
 from aidl_lang.solver.problem import Problem
 from aidl_lang.solver.redundancy import Equations, Redundancy, redundancies
+from aidl_lang.solver.riding import Riding, rides
 from aidl_lang.solver.solution import Solution
 
 SINGULAR = 1e-7
@@ -51,6 +52,7 @@ class Freedom:
     redundant     equality constraints already implied by others
     undecided     unknowns of each part of which the degrees of freedom could not be counted
     unclear       constraints of which it could not be told whether they follow from others
+    loose         groups that ride along, though they belong to nothing that is drawn around them
     """
 
     degrees: int | None
@@ -61,6 +63,7 @@ class Freedom:
     redundant: tuple[Redundancy, ...]
     undecided: tuple[tuple[int, ...], ...]
     unclear: tuple[int, ...]
+    loose: tuple[int, ...] = ()
 
 
 def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = None) -> Freedom:
@@ -81,7 +84,9 @@ def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = 
         relations, unclear = dependent_rows(equations.matrix, len(problem.initial))
         new = np.setdiff1d(np.arange(len(equations.row)), list(relations))
         rows, clear = equations.matrix.take(new), ~np.isin(new, unclear)
-        found = _mobility(problem, rows, clear, seen, node_of, values[len(equal) :][node_of])
+        riding = rides(problem)
+        places = values[len(equal) :][node_of]
+        found = _mobility(problem, riding, rows, clear, seen.take(node_of), places)
         redundant = redundancies(problem, solution.values, equations, relations, plain) if relations else []
     return Freedom(
         degrees=found.total,
@@ -92,6 +97,7 @@ def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = 
         redundant=tuple(redundant),
         undecided=tuple(tuple(np.sort(unknowns).tolist()) for unknowns in found.undecided),
         unclear=tuple(np.unique(equations.owner[unclear]).tolist()),
+        loose=tuple(np.flatnonzero(riding.loose).tolist()),
     )
 
 
@@ -123,35 +129,27 @@ def _equations(problem: Problem, equal: Ints, slopes: Sparse) -> tuple[Equations
 
 
 def _mobility(
-    problem: Problem, rows: Sparse, clear: Bools, seen: Sparse, node_of: Ints, places: Floats
+    problem: Problem, riding: Riding, rows: Sparse, clear: Bools, seen: Sparse, places: Floats
 ) -> Mobility:
     """What can move, with the equations `rows`, of which those that are `clear` are known to be independent.
 
-    seen  the gradients of what is observed; `node_of` is the row of each, `places` its value
+    seen  the gradients of what is observed, `places` its values
     """
-    movable = ~problem.kept
-    if (problem.frame_of >= 0).any():
-        movable &= (problem.frame_of < 0) | _mentioned(problem)
+    movable = riding.movable
     groups = np.array([group for group, _ in problem.observables], dtype=np.int64)
     matrix = seen.scaled(np.ones(len(seen)), problem.scale)
-    matrix = matrix.only(movable[matrix.columns] & (np.abs(matrix.entries) > SEEN))
-    distinct, row_of = _distinct(matrix)
-    row = row_of[node_of]
+    anchor = riding.anchor[groups][matrix.rows] if len(groups) else groups
+    is_seen = (anchor == 0) | (anchor == riding.anchor[problem.group[matrix.columns]])
+    matrix = matrix.only(movable[matrix.columns] & (np.abs(matrix.entries) > SEEN) & is_seen)
+    distinct, row = _distinct(matrix)
     group, row_seen = np.divmod(np.unique(groups[row >= 0] * (len(row) + 1) + row[row >= 0]), len(row) + 1)
     jacobian = rows.only(movable[rows.columns])
     known = clear & (np.diff(jacobian.starts) == np.diff(rows.starts))
+    pins = riding.pins(problem, jacobian)
     observables, watch = matrix.take(distinct), Watch(group, row_seen)
-    motions = Motions(problem.scale, places, row)
-    return mobility(jacobian, known, observables, watch, len(problem.parent), motions)
-
-
-def _mentioned(problem: Problem) -> Bools:
-    """The unknowns that occur in any constraint."""
-    found = np.zeros(len(problem.initial), dtype=np.bool_)
-    tape = problem.tape
-    nodes = np.array(below(tape, problem.rows.expression.tolist()), dtype=np.int64)
-    found[tape.operands[nodes[tape.ops[nodes] == Op.UNKNOWN], 0]] = True
-    return found
+    motions = Motions(problem.scale, places, row, riding.anchor[groups] if len(groups) else groups)
+    known = np.concatenate((known, np.ones(len(pins), dtype=np.bool_)))
+    return mobility(jacobian.above(pins), known, observables, watch, len(problem.parent), motions)
 
 
 def _distinct(matrix: Sparse) -> tuple[Ints, Ints]:

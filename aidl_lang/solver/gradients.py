@@ -91,6 +91,12 @@ class Sparse:
         starts = _starts(np.bincount(self.rows[entries], minlength=len(self)))
         return Sparse(starts, self.columns[entries], self.entries[entries])
 
+    def above(self, other: Sparse) -> Sparse:
+        """These rows, and below them those of another."""
+        starts = np.concatenate((self.starts, self.starts[-1] + other.starts[1:]))
+        columns = np.concatenate((self.columns, other.columns))
+        return Sparse(starts, columns, np.concatenate((self.entries, other.entries)))
+
     @property
     def links(self) -> tuple[Ints, Ints]:
         """Pairs of columns that share a row, enough of them to connect all that do."""

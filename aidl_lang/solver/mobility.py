@@ -49,12 +49,14 @@ class Motions:
 
     scale  (n,) of the unknowns
     values (o,) of the observables
-    row    (o,) of each observable among those that differ
+    row    (o,) of each observable among those that differ; -1 for those that do not move
+    anchor (o,) the group from whose frame each is seen, 0 for the root
     """
 
     scale: Floats
     values: Floats
     row: Ints
+    anchor: Ints
     found: list[tuple[Ints, Floats, Ints, Floats]] = field(default_factory=list, repr=False)
 
     @cached_property

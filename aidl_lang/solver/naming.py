@@ -35,7 +35,8 @@ def naming(problem: Problem) -> Naming:
     """
     groups = len(problem.parent)
     if not problem.named:
-        frames = _mentioned_frames(problem)
+        moved = problem.frame_of[mentioned(problem)]
+        frames = _marked(moved[moved >= 0], groups)
         return Naming(frames, np.ones(groups, dtype=np.bool_), frames)
     frames = np.zeros(groups, dtype=np.bool_)
     parent, holder = problem.parent.tolist(), problem.holder.tolist()
@@ -72,10 +73,8 @@ def _marked(numbers: Ints, count: int) -> Bools:
     return found
 
 
-def _mentioned_frames(problem: Problem) -> Bools:
-    """The groups whose frames occur in any row."""
+def mentioned(problem: Problem) -> Bools:
+    """The unknowns (n,) that occur in any row."""
     tape = problem.tape
     nodes = np.array(below(tape, problem.rows.expression.tolist()), dtype=np.int64)
-    unknowns = tape.operands[nodes[tape.ops[nodes] == Op.UNKNOWN], 0]
-    moved = problem.frame_of[unknowns]
-    return _marked(moved[moved >= 0], len(problem.parent))
+    return _marked(tape.operands[nodes[tape.ops[nodes] == Op.UNKNOWN], 0], len(problem.initial))

@@ -85,6 +85,8 @@ class Problem:
     group    (n,) the group that owns each unknown
     frame_of (n,) for a translation of a group's frame, that group; else -1. A frame's unknowns are owned by
              the parent of the group they move.
+    axis     (n,) 0 for a coordinate of a place along x in its group's frame, 1 along y, -1 for anything else;
+             None where that is not known
     longest  (n,) the largest change of each unknown in one Newton step, so that near a singular place an
              angle does not spin; None for no limit
     parent   (g,) parent of each group, -1 for the root, which is group 0; parents come before children
@@ -99,6 +101,8 @@ class Problem:
     spanned  (n,) True for a kept size that was read off two places: what a constraint places, it may stretch
     thing    (n,) the same number for unknowns that are one thing to move, as the coordinates of a point:
              as few things as can be found are moved. If all are one, what is nearest is sought and no more.
+    clinging the groups that belong to what is drawn around them, in which no freedom is told where they ride
+             along; None where that is not known
     observables: (group, tape node) for each coordinate that a reader of the drawing could see move, in the
              root's frame: degrees of freedom are counted on these, so that a frame and its contents
              moving against each other do not count.
@@ -118,10 +122,12 @@ class Problem:
     whole: NDArray[np.int64]
     inside: NDArray[np.int64]
     named: bool = False
+    axis: NDArray[np.int64] | None = None
     longest: Floats | None = None
     standing: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     spanned: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     thing: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    clinging: frozenset[int] | None = None
     observables: tuple[tuple[int, int], ...] = ()
     names: tuple[str, ...] = field(default=(), repr=False)
 

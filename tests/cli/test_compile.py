@@ -26,8 +26,8 @@ def test_what_can_still_move_is_told(aidl: Aidl) -> None:
     lines = "\n".join(f"c{i} = circle(center: ({9 * i}, 0), radius: 1)" for i in range(9))
     told = aidl("compile", "-", "-o", "x.svg", stdin=f"drawing d {{\n{lines}\n}}").err.splitlines()
     assert told[0].startswith("x.svg: solved, 18 degrees of freedom")
-    assert told[1] == "  `c0` can slide left–right and up–down"
-    assert told[-1] == "  … and more"
+    assert told[1] == "  `c1` can slide along x and y"
+    assert told[-1] == "  … and 3 more like these"
     assert len(told) == 7
     assert aidl("compile", "-", "-o", "x.svg", "--quiet", stdin=f"drawing d {{\n{lines}\n}}").err == ""
 

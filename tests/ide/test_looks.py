@@ -67,10 +67,10 @@ assembly a {
         (
             "a",
             "solved, 2 degrees of freedom · 1 constraint · "
-            "knob.body can slide left–right, knob.eye can slide left–right",
+            "knob.body can slide along x, knob.eye can slide along x",
         ),
         ("plate", "fully constrained"),
-        ("knob", "1 constraint · body can slide left–right, eye can slide left–right"),
+        ("knob", "1 constraint · body can slide along x, eye can slide along x"),
         ("h", "2 times · fully constrained"),
     ]
 

@@ -216,7 +216,7 @@ def test_a_point_moves_from_where_it_is() -> None:
         "drawing a { hand = line(fixed((10, 5)), (40, 5)); constrain { hand.length == 30 } }"
     ).values()
     (arrow,) = way.arrows
-    assert way.words == "slide up–down at its end"
+    assert way.words == "slide along y at its end"
     assert arrow.start == pytest.approx((40, 5))
     assert arrow.end[0] == pytest.approx(40, abs=1e-3)
 
@@ -227,6 +227,7 @@ drawing d {
     plate = rectangle(center: fixed((0, 0)), width: guess(40), height: 20)
     knob = circle(center: fixed((0, 30)), radius: 2)
     hand = line(fixed((50, 0)), length: fixed(10), angle: guess(30deg))
+    constrain pin.rim.radius >= 1
 }
 """
 

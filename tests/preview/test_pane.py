@@ -354,7 +354,7 @@ def test_conflicts_name_their_constraints(pane: Pane) -> None:
 def test_free_directions(pane: Pane) -> None:
     motions = [
         {
-            "words": "slide left–right",
+            "words": "slide along x",
             "elements": [PLATE],
             "arrows": [{"from": [0, 0], "to": [30, 0]}],
             "turns": [],
@@ -369,9 +369,7 @@ def test_free_directions(pane: Pane) -> None:
     pane.shows(motions=motions)
     assert pane.find(".motion").count() == 0
     pane.page.get_by_role("button", name="Freedom").first.click()
-    expect(pane.find("#freedom-list li")).to_have_text(
-        ["plate can slide left–right", "plate.bore.rim can turn"]
-    )
+    expect(pane.find("#freedom-list li")).to_have_text(["plate can slide along x", "plate.bore.rim can turn"])
     lines = pane.page.eval_on_selector_all(".motion .line", "all => all.map(one => one.getAttribute('d'))")
     x, y, _, _ = stage(pane)
     numbers = [float(n) for n in re.findall(r"-?[\d.]+", lines[0])]

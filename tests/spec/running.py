@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import aidl_lang
 from aidl_lang import pipeline
 from aidl_lang.diagnostics import Diagnostic, apply_fixes
-from aidl_lang.freedom import sentences
+from aidl_lang.freedom import report
 from aidl_lang.render import render
 from aidl_lang.source import SourceFile
 from aidl_lang.world import MemoryWorld
@@ -209,7 +209,7 @@ def _summary(word: str, compiled: pipeline.Compiled) -> str:
         case "free":
             return ", ".join(model.free) or "nothing"
         case "motions":
-            return "; ".join(sentences(model.motions, model.root.path)) or "none"
+            return "; ".join(report(model)) or "none"
         case _:
             changes = [f"{c.path} {shown(c.written)} -> {shown(c.solved)}" for c in model.changed]
             return ", ".join(changes) or "nothing"

@@ -97,7 +97,7 @@ def _statements(model: SolvedModel, structure: SolvedStructure, motion: Motion) 
     moved = things.get(name)
     match motion.kind:
         case "slide" | "together" if moved is not None:
-            axes = {"slide left–right": "x", "slide up–down": "y"}.get(motion.words, "xy")
+            axes = {"slide along x": "x", "slide along y": "y"}.get(motion.words, "xy")
             for axis in axes:
                 yield from _held(model, structure, things, moved, axis, motion)
         case "grow" if moved is not None:

@@ -156,12 +156,12 @@ class Solved:
         if model is None:
             return None
         by_path = {u.path: u for u in ex.unknowns([value.expression])}
-        for motion in model.motions:
+        for motion in model.ways:
             rates = {by_path[path]: rate for path, rate in motion.moves.items() if path in by_path}
             largest = max(map(abs, motion.moves.values()), default=0.0)
             if rates and largest and self._changes(value, rates, _STEP / largest):
                 return True
-        return False if len(model.motions) == (model.degrees or 0) else None
+        return False if len(model.ways) == (model.degrees or 0) else None
 
     def _changes(self, value: Num, rates: dict[Unknown, float], step: float) -> bool:
         solved = self.evaluate.values

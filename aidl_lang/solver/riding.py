@@ -1,0 +1,100 @@
+"""What rides along: groups that no constraint names keep their place in the group around them.
+
+A group whose frame is not named does not move in the one around it. What it draws moves within it only where
+something in it is named, and so does what a group draws that is only named as a whole: it moves with its
+frame. A group that clings to what is drawn around it, as a hole does to a part, is seen from its own frame
+where it rides along, so that nothing is free to slide in a part of which nobody said where it shall stand.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from aidl_lang.solver.gradients import Sparse
+from aidl_lang.solver.naming import Naming, mentioned, naming
+from aidl_lang.solver.operations import Bools, Ints
+from aidl_lang.solver.problem import Problem
+
+UNMOVED = 1e-9
+"""Slopes of unit rows along a shift that count as none."""
+
+
+@dataclass(frozen=True)
+class Riding:
+    """
+    carried (g,) whether a group rides along: its frame does not move in the group around it
+    anchor  (g,) the group from whose frame what each draws is seen: the innermost around it that rides along
+            and clings to what is drawn around it; 0 for the root
+    movable (n,) the unknowns that may move
+    """
+
+    carried: Bools
+    anchor: Ints
+    movable: Bools
+
+    @property
+    def loose(self) -> Bools:
+        """The groups (g,) that ride along, though they belong to nothing that is drawn around them."""
+        own: Bools = self.anchor == np.arange(len(self.anchor))
+        return self.carried & ~own
+
+    def pins(self, problem: Problem, jacobian: Sparse) -> Sparse:
+        """A row for each direction in which all that a carried group draws can shift together, which is its
+        place: they hold one coordinate each.
+        """
+        held: list[int] = []
+        if problem.axis is not None:
+            home = np.where(self.movable & self.carried[problem.group], problem.group, -1)
+            for axis in (0, 1):
+                held += _pinned(np.where(problem.axis == axis, home, -1), jacobian, len(self.carried))
+        return Sparse(np.arange(len(held) + 1), np.array(held, dtype=np.int64), np.ones(len(held)))
+
+
+def _pinned(home: Ints, jacobian: Sparse, groups: int) -> list[int]:
+    """A coordinate of each group of which all coordinates, those at `home` in it, can shift alike."""
+    entries = np.flatnonzero(home[jacobian.columns] >= 0)
+    key = jacobian.rows[entries] * groups + home[jacobian.columns[entries]]
+    pairs, place = np.unique(key, return_inverse=True)
+    slope = np.asarray(np.bincount(place, jacobian.entries[entries], len(pairs)), dtype=np.float64)
+    held = np.unique(pairs[np.abs(slope) > UNMOVED] % groups)
+    own, first = np.unique(home, return_index=True)
+    return [int(u) for g, u in zip(own.tolist(), first.tolist(), strict=True) if g >= 0 and g not in held]
+
+
+def rides(problem: Problem) -> Riding:
+    """What of a problem rides along, by what its constraints name."""
+    named = naming(problem)
+    moved = problem.frame_of
+    may_move = named.frames[moved] if problem.named else mentioned(problem)
+    movable = ~problem.kept & ((moved < 0) | may_move)
+    movable &= (moved >= 0) | named.inside[problem.group]
+    movable |= _stirred(problem, named, movable)
+    carried = ~named.frames & problem.named
+    carried[0] = False
+    return Riding(carried, _anchors(problem, carried), movable)
+
+
+def _stirred(problem: Problem, named: Naming, movable: Bools) -> Bools:
+    """The unknowns of what groups draw that are only named as a whole, where these do not move with their
+    frame.
+    """
+    axis = np.full(len(movable), -1) if problem.axis is None else problem.axis
+    moved = np.where(movable, problem.frame_of, -1)
+    shifts = np.zeros((3, len(named.whole)), dtype=np.bool_)  # along x, along y, anyhow
+    for direction in (0, 1):
+        shifts[direction, moved[(moved >= 0) & (axis == direction)]] = True
+    shifts[-1, moved[moved >= 0]] = True
+    is_content = (problem.frame_of < 0) & ~problem.kept & named.whole[problem.group]
+    found: Bools = is_content & ~shifts[axis, problem.group]
+    return found
+
+
+def _anchors(problem: Problem, carried: Bools) -> Ints:
+    clinging = problem.clinging or frozenset()
+    anchor = np.zeros(len(carried), dtype=np.int64)
+    for group, parent in enumerate(problem.parent.tolist()):
+        if group:
+            anchor[group] = group if carried[group] and group in clinging else anchor[parent]
+    return anchor
