@@ -9,6 +9,7 @@ import json
 import random
 import re
 import signal
+import sys
 import traceback
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -22,21 +23,23 @@ from aidl_lang.building.state import Limits
 from aidl_lang.diagnostics import Diagnostic, has_errors
 from aidl_lang.export import ExportError, Options
 from aidl_lang.mending import mend
-from aidl_lang.names import fold
 from aidl_lang.parser import parse
 from aidl_lang.pipeline import Settings
+from aidl_lang.printer import format_module
 from aidl_lang.render.terminal import render
 from aidl_lang.source import SourceFile
 
 SETTINGS = replace(
     Settings(),
-    building=Limits(entities=8000, turns=50_000, seconds=3.0),
-    solving=replace(Settings().solving, seconds=5.0),
-    drawing=4.0,
+    building=Limits(entities=8000, turns=50_000, seconds=1.5),
+    solving=replace(Settings().solving, seconds=3.0),
+    drawing=2.0,
 )
 """Tighter than what a user has, so that a program that asks for much is soon through."""
 LONGEST = {"check": 12.0, "fix": 60.0, "format": 15.0, "compile": 30.0, "write": 12.0}
 """Seconds of the processor's time, well above what the limits of `SETTINGS` add up to."""
+RECURSION = 20_000
+"""Python frames, as the compiler has them: the judge itself walks through trees that are as deep."""
 LAYERS = frozenset({"names", "points", "bbox", "constraints", "dof", "plan"})
 
 _NO_NUMBER = re.compile(r"(?<![\w.#-])-?(?:nan|inf|infinity)(?![\w-])", re.IGNORECASE)
@@ -83,6 +86,7 @@ class Judge:
 
     def __init__(self) -> None:
         self.counts: Counter[str] = Counter()
+        sys.setrecursionlimit(max(sys.getrecursionlimit(), RECURSION))
 
     def finding(self, text: str, seed: int = 0) -> Finding | None:
         """What is wrong with the answers to a program; None if nothing is."""
@@ -113,9 +117,10 @@ class Judge:
         text, _ = pipeline.formatted(source)
         if text is None:
             return None
-        trees = [_as_meant(parse(SourceFile(source.name, t)).module) for t in (source.text, text)]
+        plain = format_module(parse(source))  # names as they were written
+        trees = [_as_meant(parse(SourceFile(source.name, t)).module) for t in (source.text, plain)]
         if not ast.same(*trees):
-            return Finding("format", "another program", text)
+            return Finding("format", "another program", plain)
         twice, _ = pipeline.formatted(SourceFile(source.name, text))
         if text != twice:
             return Finding("format", "another form the second time", f"{text}\n=== again\n{twice}")
@@ -146,9 +151,9 @@ class Judge:
 
 
 def _as_meant(node: ast.Node) -> ast.Node:
-    """A tree with the equations of its constraints as comparisons, and with names in one spelling."""
-    if isinstance(node, ast.Equation):
-        node = ast.ExpressionStatement(node.meant, span=node.span)
+    """A tree in which what means the same is written in one way: `=` among constraints, `constrain` before
+    one that needs it or not.
+    """
     changed: dict[str, object] = {}
     for part in fields(node):
         value = getattr(node, part.name)
@@ -156,9 +161,12 @@ def _as_meant(node: ast.Node) -> ast.Node:
             changed[part.name] = _as_meant(value)
         elif isinstance(value, tuple):
             changed[part.name] = tuple(_as_meant(v) if isinstance(v, ast.Node) else v for v in value)
-        elif part.name == "text" and isinstance(node, ast.Name | ast.Identifier):
-            changed[part.name] = fold(value)
-    return replace(node, **changed)
+    node = replace(node, **changed)
+    if isinstance(node, ast.Equation):
+        return ast.ExpressionStatement(node.meant, span=node.span)
+    if isinstance(node, ast.Constrain) and not node.braces and len(node.items.statements) == 1:
+        return node.items.statements[0]
+    return node
 
 
 def attempt(stage: str, step: Callable[[], Finding | None]) -> Finding | None:
