@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from aidl_lang import pipeline
+from aidl_lang.diagnostics import MOST_ERRORS
 from aidl_lang.reference import collect
 from aidl_lang.solved import ConstraintReport
 from aidl_lang.source import SourceFile
@@ -105,6 +106,10 @@ class Cell:
         return self.outcome not in ("works", "refused")
 
 
+_AT_ONCE = MOST_ERRORS // 2
+"""Cells in a program: so few that all errors are told if each of them is refused."""
+
+
 def constraints() -> list[str]:
     """All that constrains, in the order of the reference."""
     entries = collect.reference().entries.values()
@@ -113,7 +118,7 @@ def constraints() -> list[str]:
 
 
 def cells(name: str) -> Iterator[Cell]:
-    """All cells of a constraint. Two compiles: of all at once, and again of those that were not refused."""
+    """All cells of a constraint: compiled many at once, and again those that were not refused."""
     for form in FORMS.get(name, (_PAIR,)):
         yield from _cells(name, form)
 
@@ -123,9 +128,10 @@ def _cells(name: str, form: str) -> Iterator[Cell]:
     pairs = list(product(KINDS, seconds))
     lines = [_program(name, form, *pair, i) for i, pair in enumerate(pairs)]
     refused: dict[int, str] = {}
-    for d in _compiled(lines, range(len(pairs))).diagnostics:
-        if d.is_error and d.span is not None and d.span.line > 1:
-            refused.setdefault(d.span.line - 2, f"{d.code}: {d.message}")
+    for first in range(0, len(pairs), _AT_ONCE):
+        for d in _compiled(lines, range(first, min(first + _AT_ONCE, len(pairs)))).diagnostics:
+            if d.is_error and d.span is not None and d.span.line > 1:
+                refused.setdefault(d.span.line - 2, f"{d.code}: {d.message}")
     kept = [i for i in range(len(pairs)) if i not in refused]
     solved = _compiled(lines, kept)
     reports = {c.path: c for c in solved.model.constraints} if solved.model else {}

@@ -45,7 +45,7 @@ def active(marked: str) -> tuple[str, str | None]:
         ("constrain c.above(¦", "above", "b: box"),
         ("constrain { c.above(b, gap: ¦) }", "above", "gap: length"),
         ("constrain { c.above(b, at_least: 3¦) }", "above", "at_least: length = 0"),
-        ("constrain row(c, b, ¦", "row", "things: list"),
+        ("constrain row(c, b, ¦", "row", "things: peers"),
         ("constrain row(c, b, pitch: ¦", "row", "pitch: length"),
         ("let t = twice(3, ¦)", "twice", "more = 1"),
         ("let t = twice(more: ¦)", "twice", "more = 1"),

@@ -92,6 +92,10 @@ def _solved(
         frame_of=np.full(len(at), -1),
         parent=np.array([-1]),
         holder=np.zeros_like(problem.holder),
+        named=False,
+        standing=_are(lowered, frozenset()),
+        spanned=_are(lowered, frozenset()),
+        thing=np.zeros(len(at), dtype=np.int64),
         observables=(),
     )
     solution = solve(flat, _SETTINGS)
