@@ -46,7 +46,7 @@ def gave_way(lowered: Lowered, solution: Solution, settings: Settings) -> tuple[
             moved = {}
             for index in sorted(reason.unknowns - told):
                 before, now = float(problem.initial[index]), float(solution.values[index])
-                if abs(now - before) > _STILL and not lowered.unknowns[index].implied:
+                if abs(now - before) > _STILL:
                     moved[lowered.unknowns[index]] = before, now
             told |= reason.unknowns
             if moved:
@@ -68,10 +68,13 @@ def refused(note: Diagnostic) -> Diagnostic:
 
 
 def giving_notes(given: Sequence[GaveWay], model: SolvedModel) -> Iterator[Diagnostic]:
-    """What is said of it: one message for all sizes that changed for the same reason, one for each frame."""
+    """What is said of it: one message for all sizes that changed for the same reason, one for each frame.
+    Nothing is said of a length between literal points: no number was written for it, and its points were
+    placed.
+    """
     changes = {change.path: change for change in model.changed}
     for one in given:
-        sizes = [changes[u.path] for u in one.moved if u.path in changes]
+        sizes = [changes[u.path] for u in one.moved if u.path in changes and not u.implied]
         visible = [c for c in sizes if short(c.written) != short(c.solved)]
         if visible:
             yield _of_sizes(visible, one)

@@ -88,8 +88,6 @@ def _floating(lowered: Lowered, freedom: Freedom) -> Iterator[str]:
 def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:
     for index in solution.changed:
         unknown = lowered.unknowns[index]
-        if unknown.implied:
-            continue  # the constraints placed its points, and nobody wrote a number
         solved, span = float(solution.values[index]), unknown.holder.span
         yield Change(unknown.path, unknown.guess, solved, span, unknown.told, unknown.is_size)
 
