@@ -128,8 +128,8 @@ def _cells(name: str, form: str) -> Iterator[Cell]:
     pairs = list(product(KINDS, seconds))
     lines = [_program(name, form, *pair, i) for i, pair in enumerate(pairs)]
     refused: dict[int, str] = {}
-    for first in range(0, len(pairs), _AT_ONCE):
-        for d in _compiled(lines, range(first, min(first + _AT_ONCE, len(pairs)))).diagnostics:
+    for begin in range(0, len(pairs), _AT_ONCE):
+        for d in _compiled(lines, range(begin, min(begin + _AT_ONCE, len(pairs)))).diagnostics:
             if d.is_error and d.span is not None and d.span.line > 1:
                 refused.setdefault(d.span.line - 2, f"{d.code}: {d.message}")
     kept = [i for i in range(len(pairs)) if i not in refused]

@@ -31,6 +31,8 @@ INDEPENDENT = 1e-7
 """Part of a column that others have to leave for it to reach further than they do."""
 REACHED = 1e-6
 """Part of a change by which two are taken to be the same."""
+ASTRAY = 0.5
+"""Part of the way that slopes promised by which what bends may end elsewhere."""
 MANY = 400
 """Unknowns that moved, above which the nearest point is left as it is."""
 
@@ -45,14 +47,20 @@ def thin(hierarchy: Hierarchy, scope: Scope, before: dict[int, float], rank: Ran
     moved = _moved(hierarchy, before)
     if len({int(hierarchy.problem.thing[unknown]) for unknown in moved}) < 2 or len(moved) > MANY:
         return
-    needed = _needed(hierarchy, scope, moved, rank)
+    needed, expected = _needed(hierarchy, scope, moved, rank)
     if len(needed) == len(moved):
         return
     reached = hierarchy.save(scope.free)
     hierarchy.values.assign(before.items())
     verdict: Verdict = hierarchy.attempt(replace(scope, free=frozenset(needed)), 0)
-    if not verdict.satisfied:
+    if not verdict.satisfied or not _as_expected(_moved(hierarchy, before), expected):
         hierarchy.values.assign(reached.items())
+
+
+def _as_expected(moved: dict[int, float], expected: dict[int, float]) -> bool:
+    """Whether what bends moved about as far as its slopes promised, and not through a singular place."""
+    off = sum((moved.get(unknown, 0.0) - step) ** 2 for unknown, step in expected.items())
+    return off <= ASTRAY**2 * sum(step * step for step in expected.values())
 
 
 def _moved(hierarchy: Hierarchy, before: dict[int, float]) -> dict[int, float]:
@@ -62,8 +70,12 @@ def _moved(hierarchy: Hierarchy, before: dict[int, float]) -> dict[int, float]:
     return {u: step for u, step in found.items() if abs(step) > STILL}
 
 
-def _needed(hierarchy: Hierarchy, scope: Scope, moved: dict[int, float], rank: Rank) -> set[int]:
-    """The unknowns among those that moved that are enough."""
+def _needed(
+    hierarchy: Hierarchy, scope: Scope, moved: dict[int, float], rank: Rank
+) -> tuple[set[int], dict[int, float]]:
+    """The unknowns among those that moved that are enough, and how far those in curved rows would have to move
+    by the slopes of these.
+    """
     tolerance, values = hierarchy.settings.tolerance, hierarchy.values
     rows = hierarchy.rows(scope.constraints)
     cone = values.cone(row.expression for row in rows)
@@ -75,6 +87,7 @@ def _needed(hierarchy: Hierarchy, scope: Scope, moved: dict[int, float], rank: R
     ]
     thing = hierarchy.problem.thing
     needed: set[int] = set()
+    expected: dict[int, float] = {}
     for program in Freezer(values, moved, values.narrowed(cone, moved)).freeze(roots).programs:
         columns = [int(unknown) for unknown in program.columns]
         steps = np.array([moved[unknown] for unknown in columns])
@@ -97,10 +110,12 @@ def _needed(hierarchy: Hierarchy, scope: Scope, moved: dict[int, float], rank: R
         }
         order = [column for number in sorted(things, key=dearness.__getitem__) for column in things[number]]
         share = _combination(matrix, matrix @ steps, order)
-        for members in things.values():
-            if any(share[i] for i in members):
-                needed.update(columns[i] for i in members)
-    return needed
+        chosen = [i for members in things.values() if any(share[i] for i in members) for i in members]
+        needed.update(columns[i] for i in chosen)
+        if chosen and not program.linear:
+            found = np.linalg.lstsq(matrix[:, chosen], matrix @ steps, rcond=None)[0]
+            expected.update(zip((columns[i] for i in chosen), found.tolist(), strict=True))
+    return needed, expected
 
 
 def _combination(matrix: Floats, target: Floats, order: list[int]) -> list[bool]:

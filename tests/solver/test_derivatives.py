@@ -54,7 +54,8 @@ def by_program(problem: Problem, nodes: list[int], x: np.ndarray) -> np.ndarray:
     values = Valuation(problem.tape, x.tolist())
     values.refresh(values.cone(nodes))
     found = np.zeros((len(nodes), len(x)))
-    for program in Freezer(values, range(len(x)), values.cone(nodes)).freeze(nodes).programs:
+    varying = values.narrowed(values.cone(nodes), range(len(x)))
+    for program in Freezer(values, range(len(x)), varying).freeze(nodes).programs:
         program.residuals(x[program.columns])
         found[np.ix_(program.rows, program.columns)] = program.jacobian(
             np.ones(len(program.rows)), np.ones(len(program.columns))

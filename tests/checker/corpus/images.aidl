@@ -1,5 +1,5 @@
 /// Mirror images of every kind of thing, about lines, points, axes and coordinates; things symmetric in themselves.
-// changes: feather.p1, feather.p2, feather.p3, leaf, r, wing
+// changes: feather.p1, feather.p3, leaf, r, wing
 drawing images {
     construction axis = line(fixed((0, -20)), fixed((10, 20)))
     p = (30, 5)

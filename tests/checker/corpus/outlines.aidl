@@ -1,5 +1,5 @@
 /// Paths with arcs, smooth joints and Béziers, and splines: their joints are asked for by what each step says.
-// changes: flow.edge.steps[0], flow.edge.steps[1].to, flow.edge.steps[2].first, flow.edge.steps[3].to, flow.edge.steps[4].to, flow.edge.steps[6].through, flow.edge.steps[6].to
+// changes: flow.edge.steps[0], flow.edge.steps[3].to, flow.edge.steps[6].through
 assembly outlines {
     solid tag {
         edge = path(
