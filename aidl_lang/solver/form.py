@@ -42,9 +42,9 @@ LONGEST_FILE = 50_000_000
 LEVELS = 100
 """Of groups within groups."""
 
-MEMBERS = ("about", "groups", "unknowns", "let", "constraints", "observed", "expected")
-UNKNOWN = ("guess", "scale", "kept", "group", "frame", "longest")
-CONSTRAINT = ("is", "let", "tag", "group", "placed", "weight", "scale")
+MEMBERS = ("about", "groups", "unknowns", "let", "constraints", "observed", "expected", "named")
+UNKNOWN = ("guess", "scale", "kept", "group", "frame", "longest", "standing", "spanned", "thing")
+CONSTRAINT = ("is", "let", "tag", "group", "placed", "weight", "scale", "whole", "inside")
 OBSERVABLE = ("is", "let", "group")
 
 
@@ -124,6 +124,9 @@ class _Unknown:
     group: int
     frame_of: int
     longest: float
+    standing: bool
+    spanned: bool
+    thing: int
 
 
 class _Loading:
@@ -134,6 +137,7 @@ class _Loading:
         self.parent, self.depth = [-1], [0]
         self.unknowns: list[_Unknown] = []
         self.tags: dict[str, int] = {}
+        self.named = False
 
     def case(self, form: object) -> Case:
         members = Members(form, *MEMBERS)
@@ -144,6 +148,7 @@ class _Loading:
             with within(f"unknown {quoted(name)}"):
                 self._add_unknown(name, entry)
         self._read_lets(members)
+        self.named = members.read("named", as_flag, False)
         listed: list[object] = members.read("constraints", as_list, [])
         constraints = [self._constraint(index, entry) for index, entry in enumerate(listed)]
         problem = self._problem(constraints, self._observables(members))
@@ -168,7 +173,11 @@ class _Loading:
             frame_of=np.array([u.frame_of for u in unknowns], dtype=np.int64),
             parent=np.array(self.parent, dtype=np.int64),
             **constraint_arrays(constraints),
+            named=self.named,
             longest=longest if np.isfinite(longest).any() else None,
+            standing=np.array([u.standing for u in unknowns], dtype=np.bool_),
+            spanned=np.array([u.spanned for u in unknowns], dtype=np.bool_),
+            thing=np.array([u.thing for u in unknowns], dtype=np.int64),
             observables=observables,
             names=tuple(self.notation.unknowns),
         )
@@ -203,6 +212,9 @@ class _Loading:
                 group=group,
                 frame_of=frame_of,
                 longest=members.read("longest", as_positive, np.inf),
+                standing=members.read("standing", as_flag, False),
+                spanned=members.read("spanned", as_flag, False),
+                thing=members.read("thing", as_count, 0),
             )
         )
 
@@ -228,6 +240,10 @@ class _Loading:
         names = list_of(one_of("unknown", self.notation.unknowns))(value)
         return frozenset(self.notation.unknowns[name] for name in names)
 
+    def _groups_of(self, value: object) -> frozenset[int]:
+        """The groups in a list of names."""
+        return frozenset(self.groups[name] for name in list_of(one_of("group", self.groups))(value))
+
     # -- constraints and observables
 
     def _constraint(self, index: int, entry: object) -> Constraint:
@@ -249,6 +265,8 @@ class _Loading:
                 rows=tuple(Row(*row, scale) for row, scale in zip(rows, scales, strict=False)),
                 placed=members.read("placed", self._numbers_of, frozenset()),
                 weight=members.read("weight", as_not_negative, None),
+                whole=members.read("whole", self._groups_of, frozenset()),
+                inside=members.read("inside", self._groups_of, frozenset()),
             )
 
     def _row(self, value: object) -> tuple[int, Relation]:

@@ -31,8 +31,11 @@ INDEPENDENT = 1e-7
 """Part of a column that others have to leave for it to reach further than they do."""
 REACHED = 1e-6
 """Part of a change by which two are taken to be the same."""
-ASTRAY = 0.5
+ASTRAY = 0.2
 """Part of the way that slopes promised by which what bends may end elsewhere."""
+FURTHER = 2.1
+"""How many times as far as to the nearest point something may go in curved rows so that other things need
+not."""
 MANY = 400
 """Unknowns that moved, above which the nearest point is left as it is."""
 
@@ -53,12 +56,16 @@ def thin(hierarchy: Hierarchy, scope: Scope, before: dict[int, float], rank: Ran
     reached = hierarchy.save(scope.free)
     hierarchy.values.assign(before.items())
     verdict: Verdict = hierarchy.attempt(replace(scope, free=frozenset(needed)), 0)
-    if not verdict.satisfied or not _as_expected(_moved(hierarchy, before), expected):
+    if not verdict.satisfied or not _as_expected(_moved(hierarchy, before), moved, expected):
         hierarchy.values.assign(reached.items())
 
 
-def _as_expected(moved: dict[int, float], expected: dict[int, float]) -> bool:
-    """Whether what bends moved about as far as its slopes promised, and not through a singular place."""
+def _as_expected(moved: dict[int, float], nearest: dict[int, float], expected: dict[int, float]) -> bool:
+    """Whether what bends moved about as far as its slopes promised, and not through a singular place; nor
+    much further than to the nearest point.
+    """
+    if expected and max(map(abs, moved.values())) > FURTHER * max(map(abs, nearest.values())):
+        return False
     off = sum((moved.get(unknown, 0.0) - step) ** 2 for unknown, step in expected.items())
     return off <= ASTRAY**2 * sum(step * step for step in expected.values())
 
@@ -73,8 +80,8 @@ def _moved(hierarchy: Hierarchy, before: dict[int, float]) -> dict[int, float]:
 def _needed(
     hierarchy: Hierarchy, scope: Scope, moved: dict[int, float], rank: Rank
 ) -> tuple[set[int], dict[int, float]]:
-    """The unknowns among those that moved that are enough, and how far those in curved rows would have to move
-    by the slopes of these.
+    """The unknowns among those that moved that are enough, and how far those in curved rows would have to
+    move by the slopes of these.
     """
     tolerance, values = hierarchy.settings.tolerance, hierarchy.values
     rows = hierarchy.rows(scope.constraints)

@@ -81,6 +81,7 @@ class _Writing:
             "unknowns": {name: self._unknown(i) for i, name in enumerate(self.names)},
             "constraints": [self._constraint(*c) for c in zip(problem.constraints, tags, strict=True)],
             "observed": [self._observable(group, node) for group, node in problem.observables],
+            **({"named": True} if problem.named else {}),
         }
 
     def _unknown(self, i: int) -> object:
@@ -98,6 +99,9 @@ class _Writing:
                 group=self.groups[owner] if owner and frame_of < 0 else None,
                 frame=self.groups[frame_of] if frame_of >= 0 else None,
                 longest=None if longest == np.inf else as_positive(longest),
+                standing=bool(problem.standing[i]) or None,
+                spanned=bool(problem.spanned[i]) or None,
+                thing=int(problem.thing[i]) or None,
             )
 
     def _constraint(self, constraint: Constraint, tag: str) -> object:
@@ -112,6 +116,8 @@ class _Writing:
             group=self.groups[constraint.group] if constraint.group else None,
             placed=[self.names[unknown] for unknown in sorted(constraint.placed)] or None,
             weight=None if constraint.weight is None else as_not_negative(constraint.weight),
+            whole=[self.groups[group] for group in sorted(constraint.whole)] or None,
+            inside=[self.groups[group] for group in sorted(constraint.inside)] or None,
             scale=_unless(1.0, scales[0]) if len(set(scales)) == 1 else scales or None,
         )
 

@@ -240,7 +240,7 @@ MISTAKES: list[tuple[object, str]] = [
     ({1: 2}, "a text is needed, not a number"),
     (
         {"unknown": X},
-        "no member is called 'unknown'; there are about, groups, unknowns, let, constraints, observed, expected",
+        "no member is called 'unknown'; there are about, groups, unknowns, let, constraints, observed, expected, named",
     ),
     ({"about": 3}, "about: a text is needed, not a number"),
     ({"groups": []}, "groups: an object is needed, not a list"),
