@@ -33,7 +33,7 @@ REACHED = 1e-6
 """Part of a change by which two are taken to be the same."""
 ASTRAY = 0.2
 """Part of the way that slopes promised by which what bends may end elsewhere."""
-FURTHER = 2.1
+FURTHER = 2.4
 """How many times as far as to the nearest point something may go in curved rows so that other things need
 not."""
 MANY = 400
@@ -56,15 +56,18 @@ def thin(hierarchy: Hierarchy, scope: Scope, before: dict[int, float], rank: Ran
     reached = hierarchy.save(scope.free)
     hierarchy.values.assign(before.items())
     verdict: Verdict = hierarchy.attempt(replace(scope, free=frozenset(needed)), 0)
-    if not verdict.satisfied or not _as_expected(_moved(hierarchy, before), moved, expected):
+    # A part that can stay is worth a long way of something within another.
+    spared = any(hierarchy.problem.frame_of[unknown] >= 0 for unknown in moved.keys() - needed)
+    furthest = np.inf if spared else FURTHER * max(map(abs, moved.values()))
+    if not verdict.satisfied or not _as_expected(_moved(hierarchy, before), furthest, expected):
         hierarchy.values.assign(reached.items())
 
 
-def _as_expected(moved: dict[int, float], nearest: dict[int, float], expected: dict[int, float]) -> bool:
-    """Whether what bends moved about as far as its slopes promised, and not through a singular place; nor
-    much further than to the nearest point.
+def _as_expected(moved: dict[int, float], furthest: float, expected: dict[int, float]) -> bool:
+    """Whether what bends moved about as far as its slopes promised, and not through a singular place; nothing
+    there further than `furthest`.
     """
-    if expected and max(map(abs, moved.values())) > FURTHER * max(map(abs, nearest.values())):
+    if expected and max(map(abs, moved.values()), default=0.0) > furthest:
         return False
     off = sum((moved.get(unknown, 0.0) - step) ** 2 for unknown, step in expected.items())
     return off <= ASTRAY**2 * sum(step * step for step in expected.values())
