@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import TYPE_CHECKING, ClassVar
 
 from aidl_lang import ast
@@ -92,7 +92,7 @@ class Geometry:
     clockwise  for an arc; for a text, that it reads in a mirror
     source     what it is a copy of
     known_as   of what is copied and has no name itself, the copy
-    reach      the ancestor of its owner that the source of a copy belongs to
+    reach      of what is derived of geometry outside of its owner, the structure that holds both
     glyphs     for a text, its characters in units of its height
     recipe     how its curves come from other outlines after solving
     finishes   sizes of the fillets and chamfers of its corners: `fillet` of a point or a whole outline,
@@ -306,6 +306,14 @@ def common_ancestor(a: Structure, b: Structure) -> Structure:
         return b
     above = set(chain(a))
     return next(s for s in chain(b) if s in above)
+
+
+def reach_of(owners: Iterable[Structure], here: Structure) -> Structure | None:
+    """The nearest structure around `here` and all the owners of what something in it is made of; None where
+    that is `here` itself.
+    """
+    reach = reduce(common_ancestor, owners, here)
+    return reach if reach is not here else None
 
 
 def convert(

@@ -13,7 +13,7 @@ from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.boxes import box_of, spelled_out
 from aidl_lang.building.coerce import as_written
-from aidl_lang.building.derive import Copier, outermost
+from aidl_lang.building.derive import Copier
 from aidl_lang.building.members import read
 from aidl_lang.building.motion import (
     NOWHERE,
@@ -27,7 +27,7 @@ from aidl_lang.building.motion import (
 )
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.model import Geometry, Structure, convert
+from aidl_lang.model import Geometry, Structure, convert, reach_of
 from aidl_lang.primitives import translate, view, xy
 from aidl_lang.units import LENGTH
 from aidl_lang.values import (
@@ -67,7 +67,7 @@ def copied(
 ) -> Value:
     """The copy of anything that can be copied; NOTHING after an error, reported here."""
     owners = [g.bound_to for v in (value, axis) for g in _geometry_in(v)]
-    copier = Copier(it, env.here, motion, outermost(owners, env.here), it.place(node))
+    copier = Copier(it, env.here, motion, reach_of(owners, env.here), it.place(node))
     return _copied(it, value, copier, node, env)
 
 

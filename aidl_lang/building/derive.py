@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -12,7 +11,7 @@ from aidl_lang.building.outlines import keep_unnamed
 from aidl_lang.building.scopes import Binding, CopiedBinding, LetBinding, Scope
 from aidl_lang.building.state import Interpreter
 from aidl_lang.builtins import EVERYWHERE
-from aidl_lang.model import Frame, Geometry, Structure, chain
+from aidl_lang.model import Frame, Geometry, Structure
 from aidl_lang.primitives import DIRECTIONS, clockwise, translate
 from aidl_lang.source import Span
 from aidl_lang.values import Array, ListVal, Num, Pattern, PointVal, RecordVal
@@ -74,6 +73,8 @@ class Copier:
             turns={},
         )
         self.made[source] = copy
+        if copy.reach is not None:
+            self.it.following.append(copy)
         if source.name is None and source.known_as is None:
             source.known_as = copy
         self._place(source, copy)
@@ -255,10 +256,3 @@ def _around(scope: Scope | None, source: Structure, copy: Structure) -> Scope:
         around.callables, around.aliases = scope.callables, scope.aliases
         around.values = {n: copy if v is source else v for n, v in scope.values.items()}
     return around
-
-
-def outermost(owners: Iterable[Structure], here: Structure) -> Structure | None:
-    """Of the structures whose unknowns a copy depends on, the ancestor of its own that is furthest out."""
-    above = chain(here)[1:]
-    found = [above.index(owner) for owner in owners if owner in above]
-    return above[max(found)] if found else None

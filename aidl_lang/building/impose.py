@@ -132,7 +132,7 @@ def _impose_condition(
     measured = ex.nodes((e for c in comparisons for e in (c.left, c.right) if e.is_open), only_open=True)
     found = [n.payload for n in measured if isinstance(n.payload, Measurement)]
     if found and found[0].kind in SIDES:
-        _box_unknown(it, found[0], node)
+        _box_unknown(it, found[0], node, env)
         return
     if found:
         it.report(
@@ -148,6 +148,8 @@ def _impose_condition(
     shape = _library_shape(it, node, env)
     if comparisons and shape is not None:
         _impose_within(it, shape, tuple(comparisons), node, env)
+    elif (follower := _following(it, comparisons, env.here)) is not None:
+        _box_follows(it, follower, node, env)
     elif comparisons:
         comparisons = _placed_in_call(it, node, comparisons, env)
         it.add_constraint(
@@ -171,13 +173,44 @@ def _is_angle(node: ast.Node) -> bool:
     return False
 
 
-def _box_unknown(it: Interpreter, box: Measurement, node: ast.Expression) -> None:
+def _following(it: Interpreter, comparisons: list[Comparison], here: Structure) -> Geometry | None:
+    """What in the boxes of which comparisons speak is derived of geometry outside of their structure."""
+    spoken_of = {s for c in comparisons for s in c.boxes}
+    return next(
+        (g for g in it.following if not g.bound_to.is_within(here) and spoken_of & _boxes_of(g)), None
+    )
+
+
+def _boxes_of(g: Geometry) -> set[Structure]:
+    """The structures whose boxes a geometry is in."""
+    around: set[Structure] = set()
+    structure = None if g.construction else g.owner
+    while structure is not None:
+        around.add(structure)
+        structure = structure.parent if structure.kind != "hole" else None
+    return around
+
+
+def _box_follows(it: Interpreter, follower: Geometry, node: ast.Expression, env: Env) -> None:
+    """A box in which something follows what lies outside of the structure that holds the constraint."""
+    span = it.place(node) or node.span
+    it.report(
+        "E0402",
+        f"a constraint of `{env.here.path}` cannot use a box that `{follower.path}` is in, which is derived "
+        f"of geometry outside of `{env.here.path}`",
+        span,
+        hints=[f"say it in `{follower.bound_to.path}`, or name a geometry of `{env.here.name}`, not its box"],
+    )
+
+
+def _box_unknown(it: Interpreter, box: Measurement, node: ast.Expression, env: Env) -> None:
     """A side of the box of an outline that is worked out after solving."""
     (outline,) = box.of
     assert isinstance(outline, Geometry)
     assert outline.recipe is not None
     source = outline.recipe.sources[0]
-    hint = f"constrain what it is made of: `{source.name or source.type}`"
+    known_as = source.name if source.owner is outline.owner else source.path.removeprefix(f"{env.here.path}.")
+    hint = f"constrain what it is made of: `{known_as or source.type}`"
     if outline.recipe.kind == "difference":
         hint += ", or cut with a `hole`, which leaves the box as it is"
     it.report(

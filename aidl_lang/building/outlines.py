@@ -12,7 +12,7 @@ from aidl_lang.building.construct import size
 from aidl_lang.building.scopes import Candidate
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.builtins import FINISHES, OUTLINES
-from aidl_lang.model import SIZES, Finish, Geometry, Recipe, Structure, convert_point
+from aidl_lang.model import SIZES, Finish, Geometry, Recipe, Structure, convert_point, reach_of
 from aidl_lang.names import find, fold
 from aidl_lang.units import LENGTH
 from aidl_lang.values import NOTHING, ListVal, Num, PointVal, Status, Text, Value, kind_of, length, members
@@ -50,6 +50,9 @@ def _outline(kind: str, *words: str) -> Function:
         numbers = {n: size(it, v, geometry, n) for n, v in a.items() if isinstance(v, Num)}
         geometry.fields = dict(numbers)
         geometry.recipe = Recipe(kind, tuple(operands), numbers, {n: w for n, w in said.items() if w})
+        geometry.reach = reach_of((s.bound_to for s in geometry.recipe.sources), env.here)
+        if geometry.reach is not None:
+            it.following.append(geometry)
         _take_over(geometry, env)
         return geometry
 

@@ -93,6 +93,8 @@ class Interpreter:
     caller: Callable[[Interpreter, ast.Call, Env], Value]
     diagnostics: list[Diagnostic] = field(default_factory=list)
     unknowns: list[Unknown] = field(default_factory=list)
+    following: list[Geometry] = field(default_factory=list)
+    """geometry that is derived of what lies outside of its structure"""
     constraints: list[Constraint] = field(default_factory=list)
     assertions: list[Assertion] = field(default_factory=list)
     knobs: list[Knob] = field(default_factory=list)

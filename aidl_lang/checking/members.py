@@ -110,11 +110,15 @@ def _of_structure(check: Inference, base: Fact, node: ast.Member) -> Fact:
 
 
 def _seen(check: Inference, place: Place, of: ast.Node, base: Place, symbol: Symbol) -> Place:
-    """A place told from inside a structure, as it is from where that structure is named. A structure that
-    the expression itself stands in is seen from inside.
+    """A place told from inside a structure, or from around it, as it is from where that structure is named. A
+    structure that the expression itself stands in is seen from inside.
     """
     if place.holder is not of:
-        return place
+        around = symbol.scope.homes if symbol.scope is not None else ()
+        if place.holder in check.homes or place.holder not in around:
+            return place
+        outwards = len(around) - 1 - around.index(place.holder)
+        return Place(base.holder, base.below[: max(len(base.below) - outwards, 0)] + place.below)
     if place.below == (symbol.name,) and symbol.node in check.homes and not symbol.is_array:
         assert symbol.node is not None
         return Place(symbol.node)

@@ -1,8 +1,8 @@
 """Validity of references (language reference: validity): who may read whose unknowns.
 
 Rule 1: geometry references only geometry and unknowns of its own structure. Arguments of templates may reach
-further, since the instantiating structure ties them by equalities; `mirror`, `copy` and `offset` may take an
-outline of an ancestor.
+further, since the instantiating structure ties them by equalities; what is derived for good, as by `mirror`,
+`copy` and `offset`, may be made of geometry anywhere further up.
 Rule 2: a constraint references only the subtree of the structure that holds it.
 
 A breach becomes a `Violation`. Its diagnostic names the nearest common ancestor, where the relation can be
@@ -22,7 +22,9 @@ from aidl_lang.checking.fields import PRIMITIVE
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.relocate import Site, member_path
 from aidl_lang.checking.violations import Target, Violation
-from aidl_lang.types import Binding, GeometryType, Given, NumberType, PointType, StructureType
+from aidl_lang.resolving.complaints import used_early
+from aidl_lang.resolving.symbols import UNKNOWNS
+from aidl_lang.types import Binding, GeometryType, Given, ListType, NumberType, PointType, StructureType
 
 
 def check_validity(module: ast.Module, infer: Inference) -> list[Violation]:
@@ -108,9 +110,27 @@ class _Walker:
             if isinstance(node, ast.Call) and self._makes_geometry(self.infer.fact(node), node.callee.text):
                 self._made(node, None, site)
                 continue
-            if reach and self._is_thing(node) and self._may_derive(node, site):
+            if reach and self._is_thing(node) and _may_derive(self.infer.fact(node), site.homes):
+                self._order(node, site)
                 continue
             self._geometry(self._targets(call, index, node, path), node, site)
+
+    def _order(self, node: ast.Expression, site: Site) -> None:
+        """What something is derived of is made further up, in whatever structure; of what stands in this one,
+        and is named without a path, that is known.
+        """
+        for part in ast.walk(node):
+            symbol = self.infer.resolution.uses.get(part)
+            if symbol is None or symbol.node is None or symbol.kind not in UNKNOWNS or symbol.is_array:
+                continue
+            is_own = (
+                isinstance(part, ast.Name) and symbol.scope is not None and symbol.scope.homes == site.homes
+            )
+            made = symbol.node.span
+            last = made.start if isinstance(symbol.node, ast.Structure) else made.end
+            if not is_own and part.span.source is made.source and part.span.start < last:
+                used_early(self.infer.report, part, symbol, "make it of what stands further up")
+                return
 
     def _makes_geometry(self, fact: Fact, name: str) -> bool:
         return isinstance(fact.type, GeometryType) or name in DERIVING | PATTERNS or is_point(fact.type)
@@ -118,12 +138,6 @@ class _Walker:
     def _is_thing(self, node: ast.Expression) -> bool:
         """Whether it may be what is copied, or a line to mirror about, and no number or coordinates."""
         return not isinstance(self.infer.fact(node).type, NumberType | PointType)
-
-    def _may_derive(self, node: ast.Expression, site: Site) -> bool:
-        """Whether a copy may be made of this: something of an ancestor itself, or of a child."""
-        return all(
-            p.holder in site.homes and (not p.below or p.holder is site.home) for p in self._reads(node)
-        )
 
     def _targets(
         self, call: ast.Call, index: int, node: ast.Expression, path: tuple[str, ...] | None
@@ -208,6 +222,18 @@ class _Walker:
         far = [p for p in _sorted(reads) if p.holder is not site.home]
         if far and isinstance(item, ast.ExpressionStatement | ast.Prefer | ast.Equation):
             self.found.append(Violation(2, Target(item, None), statement, tuple(far), site, self.infer))
+
+
+def _may_derive(fact: Fact, homes: Sequence[ast.Node]) -> bool:
+    """Whether something may be derived of this in the last of the structures `homes`: of geometry wherever it
+    is drawn, of a structure only in one that holds it.
+    """
+    kind = fact.type
+    while isinstance(kind, ListType):
+        kind = kind.element
+    if isinstance(kind, StructureType):
+        return all(p.holder in homes and (not p.below or p.holder is homes[-1]) for p in fact.reads)
+    return all(p.holder in homes for p in fact.reads)
 
 
 def _sorted(places: frozenset[Place] | set[Place]) -> list[Place]:

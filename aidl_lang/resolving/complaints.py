@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from aidl_lang import ast
@@ -215,21 +215,24 @@ def is_below(node: ast.Name, symbol: Symbol, scope: Scope) -> bool:
 def check_order(resolver: Resolver, node: ast.Name, symbol: Symbol, scope: Scope) -> None:
     """Geometry and unknowns exist from their line on; those of other structures are judged by validity."""
     if is_below(node, symbol, scope):
-        assert symbol.node is not None
-        here, place = node.span, symbol.node.span
-        inside = here.start >= place.start
-        resolver.report(
-            "E0205",
-            f"`{symbol.name}` is used in its own definition"
-            if inside
-            else f"`{symbol.name}` is used above the line that makes it",
-            node,
-            label="not there yet",
-            secondary=() if inside else (Label(symbol.declarations[0].span, "made here"),),
-            hints=(
-                "write a first guess here, and the relation in `constrain`, which is read after the rest",
-            ),
-        )
+        hint = "write a first guess here, and the relation in `constrain`, which is read after the rest"
+        used_early(resolver.report, node, symbol, hint)
+
+
+def used_early(report: Callable[..., object], node: ast.Node, symbol: Symbol, hint: str) -> None:
+    """Report the use of what a later line makes."""
+    assert symbol.node is not None
+    inside = node.span.start >= symbol.node.span.start
+    report(
+        "E0205",
+        f"`{symbol.name}` is used in its own definition"
+        if inside
+        else f"`{symbol.name}` is used above the line that makes it",
+        node,
+        label="not there yet",
+        secondary=() if inside else (Label(symbol.declarations[0].span, "made here"),),
+        hints=(hint,),
+    )
 
 
 _KINDS = {

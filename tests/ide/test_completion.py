@@ -135,6 +135,7 @@ def test_indices_are_those_that_were_drawn() -> None:
         ("assert ¦", {"late", "bore", "area", "clearance"}, {"circle"}),
         ("param more = ¦", {"width", "pi"}, {"rim", "late"}),
         ("x = mirror(¦, about: y_axis)", {"rim", "bore"}, {"late"}),
+        ("hole inner { edge = mirror(¦, about: y_axis) }", {"rim", "bore"}, {"late"}),
         ("hole inner { edge = circle(center: ¦) }", {"origin", "width"}, {"rim", "body", "plate"}),
         ("hole inner { edge = circle(radius: 1)\n constrain { ¦ } }", {"edge", "inner"}, {"rim", "plate"}),
         ("for k in 0..2 { constrain { rim.radius == ¦ } }", {"k", "rim"}, set()),

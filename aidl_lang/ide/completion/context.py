@@ -27,7 +27,7 @@ class Use(Enum):
     """What an expression may read, by the statement that it stands in (language reference: validity)."""
 
     GEOMETRY = "its own structure, above"
-    DERIVING = "its own structure, above, and what is around"
+    DERIVING = "whatever stands above"
     CONSTRAINT = "what is in its structure"
     CHECK = "everything"
     CONSTANT = "constants"
@@ -164,8 +164,11 @@ class Context:
         if any(n.span.start <= start < n.span.end and not isinstance(n, ast.Structure) for n in nodes):
             return True
         is_ordered = self.use in (Use.GEOMETRY, Use.DERIVING)
-        is_own = symbol.scope.homes == self.scope.homes and symbol.kind in UNKNOWNS and not symbol.is_array
-        return is_ordered and is_own and start < nodes[0].span.end
+        if not is_ordered or symbol.kind not in UNKNOWNS or symbol.is_array:
+            return False
+        if symbol.scope.homes == self.scope.homes:
+            return start < nodes[0].span.end
+        return self.use is Use.DERIVING and start < nodes[0].span.start
 
     def may_read(self, known: Known) -> bool:
         """Whether what a name stands for may be read here."""
@@ -181,9 +184,7 @@ class Context:
                 own = all(p == Place(self.home) for p in reads)
                 return own and known.name != "self" and known.symbol is not self.scope.own_name
             case Use.DERIVING:
-                return all(
-                    p.holder in self.scope.homes and (not p.below or p.holder is self.home) for p in reads
-                )
+                return all(p.holder in self.scope.homes for p in reads)
 
     def callables(self) -> Iterator[tuple[str, Symbol | None]]:
         """The names of this program, and of what it imports, that can be called here, the nearest first; with
