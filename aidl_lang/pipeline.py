@@ -350,9 +350,6 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
 
     What was said of the outcome stands as it was. Raises ValueError where nothing was built.
     """
-    from aidl_lang.geometry.drawing import draw
-    from aidl_lang.geometry.placeless import with_places
-    from aidl_lang.readout import read_out
     from aidl_lang.solver.analysis import analyse
 
     if outcome.built is None:
@@ -361,12 +358,7 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
     with _working:
         with watch("freedom"):
             freedom = analyse(lowered.problem, solution)
-        with watch("read out"):
-            model, evaluator = read_out(outcome.built, lowered, solution, freedom)
-        with watch("regions"):
-            model, _ = with_places(replace(model, size_up=_sizes(outcome.built, evaluator)))
-            model, _ = _completed(model)
-            drawing, _ = draw(model)
+        model, evaluator, drawing, _ = _pictured(outcome.built, lowered, solution, freedom, watch)
     return replace(
         outcome,
         status=model.status,
@@ -437,24 +429,33 @@ def _drawn(
     watch: _Stopwatch,
 ) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic], list[Diagnostic]]:
     """The solved model and its drawing; what there is to say of the solution, and of what is drawn."""
-    from aidl_lang.geometry.drawing import draw
-    from aidl_lang.geometry.placeless import with_places
     from aidl_lang.giving import explained
     from aidl_lang.outcome import assertion_notes, solution_notes
-    from aidl_lang.readout import read_out
 
-    with watch("read out"):
-        model, evaluator = read_out(built.model, lowered, solution, freedom)
-    with watch("regions"):
-        model, placeless = with_places(replace(model, size_up=_sizes(built.model, evaluator)))
-        model, wrong = _completed(model)
-        drawing, notes = draw(model)
+    model, evaluator, drawing, notes = _pictured(built.model, lowered, solution, freedom, watch)
     with watch("asserts"):
         model = explained(model, given)
         found = solution_notes(lowered, solution, freedom, model, given)
         is_solved = solution.status.value == "solved"
         found += assertion_notes(built.model, model, drawing, evaluator, solved_fully=is_solved)
-    return model, evaluator, drawing, found, [*placeless, *wrong, *notes]
+    return model, evaluator, drawing, found, notes
+
+
+def _pictured(
+    built: Model, lowered: Lowered, solution: Solution, freedom: Freedom, watch: _Stopwatch
+) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic]]:
+    """A solution put back into names and coordinates, its drawing, and what there is to say of that."""
+    from aidl_lang.geometry.drawing import draw
+    from aidl_lang.geometry.placeless import with_places
+    from aidl_lang.readout import read_out
+
+    with watch("read out"):
+        model, evaluator = read_out(built, lowered, solution, freedom)
+    with watch("regions"):
+        model, placeless = with_places(replace(model, size_up=_sizes(built, evaluator)))
+        model, wrong = _completed(model)
+        drawing, notes = draw(model)
+    return model, evaluator, drawing, [*placeless, *wrong, *notes]
 
 
 def _endless(settings: Settings) -> Diagnostic:
