@@ -13,8 +13,8 @@ from typing import TypeVar
 from aidl_lang import ast
 from aidl_lang.building.state import Env, Interpreter, Stop
 from aidl_lang.cancelling import limited_to
-from aidl_lang.model import Comparison, Condition, Geometry
-from aidl_lang.values import Num, PointVal, Value
+from aidl_lang.model import Comparison, Condition, Geometry, Structure
+from aidl_lang.values import Num, PointVal, Value, members
 
 _Tree = TypeVar("_Tree", bound=ast.Node)
 
@@ -58,6 +58,20 @@ class Wording:
                 yield node.span.text
             else:
                 stack.extend(reversed(list(ast.children(node))))
+
+    def named(self) -> Iterator[Geometry | Structure]:
+        """The geometry and structures of which the statement speaks, as far as each name in it leads."""
+        stack: list[ast.Node] = [self.node]
+        while stack:
+            node = stack.pop()
+            if isinstance(node, ast.Name | ast.Member | ast.Index):
+                value = self.value(node)
+                values = () if value is None else (value, *(members(value) or ()))
+                found = [v for v in values if isinstance(v, Geometry | Structure)]
+                yield from found
+                if found:
+                    continue
+            stack.extend(reversed(list(ast.children(node))))
 
     def param(self, name: ast.Expression) -> ast.Param | None:
         """The declaration of a `param` that nothing but this name reads."""

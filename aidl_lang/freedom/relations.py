@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from aidl_lang.building.wording import Wording
 from aidl_lang.freedom.scene import WHOLE, Ints, Scene
 from aidl_lang.model import Constraint, Model
 
@@ -27,9 +28,9 @@ class Relations:
         }
 
     def against(self, things: Sequence[str], moving: Ints) -> str:
-        """The path of what is related to things and does not go along where these observables move: by the
-        constraint that stands first, one of another array if there is one; for structures without such, the
-        part beside them. "" if there is nothing.
+        """The path of what is related to things and does not go along where these observables move, be it
+        free itself or held: by the constraint that stands first, one of another array if there is one; for
+        structures without such, the part beside them. "" if there is nothing.
         """
         flags = np.zeros(len(self.scene.places), dtype=np.bool_)
         flags[moving] = True
@@ -59,7 +60,9 @@ class Relations:
 
 
 def _related(constraint: Constraint) -> tuple[str, ...]:
-    """Paths of what a constraint relates: structures by their boxes, else what its unknowns belong to."""
+    """Paths of what a constraint relates: structures by their boxes, else what its unknowns belong to; where
+    these are of one thing only, also what else it names, which has none.
+    """
     boxes = {s.path for c in constraint.comparisons for s in c.boxes}
     mentioned = {u.holder.path for c in constraint.comparisons for u in c.spoken_of}
     # A frame is mentioned beside what lies in it.
@@ -68,7 +71,10 @@ def _related(constraint: Constraint) -> tuple[str, ...]:
         for path in mentioned
         if not any(_is_in(other, path) for other in mentioned | boxes if other != path)
     }
-    return tuple(sorted(boxes | others))
+    found = boxes | others
+    if len(found) < 2 and isinstance(constraint.wording, Wording):
+        found |= {thing.path for thing in constraint.wording.named()}
+    return tuple(sorted(found))
 
 
 def _is_in(path: str, around: str) -> bool:
