@@ -21,7 +21,7 @@ from aidl_lang.source import SourceFile, Span
 from aidl_lang.version import __version__
 
 if TYPE_CHECKING:
-    from aidl_lang.comparison import Comparison, Version
+    from aidl_lang.comparison import Comparison
     from aidl_lang.export import Options
     from aidl_lang.model import Knob
     from aidl_lang.pipeline import Compiled, Settings
@@ -89,14 +89,6 @@ class Model:
         """Seconds per stage."""
         return self._compiled.timings
 
-    @property
-    def _version(self) -> Version:
-        from aidl_lang.comparison import Version
-
-        solved, drawing = self.solved, self._compiled.drawing
-        assert drawing is not None
-        return Version(solved, drawing)
-
     def __getitem__(self, path: str) -> SolvedStructure:
         """A structure by its dotted path, with or without the root's name. Raises KeyError."""
         root = self.solved.root
@@ -109,13 +101,9 @@ class Model:
         """What a structure, a geometry or the whole measures: area, inertia, walls, gaps, mass.
 
         `densities` adds to the known ones, in kg/m³. Raises KeyError where there is no area to measure, and
-        ValueError when the program is wrong.
+        ValueError when the program is wrong or measuring takes longer than its settings allow.
         """
-        from aidl_lang.survey import measured
-
-        model, drawing = self.solved, self._compiled.drawing
-        assert drawing is not None
-        return measured(model, drawing, path, densities)
+        return self._compiled.measured(path, densities)
 
     def to_svg(self, show: frozenset[str] = frozenset()) -> str:
         """The drawing as SVG; `show` adds overlays: names, points, bbox, constraints, dof, plan."""
@@ -186,11 +174,10 @@ def compile(
 def diff(before: Model, after: Model) -> Comparison:
     """What moved, turned, grew, appeared and vanished between two models.
 
-    `str` of it is a text for a reader, `to_dict` the same as data. Raises ValueError when a program is wrong.
+    `str` of it is a text for a reader, `to_dict` the same as data. Raises ValueError when a program is wrong,
+    or comparing takes longer than its settings allow.
     """
-    from aidl_lang.comparison import compare
-
-    return compare(before._version, after._version)
+    return before._compiled.compared(after._compiled)
 
 
 def format(text: str) -> str:

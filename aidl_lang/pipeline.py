@@ -6,22 +6,23 @@ Each stage hands over one value and its diagnostics; nothing here raises for wha
 from __future__ import annotations
 
 import gc
-import math
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang import ast, parser
 from aidl_lang import library as library_module
 from aidl_lang.building.state import DEFAULT_LIMITS, Limits
-from aidl_lang.cancelling import OutOfTime, checkpoint, limited_to
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.checking.subset import adapted
+from aidl_lang.compiled import Compiled
 from aidl_lang.diagnostics import Diagnostic, has_errors, is_too_many, ordered, within_limit
+from aidl_lang.drawing_time import TooLongError, within
 from aidl_lang.interp import Interpretation, interpret, nothing_built
 from aidl_lang.model import Knob, Model
 from aidl_lang.printer import format_module
@@ -29,14 +30,13 @@ from aidl_lang.resolve import resolve
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.solver.memory import Memory
 from aidl_lang.solver.problem import Settings as SolverSettings
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.source import SourceFile
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
 from aidl_lang.variants import Variant
 from aidl_lang.world import World
 
 if TYPE_CHECKING:
-    from aidl_lang.export import Exported, Options
     from aidl_lang.expression import Evaluator
     from aidl_lang.failures import Conflict
     from aidl_lang.geometry.drawing import Drawing
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from aidl_lang.lower import Lowered
     from aidl_lang.solved import Dimension, SolvedModel
     from aidl_lang.solver.analysis import Freedom
-    from aidl_lang.solver.solution import Solution, StageReport
+    from aidl_lang.solver.solution import Solution
 
 _RECURSION = 20_000
 """Python frames for deeply nested programs; the limits on nesting and calls end sooner."""
@@ -61,7 +61,8 @@ class Settings:
     """Limits for programs that are not trusted, the solver's settings, the subset of the language, and
     whether it is an error that something gave way unasked.
 
-    drawing  seconds of the processor's time for what comes after solving, and for writing each file
+    drawing  seconds of the processor's time for what comes after solving, and for each thing that is done
+             with the drawing: writing a file, measuring, comparing
     """
 
     text: parser.Limits = parser.DEFAULT_LIMITS
@@ -70,57 +71,6 @@ class Settings:
     variant: Variant = Variant.FULL
     strict: bool = False
     drawing: float = 20.0
-
-
-@dataclass
-class Compiled:
-    """What came of a program. `model` and `drawing` are None when it is wrong before solving."""
-
-    status: str
-    diagnostics: list[Diagnostic]
-    timings: dict[str, float]
-    knobs: tuple[Knob, ...] = ()
-    model: SolvedModel | None = None
-    drawing: Drawing | None = None
-    show: frozenset[str] = field(default_factory=frozenset)
-    stages: tuple[tuple[str, StageReport], ...] = ()
-    """What the solver tried, in order: the path of a structure, and one stage for it."""
-    conflicts: Callable[[], tuple[Conflict, ...]] = field(default=tuple, repr=False)
-    """What tells, for a program that does not solve, the constraints that do not hold together."""
-    follows: Callable[[Span], bool] = field(default=lambda span: False, repr=False)
-    """What tells, for a program that solves, whether what is stated in a place follows from the rest."""
-    built: Model | None = field(default=None, repr=False)
-    """The structure tree with its expressions, of which `evaluate` tells the solved values."""
-    evaluate: Evaluator | None = field(default=None, repr=False)
-    limit: float = math.inf
-    """Seconds of the processor's time for writing a file."""
-
-    @property
-    def ok(self) -> bool:
-        return self.status == "solved" and not has_errors(self.diagnostics)
-
-    def exported(self, suffix: str, options: Options | None = None) -> Exported:
-        """The drawing in the format of a file suffix (`.svg`), with what there is to say of it.
-
-        Raises KeyError for an unknown suffix, `ExportError` where the format cannot hold the drawing, and
-        ValueError when there is nothing to export.
-        """
-        from aidl_lang.export import ExportError, Job, Options, export
-
-        if self.model is None or self.drawing is None:
-            raise ValueError("the program is wrong, so there is no drawing")
-        options = Options(self.show) if options is None else options
-        try:
-            with limited_to(self.limit):
-                return export(Job(self.model, self.drawing, tuple(self.diagnostics), options), suffix)
-        except OutOfTime:
-            hint = "write a format that holds less: pictures without `--show`, outlines alone"
-            message = f"writing the drawing as `{suffix}` takes more than {self.limit:g} seconds"
-            raise ExportError("E0955", message, hint) from None
-
-    def export(self, suffix: str, options: Options | None = None) -> bytes:
-        """The content of the file alone (see `exported`)."""
-        return self.exported(suffix, options).data
 
 
 class _Stopwatch:
@@ -348,14 +298,15 @@ def placed(
 def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled:
     """An outcome with its parts where another solution of the same model has them, as while one is dragged.
 
-    What was said of the outcome stands as it was. Raises ValueError where nothing was built.
+    What was said of the outcome stands as it was. Raises TooLongError, and ValueError where nothing was
+    built.
     """
     from aidl_lang.solver.analysis import analyse
 
     if outcome.built is None:
         raise ValueError("the program is wrong, so there is nothing to draw")
     watch = _Stopwatch()
-    with _working:
+    with _working, within(outcome.limit, "drawing"):
         with watch("freedom"):
             freedom = analyse(lowered.problem, solution)
         model, evaluator, drawing, _ = _pictured(outcome.built, lowered, solution, freedom, watch)
@@ -393,10 +344,10 @@ def _finish(
     with watch("reasons"):
         given = gave_way(lowered, solution, settings.solving)
     try:
-        with limited_to(settings.drawing):
+        with within(settings.drawing, "drawing"):
             model, evaluator, drawing, found, notes = _drawn(built, lowered, solution, freedom, given, watch)
-    except OutOfTime:
-        return Compiled("wrong", ordered([*diagnostics, _endless(settings)]), watch.seconds, known)
+    except TooLongError as reason:
+        return Compiled("wrong", ordered([*diagnostics, reason.diagnostic]), watch.seconds, known)
     found = list(map(refused, found)) if settings.strict else found
     if solution.status is not Status.SOLVED:
         notes = []  # the parts are not where they belong
@@ -456,15 +407,6 @@ def _pictured(
         model, wrong = _completed(model)
         drawing, notes = draw(model)
     return model, evaluator, drawing, [*placeless, *wrong, *notes]
-
-
-def _endless(settings: Settings) -> Diagnostic:
-    """What is drawn has so many curves, or so many that meet, that it would take too long to work it out."""
-    return Diagnostic(
-        "E0805",
-        f"drawing what this program says takes more than {settings.drawing:g} seconds",
-        hints=("it has too many curves, or too many that cross; the limit is a setting of the API",),
-    )
 
 
 __all__ = [

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.curves import Vec
@@ -309,6 +310,7 @@ def _total(values: Sequence[float | None]) -> float | None:
 
 def _measured(path: str, kind: str, region: Region) -> Part:
     """A region with its thin places."""
+    checkpoint()
     wall, gap = (Width(c.length, c.a, c.b, path) if c else None for c in widths(region))
     return replace(_part(path, kind, region), wall=wall, gap=gap)
 

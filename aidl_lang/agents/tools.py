@@ -32,6 +32,7 @@ from aidl_lang.agents.results import (
 from aidl_lang.agents.workspace import RefusalError, Workspace, refusal
 from aidl_lang.diagnostics import Edit, has_errors
 from aidl_lang.discretion import Reader
+from aidl_lang.drawing_time import TooLongError
 from aidl_lang.mending import Mended, mend
 from aidl_lang.pipeline import Compiled
 from aidl_lang.render import compact
@@ -166,14 +167,14 @@ class Tools:
         thinnest wall and the narrowest gap, volume and mass, of the whole and of each body or of the part at
         a path, and the gaps and overlaps between bodies.
         """
-        from aidl_lang.survey import NothingThereError, survey
+        from aidl_lang.survey import NothingThereError
 
         _, compiled, reader = self._compiled(program, params, files)
-        if not compiled.ok or compiled.model is None or compiled.drawing is None:
+        if not compiled.ok:
             raise RefusalError(*(d for d in compiled.diagnostics if d.is_error))
         try:
-            found = survey(compiled.model, compiled.drawing, [path] if path else [])
-        except NothingThereError as reason:
+            found = compiled.surveyed([path] if path else [])
+        except (NothingThereError, TooLongError) as reason:
             raise RefusalError(reason.diagnostic) from None
         most = drawing.MOST_LISTED
         pairs = [Contact(p.a, p.b, p.relation, p.gap, p.area) for p in found.pairs[:most]]
@@ -268,14 +269,10 @@ def _edited(source: SourceFile, edit: Edit) -> str:
 
 
 def _changes(before: Compiled, after: Compiled) -> str:
-    from aidl_lang.comparison import Version, compare
-
-    versions = [
-        Version(c.model, c.drawing)
-        for c in (before, after)
-        if c.status == "solved" and c.model is not None and c.drawing is not None
-    ]
-    if len(versions) < 2:
+    if not before.status == after.status == "solved":
         which = "before" if before.status != "solved" else "now"
         return f"nothing can be compared: the program does not solve {which}"
-    return str(compare(*versions))
+    try:
+        return str(before.compared(after))
+    except TooLongError as reason:
+        return f"nothing can be compared: {reason}"

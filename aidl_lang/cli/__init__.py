@@ -34,6 +34,7 @@ from aidl_lang.cli import (
     tool_schema,
     watch,
 )
+from aidl_lang.drawing_time import TooLongError
 from aidl_lang.version import __version__
 
 INTERRUPTED = 130
@@ -74,6 +75,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except report.UseError as reason:
         report.show([reason.diagnostic])
         return 2
+    except TooLongError as reason:
+        report.show([reason.diagnostic])
+        return report.exit_code([reason.diagnostic])
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:

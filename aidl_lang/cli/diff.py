@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from aidl_lang.pipeline import Compiled
     from aidl_lang.source import SourceFile
 
+LONGEST = 20.0
+"""Seconds of the processor's time for the picture of two versions."""
+
 
 def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser = verbs.add_parser("diff", help="tell what differs between two versions", description=__doc__)
@@ -84,8 +87,6 @@ def _suffix(name: str, arguments: argparse.Namespace) -> str:
 
 def _comparison(arguments: argparse.Namespace) -> Comparison | int:
     """The exit code if a side is wrong; then it has been said why."""
-    from aidl_lang.comparison import Version, compare
-
     names = arguments.before, arguments.after or arguments.before
     if arguments.after is None and not (arguments.params_before or arguments.params_after):
         raise UseError(
@@ -94,16 +95,17 @@ def _comparison(arguments: argparse.Namespace) -> Comparison | int:
             "name a second program, or say what differs, as in `--to width=200`",
         )
     sources = {name: files.read(name) for name in dict.fromkeys(names)}
-    versions, code = [], 0
+    versions: list[Compiled] = []
+    code = 0
     for name, own in zip(names, (arguments.params_before, arguments.params_after), strict=True):
         compiled = _compiled(name, sources[name], dict(arguments.params) | dict(own))
         may_be_used = compiled.ok or arguments.best_effort
         if may_be_used and compiled.model is not None and compiled.drawing is not None:
-            versions.append(Version(compiled.model, compiled.drawing))
+            versions.append(compiled)
         else:
             show([*compiled.diagnostics, _refusal(name, compiled)], quiet=True)
             code = max(code, exit_code(compiled.diagnostics), 1)
-    return code or compare(*versions)
+    return code or versions[0].compared(versions[1])
 
 
 def _compiled(name: str, source: SourceFile, params: Mapping[str, str]) -> Compiled:
@@ -126,11 +128,13 @@ def _draw(comparison: Comparison, outputs: list[tuple[str, str]], pixels: int) -
     if not outputs:
         return
     from aidl_lang.comparison.picture import overlay
+    from aidl_lang.drawing_time import within
     from aidl_lang.export import ExportError, Options, render
 
-    picture = overlay(comparison)
     try:
-        made = [(name, render(picture, suffix, Options(pixels=pixels))) for name, suffix in outputs]
+        with within(LONGEST, "drawing the differences in"):
+            picture = overlay(comparison)
+            made = [(name, render(picture, suffix, Options(pixels=pixels))) for name, suffix in outputs]
     except ExportError as reason:
         raise UseError.of(reason.diagnostic) from None
     for name, data in made:

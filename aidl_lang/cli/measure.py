@@ -42,15 +42,15 @@ def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
 
 def run(arguments: argparse.Namespace) -> int:
     from aidl_lang import pipeline
-    from aidl_lang.survey import NothingThereError, survey
+    from aidl_lang.survey import NothingThereError
 
     source, world = files.read(arguments.file), files.world(arguments.file)
     compiled = pipeline.compile(source, world, params=dict(arguments.params))
-    if not compiled.ok or compiled.model is None or compiled.drawing is None:
+    if not compiled.ok:
         show(compiled.diagnostics)
         return exit_code(compiled.diagnostics) or 1
     try:
-        found = survey(compiled.model, compiled.drawing, arguments.paths, dict(arguments.densities))
+        found = compiled.surveyed(arguments.paths, dict(arguments.densities))
     except NothingThereError as reason:
         raise UseError.of(reason.diagnostic) from None
     show([*compiled.diagnostics, *found.notes])

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.comparison import fields
 from aidl_lang.comparison.changes import (
     Comparison,
@@ -99,6 +100,7 @@ class _Walk:
 
         `expected` is where what is around it went; `settled` says that all in it is known to have gone there.
         """
+        checkpoint()
         whole = expected if settled else pair.pose.move(expected)
         move = whole or self._majority(pair, expected, is_root) or expected
         a, b = pair.before, pair.after

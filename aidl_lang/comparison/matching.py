@@ -12,6 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.comparison.move import STILL, Move, Pose, pose_of
 from aidl_lang.solved import SolvedGeometry, SolvedStructure
 
@@ -132,6 +133,7 @@ def _stem(file: str) -> str:
 
 
 def _by_name(a: SolvedStructure, b: SolvedStructure, tolerance: float) -> StructurePair:
+    checkpoint()
     geometry, gone_geometry, new_geometry = _split(a.geometry, b.geometry)
     structures, gone, new = _split(a.structures, b.structures)
     pairs = [GeometryPair(p, q, pose_of(p, q, tolerance)) for p, q in geometry]

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from aidl_lang import ast
 from aidl_lang.boxes import Box, spelled_out
 from aidl_lang.building.wording import Wording
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.dimensions.features import (
     angle_of,
     dot,
@@ -50,6 +51,7 @@ def stated_lengths(
     """What the constraints of the author measure, in order of writing."""
     scene = Scene(model, solved, evaluate, names)
     for constraint in model.constraints:
+        checkpoint()
         if constraint.weight is None and isinstance(constraint.wording, Wording):
             yield from _Statement(scene, constraint, constraint.wording).dimensions()
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 from aidl_lang import expression as ex
 from aidl_lang.building.scopes import Scope
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.dimensions.features import angle_of, direction, dot, length_along, length_of_line, unit
 from aidl_lang.expression import Evaluator, Expression
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece
@@ -32,6 +33,7 @@ def field_sizes(
 ) -> Iterator[Dimension]:
     """The sizes of all geometry that is drawn; of copies only what is round, to be counted."""
     for structure, read in zip(model.root.walk(), solved.root.walk(), strict=True):
+        checkpoint()
         turned = evaluate(convert_angle(ex.ZERO, structure, model.root))
         known = {g.path: g for g in read.geometry}
         for geometry in structure.own():

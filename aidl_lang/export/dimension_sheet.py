@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.export.dimension_marks import Block, Pen, Placed, Segment, arc_segments
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
@@ -64,6 +65,7 @@ class Sheet:
 
     def harm(self, placed: Placed) -> float:
         """How badly a place reads: what its value covers, what its lines cross."""
+        checkpoint()
         text, lines = self.pen.block(placed.text, CLEAR), _array(_all_lines(placed))
         extensions = _array(placed.extensions)
         cost = 6.0 * min(crossings(self.outlines, text), 4) + 2.0 * crossings(self.extensions, text)
@@ -92,6 +94,7 @@ class Sheet:
 
     def is_drawn(self, p: Vec) -> bool:
         """Whether an outline runs through a point."""
+        checkpoint()
         reach = 1.2 * self.pen.mm
         near = _within(self.outlines, (p[0] - reach, p[1] - reach, p[0] + reach, p[1] + reach))
         if not len(near):
@@ -118,6 +121,7 @@ def _inside(spots: NDArray[np.float64], edges: Segments) -> NDArray[np.bool_]:
     x0, y0, x1, y1 = edges.T
     found = np.zeros(len(spots), dtype=bool)
     for k, (x, y) in enumerate(spots):
+        checkpoint()
         over = (x0 > x) != (x1 > x)
         height = y0[over] + (x - x0[over]) * (y1[over] - y0[over]) / (x1[over] - x0[over])
         found[k] = np.count_nonzero(height > y) % 2

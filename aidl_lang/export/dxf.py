@@ -15,6 +15,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.export import Exported, Job
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.dxf_layers import Layers
@@ -55,6 +56,7 @@ def _written(document: Any, job: Job) -> Exported:
     document.header["$MEASUREMENT"] = METRIC
     entities, layers = _Entities(document.modelspace(), job.drawing), Layers(document, job.model)
     for outline in found:
+        checkpoint()
         attributes: dict[str, Any] = {"layer": layers.name(outline.layer)}
         if outline.color is not None:
             red, green, blue = rgb(outline.color)

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.export.numbers import rounded
 from aidl_lang.geometry.contacts import Contact
@@ -187,6 +188,7 @@ def _pieces(loop: Loop) -> list[Json]:
 
 def _geometry(g: SolvedGeometry) -> Json:
     """A primitive with its fields, a compound shape with its parts."""
+    checkpoint()
     fields = _FIELDS.get(g.type)
     entry: Json = {"type": g.type}
     if fields is None:

@@ -11,6 +11,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import TypeGuard
 
+import numpy as np
+
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.export import palette
 from aidl_lang.export.marks import Dot, Frame, Mark, Text
 from aidl_lang.geometry.curves import Piece, Vec
@@ -34,6 +37,26 @@ class Overlay:
     layers: dict[str, list[Mark]] = field(default_factory=dict)
 
 
+class Taken:
+    """Boxes of what stands on the picture already. Few of many meet another: those are looked for first."""
+
+    def __init__(self) -> None:
+        self._boxes = np.empty((64, 4))
+        self._count = 0
+
+    def add(self, box: Bounds) -> None:
+        if self._count == len(self._boxes):
+            self._boxes = np.concatenate((self._boxes, np.empty_like(self._boxes)))
+        self._boxes[self._count] = box
+        self._count += 1
+
+    def overlap(self, box: Bounds) -> float:
+        """The area by which a box covers others."""
+        left, bottom, right, top = self._boxes[: self._count].T
+        met = (left < box[2]) & (right > box[0]) & (bottom < box[3]) & (top > box[1])
+        return sum(_overlap(box, (a, b, c, d)) for a, b, c, d in self._boxes[: self._count][met].tolist())
+
+
 @dataclass
 class Explainer:
     """The state of one overlay: what is taken already, and the font size and line width that fit."""
@@ -42,7 +65,7 @@ class Explainer:
     drawing: Drawing
     box: Bounds
     size: float
-    taken: list[Bounds] = field(default_factory=list)
+    taken: Taken = field(default_factory=Taken)
 
     @property
     def font(self) -> float:
@@ -58,9 +81,10 @@ class Explainer:
         return self.first_free(candidates)
 
     def first_free(self, candidates: list[Text]) -> Text:
+        checkpoint()
         air = 0.2 * candidates[0].size
-        chosen = min(candidates, key=lambda c: sum(_overlap(_grown(c.box, air), t) for t in self.taken))
-        self.taken.append(chosen.box)
+        chosen = min(candidates, key=lambda c: self.taken.overlap(_grown(c.box, air)))
+        self.taken.add(chosen.box)
         return chosen
 
 
@@ -130,7 +154,7 @@ def _name(at: Explainer, structure: SolvedStructure, box: Bounds, size: float) -
     """In the upper left corner of a structure without parts, if it fits; else around its box."""
     inside = Text((box[0] + 0.35 * size, box[3] - 1.1 * size), structure.name, size, palette.NAME)
     fits = inside.box[2] < box[2] and box[3] - box[1] > 2.5 * size
-    if fits and not structure.structures and not any(_overlap(inside.box, t) for t in at.taken):
+    if fits and not structure.structures and not at.taken.overlap(inside.box):
         return at.first_free([inside])
     return at.label(structure.name, box, palette.NAME, size, bold=structure is at.model.root)
 
@@ -152,7 +176,7 @@ def _plans(at: Explainer) -> Iterator[Mark]:
         label = Text(
             ((left + right) / 2, (top + bottom) / 2 - 0.3 * size), plan.name, size, palette.PLAN, "middle"
         )
-        at.taken.append(label.box)
+        at.taken.add(label.box)
         yield label
 
 
@@ -170,7 +194,7 @@ def _points(at: Explainer) -> Iterator[Mark]:
                     names[key].append(name)
     radius = 0.2 * at.font
     for p in places.values():
-        at.taken.append((p[0] - radius, p[1] - radius, p[0] + radius, p[1] + radius))
+        at.taken.add((p[0] - radius, p[1] - radius, p[0] + radius, p[1] + radius))
         yield Dot(p, radius, palette.POINT)
     if len(places) <= MANY:
         size = 0.6 * at.font
@@ -206,6 +230,7 @@ def _constraints(at: Explainer, corner: Vec) -> list[Mark]:
     marks: list[Mark] = []
     size, (left, top) = 0.7 * at.font, corner
     for number, constraint in enumerate(at.model.constraints, 1):
+        checkpoint()
         color = palette.GOOD if constraint.satisfied else palette.BAD
         spot = _spot(at.model, constraint)
         if spot is not None:
@@ -304,9 +329,11 @@ def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
 
 def _free_by_structure(structures: list[SolvedStructure], free: Iterable[str]) -> dict[str, list[str]]:
     """The free parameters by the innermost structure whose path they begin with, named from there."""
-    paths = sorted((s.path for s in structures), key=len, reverse=True)
+    paths = {s.path for s in structures}
     result: dict[str, list[str]] = defaultdict(list)
     for name in free:
-        path = next((p for p in paths if name.startswith(p + ".")), "")
+        path = name.rpartition(".")[0]
+        while path and path not in paths:
+            path = path.rpartition(".")[0]
         result[path].append(name.removeprefix(path + "."))
     return result

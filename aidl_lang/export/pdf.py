@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from functools import singledispatchmethod
 from typing import Any
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.export import ExportError
 from aidl_lang.export.font import FAMILY, font_file
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
@@ -74,6 +75,7 @@ class _Pen:
             if group.clip is not None:
                 self._canvas.clipPath(self._frame_path(group.clip), stroke=0, fill=0)
             for mark in group.marks:
+                checkpoint()
                 with self._state():
                     self._draw(mark)
 

@@ -7,6 +7,7 @@ import re
 from functools import singledispatch
 from typing import Any
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.numbers import fixed
 from aidl_lang.export.paths import face_path, open_path
@@ -50,6 +51,7 @@ def _group(svg: Any, group: Group) -> Any:
     element = svg.container.Group(id=_clean(group.name), debug=False)
     element.attribs.update(attributes)
     for mark in group.marks:
+        checkpoint()
         element.add(_element(mark, svg))
     return element
 

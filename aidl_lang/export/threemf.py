@@ -9,6 +9,7 @@ import lib3mf
 import numpy as np
 from PIL import ImageColor
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.mesh import Mesh, meshes, printable
 from aidl_lang.export.palette import body_fill
@@ -30,6 +31,7 @@ def to_3mf(job: Job) -> Exported:
     materials = _Materials(wrapper, model)
     order = {body.path: index for index, body in enumerate(job.drawing.bodies)}
     for mesh in made:
+        checkpoint()
         thing = _mesh_object(model, mesh)
         style = mesh.body.style
         color = style.color or body_fill(order[mesh.body.path])

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.export import ExportError, palette
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.numbers import fixed, size_text
@@ -86,6 +87,7 @@ def tiled(picture: Picture, page: Size, margin: float = MARGIN, overlap: float =
     shapes = [[(mark, _Shape(mark)) for mark in group.marks] for group in picture.groups]
     found = []
     for row, column in np.ndindex(down.count, across.count):
+        checkpoint()
         x, y = across.start(column), -down.start(row)
         sight = (x, y - window[1], x + window[0], y)
         groups = [

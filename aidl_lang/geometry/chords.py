@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.geometry.skeleton import Floats, Ints, Skeleton, within
 
 ANGLE = 1e-6
@@ -100,6 +101,7 @@ def _listed(begin: Ints, count: Ints) -> Iterator[tuple[Ints, Ints]]:
     total = np.concatenate(([0], np.cumsum(count)))
     first = 0
     while first < len(count):
+        checkpoint()
         last = max(first + 1, int(np.searchsorted(total, total[first] + _CHUNK)) - 1)
         rows = np.arange(first, last)
         i = np.repeat(rows, count[rows])

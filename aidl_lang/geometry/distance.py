@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import bounds, ends, is_closed, nearest, point, points
 from aidl_lang.geometry.region import Region
@@ -23,6 +24,7 @@ def region_distance(a: Region, b: Region) -> Closest | None:
     for bound, i, j in _by_box_distance(ours, theirs):
         if best is not None and bound >= best[0]:
             break
+        checkpoint()
         found = piece_distance(ours[i], theirs[j])
         if best is None or found[0] < best[0]:
             best = found

@@ -14,6 +14,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece
 from aidl_lang.geometry.evaluate import TAU, ends, points, round_range
 from aidl_lang.geometry.measures import loop_area
@@ -43,6 +44,7 @@ def _faithful(loop: Loop, tolerance: float) -> Polygon:
     """A loop that is thinner than the tolerance is followed more closely, so that it does not turn inside
     out.
     """
+    checkpoint()
     exact = loop_area(loop)
     for _ in range(_ROUNDS):
         polygon = loop_points(loop, tolerance)

@@ -26,6 +26,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.geometry.chords import ANGLE, Chords, chords, joined
 from aidl_lang.geometry.curves import Arc, Circle, Line, Vec
 from aidl_lang.geometry.distance import piece_distance
@@ -113,6 +114,7 @@ class _Search:
         for k in np.argsort(mine.length * (1 + _EQUAL * corners), kind="stable"):
             if mine.length[k] - 2 * o.error >= self.bound:
                 break
+            checkpoint()
             chord = _settled(o, mine, k)
             if chord and chord.length < self.bound and _is_clear(o, chord, self.kind):
                 self.best = chord
@@ -225,6 +227,7 @@ def _tapers(o: Skeleton) -> Iterator[tuple[int, Chord]]:
     for k, piece in enumerate(o.pieces):
         if is_closed(piece):
             continue
+        checkpoint()
         p, q = ends(piece)
         along = math.atan2(q[1] - p[1], q[0] - p[0])
         # How far the neighbours lean towards each other, as turns from the chord: a quarter is straight up.

@@ -33,6 +33,7 @@ LIMITS = replace(
     SETTINGS,
     building=replace(SETTINGS.building, seconds=10.0),
     solving=replace(SETTINGS.solving, seconds=10.0),
+    drawing=10.0,
 )
 """Nobody looks at a text for longer without changing it."""
 GRACE = 0.25

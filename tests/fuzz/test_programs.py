@@ -42,6 +42,7 @@ LARGE = {
     ),
     "nested brackets": f"drawing d {{ for i in enumerate({'[' * 190}{']' * 190}) {{}} }}",
     "a long text": f'drawing s {{ t = text("{"Ag" * 8000}", height: 5) }}',
+    "many labels": "assembly a { for i in 0..<1200 { solid s[i] at (9 * i, 0) { c = circle(radius: 3) } } }",
     "all boxes meet": "solid s { for i in 0..5000 { c[i] = circle(center: (i * 0.001, 0), radius: 20) } }",
 }
 

@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from aidl_lang.diagnostics import Diagnostic, Edit
+from aidl_lang.export import ExportError
+from aidl_lang.ide.refusing import CannotError
 from aidl_lang.ide.view import View
 from aidl_lang.source import SourceFile
 
@@ -26,11 +28,14 @@ class Action:
 
 
 def drawn_alike(one: View, other: View) -> bool:
-    """Whether two programs solve and draw the same picture."""
+    """Whether two programs solve and draw the same picture. Raises CannotError where that cannot be told."""
     outcomes = [view.outcome for view in (one, other)]
     if any(outcome is None or not outcome.ok for outcome in outcomes):
         return False
-    first, second = (outcome.export(".svg") for outcome in outcomes if outcome is not None)
+    try:
+        first, second = (outcome.export(".svg") for outcome in outcomes if outcome is not None)
+    except ExportError as reason:
+        raise CannotError(str(reason)) from None
     return first == second
 
 

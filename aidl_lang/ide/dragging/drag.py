@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 from aidl_lang.diagnostics import Edit
+from aidl_lang.drawing_time import TooLongError
 from aidl_lang.export.numbers import shortest
 from aidl_lang.expression import Unknown
 from aidl_lang.geometry.curves import Vec
@@ -220,7 +221,10 @@ def _pulled(view: View, grip: Grip, to: Vec, step: float) -> Dragged | Refusal:
     written = _written(view)
     sizes = frozenset(u for u in written if by_sizes and u.kept and belongs(u, grip.thing))
     pin = _grips_of(view).get(way.pin or "")
-    found = pulled(outcome, Pull(grip, way, pin, written, _movable(view), sizes), to)
+    try:
+        found = pulled(outcome, Pull(grip, way, pin, written, _movable(view), sizes), to)
+    except TooLongError as reason:
+        return Refusal(str(reason))
     if found is None:
         return Refusal(f"`{_name(grip)}` cannot go there: the constraints would not hold")
     shown, at = found

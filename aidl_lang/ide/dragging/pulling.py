@@ -45,7 +45,8 @@ class Pull:
 
 def pulled(outcome: Compiled, pull: Pull, to: Vec) -> tuple[Compiled, Vec] | None:
     """The outcome with the point as near to a place as it can come, and where that is; None if the
-    constraints do not hold then. What no number of the text says moves only if nothing else will do.
+    constraints do not hold then. What no number of the text says moves only if nothing else will do. Raises
+    TooLongError.
     """
     if outcome.built is None or outcome.evaluate is None:
         return None

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 
+from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.drawing_time import TooLongError, within
 from aidl_lang.ide.dragging import Handle, grips, handles, is_somewhere
 from aidl_lang.ide.preview.elements import Elements, elements
 from aidl_lang.ide.preview.picture import svg_of
@@ -31,21 +33,33 @@ def preview(
     found = elements(view)
     drawn = view.drawn
     has_picture = drawn is not None and _is_anything_drawn(drawn)
+    svg, unpainted = _painted(drawn, found, show) if drawn is not None and has_picture else (None, ())
     return Preview(
         status=view.outcome.status,
         stale=has_picture and view.is_stale,
         tried=tried,
         seconds=sum(view.outcome.timings.values()),
-        svg=svg_of(drawn, found, set(show) & set(LAYERS)) if drawn is not None and has_picture else None,
+        svg=svg,
         box=drawn.drawing.box if drawn is not None and drawn.drawing is not None else _NOWHERE,
         elements=found.values,
         knobs=tuple(sliders(view)),
         handles=tuple(_moved(view, known)),
-        problems=tuple(problems(view, found)),
+        problems=tuple(problems(view, found, unpainted)),
         conflicts=tuple(conflicts(view, found)),
         ways=tuple(_ways(view, found)) if FREEDOM in show else (),
         degrees=view.outcome.model.degrees if view.outcome.model is not None else None,
     )
+
+
+def _painted(
+    drawn: Compiled, found: Elements, show: Collection[str]
+) -> tuple[str | None, tuple[Diagnostic, ...]]:
+    """The SVG; or, where painting takes too long, what there is to say of that."""
+    try:
+        with within(drawn.limit, "painting"):
+            return svg_of(drawn, found, set(show) & set(LAYERS)), ()
+    except TooLongError as reason:
+        return None, (reason.diagnostic,)
 
 
 def with_handles(made: Preview, view: View) -> Preview:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from aidl_lang.cancelling import checkpoint
 from aidl_lang.export import Job, Options
 from aidl_lang.export.marks import Group
 from aidl_lang.export.paths import face_path, open_path
@@ -72,6 +73,7 @@ def hits(drawing: Drawing, elements: Elements) -> Iterator[Hit]:
     bodies = {body.path: k for k, body in enumerate(drawing.bodies)}
     of_body: list[list[tuple[int, Drawn]]] = [[] for _ in range(len(bodies) + 1)]
     for number, drawn in enumerate(elements.drawn):
+        checkpoint()
         of_body[_body_of(drawn, bodies)].append((number, drawn))
     for members in of_body:
         yield from _large_first(members, lambda k, drawn: _area(k, drawn, drawing))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.ide.preview.elements import Elements
@@ -17,10 +17,10 @@ from aidl_lang.source import Span
 _QUOTED = re.compile("`([^`]+)`")
 
 
-def problems(view: View, elements: Elements) -> Iterator[Problem]:
-    """The diagnostics of the text, each with what it is about."""
+def problems(view: View, elements: Elements, painting: Sequence[Diagnostic] = ()) -> Iterator[Problem]:
+    """The diagnostics of the text, and those of painting it, each with what it is about."""
     finder = _Finder(view, elements)
-    for found in view.diagnostics:
+    for found in (*view.diagnostics, *painting):
         yield Problem(
             found.severity.value,
             found.code,

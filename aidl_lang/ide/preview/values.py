@@ -115,7 +115,7 @@ class Preview:
     stale   whether the picture is that of an earlier text, since this one does not draw
     tried   whether it is of values that the text does not say
     handles what can be dragged, as far as it is known
-    svg     None where nothing was ever drawn
+    svg     None where nothing was ever drawn, or painting it takes too long
     box     of the drawing
     """
 

@@ -1,0 +1,108 @@
+"""What came of a program, and what can be done with that: write it, measure it, compare it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from aidl_lang.cancelling import OutOfTime, limited_to
+from aidl_lang.diagnostics import Diagnostic, has_errors
+from aidl_lang.drawing_time import within
+from aidl_lang.model import Knob, Model
+from aidl_lang.source import Span
+
+if TYPE_CHECKING:
+    from aidl_lang.comparison import Comparison
+    from aidl_lang.export import Exported, Options
+    from aidl_lang.expression import Evaluator
+    from aidl_lang.failures import Conflict
+    from aidl_lang.geometry.drawing import Drawing
+    from aidl_lang.solved import SolvedModel
+    from aidl_lang.solver.solution import StageReport
+    from aidl_lang.survey import Part, Survey
+
+
+@dataclass
+class Compiled:
+    """What came of a program. `model` and `drawing` are None when it is wrong before solving."""
+
+    status: str
+    diagnostics: list[Diagnostic]
+    timings: dict[str, float]
+    knobs: tuple[Knob, ...] = ()
+    model: SolvedModel | None = None
+    drawing: Drawing | None = None
+    show: frozenset[str] = field(default_factory=frozenset)
+    stages: tuple[tuple[str, StageReport], ...] = ()
+    """What the solver tried, in order: the path of a structure, and one stage for it."""
+    conflicts: Callable[[], tuple[Conflict, ...]] = field(default=tuple, repr=False)
+    """What tells, for a program that does not solve, the constraints that do not hold together."""
+    follows: Callable[[Span], bool] = field(default=lambda span: False, repr=False)
+    """What tells, for a program that solves, whether what is stated in a place follows from the rest."""
+    built: Model | None = field(default=None, repr=False)
+    """The structure tree with its expressions, of which `evaluate` tells the solved values."""
+    evaluate: Evaluator | None = field(default=None, repr=False)
+    limit: float = math.inf
+    """Seconds of the processor's time for each thing that is done with the drawing."""
+
+    @property
+    def ok(self) -> bool:
+        return self.status == "solved" and not has_errors(self.diagnostics)
+
+    def exported(self, suffix: str, options: Options | None = None) -> Exported:
+        """The drawing in the format of a file suffix (`.svg`), with what there is to say of it.
+
+        Raises KeyError for an unknown suffix, `ExportError` where the format cannot hold the drawing, and
+        ValueError when there is nothing to export.
+        """
+        from aidl_lang.export import ExportError, Job, Options, export
+
+        job = Job(
+            *self._finished, tuple(self.diagnostics), Options(self.show) if options is None else options
+        )
+        try:
+            with limited_to(self.limit):
+                return export(job, suffix)
+        except OutOfTime:
+            hint = "write a format that holds less: pictures without `--show`, outlines alone"
+            message = f"writing the drawing as `{suffix}` takes more than {self.limit:g} seconds"
+            raise ExportError("E0955", message, hint) from None
+
+    def export(self, suffix: str, options: Options | None = None) -> bytes:
+        """The content of the file alone (see `exported`)."""
+        return self.exported(suffix, options).data
+
+    def surveyed(self, paths: Sequence[str] = (), densities: Mapping[str, float] | None = None) -> Survey:
+        """What the whole measures, and the parts at some paths or else each body.
+
+        Raises NothingThereError for a path at which nothing covers an area, TooLongError, and ValueError when
+        there is nothing to measure.
+        """
+        from aidl_lang.survey import survey
+
+        model, drawing = self._finished
+        with within(self.limit, "measuring"):
+            return survey(model, drawing, paths, densities)
+
+    def measured(self, path: str | None = None, densities: Mapping[str, float] | None = None) -> Part:
+        """What the part at a path measures, or the whole. Raises as `surveyed` does."""
+        from aidl_lang.survey import measured
+
+        model, drawing = self._finished
+        with within(self.limit, "measuring"):
+            return measured(model, drawing, path, densities)
+
+    def compared(self, after: Compiled) -> Comparison:
+        """What differs in a later version. Raises TooLongError, and ValueError where there is no drawing."""
+        from aidl_lang.comparison import Version, compare
+
+        with within(self.limit, "comparing"):
+            return compare(Version(*self._finished), Version(*after._finished))
+
+    @property
+    def _finished(self) -> tuple[SolvedModel, Drawing]:
+        if self.model is None or self.drawing is None:
+            raise ValueError("the program is wrong, so there is no drawing; see `diagnostics`")
+        return self.model, self.drawing

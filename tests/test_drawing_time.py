@@ -1,0 +1,166 @@
+"""What is done with a drawing has a limit of time, and each that goes over it says so in the same words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from aidl_lang import compile as compiled_model
+from aidl_lang import diff, pipeline
+from aidl_lang.agents.calling import answer
+from aidl_lang.agents.tools import Tools
+from aidl_lang.cli import main
+from aidl_lang.drawing_time import TooLongError
+from aidl_lang.export import ExportError
+from aidl_lang.ide.actions.action import drawn_alike
+from aidl_lang.ide.dragging import drag, handles
+from aidl_lang.ide.preview import preview
+from aidl_lang.ide.refusing import CannotError, Refusal
+from aidl_lang.ide.view import View, look, run
+from aidl_lang.pipeline import Compiled, Settings
+from aidl_lang.source import SourceFile
+from aidl_lang.world import MemoryWorld
+
+PLATES = """\
+assembly plates {
+    param wide = 20 in 10..30
+    solid lower { body = rectangle(center: (0, 0), width: 20, height: 10) }
+    solid upper { body = rectangle(center: (0, 40), width: wide, height: 10) }
+}
+"""
+HINT = "it has too many curves, or too many that cross; the limit is a setting of the API"
+
+
+@pytest.fixture
+def hurried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Programs compile as ever, and nothing may be done with their drawings."""
+    plain = pipeline.compile
+
+    def compile(*given: Any, **named: Any) -> Compiled:
+        return replace(plain(*given, **named), limit=0.0)
+
+    monkeypatch.setattr(pipeline, "compile", compile)
+
+
+def view() -> View:
+    return run(look(Path("plates.aidl").absolute(), PLATES, MemoryWorld({})))
+
+
+def test_drawing_itself() -> None:
+    found = pipeline.compile(SourceFile("plates.aidl", PLATES), settings=replace(Settings(), drawing=0.0))
+    assert (found.status, found.drawing) == ("wrong", None)
+    assert [(d.code, d.message, d.hints) for d in found.diagnostics] == [
+        ("E0805", "drawing what this program says takes more than 0 seconds", (HINT,))
+    ]
+
+
+@pytest.mark.parametrize(
+    ("doing", "work"),
+    [
+        ("measuring", lambda made: made.surveyed()),
+        ("measuring", lambda made: made.surveyed(["upper"])),
+        ("measuring", lambda made: made.measured("upper")),
+        ("comparing", lambda made: made.compared(made)),
+    ],
+)
+@pytest.mark.usefixtures("hurried")
+def test_measuring_and_comparing(doing: str, work: Callable[[Compiled], object]) -> None:
+    made = pipeline.compile(SourceFile("plates.aidl", PLATES))
+    assert made.ok
+    with pytest.raises(TooLongError, match=f"^{doing} what this program says takes more than 0 seconds$"):
+        work(made)
+
+
+@pytest.mark.usefixtures("hurried")
+def test_python_raises_value_errors() -> None:
+    model = compiled_model(PLATES)
+    with pytest.raises(ValueError, match="measuring what this program says takes more than 0 seconds"):
+        model.measure()
+    with pytest.raises(ValueError, match="comparing what this program says takes more than 0 seconds"):
+        diff(model, model)
+
+
+@pytest.mark.usefixtures("hurried")
+@pytest.mark.parametrize("suffix", [".svg", ".pdf", ".json", ".dxf", ".png", ".stl", ".3mf", ".step"])
+def test_writing(suffix: str) -> None:
+    made = pipeline.compile(SourceFile("plates.aidl", f"@thickness(3mm)\n{PLATES}"))
+    with pytest.raises(ExportError) as refused:
+        made.export(suffix)
+    told = refused.value.diagnostic
+    assert told.code == "E0955"
+    assert told.message == f"writing the drawing as `{suffix}` takes more than 0 seconds"
+
+
+@pytest.mark.parametrize(
+    ("verb", "doing"),
+    [
+        (["measure", "plates.aidl"], "measuring"),
+        (["diff", "plates.aidl", "--to", "wide=30"], "comparing"),
+    ],
+)
+@pytest.mark.usefixtures("hurried")
+def test_the_command_says_so(
+    verb: list[str],
+    doing: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("plates.aidl").write_text(PLATES)
+    assert main(verb) == 1
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err == (
+        f"error[E0805]: {doing} what this program says takes more than 0 seconds\n  = hint: {HINT}\n"
+    )
+
+
+def test_the_command_says_so_of_the_picture_of_two(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("plates.aidl").write_text(PLATES)
+    monkeypatch.setattr("aidl_lang.cli.diff.LONGEST", 0.0)
+    assert main(["diff", "plates.aidl", "--to", "wide=30", "-o", "both.svg"]) == 1
+    assert not Path("both.svg").exists()
+    lead = "error[E0805]: drawing the differences in what this program says takes more than 0 seconds\n"
+    assert capsys.readouterr().err.startswith(lead)
+
+
+@pytest.mark.usefixtures("hurried")
+def test_models_are_told() -> None:
+    made = answer(Tools(), "measure", {"program": PLATES})
+    assert made.is_error
+    assert "measuring what this program says takes more than 0 seconds" in made.text
+    edited = answer(Tools(), "edit_param", {"program": PLATES, "name": "wide", "value": 30})
+    assert not edited.is_error
+    told = "nothing can be compared: comparing what this program says takes more than 0 seconds"
+    assert edited.data["changes"] == told
+
+
+@pytest.mark.usefixtures("hurried")
+def test_a_page_shows_a_problem_in_place_of_the_picture() -> None:
+    made = preview(view(), ["names"])
+    assert made.svg is None
+    assert [(p.code, p.message) for p in made.problems if p.severity == "error"] == [
+        ("E0805", "painting what this program says takes more than 0 seconds")
+    ]
+
+
+@pytest.mark.usefixtures("hurried")
+def test_what_cannot_be_drawn_is_not_dragged() -> None:
+    seen = view()
+    handle = next(h for h in handles(seen) if h.moves == "guess")
+    found = drag(seen, handle.id, (handle.at[0] + 5, handle.at[1]))
+    assert found == Refusal("drawing what this program says takes more than 0 seconds")
+
+
+@pytest.mark.usefixtures("hurried")
+def test_an_action_that_cannot_be_tried_is_refused() -> None:
+    with pytest.raises(CannotError, match=r"writing the drawing as `\.svg` takes more than 0 seconds"):
+        drawn_alike(view(), view())
