@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
 from aidl_lang import pipeline
@@ -25,9 +26,10 @@ class Mended:
 def mend(
     source: SourceFile, world: World | None = None, settings: pipeline.Settings = pipeline.Settings()
 ) -> Mended:
-    """Apply fixes and look again until nothing changes, the text returns to an earlier one, or the limit.
-    Fixes that undo each other are not made.
+    """Apply fixes and look again until nothing changes, the text returns to an earlier one, or a limit: of
+    rounds, or of the time that building may take. Fixes that undo each other are not made.
     """
+    last = time.thread_time() + settings.building.seconds
     fixes: list[str] = []
     seen: dict[object, Mended] = {}
     for _ in range(_ROUNDS):
@@ -36,7 +38,7 @@ def mend(
         if (before := seen.setdefault(_outlook(now), now)) is not now:
             return before  # what was done since undoes itself
         text, applied = apply_fixes(source, diagnostics)
-        if not applied:
+        if not applied or time.thread_time() > last:
             break
         fixes += [d.fix.title for d in diagnostics if d.fix][:applied]
         source = SourceFile(source.name, text)

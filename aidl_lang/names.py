@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from itertools import accumulate
@@ -9,6 +10,9 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
+_NUMBER = re.compile(r"\d+")
+_FEWEST_LETTERS = 3
+"""That a name must have for one that is wrong to leave no doubt."""
 _WIDER = 6
 """Names beyond those wanted that are compared letter by letter."""
 _MOST_LETTERS = 200_000
@@ -121,10 +125,12 @@ def is_spelled_in(letters: str, word: str) -> bool:
 def is_slip(name: str, meant: str) -> bool:
     """Whether one name is so near to the other that nobody need be asked: a letter wrong, missing, too many
     or exchanged with its neighbour, two in a long name but not in a short word of it. A word more is none:
-    `same_center_x`.
+    `same_center_x`; nor is another number: `hole3` is not `hole2`; nor a letter of one or two: `x10`, `s10`.
     """
     if fold(name) == fold(meant):
         return True
+    if _NUMBER.findall(name) != _NUMBER.findall(meant) or sum(map(str.isalpha, name)) < _FEWEST_LETTERS:
+        return False
     words, others = name.casefold().split("_"), meant.casefold().split("_")
     if len(words) != len(others) or _distance(fold(name), fold(meant)) > _most_slips(fold(name)):
         return False

@@ -195,3 +195,12 @@ def test_what_the_whole_drawing_does_is_not_told() -> None:
         ("place", "slide along x"),
         ("place", "slide along y"),
     ]
+
+
+def test_what_a_large_model_has_beside_its_ways_is_counted() -> None:
+    def many(number: int) -> list[str]:
+        circles = f"for i in 0..<{number} {{ c[i] = circle(center: (9 * i, 0), radius: 3) }}"
+        return report(model(f"drawing d {{ {circles} }}"))
+
+    assert many(100) == ["`c[1]` … `c[99]` can each slide along x and y"]
+    assert many(130) == [*many(100), "… and 60 more degrees of freedom, not told apart"]

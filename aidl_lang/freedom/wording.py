@@ -29,13 +29,15 @@ class _Line:
 def report(model: SolvedModel, most: int | None = None) -> list[str]:
     """What can still move against the rest, the most interesting first: "`receiver` can slide along x against
     `base`". Of more than `most` lines those are left out that say nothing new: lines before them tell of the
-    same kind of motion. How many they are is counted.
+    same kind of motion. How many they are is counted, and so is what a large model has beside its ways.
     """
     lines = list(_lines(model.motions))
     shown = lines if most is None or len(lines) <= most else list(_chosen(lines, most))
     told = [_sentence(line, model.root.path) for line in shown]
     if left := len(lines) - len(shown):
         told.append(f"… and {left} more like {'this' if len(shown) == 1 else 'these'}")
+    if (untold := (model.degrees or 0) - len(model.ways)) > 0:
+        told.append(f"… and {untold} more {'degrees' if untold > 1 else 'degree'} of freedom, not told apart")
     return told
 
 
