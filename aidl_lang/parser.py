@@ -20,7 +20,7 @@ from aidl_lang.syntax.errors import explain, spaced_call
 from aidl_lang.syntax.functions import understood
 from aidl_lang.syntax.lines import begins_with_sign
 from aidl_lang.syntax.tables import load_tables
-from aidl_lang.syntax.tokens import END, Token, Tokens, tokenize
+from aidl_lang.syntax.tokens import END, Token, Tokens, is_open_comment, tokenize
 from aidl_lang.syntax.tree import Builder
 from aidl_lang.syntax.trouble import Trouble
 from aidl_lang.syntax.warnings import lines_joined_by_minus
@@ -236,7 +236,10 @@ class _Reader:
         automaton.drop_statement()
         begun = position
         braces = 0
-        while (kind := tokens[position].kind) != END:
+        # A comment that takes in the rest is told, however much is left out before it.
+        while (kind := tokens[position].kind) != END and (
+            position == begun or not is_open_comment(tokens[position])
+        ):
             if kind == "{" and with_block:
                 braces += 1
             elif kind == "}" and braces:

@@ -9,6 +9,7 @@ import gc
 import sys
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -22,7 +23,7 @@ from aidl_lang.cancelling import checkpoint
 from aidl_lang.checking.subset import adapted
 from aidl_lang.compiled import Compiled
 from aidl_lang.diagnostics import Diagnostic, has_errors, is_too_many, ordered, within_limit
-from aidl_lang.drawing_time import TooLongError, within
+from aidl_lang.drawing_time import TooLongError, blaming, within
 from aidl_lang.interp import Interpretation, interpret, nothing_built
 from aidl_lang.model import Knob, Model
 from aidl_lang.printer import format_module
@@ -30,7 +31,7 @@ from aidl_lang.resolve import resolve
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.solver.memory import Memory
 from aidl_lang.solver.problem import Settings as SolverSettings
-from aidl_lang.source import SourceFile
+from aidl_lang.source import SourceFile, Span
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
 from aidl_lang.variants import Variant
@@ -49,7 +50,7 @@ if TYPE_CHECKING:
 _RECURSION = 20_000
 """Python frames for deeply nested programs; the limits on nesting and calls end sooner."""
 
-
+_HEAVY = "most of its curves are made here"
 _IMPORT_FAILURES = frozenset({"E0210", "E0211", "E0212", "E0213", "E0804"})
 _CIRCLE = "E0207"
 _UNUSED = "W0201"
@@ -402,11 +403,21 @@ def _pictured(
 
     with watch("read out"):
         model, evaluator = read_out(built, lowered, solution, freedom)
-    with watch("regions"):
+    with watch("regions"), blaming(partial(_most_drawn, model), _HEAVY):
         model, placeless = with_places(replace(model, size_up=_sizes(built, evaluator)))
         model, wrong = _completed(model)
         drawing, notes = draw(model)
     return model, evaluator, drawing, [*placeless, *wrong, *notes]
+
+
+def _most_drawn(model: SolvedModel) -> Span | None:
+    """The statement of the program that makes more curves than any other."""
+    made: Counter[Span] = Counter()
+    for structure in model.root.walk():
+        for geometry in structure.geometry:
+            if geometry.span is not None:
+                made[geometry.span] += sum(1 for each in geometry.walk() if each.curve is not None)
+    return max(made, key=lambda span: made[span], default=None)
 
 
 __all__ = [

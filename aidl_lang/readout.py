@@ -11,6 +11,7 @@ from typing import TypeAlias
 from aidl_lang import expression as ex
 from aidl_lang.building.scopes import ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.cancelling import checkpoint
+from aidl_lang.drawing_time import blaming
 from aidl_lang.expression import DEGREE, Evaluator, Unknown
 from aidl_lang.freedom import motions
 from aidl_lang.geometry import curves
@@ -122,8 +123,7 @@ class _Reader:
     states: Mapping[Structure, str]
 
     def structure(self, s: Structure) -> SolvedStructure:
-        checkpoint()
-        geometry = tuple(self.geometry(g) for g in s.own())
+        geometry = tuple(map(self._named, s.own()))
         children = tuple(self.structure(child) for child in s.children)
         frame = s.frame
         return SolvedStructure(
@@ -213,6 +213,11 @@ class _Reader:
         )
 
     # --- Geometry ------------------------------------------------------------------------------
+
+    def _named(self, g: Geometry) -> SolvedGeometry:
+        with blaming(lambda: g.span, "it came as far as this"):
+            checkpoint()
+            return self.geometry(g)
 
     def geometry(self, g: Geometry) -> SolvedGeometry:
         core = g.fields if g.is_compound else view(g, self.model.root)

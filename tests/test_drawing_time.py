@@ -13,6 +13,7 @@ from aidl_lang import compile as compiled_model
 from aidl_lang import diff, pipeline
 from aidl_lang.agents.calling import answer
 from aidl_lang.agents.tools import Tools
+from aidl_lang.cancelling import OutOfTime
 from aidl_lang.cli import main
 from aidl_lang.drawing_time import TooLongError
 from aidl_lang.export import ExportError
@@ -53,9 +54,35 @@ def view() -> View:
 def test_drawing_itself() -> None:
     found = pipeline.compile(SourceFile("plates.aidl", PLATES), settings=replace(Settings(), drawing=0.0))
     assert (found.status, found.drawing) == ("wrong", None)
-    assert [(d.code, d.message, d.hints) for d in found.diagnostics] == [
-        ("E0805", "drawing what this program says takes more than 0 seconds", (HINT,))
-    ]
+    (told,) = found.diagnostics
+    message = "drawing what this program says takes more than 0 seconds"
+    assert (told.code, told.message, told.hints) == ("E0805", message, (HINT,))
+
+
+def test_what_is_read_out_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def late(*_: object) -> None:
+        raise OutOfTime
+
+    monkeypatch.setattr("aidl_lang.readout._Reader.geometry", late)
+    (told,) = pipeline.compile(SourceFile("plates.aidl", PLATES)).diagnostics
+    assert told.code == "E0805"
+    assert told.span is not None
+    assert (told.span.line, told.label) == (3, "it came as far as this")
+
+
+def test_what_is_drawn_most_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def late(*_: object) -> None:
+        raise OutOfTime
+
+    monkeypatch.setattr("aidl_lang.geometry.drawing.draw", late)
+    text = (
+        "solid s {\n    frame = rectangle(center: (0, 0), width: 90, height: 90)\n"
+        "    for i in 0..8 { c[i] = circle(center: (9 * i, 0), radius: 3) }\n}\n"
+    )
+    (told,) = pipeline.compile(SourceFile("s.aidl", text)).diagnostics
+    assert told.code == "E0805"
+    assert told.span is not None
+    assert (told.span.line, told.label) == (3, "most of its curves are made here")
 
 
 @pytest.mark.parametrize(

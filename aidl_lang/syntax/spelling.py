@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.source import Span
-from aidl_lang.syntax.tokens import END, UNKNOWN, Token, tokenize
+from aidl_lang.syntax.tokens import END, UNKNOWN, Token, is_open_comment, tokenize
 from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
 from aidl_lang.syntax.words import (
     FOREIGN_WORDS,
@@ -23,7 +23,7 @@ from aidl_lang.syntax.words import (
 
 
 def unclosed_comment(t: Trouble) -> Problem | None:
-    if t.token.kind != UNKNOWN or not t.token.text.startswith("/*"):
+    if not is_open_comment(t.token):
         return None
     end = Span(t.source, t.token.end, t.token.end)
     opening = Span(t.source, t.token.start, t.token.start + 2)

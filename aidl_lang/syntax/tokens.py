@@ -82,6 +82,11 @@ def tokenize(source: SourceFile, start: int = 0, end: int | None = None) -> Toke
     return result
 
 
+def is_open_comment(token: Token) -> bool:
+    """Whether a token is a comment that is not closed: it takes in the rest of the text."""
+    return token.kind == UNKNOWN and token.text.startswith("/*")
+
+
 def _take_comment(source: SourceFile, start: int, text: str, comments: list[Comment], doc: list[str]) -> None:
     comments.append(Comment(Span(source, start, start + len(text)), text))
     if text.startswith("///") and not text.startswith("////") and begins_line(source.text, start):
