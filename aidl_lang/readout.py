@@ -67,7 +67,7 @@ def read_out(
     reports = tuple(_reports(model, lowered, solution))
     root = reader.structure(model.root)
     readings = tuple(dict.fromkeys(Reading(span, text) for span, text in model.readings))
-    describe = partial(motions, model, lowered, freedom)
+    describe = partial(motions, model, lowered, solution, freedom)
     floating = tuple(_floating(lowered, freedom))
     solved = SolvedModel(
         solution.status.value, root, reports, freedom.degrees, free, changed, readings, floating, describe

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.expression import DEGREE
-from aidl_lang.freedom.scene import GEOMETRY, NUMBER, POINT, ROOT, WHOLE, Floats, Ints, Scene, Thing, X
+from aidl_lang.freedom.scene import GEOMETRY, NUMBER, POINT, ROOT, WHOLE, Floats, Ints, Scene, Thing, X, Y
 from aidl_lang.solver.mobility import Part
 
 Flags: TypeAlias = NDArray[np.bool_]
@@ -72,21 +72,43 @@ class Reach:
 
     def know(self, velocity: Floats) -> bool:
         """Whether a motion is no combination of those that are known; it is from now on."""
+        way = self._news(velocity)
+        if way is not None:
+            self.taken.append(way)
+        return way is not None
+
+    def _news(self, velocity: Floats) -> Floats | None:
+        """What of a motion is no combination of those that are known, in the space of all."""
         size = float(np.linalg.norm(velocity))
         if not size:
-            return False
+            return None
         way = self.reach.T @ velocity / size
         for _ in range(2):
             for other in self.taken:
                 way = way - other * (other @ way)
-        if np.linalg.norm(way) <= POSSIBLE:
-            return False
-        self.taken.append(way / np.linalg.norm(way))
-        return True
+        left = float(np.linalg.norm(way))
+        return way / left if left > POSSIBLE else None
+
+    def goes_on(self, velocity: Floats, spin: float) -> bool:
+        """Whether a possible motion goes on as it begins: straight on, or with a `spin` in radians in a circle."""
+        wanted = np.zeros(len(self.scene.places))
+        if spin:
+            at_x = self.part.observables[self.axis == X]
+            speed = np.zeros(len(wanted) + 1)
+            speed[self.part.observables] = velocity
+            wanted[at_x], wanted[at_x + 1] = -spin * speed[at_x + 1], spin * speed[at_x]
+            at_y = self.part.observables[self.axis == Y]
+            wanted[at_y - 1], wanted[at_y] = -spin * speed[at_y], spin * speed[at_y - 1]
+        return self.scene.bending.goes_on(self.part, self._rates(velocity), wanted)
+
+    def _rates(self, velocity: Floats) -> Floats:
+        """(k,) how fast the unknowns of the part change in a possible motion."""
+        found: Floats = self.part.basis @ np.linalg.solve(self.triangle, self.reach.T @ velocity)
+        return found
 
     def rates(self, velocity: Floats) -> dict[str, float]:
         """How fast the parameters change that take part in a possible motion."""
-        rates = self.part.basis @ np.linalg.solve(self.triangle, self.reach.T @ velocity)
+        rates = self._rates(velocity)
         least = POSSIBLE * float(np.abs(rates).max())
         return {
             self.scene.lowered.unknowns[u].path: float(rate)

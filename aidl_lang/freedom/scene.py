@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.expression import DEGREE
+from aidl_lang.freedom.bending import Bending
 from aidl_lang.lower import Lowered, seen
 from aidl_lang.model import Geometry, Model, Structure
 from aidl_lang.primitives import DIRECTIONS
@@ -42,10 +43,11 @@ class Scene:
     number  (o,) the path of the place or number that an observable is the first of
     of      (o,) the things that it belongs to
     known   the things by their paths
+    bending how what is observed bends along a motion
     """
 
-    def __init__(self, model: Model, lowered: Lowered, motions: Motions) -> None:
-        self.lowered = lowered
+    def __init__(self, model: Model, lowered: Lowered, motions: Motions, bending: Bending) -> None:
+        self.lowered, self.bending = lowered, bending
         self.places, self.anchor = motions.values, motions.anchor
         count = len(self.places)
         self.turning = np.zeros(count)

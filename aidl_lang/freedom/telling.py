@@ -10,6 +10,7 @@ from typing import TypeAlias
 import numpy as np
 
 from aidl_lang.expression import DEGREE
+from aidl_lang.freedom.bending import Bending
 from aidl_lang.freedom.reach import POSSIBLE, Flags, Reach
 from aidl_lang.freedom.relations import Relations, pattern
 from aidl_lang.freedom.scene import (
@@ -28,15 +29,19 @@ from aidl_lang.model import Model
 from aidl_lang.solved import Motion
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.components import connected
+from aidl_lang.solver.solution import Solution
 
 MOST = 200
 """Parts of the model that are put into words."""
 
 _KINDS = ("slide", "turn", "grow", "change", "together")
 """Of the ways of one thing, the more telling first."""
+_FOLLOWED = frozenset(_KINDS) - {"together"}
+_LEAVING = {"slide": "slide along a curve that begins along {}", "turn": "{} at first"}
+"""What is told where a motion does not go on as it begins."""
 
 
-def motions(model: Model, lowered: Lowered, freedom: Freedom) -> tuple[Motion, ...]:
+def motions(model: Model, lowered: Lowered, solution: Solution, freedom: Freedom) -> tuple[Motion, ...]:
     """Independent motions of a model, the most interesting first; last those of the whole drawing.
 
     Structures come before geometry, that before points and numbers; of these the large before the small, and
@@ -44,7 +49,7 @@ def motions(model: Model, lowered: Lowered, freedom: Freedom) -> tuple[Motion, .
     """
     if not freedom.motions.found:
         return ()
-    scene = Scene(model, lowered, freedom.motions)
+    scene = Scene(model, lowered, freedom.motions, Bending(lowered.problem, solution))
     tellings = [_Telling(scene, part) for part in freedom.motions.parts]
     whole = list(_own_place(scene, tellings, model.root.path))
     found = [told for telling in tellings[:MOST] for told in telling.motions()]
@@ -156,11 +161,27 @@ class _Telling(Reach):
     # --- Trying ------------------------------------------------------------------------------------
 
     def _told(
-        self, velocity: Floats, kind: str, things: Sequence[str], words: str, moving: Flags | None = None
+        self,
+        velocity: Floats,
+        kind: str,
+        things: Sequence[str],
+        words: str,
+        moving: Flags | None = None,
+        spin: float = 0.0,
     ) -> Iterator[_Told]:
-        """The motion, if it is possible and no combination of those that were told; with what moves in it."""
-        if self.is_done or not velocity.any() or not self.is_possible(velocity) or not self.know(velocity):
+        """The motion, if it is possible and no combination of those that were told; with what moves in it. One
+        that soon leaves its line or its centre is told as such; growth and change that soon take something
+        else along are not told.
+        """
+        if self.is_done or not velocity.any() or not self.is_possible(velocity):
             return
+        if self._news(velocity) is None:
+            return
+        if kind in _FOLLOWED and not self.goes_on(velocity, spin):
+            if kind not in _LEAVING:
+                return
+            words = _LEAVING[kind].format(words.removeprefix("slide along "))
+        self.know(velocity)
         moving = self._moving(velocity) if moving is None else moving
         yield Motion(kind, tuple(things), words, self.rates(velocity)), self.part.observables[moving]
 
@@ -198,7 +219,7 @@ class _Telling(Reach):
         if np.linalg.norm(missing) > POSSIBLE:  # else it can turn about any place
             words = f"turn about ({_short(x - about[1])}, {_short(y + about[0])})"
         velocity = (turn + about[0] * xs + about[1] * ys) * DEGREE
-        yield from self._told(velocity, "turn", things, words)
+        yield from self._told(velocity, "turn", things, words, spin=DEGREE)
 
     def _turns_about_a_place(self, thing: Thing) -> Iterator[_Told]:
         """Of a thing with places that stay, all of them the same."""
@@ -215,9 +236,8 @@ class _Telling(Reach):
             return
         velocity = self.turning * self._inside(thing)
         velocity[local[local >= 0]] = needed[local >= 0]
-        yield from self._told(
-            velocity * DEGREE, "turn", [thing.path], f"turn about ({_short(x)}, {_short(y)})"
-        )
+        words = f"turn about ({_short(x)}, {_short(y)})"
+        yield from self._told(velocity * DEGREE, "turn", [thing.path], words, spin=DEGREE)
 
     def _changes(self) -> Iterator[_Told]:
         """Single parameters that can change while nothing else does."""
@@ -270,8 +290,8 @@ class _Telling(Reach):
             moving = self._moving(velocity)
             things = [path for path, _ in self._cover(moving)]
             words = "move together" if len(things) > 1 else "change its shape"
-            if len(things) > 1 and all(self._is_turn(path, velocity) for path in things):
-                words = "turn together"
+            if all(self._is_turn(path, velocity) for path in things):
+                words = "turn together" if len(things) > 1 else "turn"
             if not (moving & (self.axis != NUMBER)).any():
                 words = "change together"
             yield from self._told(velocity, "together", things, words)

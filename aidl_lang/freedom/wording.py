@@ -78,7 +78,8 @@ def _words(ways: Sequence[Motion]) -> str:
         f"{words} in {count} ways" if (count := others.count(words)) > 1 else words
         for words in dict.fromkeys(others)
     ]
-    return _listed([f"slide along {_listed(sorted(slides))}"] * bool(slides) + counted)
+    slides.sort(key=lambda way: (way.startswith("a curve"), way))
+    return _listed([f"slide along {_listed(slides)}"] * bool(slides) + counted)
 
 
 def _sentence(line: _Line, root: str) -> str:
