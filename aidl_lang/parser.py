@@ -138,13 +138,12 @@ class _Reader:
         """Whether a `-` begins a constraint below one that is whole."""
         if not begins_with_sign(self.source.text, self.tokens, position):
             return False
-        return self.automaton.accepts((",", "constrain", "-"))  # commas stand among constraints alone
+        return self.automaton.accepts((",", "-"))  # commas stand among constraints alone
 
     def _begin_item(self, position: int) -> None:
-        """End the constraint above, and begin one with the word that may stand before a sign."""
+        """End the constraint above, as a comma does."""
         start = self.tokens[position].start
-        for kind in (",", "constrain"):
-            self.automaton.feed(Token(kind, "", start, start))
+        self.automaton.feed(Token(",", "", start, start))
         self.last = self.automaton.checkpoint(position)
         self.repairs = 0
 

@@ -18,8 +18,8 @@ Floats = NDArray[np.float64]
 STEP = 1e-3
 """How far a motion is followed to either side, in units of the unknowns."""
 KINK = 0.1
-"""What a row may bend on the way, as a share of what its terms change: beyond that it has a corner there, where
-what is possible on one side was told.
+"""What a row may bend on the way, as a share of what its terms change: beyond that it has a corner there,
+where what is possible on one side was told.
 """
 STRAIGHT = 1e-5
 """The bend that counts as none, in units of the unknowns."""
@@ -71,8 +71,8 @@ class Bending:
         return Valuation(self.problem.tape, self.at.tolist())
 
     def goes_on(self, part: Part, rates: Floats, wanted: Floats) -> bool:
-        """Whether the observables of the problem can have the accelerations `wanted` (o,) where the unknowns of
-        a part change at these rates.
+        """Whether the observables of the problem can have the accelerations `wanted` (o,) where the unknowns
+        of a part change at these rates.
         """
         columns = part.unknowns
         has_part = np.zeros(len(self.at), dtype=np.bool_)

@@ -90,7 +90,7 @@ class Reach:
         return way / left if left > POSSIBLE else None
 
     def goes_on(self, velocity: Floats, spin: float) -> bool:
-        """Whether a possible motion goes on as it begins: straight on, or with a `spin` in radians in a circle."""
+        """Whether a possible motion goes on as it begins: straight, or in a circle by `spin` radians."""
         wanted = np.zeros(len(self.scene.places))
         if spin:
             at_x = self.part.observables[self.axis == X]

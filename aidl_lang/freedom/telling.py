@@ -169,9 +169,9 @@ class _Telling(Reach):
         moving: Flags | None = None,
         spin: float = 0.0,
     ) -> Iterator[_Told]:
-        """The motion, if it is possible and no combination of those that were told; with what moves in it. One
-        that soon leaves its line or its centre is told as such; growth and change that soon take something
-        else along are not told.
+        """The motion, if it is possible and no combination of those that were told; with what moves in it.
+        One that soon leaves its line or its centre is told as such; growth and change that soon take along
+        something else are not told.
         """
         if self.is_done or not velocity.any() or not self.is_possible(velocity):
             return

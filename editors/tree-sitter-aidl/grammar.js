@@ -86,8 +86,14 @@ export default grammar({
 
     block: ($) => seq("{", repeat(choice($.statement, ";")), "}"),
 
-    // What may stand inside `constrain { }`; commas may stand between, as well as nothing.
-    constraint_block: ($) => seq("{", repeat(choice($.constraint_item, ";", ",")), "}"),
+    // What may stand inside `constrain { }`; commas may stand between, as well as nothing. Where nothing stands before
+    // it that it would go on with, an item may begin with a sign.
+    constraint_block: ($) => seq("{", repeat(choice($.constraint_item, $._signed_item, ";", ",")), "}"),
+    _signed_item: ($) =>
+      choice(
+        alias($._signed_statement, $.expression_statement),
+        alias($._signed_equation, $.equation),
+      ),
 
     statement: ($) =>
       choice(
@@ -260,6 +266,7 @@ export default grammar({
       ),
 
     equation: ($) => seq(field("left", $._first_sum), "=", field("right", $._disjunction)),
+    _signed_equation: ($) => seq(field("left", $._signed_sum), "=", field("right", $._disjunction)),
     _bare_equation: ($) => seq(field("left", $._sum), "=", field("right", $._disjunction)),
 
     prefer_statement: ($) =>
@@ -328,7 +335,8 @@ export default grammar({
         $.number,
         $.point,
         $.parenthesized_expression,
-        alias($._first_call, $.call_expression),
+        // A sign behind it goes on with it.
+        prec(1, alias($._first_call, $.call_expression)),
         alias($._first_member, $.member_expression),
         alias($._first_index, $.index_expression),
       ),
@@ -342,6 +350,25 @@ export default grammar({
 
     _target: ($) => choice($.identifier, alias($._indexed_target, $.index_expression)),
     _indexed_target: ($) => seq(field("object", $._target), field("index", $.subscript)),
+
+    // The same with a sign before the first operand.
+    _signed_statement: ($) => $._signed_disjunction,
+    _signed_disjunction: ($) => choice($._signed_condition, alias($._signed_logical, $.logical_expression)),
+    _signed_logical: ($) => logic($._signed_disjunction, $._disjunction),
+    _signed_condition: ($) =>
+      choice(
+        alias($._signed_comparison, $.comparison_expression),
+        alias($._signed_membership, $.membership_expression),
+      ),
+    _signed_comparison: ($) =>
+      seq(
+        field("operand", $._signed_sum),
+        repeat1(seq(field("operator", $._comparison_operator), field("operand", $._sum))),
+      ),
+    _signed_membership: ($) =>
+      seq(field("value", $._signed_sum), $._membership_operator, field("container", $._bounds)),
+    _signed_sum: ($) => choice($.unary_expression, alias($._signed_binary, $.binary_expression)),
+    _signed_binary: ($) => arithmetic($._signed_sum, $._sum),
 
     // --- Expressions -------------------------------------------------------------------------------------------
 

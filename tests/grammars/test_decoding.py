@@ -91,6 +91,7 @@ def stricter_here(tokens: list[Token], at: int) -> bool:
     """Where the export takes less than the language: kinds of structures, and words that may be keywords."""
     token, before = tokens[at], tokens[at - 1]
     wrong_kind = token.kind in ("NAME", "CALL") and before.kind == "NAME" and before.text not in KINDS
+    wrong_kind |= token.kind == "NAME" and before.kind == "template" and token.text not in KINDS
     return wrong_kind or token.kind in load_tables().soft_words or before.kind in load_tables().soft_words
 
 
