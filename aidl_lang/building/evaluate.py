@@ -58,7 +58,7 @@ _UNBOUNDED = frozenset({ListVal, RecordVal, Text})
 def _number(it: Interpreter, node: ast.Number, env: Env) -> Value:
     factor, dimension = UNITS[node.unit] if node.unit is not None else (1.0, None)
     value = node.value * factor
-    return Num(ex.literal(value, node), dimension) if ex.is_number(value) else _undefined(it, node)
+    return Num(ex.literal(value, node), dimension) if ex.is_number(value) else _out_of_range(it, node)
 
 
 def _point(it: Interpreter, node: ast.Point, env: Env) -> Value:
@@ -299,19 +299,36 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
         if x is None or y is None:
             return NOTHING
         if y == 0:
-            return _undefined(it, node)
+            return _divided_by_zero(it, node)
         return number(x - y * math.floor(x / y), dimension, status)
     result = _OPERATION[op](a.expression, b.expression)
     if result.op == "constant" and not ex.is_number(result.value):
-        return _undefined(it, node)
+        return _without_value(it, op, a.expression, b.expression, node)
     return Num(result, dimension, status)
 
 
-def _undefined(it: Interpreter, node: ast.Node) -> Nothing:
-    text = node.span.one_line
+def _without_value(it: Interpreter, op: str, a: ex.Expression, b: ex.Expression, node: ast.Node) -> Nothing:
+    """Says of constants why nothing comes of them."""
+    if op == "^" and a.value < 0 and not b.value.is_integer():
+        text = node.span.one_line
+        it.report("E0504", f"`{text}` has no value: it takes the root of a negative number", node)
+        return NOTHING
+    divisor = {"/": b, "^": a}.get(op)
+    if divisor is not None and divisor.is_constant and divisor.value == 0:
+        return _divided_by_zero(it, node)
+    return _out_of_range(it, node)
+
+
+def _divided_by_zero(it: Interpreter, node: ast.Node) -> Nothing:
+    hint = "let an `if … then … else` choose another value where the divisor is zero"
+    it.report("E0504", f"`{node.span.one_line}` has no value: it divides by zero", node, hints=[hint])
+    return NOTHING
+
+
+def _out_of_range(it: Interpreter, node: ast.Node) -> Nothing:
     it.report(
         "E0504",
-        f"`{text}` has no value: it divides by zero or leaves the range of numbers",
+        f"`{node.span.one_line}` has no value: it leaves the range of numbers",
         node,
         hints=[f"numbers reach to {ex.LARGEST:g} in either direction"],
     )
