@@ -7,10 +7,13 @@ from dataclasses import replace
 
 from aidl_lang.export.font import FAMILY, font_file
 from aidl_lang.export.marks import Picture
+from aidl_lang.export.scaling import scaled
 from aidl_lang.export.svg import to_svg
 
 SLIMMEST = 1 / 100
 """A picture that is longer than that gets more white along its sides."""
+LARGEST = 1e5
+"""mm. A larger picture is drawn in another scale."""
 MM_PER_INCH = 25.4
 _DENSITIES = (0.1, 1e6)
 """Dots per inch that a PNG can state."""
@@ -22,6 +25,10 @@ def to_png(picture: Picture, pixels: int) -> bytes:
     from PIL import Image
 
     picture = _widened(picture)
+    whole = max(picture.width, picture.height)
+    density = MM_PER_INCH * pixels / whole
+    if whole > LARGEST:  # round lines of such a size take resvg for ever, however few pixels they are
+        picture = scaled(picture, LARGEST / whole)
     per_mm = pixels / max(picture.width, picture.height)
     width, height = round(picture.width * per_mm), round(picture.height * per_mm)
     drawn = resvg_py.svg_to_bytes(
@@ -34,7 +41,6 @@ def to_png(picture: Picture, pixels: int) -> bytes:
         width=width,
         height=height,
     )
-    density = per_mm * MM_PER_INCH
     stated = {"dpi": (density, density)} if _DENSITIES[0] < density < _DENSITIES[1] else {}
     data = io.BytesIO()
     with Image.open(io.BytesIO(bytes(drawn))) as image:

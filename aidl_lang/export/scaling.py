@@ -1,0 +1,72 @@
+"""A picture in another scale."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.region import Face, Loop
+
+
+def scaled(picture: Picture, factor: float) -> Picture:
+    """The picture with all its lengths multiplied."""
+    scale = _Scale(factor)
+    return Picture(scale.box(picture.box), tuple(map(scale.group, picture.groups)))
+
+
+class _Scale:
+    def __init__(self, factor: float) -> None:
+        self.factor = factor
+
+    def point(self, p: Vec) -> Vec:
+        return self.factor * p[0], self.factor * p[1]
+
+    def box(self, box: Bounds) -> Bounds:
+        left, bottom, right, top = box
+        return self.factor * left, self.factor * bottom, self.factor * right, self.factor * top
+
+    def group(self, group: Group) -> Group:
+        clip = None if group.clip is None else self.box(group.clip)
+        return replace(group, marks=tuple(map(self.mark, group.marks)), clip=clip)
+
+    def mark(self, mark: Mark) -> Mark:
+        k = self.factor
+        match mark:
+            case Area(face=face, ink=ink):
+                return replace(mark, face=self.face(face), ink=None if ink is None else self.ink(ink))
+            case Curves(pieces=pieces, ink=ink):
+                return replace(mark, pieces=tuple(map(self.piece, pieces)), ink=self.ink(ink))
+            case Text(at=at, size=size):
+                return replace(mark, at=self.point(at), size=k * size)
+            case Dot(at=at, radius=radius):
+                return replace(mark, at=self.point(at), radius=k * radius)
+            case Frame(box=box, width=width, dash=dash):
+                return replace(mark, box=self.box(box), width=k * width, dash=k * dash)
+
+    def ink(self, ink: Ink) -> Ink:
+        dash = None if ink.dash is None else (self.factor * ink.dash[0], self.factor * ink.dash[1])
+        return replace(ink, width=self.factor * ink.width, dash=dash)
+
+    def face(self, face: Face) -> Face:
+        return Face(self.loop(face.outer), tuple(map(self.loop, face.holes)))
+
+    def loop(self, loop: Loop) -> Loop:
+        return replace(loop, pieces=tuple(map(self.piece, loop.pieces)))
+
+    def piece(self, piece: Piece) -> Piece:
+        k, at = self.factor, self.point
+        match piece:
+            case Line(start, end):
+                return Line(at(start), at(end))
+            case Arc(center, radius, start, end, sweep):
+                return Arc(at(center), k * radius, at(start), at(end), sweep)
+            case Circle(center, radius):
+                return Circle(at(center), k * radius)
+            case Ellipse(center, rx, ry, angle):
+                return Ellipse(at(center), k * rx, k * ry, angle)
+            case EllipseArc(center, rx, ry, angle, start, end, first, sweep):
+                return EllipseArc(at(center), k * rx, k * ry, angle, at(start), at(end), first, sweep)
+            case Bezier(p0, p1, p2, p3):
+                return Bezier(at(p0), at(p1), at(p2), at(p3))
