@@ -5,7 +5,8 @@ velocities are tried in turn (`telling`): of points, geometry, structures and of
 every motion, the smallest first, a slide along an axis or another direction, and a turn; then changes of
 single parameters, then growth. Each that is possible and new is told; what is left over is told as things
 that move together. That the whole drawing can move as one is known beforehand, so nothing is told of it.
-`relations` finds against what a thing moves, `wording` makes the report.
+`bending` follows each a little further, `relations` finds against what a thing moves, `wording` makes the
+report.
 """
 
 from __future__ import annotations
