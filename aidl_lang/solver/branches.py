@@ -25,7 +25,7 @@ from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Floats, Op
 from aidl_lang.solver.problem import Relation, Row, Settings
 from aidl_lang.solver.program import AffineProgram, Program
-from aidl_lang.solver.valuation import Cone, Valuation
+from aidl_lang.solver.valuation import Valuation
 
 TIGHTER = 0.5
 """Newton's tolerance relative to that of the check: both round differently."""
@@ -110,10 +110,9 @@ class _Attempt:
         self, task: Task, values: Valuation, metric: Metric, settings: Settings, clock: Clock
     ) -> None:
         self.task, self.values, self.metric, self.settings, self.clock = task, values, metric, settings, clock
-        everything = values.cone(row.expression for row in task.rows)
-        values.refresh(everything)
-        self.cone: Cone = values.narrowed(everything, task.free)
-        self.free = sorted(self.cone.unknowns)
+        self.cone = values.cone(row.expression for row in task.rows)
+        values.refresh(self.cone)
+        self.free = sorted(self.cone.unknowns & task.free)
         self.origin = [values.unknowns[unknown] for unknown in self.free]
         self.considered: list[int] = []
         """The equations, and the inequalities that were violated at some time."""
@@ -125,7 +124,7 @@ class _Attempt:
 
     @cached_property
     def freezer(self) -> Freezer:
-        return Freezer(self.values, self.free, self.cone)
+        return Freezer(self.values, self.free)
 
     def run(self) -> Verdict:
         tolerance = self.settings.tolerance

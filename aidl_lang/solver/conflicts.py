@@ -131,7 +131,7 @@ class _Search:
     @staticmethod
     def member(hierarchy: Hierarchy, index: int) -> Member:
         """The constraint and how far it is off at the current values."""
-        hierarchy.values.refresh(hierarchy.cones[index])
+        hierarchy.refresh([index])
         return Member(index, max(violation_of(row, hierarchy.values) for row in hierarchy.rows([index])))
 
     # -- the set
@@ -159,14 +159,14 @@ class _Search:
 
     def _violated(self, best: dict[int, float]) -> list[int]:
         self.hierarchy.values.assign(best.items())
-        return [index for index in self.scope.constraints if not self.hierarchy.satisfied(index)]
+        return self.hierarchy.unmet(self.scope.constraints)
 
     def _connected(self) -> Iterator[list[int]]:
         """The constraints by free unknowns that they share, directly or by others; at last all of them."""
         hierarchy, free = self.hierarchy, self.scope.free
         groups: list[tuple[set[int], list[int]]] = []
         for index in self.scope.constraints:
-            unknowns, members = set(hierarchy.cones[index].unknowns & free), [index]
+            unknowns, members = set(hierarchy.mentions[index] & free), [index]
             apart = []
             for other, indices in groups:
                 if other.isdisjoint(unknowns):
@@ -195,7 +195,7 @@ class _Search:
     def _count(self, conflict: Sequence[int]) -> tuple[tuple[int, ...], int]:
         """The unknowns that could move for the conflict, and the number of its equations."""
         hierarchy = self.hierarchy
-        mentioned = frozenset().union(*(hierarchy.cones[index].unknowns for index in conflict))
+        mentioned = frozenset().union(*map(hierarchy.mentions.__getitem__, conflict))
         rows = hierarchy.rows(conflict)
         return tuple(sorted(mentioned & self.scope.free)), sum(r.relation is Relation.EQUAL for r in rows)
 
@@ -209,8 +209,7 @@ class _Search:
         slopes = []
         for values in (here, {u: here[u] + step for u, step in zip(free, aside.tolist(), strict=True)}):
             hierarchy.values.assign(values.items())
-            for index in conflict:
-                hierarchy.values.refresh(hierarchy.cones[index])
+            hierarchy.refresh(conflict)
             found = gradients(hierarchy.values, roots)
             slopes.append(np.array([found[root].get(u, 0.0) for root in roots for u in free]))
         hierarchy.values.assign(here.items())
@@ -259,7 +258,7 @@ class _Search:
     def _residuals(self, index: int, reached: dict[int, float]) -> tuple[float, ...]:
         hierarchy = self.hierarchy
         hierarchy.values.assign(reached.items())
-        hierarchy.values.refresh(hierarchy.cones[index])
+        hierarchy.refresh([index])
         return tuple(hierarchy.values.nodes[row.expression] for row in hierarchy.rows([index]))
 
     def _lack(self, index: int, residuals: Sequence[float]) -> float:
@@ -288,8 +287,7 @@ class _Search:
         return self.trials[constraints]
 
     def _cost(self, constraints: Sequence[int]) -> int:
-        cones = self.hierarchy.cones
-        unknowns = frozenset().union(*(cones[index].unknowns for index in constraints))
+        unknowns = frozenset().union(*map(self.hierarchy.mentions.__getitem__, constraints))
         return len(self.hierarchy.rows(constraints)) * len(unknowns & self.scope.free)
 
     def _attempt(

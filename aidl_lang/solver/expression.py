@@ -201,10 +201,10 @@ class TapeBuilder:
             level = pairs + level[len(pairs) * 2 :]
         return level[0]
 
-    def _commutative(self, op: Op, a: int, b: int) -> int:
+    def _commutative(self, op: int, a: int, b: int) -> int:
         return self._node(op, a, b) if a <= b else self._node(op, b, a)
 
-    def _node(self, op: Op, *args: int) -> int:
+    def _node(self, op: int, *args: int) -> int:
         if all(self._ops[a] == Op.CONSTANT for a in args):
             values = [self._constants[a] for a in args]
             folded = VALUE[op](*values) if len(values) > 1 else VALUE[op](values[0], 0.0)
@@ -212,7 +212,7 @@ class TapeBuilder:
                 return self.constant(folded)
         return self._intern((op, *args), op, args, 0.0)
 
-    def _intern(self, key: tuple[object, ...], op: Op, operands: tuple[int, ...], constant: float) -> int:
+    def _intern(self, key: tuple[object, ...], op: int, operands: tuple[int, ...], constant: float) -> int:
         node = self._known.get(key)
         if node is None:
             node = self._known[key] = len(self._ops)

@@ -26,14 +26,15 @@ free has a share in that proof, and among the kept sizes only those that have ar
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from aidl_lang.solver import conflicts
-from aidl_lang.solver.freezing import Affine, Freezer
+from aidl_lang.solver.forms import Affine
+from aidl_lang.solver.freezing import Freezer
 from aidl_lang.solver.gradients import gradients
 from aidl_lang.solver.preferences import prefer
 from aidl_lang.solver.problem import Relation
@@ -113,14 +114,14 @@ class Group:
         places nothing that shifts.
         """
         hierarchy, found = self.hierarchy, dict[int, int]()
-        for index in indices:
-            placed = hierarchy.problem.constraints[index].placed & hierarchy.cones[index].unknowns
-            if placed:
-                reached = placed.intersection(u for row in self._reached(index) for u in row)
-                is_bound = all(row.relation is Relation.AT_MOST for row in hierarchy.rows([index]))
-                level = int(is_bound and hierarchy.satisfied(index))
-                for unknown in reached:
-                    found[unknown] = min(level, found.get(unknown, level))
+        constraints, mentions = hierarchy.problem.constraints, hierarchy.mentions
+        placing = [index for index in indices if constraints[index].placed & mentions[index]]
+        unmet = set(hierarchy.unmet(placing))
+        for index, reached in self._reached(placing):
+            is_bound = all(row.relation is Relation.AT_MOST for row in constraints[index].rows)
+            level = int(is_bound and index not in unmet)
+            for unknown in constraints[index].placed.intersection(itertools.chain(*reached)):
+                found[unknown] = min(level, found.get(unknown, level))
         self.placed = found
         self._tiers.clear()
 
@@ -144,7 +145,7 @@ class Group:
             linked = set(self.scope((9, 0), left[:1]).constraints)
             parts.append([index for index in left if index in linked])
             left = [index for index in left if index not in linked]
-        return [part for part in parts if not all(map(hierarchy.satisfied, part))]
+        return [part for part in parts if hierarchy.unmet(part)]
 
     def _solve_part(self, part: list[int]) -> Tier | None:
         """The stage that satisfied everything; of a conflict the last one written is left out, and the rest
@@ -153,7 +154,7 @@ class Group:
         hierarchy = self.hierarchy
         self._place(part)
         while True:
-            violated = [index for index in part if not hierarchy.satisfied(index)]
+            violated = hierarchy.unmet(part)
             if not violated:
                 return (0, 0)
             reached = self._deepen(part, violated)
@@ -187,7 +188,7 @@ class Group:
         constraints, free = set(seeds), set[int]()
         stack = list(constraints)
         while stack:
-            for unknown in hierarchy.cones[stack.pop()].unknowns:
+            for unknown in hierarchy.mentions[stack.pop()]:
                 if unknown in free or (self.tier(unknown) > last and unknown not in further):
                     continue
                 free.add(unknown)
@@ -211,7 +212,7 @@ class Group:
             if broken is not None:
                 seeds = sorted({*part, *broken})
                 positions = [tier for tier in tiers if tier <= POSITIONS]
-                if all(map(hierarchy.satisfied, seeds)):
+                if not hierarchy.unmet(seeds):
                     return SIZES
                 reached, best, _ = self._climb(positions, seeds, best)
                 if reached is not None:
@@ -238,7 +239,7 @@ class Group:
         hierarchy = self.hierarchy
         everything = self.scope((9, 0), seeds).free
         before = hierarchy.save(everything)
-        violated = [index for index in seeds if not hierarchy.satisfied(index)]
+        violated = hierarchy.unmet(seeds)
         tried: dict[bool, frozenset[int]] = {}
         obstacle: tuple[Tier, Proof] = ((1, 0), {})
         # A stage is searched branch by branch only when the branches that are active lead nowhere: in none of
@@ -281,10 +282,8 @@ class Group:
         if not proof:
             return False
         values = self.hierarchy.values
-        cone = values.cone(proof)
-        values.refresh(cone)
-        cone = values.narrowed(cone, free)
-        freezer = Freezer(values, cone.unknowns, cone)
+        values.refresh(values.cone(proof))
+        freezer = Freezer(values, free)
         total: dict[int, float] = {}
         sizes: dict[int, float] = {}
         for node, factor in proof.items():
@@ -324,8 +323,7 @@ class Group:
         at which one has a share in it.
         """
         hierarchy = self.hierarchy
-        for index in self.scope((9, 0), self.hard).constraints:
-            hierarchy.values.refresh(hierarchy.cones[index])
+        hierarchy.refresh(self.scope((9, 0), self.hard).constraints)
         slopes: dict[int, float] = {}
         for node, gradient in gradients(hierarchy.values, proof).items():
             for unknown, slope in gradient.items():
@@ -345,42 +343,41 @@ class Group:
 
     def _beyond_positions(self, constraints: list[int]) -> list[int]:
         """The constraints among these that hang on kept sizes alone, as `same_width` does."""
-        hierarchy = self.hierarchy
-        found: list[int] = []
-        for index in constraints:
-            if all(self.tier(unknown) <= POSITIONS for unknown in hierarchy.cones[index].unknowns):
-                continue
-            reached = [set(map(self.tier, unknowns)) for unknowns in self._reached(index)]
-            if any(tiers and min(tiers) > POSITIONS for tiers in reached) and not self._choices(index):
+        mentions, found = self.hierarchy.mentions, list[int]()
+        resizing = [i for i in constraints if any(self.tier(unknown) > POSITIONS for unknown in mentions[i])]
+        for index, reached in self._reached(resizing):
+            tiers = [set(map(self.tier, unknowns)) for unknowns in reached]
+            if any(each and min(each) > POSITIONS for each in tiers) and not self._choices(index):
                 found.append(index)
         return found
 
     def _choices(self, index: int) -> bool:
         """Whether positions choose a branch in a constraint, so that they may come to have a share in it."""
-        hierarchy, cone = self.hierarchy, self.hierarchy.cones[index]
-        free = frozenset(u for u in cone.unknowns if self.tier(u) <= POSITIONS)
-        freezer = Freezer(hierarchy.values, free, hierarchy.values.narrowed(cone, free))
+        hierarchy = self.hierarchy
+        positions = [unknown for unknown in hierarchy.mentions[index] if self.tier(unknown) <= POSITIONS]
+        freezer = Freezer(hierarchy.values, positions)
         return any(freezer.form(row.expression) is None for row in hierarchy.rows([index]))
 
-    def _reached(self, index: int) -> Iterator[list[int]]:
-        """For each row of a constraint the unknowns that change it where it is now."""
+    def _reached(self, indices: Sequence[int]) -> Iterator[tuple[int, list[list[int]]]]:
+        """Each constraint, with the unknowns that change it where it is now, for each row."""
         hierarchy = self.hierarchy
-        roots = [row.expression for row in hierarchy.rows([index])]
-        hierarchy.values.refresh(hierarchy.cones[index])
-        for gradient in gradients(hierarchy.values, roots).values():
-            yield [unknown for unknown, slope in gradient.items() if abs(slope) > FLAT]
+        hierarchy.refresh(indices)
+        slopes = gradients(hierarchy.values, [row.expression for row in hierarchy.rows(indices)])
+        for index in indices:
+            found = [slopes[row.expression] for row in hierarchy.rows([index])]
+            yield index, [[u for u, slope in gradient.items() if abs(slope) > FLAT] for gradient in found]
 
     def _settle_sizes(self, rigid: list[int], part: list[int]) -> list[int] | None:
         """Changes the sizes that `rigid` need: those they place, then as in the stages for sizes. Returns the
         constraints outside `part` that this broke and positions may mend; None if no sizes will do.
         """
         hierarchy = self.hierarchy
-        mentioned = frozenset().union(*(hierarchy.cones[index].unknowns for index in rigid))
+        mentioned = frozenset().union(*map(hierarchy.mentions.__getitem__, rigid))
         # Another row of such a constraint may hang on positions, which are free as they were before.
-        reached = frozenset(u for index in rigid for unknowns in self._reached(index) for u in unknowns)
+        reached = frozenset(u for _, rows in self._reached(rigid) for unknowns in rows for u in unknowns)
         positions = frozenset(unknown for unknown in reached if self.tier(unknown) <= POSITIONS)
         sizes = frozenset(unknown for unknown in mentioned if self.tier(unknown) > POSITIONS)
-        unmet = [index for index in rigid if not hierarchy.satisfied(index)]
+        unmet = hierarchy.unmet(rigid)
         placed = sizes & frozenset().union(*(hierarchy.problem.constraints[i].placed for i in unmet))
         levels = sorted({self.tier(unknown) for unknown in sizes})
         stages = [(level, frozenset(u for u in sizes if self.tier(u) <= level)) for level in levels]
@@ -396,14 +393,14 @@ class Group:
             if satisfied:
                 moved = [u for u in free if hierarchy.values.unknowns[u] != before[u]]
                 touched = {i for u in moved for i in hierarchy.solved_mentioning(u, self.group)} - set(part)
-                return [i for i in sorted(touched) if hierarchy.is_hard(i) and not hierarchy.satisfied(i)]
+                return hierarchy.unmet(sorted(filter(hierarchy.is_hard, touched)))
             hierarchy.values.assign(before.items())
         return None
 
     def _promising(self, violated: list[int], tier: Tier) -> bool:
         """Whether each violated constraint mentions something free."""
-        cones = self.hierarchy.cones
-        return all(any(self.tier(unknown) <= tier for unknown in cones[index].unknowns) for index in violated)
+        mentions = self.hierarchy.mentions
+        return all(any(self.tier(unknown) <= tier for unknown in mentions[index]) for index in violated)
 
     def _report(self, tier: Tier, scope: Scope, before: dict[int, float] | None) -> None:
         """Reports a stage. If it succeeded, from the values `before`, what need not move is held first."""
@@ -437,7 +434,7 @@ class Group:
             return
         hierarchy.values.assign(best.items())
         involved = set(everything.constraints) | set(self.hard)
-        hierarchy.give_up(index for index in sorted(involved) if not hierarchy.satisfied(index))
+        hierarchy.give_up(hierarchy.unmet(sorted(involved)))
 
     # -- preferences
 
@@ -455,7 +452,7 @@ class Group:
                     for index in hierarchy.solved_mentioning(unknown, self.group)
                     if not hierarchy.is_hard(index)
                 )
-        if all(hierarchy.satisfied(index) for index in soft):
+        if not hierarchy.unmet(soft):
             return
         preferences = tuple(sorted(soft))
         self._place([*self.hard, *preferences])

@@ -6,7 +6,7 @@ which says what the stages are).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -15,14 +15,15 @@ from numpy.typing import NDArray
 
 from aidl_lang.solver import conflicts
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
+from aidl_lang.solver.gradients import below
 from aidl_lang.solver.group import Group, Scope, Tier, stage_name
 from aidl_lang.solver.memory import Recollection
 from aidl_lang.solver.naming import rides
 from aidl_lang.solver.newton import Clock
-from aidl_lang.solver.operations import Bools, Floats
+from aidl_lang.solver.operations import Bools, Floats, Op
 from aidl_lang.solver.problem import Problem, Row, Settings, depths, violations
 from aidl_lang.solver.solution import GroupFailure, StageReport
-from aidl_lang.solver.valuation import Cone, Valuation
+from aidl_lang.solver.valuation import Valuation
 
 if TYPE_CHECKING:
     from aidl_lang.solver.levels import Levels, Stage
@@ -111,12 +112,13 @@ class Hierarchy:
 
     @cached_property
     def values(self) -> Valuation:
-        return Valuation(self.problem.tape, self.problem.initial.tolist())
+        kept = frozenset(np.flatnonzero(self.problem.kept).tolist())
+        return Valuation(self.problem.tape, self.problem.initial.tolist(), kept)
 
     @cached_property
-    def cones(self) -> Mapping[int, Cone]:
-        """What each constraint is made of, by its index; found when first asked for."""
-        return _Cones(self.problem, self.values)
+    def mentions(self) -> Mapping[int, frozenset[int]]:
+        """The unknowns in each constraint, by its index; found when first asked for."""
+        return _Mentions(self.problem, self._levels)
 
     @cached_property
     def _mentioned_by(self) -> dict[int, list[int]]:
@@ -130,7 +132,7 @@ class Hierarchy:
         if self._levels is not None:
             return zip(self._levels.constraints.tolist(), self._levels.unknowns.tolist(), strict=True)
         indices = range(len(self.problem.holder))
-        return ((index, unknown) for index in indices for unknown in self.cones[index].unknowns)
+        return ((index, unknown) for index in indices for unknown in self.mentions[index])
 
     def run(self, recollection: Recollection | None = None) -> None:
         """Solves the groups depth by depth, from below; those that nothing has changed for are recalled."""
@@ -192,11 +194,9 @@ class Hierarchy:
         if self._levels is not None:
             return violations(self.problem, self._levels.nodes())
         self.values.assign(enumerate(self.reached.tolist()))
-        found = []
-        for index, constraint in enumerate(self.problem.constraints):
-            self.values.refresh(self.cones[index])
-            found.extend([violation_of(row, self.values) for row in constraint.rows])
-        return np.array(found)
+        self.refresh(range(len(self.problem.holder)))
+        rows = (row for constraint in self.problem.constraints for row in constraint.rows)
+        return np.array([violation_of(row, self.values) for row in rows])
 
     def changed(self) -> list[int]:
         """Kept sizes that are no longer what was written."""
@@ -246,12 +246,15 @@ class Hierarchy:
     def rows(self, indices: Iterable[int]) -> list[Row]:
         return [row for index in indices for row in self.problem.constraints[index].rows]
 
-    def satisfied(self, index: int) -> bool:
-        """By the original expressions at the current values."""
-        self.values.refresh(self.cones[index])
-        return all(
-            holds(row, self.values, self.settings.tolerance) for row in self.problem.constraints[index].rows
-        )
+    def refresh(self, indices: Iterable[int]) -> None:
+        """Brings up to date what these constraints are made of."""
+        self.values.refresh(self.values.cone(row.expression for row in self.rows(indices)))
+
+    def unmet(self, indices: Collection[int]) -> list[int]:
+        """Those of the constraints that do not hold by the original expressions at the current values."""
+        self.refresh(indices)
+        constraints, values, tolerance = self.problem.constraints, self.values, self.settings.tolerance
+        return [i for i in indices if not all(holds(row, values, tolerance) for row in constraints[i].rows)]
 
     def attempt(
         self, scope: Scope, restarts: int, clock: Clock | None = None, turning: bool = True
@@ -295,12 +298,19 @@ class Hierarchy:
         return self.problem.names[unknown] if self.problem.names else ""
 
 
-class _Cones(dict[int, Cone]):
-    def __init__(self, problem: Problem, values: Valuation) -> None:
+class _Mentions(dict[int, frozenset[int]]):
+    def __init__(self, problem: Problem, levels: Levels | None) -> None:
         super().__init__()
-        self._problem, self._values = problem, values
+        self._problem, self._levels = problem, levels
+        if levels is not None:
+            self._starts = np.searchsorted(levels.constraints, np.arange(len(problem.holder) + 1))
 
-    def __missing__(self, index: int) -> Cone:
-        rows = self._problem.constraints[index].rows
-        found = self[index] = self._values.cone(row.expression for row in rows)
+    def __missing__(self, index: int) -> frozenset[int]:
+        if self._levels is not None:
+            unknowns = self._levels.unknowns[self._starts[index] : self._starts[index + 1]].tolist()
+        else:
+            tape, rows = self._problem.tape, self._problem.constraints[index].rows
+            nodes = below(tape, [row.expression for row in rows])
+            unknowns = [tape.operand_lists[node][0] for node in nodes if tape.op_list[node] == Op.UNKNOWN]
+        found = self[index] = frozenset(unknowns)
         return found

@@ -19,7 +19,7 @@ from contextlib import contextmanager
 from typing import NamedTuple, NoReturn
 
 from aidl_lang.solver.expression import TapeBuilder
-from aidl_lang.solver.operations import ARITY, Op
+from aidl_lang.solver.operations import ARITY, NAMES, Op
 from aidl_lang.solver.problem import Relation
 
 SUMS = {"+": Op.ADD, "-": Op.SUB}
@@ -143,7 +143,7 @@ class _Reader:
     def sum(self) -> int:
         return self._left_to_right(SUMS, lambda: self._left_to_right(PRODUCTS, self._signed))
 
-    def _left_to_right(self, operators: dict[str, Op], operand: Callable[[], int]) -> int:
+    def _left_to_right(self, operators: dict[str, int], operand: Callable[[], int]) -> int:
         node = operand()
         while (sign := self.take(*operators)) is not None:
             node = self._make(operators[sign], node, operand())
@@ -215,8 +215,8 @@ class _Reader:
             self.fail(" or ".join(["an operator", *map(repr, separator), "')'"]))
         return operands
 
-    def _make(self, op: Op, *operands: int) -> int:
-        node: int = getattr(self._tape, op.name.lower())(*operands)
+    def _make(self, op: int, *operands: int) -> int:
+        node: int = getattr(self._tape, NAMES[op])(*operands)
         return node
 
 

@@ -20,8 +20,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable
-from enum import IntEnum
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,32 +36,36 @@ STEEPEST = 1e8
 """Cap on the slope of asin and acos at the ends of their domain."""
 
 
-class Op(IntEnum):
-    CONSTANT = 0
-    UNKNOWN = 1
-    ADD = 2
-    SUB = 3
-    MUL = 4
-    DIV = 5
-    NEG = 6
-    POWER = 7
-    SIN = 8
-    COS = 9
-    TAN = 10
-    ASIN = 11
-    ACOS = 12
-    ATAN2 = 13
-    SQRT = 14
-    ABS = 15
-    SQUARE = 16
-    HYPOT = 17
-    MINIMUM = 18
-    MAXIMUM = 19
-    MOD = 20
-    SELECT = 21
-    CUBIC_MAX = 22
+class Op:
+    """The operations by name. Plain numbers: to read a member of an `Enum` costs more than an operation."""
+
+    CONSTANT: Final = 0
+    UNKNOWN: Final = 1
+    ADD: Final = 2
+    SUB: Final = 3
+    MUL: Final = 4
+    DIV: Final = 5
+    NEG: Final = 6
+    POWER: Final = 7
+    SIN: Final = 8
+    COS: Final = 9
+    TAN: Final = 10
+    ASIN: Final = 11
+    ACOS: Final = 12
+    ATAN2: Final = 13
+    SQRT: Final = 14
+    ABS: Final = 15
+    SQUARE: Final = 16
+    HYPOT: Final = 17
+    MINIMUM: Final = 18
+    MAXIMUM: Final = 19
+    MOD: Final = 20
+    SELECT: Final = 21
+    CUBIC_MAX: Final = 22
 
 
+NAMES = {number: name.lower() for name, number in vars(Op).items() if name.isupper()}
+"""The name of each operation, which is that of the builder's method for it, too."""
 ARITY: tuple[int, ...] = (0, 0, 2, 2, 2, 2, 1, 2, 1, 1, 1, 1, 1, 2, 1, 1, 1, 2, 2, 2, 2, 3, 4)
 """Number of operands of each operation, indexed by `Op`."""
 

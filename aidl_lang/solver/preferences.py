@@ -59,9 +59,9 @@ def _meet_exactly(hierarchy: Hierarchy, scope: Scope, hard: list[int], soft: tup
 def _cost(hierarchy: Hierarchy, soft: tuple[int, ...]) -> float:
     """The weighted squares of what the preferences lack."""
     total = 0.0
+    hierarchy.refresh(soft)
     for index in soft:
         constraint = hierarchy.problem.constraints[index]
-        hierarchy.values.refresh(hierarchy.cones[index])
         for row in constraint.rows:
             lack = violation_of(row, hierarchy.values) / row.scale
             total += (constraint.weight or 0.0) * lack * lack

@@ -39,7 +39,7 @@ def reasons(problem: Problem, settings: Settings, gave: Giving) -> Iterator[Reas
         scope = Scope(gave.free - left, gave.constraints)
         before = {unknown: float(gave.values[unknown]) for unknown in gave.free}
         found, minimal = conflict(hierarchy, scope, before)
-        mentioned = frozenset[int]().union(*(hierarchy.cones[index].unknowns for index in found))
+        mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, found))
         share = left & mentioned or left
         yield Reason(share, tuple(found), minimal and bool(found))
         left -= share

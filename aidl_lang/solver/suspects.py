@@ -42,8 +42,7 @@ class Linearised:
 
     def __init__(self, hierarchy: Hierarchy, constraints: Sequence[int], free: Iterable[int]) -> None:
         rows = [(index, row) for index in constraints for row in hierarchy.rows([index])]
-        for index in constraints:
-            hierarchy.values.refresh(hierarchy.cones[index])
+        hierarchy.refresh(constraints)
         found = gradients(hierarchy.values, [row.expression for _, row in rows])
         columns = {unknown: k for k, unknown in enumerate(sorted(free))}
         self.jacobian = np.zeros((len(rows), len(columns)))

@@ -88,8 +88,7 @@ def _needed(
     """
     tolerance, values = hierarchy.settings.tolerance, hierarchy.values
     rows = hierarchy.rows(scope.constraints)
-    cone = values.cone(row.expression for row in rows)
-    values.refresh(cone)
+    hierarchy.refresh(scope.constraints)
     roots = [
         row.expression
         for row in rows
@@ -98,7 +97,7 @@ def _needed(
     thing = hierarchy.problem.thing
     needed: set[int] = set()
     expected: dict[int, float] = {}
-    for program in Freezer(values, moved, values.narrowed(cone, moved)).freeze(roots).programs:
+    for program in Freezer(values, moved).freeze(roots).programs:
         columns = [int(unknown) for unknown in program.columns]
         steps = np.array([moved[unknown] for unknown in columns])
         program.residuals(np.array([values.unknowns[unknown] for unknown in columns]))

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
 from aidl_lang.solver.expression import Tape
+from aidl_lang.solver.forms import Forms
 from aidl_lang.solver.operations import VALUE, Op
 from aidl_lang.solver.schedule import Schedule
 
 Compiled: TypeAlias = "tuple[Callable[..., float], int | tuple[int, ...], int, int]"
 """Function, first operand (all of them for more than two), second operand or -1, result."""
+
+CONES = 64
+"""Cones that are remembered."""
 
 
 class Valuation:
@@ -20,14 +24,25 @@ class Valuation:
 
     unknowns (n,) current values; change them only through `assign`
     nodes    (m,) value of each tape node as of the last `refresh` that covered it
+    kept     the unknowns that are sizes, which seldom change
     """
 
-    def __init__(self, tape: Tape, initial: Sequence[float]) -> None:
-        self.tape = tape
+    def __init__(self, tape: Tape, initial: Sequence[float], kept: frozenset[int] = frozenset()) -> None:
+        self.tape, self.kept = tape, kept
         self.unknowns = [float(value) for value in initial]
         self.nodes = [float(value) for value in tape.constants]
         self._seen = [False] * len(tape)
         self._code: list[Compiled | None] = [None] * len(tape)
+        self._cones: dict[tuple[int, ...], Cone] = {}
+        self._forms: dict[frozenset[int], Forms] = {}
+
+    def forms(self, free: frozenset[int]) -> Forms:
+        """What the nodes are if of the kept sizes only those in `free` may change."""
+        sizes = self.kept & free
+        found = self._forms.get(sizes)
+        if found is None or not found.is_fresh:
+            found = self._forms[sizes] = Forms(self.tape, self.unknowns, self.kept - sizes)
+        return found
 
     @cached_property
     def schedule(self) -> Schedule:
@@ -39,23 +54,19 @@ class Valuation:
 
     def cone(self, roots: Iterable[int]) -> Cone:
         """Everything that the roots are made of, ready to be refreshed."""
+        wanted = tuple(roots)
+        found = self._cones.get(wanted)
+        if found is None:
+            if len(self._cones) >= CONES:
+                self._cones.clear()
+            found = self._cones[wanted] = self._find_cone(wanted)
+        return found
+
+    def _find_cone(self, roots: Iterable[int]) -> Cone:
         nodes = reachable(self.tape, roots, self._seen)
         ops, operands = self.tape.op_list, self.tape.operand_lists
         inputs = [(node, operands[node][0]) for node in nodes if ops[node] == Op.UNKNOWN]
         code = [self._compiled(node) for node in nodes if ops[node] > Op.UNKNOWN]
-        return Cone(frozenset([unknown for _, unknown in inputs]), inputs, code, nodes)
-
-    def narrowed(self, cone: Cone, free: Container[int]) -> Cone:
-        """What of a cone changes with the unknowns `free`."""
-        ops, operands = self.tape.op_list, self.tape.operand_lists
-        inputs = [pair for pair in cone.inputs if pair[1] in free]
-        varying = {node for node, _ in inputs}
-        nodes = [node for node, _ in inputs]
-        for node in cone.nodes:
-            if ops[node] > Op.UNKNOWN and not varying.isdisjoint(operands[node]):
-                varying.add(node)
-                nodes.append(node)
-        code = [self._compiled(node) for node in nodes[len(inputs) :]]
         return Cone(frozenset([unknown for _, unknown in inputs]), inputs, code, nodes)
 
     def _compiled(self, node: int) -> Compiled:
@@ -92,11 +103,6 @@ def compiled(op: int, out: int, operands: tuple[int, ...]) -> Compiled:
     if len(operands) > 2:
         return VALUE[op], operands, -1, out
     return VALUE[op], operands[0], operands[-1], out
-
-
-def evaluate(op: int, operands: Sequence[float]) -> float:
-    """One operation on numbers."""
-    return VALUE[op](*operands) if len(operands) > 1 else VALUE[op](operands[0], operands[0])
 
 
 def run(code: list[Compiled], values: list[float]) -> None:

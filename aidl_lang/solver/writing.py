@@ -195,13 +195,13 @@ class _Writing:
     def _joined(self, op: int, operands: tuple[int, ...]) -> tuple[str, int]:
         """An operation as text, and how firmly it holds together."""
         if op in _INFIX:
-            sign, level = _INFIX[Op(op)]
+            sign, level = _INFIX[op]
             return f"{self._at(level, operands[0])} {sign} {self._at(level + 1, operands[1])}", level
         if op == Op.POWER:
             return f"{self._at(ATOM, operands[0])} ^ {self._at(SIGNED, operands[1])}", POWER
         if op == Op.NEG:
             return f"-{self._at(SIGNED, operands[0])}", SIGNED
-        return f"{_NAMES[Op(op)]}({', '.join(self.text[operand][0] for operand in operands)})", ATOM
+        return f"{_NAMES[op]}({', '.join(self.text[operand][0] for operand in operands)})", ATOM
 
     def _at(self, level: int, node: int) -> str:
         text, firmness = self.text[node]

@@ -58,7 +58,7 @@ def values_of(problem: Problem, nodes: Sequence[int], x: np.ndarray) -> np.ndarr
             elif op == Op.UNKNOWN:
                 known[node] = x[operands[0]]
             else:
-                known[node] = _FUNCTIONS[Op(op)](*map(value, operands))
+                known[node] = _FUNCTIONS[op](*map(value, operands))
         return known[node]
 
     return np.array([value(node) for node in nodes], dtype=np.float64).reshape(len(nodes), *x.shape[1:])

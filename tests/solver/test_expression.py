@@ -66,8 +66,7 @@ def gradient(tape: Tape, root: int, x: list[float]) -> np.ndarray:
     values = Valuation(tape, x)
     values.refresh(values.cone([root]))
     result = np.zeros(len(x))
-    varying = values.narrowed(values.cone([root]), range(len(x)))
-    for program in Freezer(values, range(len(x)), varying).freeze([root]).programs:
+    for program in Freezer(values, range(len(x))).freeze([root]).programs:
         program.residuals(np.array([x[i] for i in program.columns]))
         result[program.columns] = program.jacobian(np.ones(1), np.ones(len(program.columns)))[0]
     return result
