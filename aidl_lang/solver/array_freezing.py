@@ -23,15 +23,17 @@ TIE = 1e-9
 """Difference, relative to the operands, below which rounding shall not decide between branches."""
 ALIKE = 1e-12
 """Relative difference of slopes that is rounding alone."""
+FIRST = np.ones(1, dtype=np.bool_)
+"""Whether the first of some numbers differs from the one before."""
 
 
 @dataclass(frozen=True)
 class _Layout:
-    """steps; rows and nodes of the pairs above the unknowns, by level; row and unknown of each entry"""
+    """steps; rows and nodes of the pairs above the unknowns; row and unknown of each entry"""
 
     steps: list[Step]
-    rows: list[Ints]
-    nodes: list[Ints]
+    rows: Ints
+    nodes: Ints
     row: Ints
     unknown: Ints
 
@@ -173,12 +175,11 @@ class ArrayFreezing:
         layout = self._lay_out(roots)
         count, width = len(self._values), len(self._free)
         nodes = _distinct(layout.nodes, count)
-        columns = _distinct([layout.unknown], width)
+        columns = _distinct(layout.unknown, width)
         indptr = np.zeros(len(roots) + 1, dtype=np.int64)
         np.cumsum(np.bincount(layout.row, minlength=len(roots)), out=indptr[1:])
         affine = np.ones(len(roots), dtype=np.bool_)
-        for rows, members in zip(layout.rows, layout.nodes, strict=True):
-            affine[rows[self._curved(members)]] = False
+        affine[layout.rows[self._curved(layout.nodes)]] = False
         place = np.empty(width, dtype=np.int64)
         place[columns] = np.arange(len(columns))
         input_of = np.empty(width, dtype=np.int64)
@@ -189,13 +190,13 @@ class ArrayFreezing:
             indptr,
             place[layout.unknown],
             affine,
-            self._plain[roots],
             np.arange(len(roots)),
             input_of[columns],
             self._batches(nodes),
             layout.steps,
             self._values,
             self._slopes,
+            lambda: self._plain[roots],
         )
 
     def _batches(self, nodes: Ints) -> list[Batch]:
@@ -216,7 +217,7 @@ class ArrayFreezing:
         rows = np.arange(len(roots))
         above.add(self._levels[roots], rows, roots, np.full(len(roots), -1), np.full(len(roots), 4 * count))
         low = 0
-        visited_rows, visited = [], []
+        visited_rows, visited = [rows[:0]], [rows[:0]]
         row, second = rows[:0], roots[:0]
         for level in above.descending():
             row, node, parent, slope = above.take(level)
@@ -224,7 +225,7 @@ class ArrayFreezing:
             key = row * max(count, width) + second
             order = np.argsort(key, kind="stable")
             key = key[order]
-            starts = np.flatnonzero(np.diff(key, prepend=-1))
+            starts = np.flatnonzero(np.concatenate((FIRST, key[1:] != key[:-1])))
             unique = order[starts]
             row, second = row[unique], second[unique]
             single = len(starts) == len(order)
@@ -235,19 +236,14 @@ class ArrayFreezing:
                 visited.append(second)
                 self._descend(above, row, second, low)
             low = high
-        return _Layout(steps, visited_rows, visited, row, second)
+        return _Layout(steps, np.concatenate(visited_rows), np.concatenate(visited), row, second)
 
     def _descend(self, above: _Pending, row: Ints, node: Ints, low: int) -> None:
         """Adds the pairs below those of one level, which are numbered from `low` on."""
-        count = len(self._values)
-        pair = np.arange(low, low + len(node))
-        for k in range(4):
-            child = self._operands[node, k].astype(np.int64)
-            below = np.flatnonzero((child >= 0) & self._varies[child])
-            if len(below) == 0:
-                continue
-            child = child[below]
-            above.add(self._levels[child], row[below], child, pair[below], k * count + node[below])
+        children = self._operands[node]
+        at, k = np.nonzero((children >= 0) & self._varies[children])
+        child = children[at, k].astype(np.int64)
+        above.add(self._levels[child], row[at], child, low + at, k * len(self._values) + node[at])
 
     def _curved(self, nodes: Ints) -> Bools:
         """Whether each node is not an affine function of those of its operands that vary."""
@@ -266,13 +262,10 @@ class _Pending:
         self._levels: dict[int, list[tuple[Ints, ...]]] = {}
 
     def add(self, levels: NDArray[np.int32], *columns: Ints) -> None:
-        low, high = int(levels.min(initial=1 << 30)), int(levels.max(initial=-1))
-        if low == high:
-            self._levels.setdefault(low, []).append(columns)
-            return
-        for level in np.unique(levels).tolist():
+        for level in np.flatnonzero(np.bincount(levels)).tolist():
             members = np.flatnonzero(levels == level)
-            self._levels.setdefault(level, []).append(tuple(column[members] for column in columns))
+            found = columns if len(members) == len(levels) else tuple(column[members] for column in columns)
+            self._levels.setdefault(level, []).append(found)
 
     def descending(self) -> Iterable[int]:
         """The levels that are left, from above; taking one may add lower ones."""
@@ -297,11 +290,10 @@ _BRANCHES = _table(BRANCHING)
 _STRAIGHT = _table([*LINEAR, IDENTITY])
 
 
-def _distinct(pieces: Sequence[Ints], count: int) -> Ints:
+def _distinct(numbers: Ints, count: int) -> Ints:
     """The different numbers below `count` that occur, ascending."""
     found = np.zeros(count, dtype=np.bool_)
-    for piece in pieces:
-        found[piece] = True
+    found[numbers] = True
     return np.flatnonzero(found)
 
 

@@ -7,6 +7,7 @@ it; which pairs there are, and in which order they are visited, is laid out once
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -48,7 +49,7 @@ class ArrayProgram:
     rows     (r,) which of the roots given to `freeze`
     indptr, indices: the pattern of the Jacobian by rows, as in `scipy.sparse.csr_array`
     affine   (r,) whether each row is an affine function of the unknowns
-    plain    (r,) whether it is the same affine function whatever branches are taken
+    plain    (r,) whether it is the same affine function whatever branches are taken; found when asked for
     """
 
     roots: Ints
@@ -56,13 +57,17 @@ class ArrayProgram:
     indptr: Ints
     indices: Ints
     affine: Bools
-    plain: Bools
     rows: Ints
     _inputs: Ints
     _batches: list[Batch]
     _steps: list[Step]
     _values: Floats
     _slopes: Floats
+    _find_plain: Callable[[], Bools]
+
+    @property
+    def plain(self) -> Bools:
+        return self._find_plain()
 
     @property
     def linear(self) -> bool:

@@ -75,9 +75,9 @@ def solve(
     for stack in stacks:
         solved[stack.systems] = stack.done
         hopeless[stack.systems] = stack.out_of_reach
-    vague = np.zeros(len(systems.wanted), dtype=np.bool_)
-    vague[systems.of_row[~program.plain]] = True
-    return x, solved, hopeless & ~vague
+    if hopeless.any():
+        hopeless[systems.of_row[~program.plain]] = False
+    return x, solved, hopeless
 
 
 def _stacks(program: ArrayProgram, systems: Systems, at_most: Bools) -> Iterator[_Stack]:
