@@ -83,19 +83,22 @@ class Forms:
 
     def _find(self, root: int) -> Form:
         ops, operands, found = self._tape.op_list, self._tape.operand_lists, self._found
-        stack = [root]
+        missing, stack = {root}, [root]
         while stack:
-            node = stack[-1]
-            if node in found:
-                stack.pop()
-            elif ops[node] == Op.UNKNOWN:
+            node = stack.pop()
+            if ops[node] > Op.UNKNOWN:
+                for operand in operands[node]:
+                    if operand not in found and operand not in missing:
+                        missing.add(operand)
+                        stack.append(operand)
+        for node in sorted(missing):
+            op = ops[node]
+            if op > Op.UNKNOWN:
+                found[node] = self._place(node, op, tuple([found[a] for a in operands[node]]))
+            elif op == Op.UNKNOWN:
                 found[node] = self._unknown(operands[node][0])
-            elif ops[node] == Op.CONSTANT:
-                found[node] = float(self._tape.constants[node])
-            elif missing := [a for a in operands[node] if a not in found]:
-                stack.extend(missing)
             else:
-                found[node] = self._place(node, ops[node], tuple([found[a] for a in operands[node]]))
+                found[node] = float(self._tape.constants[node])
         return found[root]
 
     def _unknown(self, unknown: int) -> Form:
@@ -155,21 +158,19 @@ def scaled(form: Form, factor: float) -> Form:
 def applied(op: int, parts: Sequence[Form]) -> Form | None:
     """The form of an operation without branches; None if it is not affine."""
     first, last = parts[0], parts[-1]
-    if all(isinstance(part, float) for part in parts):
-        return evaluate(op, [part for part in parts if isinstance(part, float)])
-    match op:
-        case Op.ADD:
-            return combined(first, last, 1.0)
-        case Op.SUB:
-            return combined(first, last, -1.0)
-        case Op.NEG:
-            return scaled(first, -1.0)
-        case Op.MUL if isinstance(first, float) and _is_finite(first):
-            return scaled(last, first)
-        case Op.MUL if isinstance(last, float) and _is_finite(last):
-            return scaled(first, last)
-        case Op.DIV if isinstance(last, float) and last != 0.0 and _is_finite(1.0 / last):
-            return scaled(first, 1.0 / last)
+    if op == Op.ADD:
+        return combined(first, last, 1.0)
+    if op == Op.SUB:
+        return combined(first, last, -1.0)
+    if op == Op.NEG:
+        return scaled(first, -1.0)
+    numbers = [part for part in parts if isinstance(part, float)]
+    if len(numbers) == len(parts):
+        return evaluate(op, numbers)
+    if op == Op.MUL and numbers and _is_finite(numbers[0]):
+        return scaled(last if isinstance(first, float) else first, numbers[0])
+    if op == Op.DIV and isinstance(last, float) and last != 0.0 and _is_finite(1.0 / last):
+        return scaled(first, 1.0 / last)
     return None
 
 

@@ -117,7 +117,8 @@ class Group:
         constraints, mentions = hierarchy.problem.constraints, hierarchy.mentions
         placing = [index for index in indices if constraints[index].placed & mentions[index]]
         unmet = set(hierarchy.unmet(placing))
-        for index, reached in self._reached(placing):
+        sizing = {i for i in placing if any(map(hierarchy.is_kept, constraints[i].placed & mentions[i]))}
+        for index, reached in self._reached(placing, sizing):
             is_bound = all(row.relation is Relation.AT_MOST for row in constraints[index].rows)
             level = int(is_bound and index not in unmet)
             for unknown in constraints[index].placed.intersection(itertools.chain(*reached)):
@@ -345,7 +346,7 @@ class Group:
         """The constraints among these that hang on kept sizes alone, as `same_width` does."""
         mentions, found = self.hierarchy.mentions, list[int]()
         resizing = [i for i in constraints if any(self.tier(unknown) > POSITIONS for unknown in mentions[i])]
-        for index, reached in self._reached(resizing):
+        for index, reached in self._reached(resizing, ()):
             tiers = [set(map(self.tier, unknowns)) for unknowns in reached]
             if any(each and min(each) > POSITIONS for each in tiers) and not self._choices(index):
                 found.append(index)
@@ -358,11 +359,26 @@ class Group:
         freezer = Freezer(hierarchy.values, positions)
         return any(freezer.form(row.expression) is None for row in hierarchy.rows([index]))
 
-    def _reached(self, indices: Sequence[int]) -> Iterator[tuple[int, list[list[int]]]]:
-        """Each constraint, with the unknowns that change it where it is now, for each row."""
-        hierarchy = self.hierarchy
+    def _reached(
+        self, indices: Sequence[int], sizing: Collection[int]
+    ) -> Iterator[tuple[int, list[list[int]]]]:
+        """Each constraint, with the unknowns that change it where it is now, for each row: the sizes among
+        them only in those `sizing`, and where no position does.
+        """
+        hierarchy, mentions = self.hierarchy, self.hierarchy.mentions
         hierarchy.refresh(indices)
-        slopes = gradients(hierarchy.values, [row.expression for row in hierarchy.rows(indices)])
+        mentioned = frozenset[int]().union(*map(mentions.__getitem__, indices))
+        freezer = Freezer(hierarchy.values, (u for u in mentioned if not hierarchy.is_kept(u)))
+        slopes: dict[int, Mapping[int, float]] = {}
+        bent: list[int] = []
+        for index in indices:
+            for row in hierarchy.rows([index]):
+                plain = None if index in sizing else freezer.slopes(row.expression)
+                if plain and max(map(abs, plain.values())) > FLAT:
+                    slopes[row.expression] = plain
+                else:
+                    bent.append(row.expression)
+        slopes.update(gradients(hierarchy.values, bent))
         for index in indices:
             found = [slopes[row.expression] for row in hierarchy.rows([index])]
             yield index, [[u for u, slope in gradient.items() if abs(slope) > FLAT] for gradient in found]
@@ -374,7 +390,7 @@ class Group:
         hierarchy = self.hierarchy
         mentioned = frozenset().union(*map(hierarchy.mentions.__getitem__, rigid))
         # Another row of such a constraint may hang on positions, which are free as they were before.
-        reached = frozenset(u for _, rows in self._reached(rigid) for unknowns in rows for u in unknowns)
+        reached = frozenset(u for _, rows in self._reached(rigid, rigid) for row in rows for u in row)
         positions = frozenset(unknown for unknown in reached if self.tier(unknown) <= POSITIONS)
         sizes = frozenset(unknown for unknown in mentioned if self.tier(unknown) > POSITIONS)
         unmet = hierarchy.unmet(rigid)

@@ -227,6 +227,10 @@ class Hierarchy:
     def is_hard(self, index: int) -> bool:
         return self._hard[index]
 
+    def is_kept(self, unknown: int) -> bool:
+        """Whether an unknown is a size."""
+        return self._kept[unknown]
+
     def held_by(self, group: int) -> list[int]:
         return self._held_by.get(group, [])
 

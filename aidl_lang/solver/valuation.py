@@ -33,6 +33,8 @@ class Valuation:
         self.nodes = [float(value) for value in tape.constants]
         self._seen = [False] * len(tape)
         self._code: list[Compiled | None] = [None] * len(tape)
+        self._fresh: set[int] = set()
+        """Nodes that, with all that they are made of, are up to date."""
         self._cones: dict[tuple[int, ...], Cone] = {}
         self._forms: dict[frozenset[int], Forms] = {}
 
@@ -49,8 +51,11 @@ class Valuation:
         return Schedule(self.tape)
 
     def assign(self, values: Iterable[tuple[int, float]]) -> None:
+        unknowns = self.unknowns
         for unknown, value in values:
-            self.unknowns[unknown] = value
+            if unknowns[unknown] != value:
+                unknowns[unknown] = value
+                self._fresh.clear()
 
     def cone(self, roots: Iterable[int]) -> Cone:
         """Everything that the roots are made of, ready to be refreshed."""
@@ -62,12 +67,12 @@ class Valuation:
             found = self._cones[wanted] = self._find_cone(wanted)
         return found
 
-    def _find_cone(self, roots: Iterable[int]) -> Cone:
+    def _find_cone(self, roots: tuple[int, ...]) -> Cone:
         nodes = reachable(self.tape, roots, self._seen)
         ops, operands = self.tape.op_list, self.tape.operand_lists
         inputs = [(node, operands[node][0]) for node in nodes if ops[node] == Op.UNKNOWN]
         code = [self._compiled(node) for node in nodes if ops[node] > Op.UNKNOWN]
-        return Cone(frozenset([unknown for _, unknown in inputs]), inputs, code, nodes)
+        return Cone(roots, frozenset([unknown for _, unknown in inputs]), inputs, code)
 
     def _compiled(self, node: int) -> Compiled:
         code = self._code[node]
@@ -77,26 +82,30 @@ class Valuation:
         return code
 
     def refresh(self, cone: Cone) -> None:
+        """Brings the nodes of a cone up to date, unless they are."""
+        if self._fresh.issuperset(cone.roots):
+            return
         nodes, unknowns = self.nodes, self.unknowns
         for node, unknown in cone.inputs:
             nodes[node] = unknowns[unknown]
         run(cone.code, nodes)
+        self._fresh.update(cone.roots)
 
 
 @dataclass(frozen=True)
 class Cone:
     """What some roots are made of.
 
+    roots     what was asked for
     unknowns  those among it
     inputs    (node, unknown) for each of them
     code      what brings the other nodes up to date
-    nodes     all nodes, operands first
     """
 
+    roots: tuple[int, ...]
     unknowns: frozenset[int]
     inputs: list[tuple[int, int]]
     code: list[Compiled]
-    nodes: list[int]
 
 
 def compiled(op: int, out: int, operands: tuple[int, ...]) -> Compiled:
