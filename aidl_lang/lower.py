@@ -363,8 +363,8 @@ def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:
 
 
 def _is_spanned(unknown: Unknown) -> bool:
-    """Whether it is the length or the direction of a line that was written from one point to another."""
-    return unknown.implied and isinstance(unknown.holder, Geometry) and unknown.holder.type == "line"
+    """Whether it is the way from one literal point of a shape to the next, for which no number was written."""
+    return unknown.implied and isinstance(unknown.holder, Geometry)
 
 
 def _numbered(keys: Iterable[Hashable]) -> NDArray[np.int64]:
