@@ -363,8 +363,10 @@ def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:
 
 
 def _is_spanned(unknown: Unknown) -> bool:
-    """Whether it is the way from one literal point of a shape to the next, for which no number was written."""
-    return unknown.implied and isinstance(unknown.holder, Geometry)
+    """Whether it is the way from one literal point of a shape to the next, for which no number was written.
+    The steps of a path do say where they lead.
+    """
+    return unknown.implied and isinstance(unknown.holder, Geometry) and unknown.holder.type != "path"
 
 
 def _numbered(keys: Iterable[Hashable]) -> NDArray[np.int64]:
