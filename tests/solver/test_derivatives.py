@@ -194,6 +194,43 @@ def test_zeros_with_a_sign(op: int) -> None:
     assert (np.signbit(found) == np.signbit(expected))[~np.isnan(expected)].all()
 
 
+@given(tangle=tangles(PLAIN), data=st.data())
+@profile(150)
+def test_held_unknowns_are_put_into_forms(tangle: Tangle, data: st.DataObject) -> None:
+    """Rows over some of the unknowns are the expressions, wherever these are and whichever sizes are held."""
+    model, found = tangle.model()
+    problem = model.problem()
+    nodes, every = [e.node for e in found], range(len(problem.initial))
+    values = Valuation(
+        problem.tape, problem.initial.tolist(), data.draw(st.frozensets(st.sampled_from(every)))
+    )
+    for _ in range(2):
+        values.refresh(values.cone(nodes))
+        free = data.draw(some)
+        frozen = Freezer(values, free).freeze(nodes)
+        assert sorted([*frozen.constant, *(i for p in frozen.programs for i in p.rows)]) == list(
+            range(len(nodes))
+        )
+        x, before = np.array(values.unknowns), np.array(values.nodes)
+        for program in frozen.programs:
+            assert free.issuperset(program.columns)
+            residuals = program.residuals(x[program.columns])
+            assert near(residuals, before[[nodes[i] for i in program.rows]]).all()
+        values.assign((u, data.draw(PLAIN)) for u in data.draw(some))
+        values.refresh(values.cone(nodes))
+        moved = {u for u in every if values.unknowns[u] != x[u]}
+        if moved <= free and not frozen.branches:
+            constant = [nodes[i] for i in frozen.constant]
+            assert near(np.array(values.nodes)[constant], before[constant]).all()
+
+
+def near(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Equal but for rounding; what is not finite equals nothing and everything."""
+    with np.errstate(all="ignore"):
+        close = np.abs(one - other) <= 1e-9 * (1.0 + np.abs(one) + np.abs(other))
+    return close | ~np.isfinite(one) | ~np.isfinite(other)
+
+
 @given(tangles(HOSTILE))
 @profile(150)
 def test_numbers_and_arrays_agree_on_whole_expressions(tangle: Tangle) -> None:
