@@ -201,16 +201,14 @@ def test_held_unknowns_are_put_into_forms(tangle: Tangle, data: st.DataObject) -
     model, found = tangle.model()
     problem = model.problem()
     nodes, every = [e.node for e in found], range(len(problem.initial))
-    values = Valuation(
-        problem.tape, problem.initial.tolist(), data.draw(st.frozensets(st.sampled_from(every)))
-    )
+    some = st.frozensets(st.sampled_from(every))
+    values = Valuation(problem.tape, problem.initial.tolist(), data.draw(some))
     for _ in range(2):
         values.refresh(values.cone(nodes))
         free = data.draw(some)
         frozen = Freezer(values, free).freeze(nodes)
-        assert sorted([*frozen.constant, *(i for p in frozen.programs for i in p.rows)]) == list(
-            range(len(nodes))
-        )
+        rows = [*frozen.constant, *(i for p in frozen.programs for i in p.rows)]
+        assert sorted(rows) == list(range(len(nodes)))
         x, before = np.array(values.unknowns), np.array(values.nodes)
         for program in frozen.programs:
             assert free.issuperset(program.columns)
