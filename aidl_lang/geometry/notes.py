@@ -115,6 +115,8 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
     s = finding.structure
     names = _whole_names(s, [g for g, _ in finding.curves])
     gap = _gap(finding, network)
+    if gap is not None and math.dist(gap[0][1], gap[1][1]) <= network.tolerance:
+        return _lost(finding, names, network)
     plural = len(set(names)) > 1
     message = f"{listed(names)} {'enclose' if plural else 'encloses'} nothing in {s.kind} `{s.path}`"
     hints = [f"to draw without filling, use a `drawing`; {GUIDE}"]
@@ -142,6 +144,20 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
         tuple(hints),
         fix,
         tuple(p for _, p, _ in gap or ()),
+    )
+
+
+def _lost(finding: LooseCurves, names: Sequence[str], network: Network) -> Diagnostic:
+    """Of curves that are less than the drawing can tell apart: their ends are as good as one point."""
+    s = finding.structure
+    plural = len(set(names)) > 1
+    return Diagnostic(
+        "W0702",
+        f"{listed(names)} {'enclose' if plural else 'encloses'} nothing in {s.kind} `{s.path}`: "
+        f"too small beside the drawing, which measures {short(network.size)} mm",
+        finding.curves[0][0].span or s.span,
+        "lost in it",
+        hints=("look for a size or position that was written in another unit, or changed without bounds",),
     )
 
 
