@@ -60,12 +60,14 @@ def solve(
     """
     stacks = list(_stacks(program, systems, at_most))
     x = scaling.origin.copy()
+    entries: Floats | None = None
     for _ in range(STEPS):
         if all(stack.settled for stack in stacks) or clock.expired:
             break
         residuals = program.residuals(x) / scaling.row_scale
-        entries = program.entries() * scaling.scale[program.indices]
-        entries /= scaling.row_scale[program.entry_rows]
+        if entries is None or not program.linear:
+            entries = program.entries() * scaling.scale[program.indices]
+            entries /= scaling.row_scale[program.entry_rows]
         for stack in stacks:
             if not stack.settled:
                 limit = None if scaling.longest is None else scaling.longest / scaling.scale

@@ -67,11 +67,15 @@ class Levels:
         self._hard = np.isnan(problem.weight)
         self.binding = self._hard.copy()
         """The hard constraints that have not been given up."""
-        self.constraints, self.unknowns = self._incidence()
+        self._pairs = self._incidence()
+        self.constraints, self.unknowns = np.divmod(self._pairs, len(x))
+        """Pairs of a constraint and an unknown in it, by constraint."""
         self._evaluated: tuple[Floats, Floats] | None = None
 
-    def _incidence(self) -> tuple[Ints, Ints]:
-        """Pairs of a constraint and an unknown in it, by constraint."""
+    def _incidence(self) -> Ints:
+        """Pairs of a constraint and an unknown in it, ascending, each as one number: n times the former, and
+        the latter.
+        """
         problem = self.problem
         everything = np.ones(len(problem.initial), dtype=np.bool_)
         freezing = ArrayFreezing(self.schedule, problem.tape.constants, everything, choosing=False)
@@ -81,8 +85,8 @@ class Levels:
         row, unknown = freezing.pattern(problem.rows.expression[rows])
         key = problem.rows.constraint[rows[row]] * len(everything) + unknown
         key.sort()
-        key = key[np.diff(key, prepend=-1) > 0]
-        return np.divmod(key, len(everything))
+        pairs: Ints = key[np.diff(key, prepend=-1) > 0]
+        return pairs
 
     def nodes(self) -> Floats:
         """The value (m,) of each node of the tape at `x`."""
@@ -162,9 +166,10 @@ class Levels:
         pairs = self.problem.placed[:, held[problem.placed[0]]]
         width = len(self.x)
         placed = np.zeros(width, dtype=np.bool_)
-        if pairs.size:
-            within = np.isin(pairs[0] * width + pairs[1], self.constraints * width + self.unknowns)
-            placed[pairs[1, within]] = True
+        if pairs.size and len(self._pairs):
+            wanted = pairs[0] * width + pairs[1]
+            nearest = np.minimum(np.searchsorted(self._pairs, wanted), len(self._pairs) - 1)
+            placed[pairs[1, self._pairs[nearest] == wanted]] = True
         kind = np.where(problem.frame_of >= 0, KINDS["translations"], KINDS["positions"])
         kind = np.where(level == 0, np.where(placed, KINDS["placed"], KINDS["own"]), kind)
         tier = kind * DEPTHS + np.where(level == 0, problem.standing & ~placed, level)
