@@ -185,9 +185,9 @@ class _Freezing:
 
     def form(self, whole: Form) -> Form:
         """A form with what is not free put in."""
-        if isinstance(whole, float):
-            return whole
         free, width, unknowns = self.free, self.width, self.freezer.values.unknowns
+        if isinstance(whole, float) or whole.terms.keys() <= free:
+            return whole
         terms: dict[int, float] = {}
         constant, knotted = whole.constant, False
         for slot, slope in whole.terms.items():
@@ -293,7 +293,7 @@ class _Freezing:
         for _, form in rooted:
             first = None
             for slot in form.terms:
-                for unknown in self._inputs(slot):
+                for unknown in (slot,) if slot < self.width else self._inputs(slot):
                     at = find(unknown)
                     if first is None:
                         first = at

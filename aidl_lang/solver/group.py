@@ -108,6 +108,8 @@ class Group:
         bounds that hold anyway would place.
         """
         self._tiers: dict[int, Tier] = {}
+        self._everything: dict[tuple[int, ...], Scope] = {}
+        """What takes part if all is free, by the constraints that are to hold."""
 
     def _place(self, indices: Iterable[int]) -> None:
         """Takes up what these constraints place: what they name first and what has a share in them. A width
@@ -143,8 +145,10 @@ class Group:
         parts: list[list[int]] = []
         left = list(self.hard)
         while left:
-            linked = set(self.scope((9, 0), left[:1]).constraints)
+            everything = self.scope((9, 0), left[:1])
+            linked = set(everything.constraints)
             parts.append([index for index in left if index in linked])
+            self._everything[tuple(parts[-1])] = everything
             left = [index for index in left if index not in linked]
         return [part for part in parts if hierarchy.unmet(part)]
 
@@ -167,6 +171,7 @@ class Group:
             part.remove(left_out)
             self.hard.remove(left_out)
             hierarchy.give_up([left_out])
+            self._everything.clear()
 
     def _leave_out(self) -> int | None:
         """The constraint to go on without after a failure; None if it is not known which would help."""
@@ -199,12 +204,19 @@ class Group:
                         stack.append(index)
         return Scope(frozenset(free), tuple(sorted(constraints)))
 
+    def everything(self, seeds: Sequence[int]) -> Scope:
+        """The scope of `seeds` with all free."""
+        key = tuple(seeds)
+        if key not in self._everything:
+            self._everything[key] = self.scope((9, 0), seeds)
+        return self._everything[key]
+
     # -- stages
 
     def _deepen(self, part: list[int], violated: list[int]) -> Tier | None:
         """The tier of the first stage that satisfies everything, None if there is none."""
         hierarchy = self.hierarchy
-        everything = self.scope((9, 0), part)
+        everything = self.everything(part)
         before = hierarchy.save(everything.free)
         best: Best = (np.inf, before)
         tiers = sorted({self.tier(unknown) for unknown in everything.free})
@@ -238,7 +250,7 @@ class Group:
         None and the values that came nearest. With the last stage that was tried and why it failed.
         """
         hierarchy = self.hierarchy
-        everything = self.scope((9, 0), seeds).free
+        everything = self.everything(seeds).free
         before = hierarchy.save(everything)
         violated = hierarchy.unmet(seeds)
         tried: dict[bool, frozenset[int]] = {}
@@ -302,7 +314,7 @@ class Group:
         """
         hierarchy = self.hierarchy
         last, proof = obstacle
-        before = hierarchy.save(self.scope((9, 0), seeds).free)
+        before = hierarchy.save(self.everything(seeds).free)
         freed: set[int] = set()
         while proof and len(freed) < MOST_SIZES and not hierarchy.clock.expired:
             size = self._cheapest(proof, freed)
