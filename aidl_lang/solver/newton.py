@@ -11,6 +11,7 @@ Anderson acceleration for fixed-point iterations, doi:10.1137/10078356X.)
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Protocol
@@ -47,6 +48,10 @@ SAME = 1e-6
 """So many restarts that end with the same violation, relatively, are taken to say that there is no less."""
 FAR = 0.3
 """Size of a perturbation from which on it counts that a restart ends in the same place."""
+STEPS_ROUND = 3.0
+"""Longest steps of a direction that turn it round: one is a sixth of a turn."""
+TURNED = 4
+"""Directions that are turned round, one after another, where a search failed."""
 COSTLY = 40_000
 """Entries of the Jacobian above which one restart must do."""
 GOLDEN = 0.6180339887498949
@@ -206,7 +211,26 @@ def solve(
         agreeing += far and alike
         if again.violation < 0.99 * best.violation:
             best = again
+    for start_at in _turned(system) if restarts else ():
+        if clock.expired:
+            break
+        again = solver.run(start_at)
+        if again.converged:
+            return again
     return best
+
+
+def _turned(system: System) -> Iterator[Floats]:
+    """Starts at which one of the directions among the unknowns is the other way round: on the way there a
+    length would have to shrink to nothing, and no search goes on from that.
+    """
+    if system.longest is None:
+        return
+    turning = np.flatnonzero(np.isfinite(system.longest))
+    for at in turning[:TURNED].tolist():
+        start = np.zeros(system.size)
+        start[at] = STEPS_ROUND * system.longest[at]
+        yield start
 
 
 def perturbation(size: int, turn: int = 0) -> Floats:

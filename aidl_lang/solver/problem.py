@@ -87,8 +87,8 @@ class Problem:
              the parent of the group they move.
     axis     (n,) 0 for a coordinate of a place along x in its group's frame, 1 along y, -1 for anything else;
              None where that is not known
-    longest  (n,) the largest change of each unknown in one Newton step, so that near a singular place an
-             angle does not spin; None for no limit
+    longest  (n,) the largest change of each unknown in one Newton step: a sixth of a turn for an angle, so
+             that it does not spin near a singular place; infinite for others; None for no limit
     parent   (g,) parent of each group, -1 for the root, which is group 0; parents come before children
     holder   (c,) the group that holds each constraint
     weight   (c,) NaN for a hard constraint, else the weight of the preference
