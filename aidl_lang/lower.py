@@ -6,7 +6,7 @@ a frame that no constraint mentions, an argument that was read while building, a
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -110,7 +110,7 @@ class _Lowering:
             standing=np.array([self._stands(u) for u in found], dtype=np.bool_),
             spanned=np.array([_is_spanned(u) for u in found], dtype=np.bool_),
             thing=_numbered((u.holder, u.field if u.kept else u.field.rpartition(".")[0]) for u in found),
-            clinging=frozenset(self.groups[s] for s in self.structures if _clings(s)),
+            clinging=frozenset(self.groups[s] for parent in self.structures for s in _clinging(parent)),
             observables=observables,
             names=tuple(u.path for u in found),
         )
@@ -305,15 +305,15 @@ def _is_bound(part: Comparison) -> bool:
     return low.value <= high.value
 
 
-def _clings(s: Structure) -> bool:
-    """Whether a structure belongs to what is drawn around it: it lies in a part, or is a hole or a drawing
+def _clinging(parent: Structure) -> Sequence[Structure]:
+    """The children that belong to what is drawn around them: all that lie in a part, and holes and drawings
     beside parts.
     """
-    if s.parent is None:
-        return False
-    if s.parent.plan or any(not geometry.construction for geometry in s.parent.own()):
-        return True
-    return s.kind in _NO_BODY and any(other.kind not in _NO_BODY for other in s.parent.children)
+    children = parent.children
+    if parent.plan or any(not geometry.construction for geometry in parent.own()):
+        return children
+    without = [child for child in children if child.kind in _NO_BODY]
+    return without if len(without) < len(children) else ()
 
 
 _NO_BODY = ("hole", "drawing")

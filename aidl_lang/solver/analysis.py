@@ -76,17 +76,15 @@ def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = 
     equal = _equal_rows(problem, hard & satisfied, order)
     observed = np.array([node for _, node in problem.observables], dtype=np.int64)
     nodes, node_of = np.unique(observed, return_inverse=True)
+    riding = rides(problem)
     with np.errstate(all="ignore"):
-        roots = np.concatenate((problem.rows.expression[equal], nodes))
-        values, matrix = linearise(problem.tape, solution.values, roots)
-        slopes, seen = matrix.split(len(equal))
+        _, slopes = linearise(problem.tape, solution.values, problem.rows.expression[equal])
+        places, seen = linearise(problem.tape, solution.values, nodes, riding.movable)
         equations, plain = _equations(problem, equal, slopes)
         relations, unclear = dependent_rows(equations.matrix, len(problem.initial))
         new = np.setdiff1d(np.arange(len(equations.row)), list(relations))
         rows, clear = equations.matrix.take(new), ~np.isin(new, unclear)
-        riding = rides(problem)
-        places = values[len(equal) :][node_of]
-        found = _mobility(problem, riding, rows, clear, seen.take(node_of), places)
+        found = _mobility(problem, riding, rows, clear, seen.take(node_of), places[node_of])
         redundant = redundancies(problem, solution.values, equations, relations, plain) if relations else []
     return Freedom(
         degrees=found.total,

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.solver import arrays
 from aidl_lang.solver.expression import Tape
-from aidl_lang.solver.operations import PARTIALS, VALUE, Floats, Ints, Op
+from aidl_lang.solver.operations import PARTIALS, VALUE, Bools, Floats, Ints, Op
 from aidl_lang.solver.schedule import Schedule
 from aidl_lang.solver.valuation import Valuation
 
@@ -34,6 +34,8 @@ MANY = 100
 """Nodes to a root beyond which it is not worth it to evaluate the whole tape."""
 STEEPEST = 1e100
 """Slopes above this are what overflow leaves."""
+NARROW = 50
+"""Nodes to a level up to which dictionaries are quicker, too: what hangs on one thing after the other."""
 BRANCHES = 4
 """Most operands that an operation has."""
 
@@ -66,14 +68,6 @@ class Sparse:
         """(r,) Euclidean lengths of the rows."""
         squares = np.bincount(self.rows, self.entries * self.entries, len(self))
         return np.asarray(np.sqrt(squares), dtype=np.float64)
-
-    def split(self, row: int) -> tuple[Sparse, Sparse]:
-        """The rows before one, and the others."""
-        at = self.starts[row]
-        return (
-            Sparse(self.starts[: row + 1], self.columns[:at], self.entries[:at]),
-            Sparse(self.starts[row:] - at, self.columns[at:], self.entries[at:]),
-        )
 
     def scaled(self, rows: Floats, columns: Floats) -> Sparse:
         """Every entry times the factors of its row and its column."""
@@ -145,21 +139,23 @@ def gradients(values: Valuation, roots: Iterable[int]) -> dict[int, Gradient]:
     return {root: found[root] for root in wanted}
 
 
-def linearise(tape: Tape, at: Floats, roots: Ints) -> tuple[Floats, Sparse]:
-    """The values (r,) of `roots` at the unknowns `at` (n,), and their finite partial derivatives.
+def linearise(tape: Tape, at: Floats, roots: Ints, among: Bools | None = None) -> tuple[Floats, Sparse]:
+    """The values (r,) of `roots` at the unknowns `at` (n,), and their finite partial derivatives; by the
+    unknowns `among` (n,) only, if these are given.
 
     Unknowns without influence on a root have no entry; entries that cancel may be zeros, and products that
     overflow count as none.
     """
     wanted = roots.tolist()
-    if len(tape) <= FEW or len(wanted) * MANY < len(tape):
+    height = int(tape.levels.max(initial=0)) + 1
+    if len(tape) <= max(FEW, NARROW * height) or len(wanted) * MANY < len(tape):
         nodes = below(tape, wanted)
         known = _values(tape, at.tolist(), nodes)
-        found = _forward(tape, known, nodes)
+        found = _forward(tape, known, nodes, None if among is None else among.tolist())
         values, matrix = np.array([known[root] for root in wanted]), _sparse([found[root] for root in wanted])
     else:
         with np.errstate(all="ignore"):
-            every, slopes = _everything(tape, at)
+            every, slopes = _everything(tape, at, among)
             values, matrix = every[roots], _backward(tape, slopes, roots)
     sensible = np.abs(matrix.entries) < STEEPEST  # not for those that are not numbers
     return values, replace(matrix, entries=np.where(sensible, matrix.entries, 0.0))
@@ -192,15 +188,17 @@ def _slopes(op: int, args: tuple[int, ...], values: Values, node: int) -> tuple[
     return PARTIALS[op](*[values[a] for a in padded], values[node])
 
 
-def _forward(tape: Tape, values: Values, nodes: Iterable[int]) -> dict[int, Gradient]:
-    """The gradient of each node from those of its operands."""
+def _forward(
+    tape: Tape, values: Values, nodes: Iterable[int], among: Sequence[bool] | None = None
+) -> dict[int, Gradient]:
+    """The gradient of each node from those of its operands; by the unknowns `among`, if these are given."""
     ops, operands = tape.op_list, tape.operand_lists
     found: dict[int, Gradient] = {}
     for node in nodes:
         op, args = ops[node], operands[node]
         total: Gradient = {}
         if op == Op.UNKNOWN:
-            total = {args[0]: 1.0}
+            total = {args[0]: 1.0} if among is None or among[args[0]] else {}
         elif op != Op.CONSTANT and any(map(found.__getitem__, args)):
             owned = False
             for a, slope in zip(args, _slopes(op, args, values, node), strict=False):
@@ -215,14 +213,22 @@ def _forward(tape: Tape, values: Values, nodes: Iterable[int]) -> dict[int, Grad
     return found
 
 
-def _everything(tape: Tape, at: Floats) -> tuple[Floats, Floats]:
-    """The value (m,) of every node of the tape, and the slope (m, 4) of each along its operands."""
+def _everything(tape: Tape, at: Floats, among: Bools | None) -> tuple[Floats, Floats]:
+    """The value (m,) of every node of the tape, and the slope (m, 4) of each along its operands; along those
+    that depend on an unknown `among` only, if these are given.
+    """
     schedule = Schedule(tape)
     values, slopes = schedule.evaluate(at), np.zeros((len(tape), BRANCHES))
+    varies = np.ones(len(tape), dtype=np.bool_)
+    if among is not None:
+        varies[:] = False
+        varies[schedule.inputs] = among[schedule.unknowns]
     for batch in schedule.batches:
         operands = tuple(values[a] for a in batch.operands)
+        if among is not None:
+            varies[batch.nodes] = np.logical_or.reduce([varies[a] for a in batch.operands])
         for k, slope in enumerate(arrays.partials(batch.op, operands, values[batch.nodes])[: len(operands)]):
-            slopes[batch.nodes, k] = slope
+            slopes[batch.nodes, k] = np.where(varies[batch.operands[k]], slope, 0.0)
     return values, slopes
 
 
