@@ -23,6 +23,8 @@ where what is possible on one side was told.
 """
 STRAIGHT = 1e-5
 """The bend that counts as none, in units of the unknowns."""
+ROUNDING = 1e-14
+"""Part of a value by which a difference of three like it may be off."""
 WORK = 2_000_000
 """Numbers in the matrix of a part up to which its motions are followed."""
 
@@ -84,17 +86,19 @@ class Bending:
         if not (self.is_bent[rows].any() or wanted.any()) or len(rows) * len(columns) > WORK:
             return True
         step = STEP / float(np.abs(rates / self.problem.scale[columns]).max())
-        bends = self._second_differences(rows, columns, step * rates)
+        bends, rounding = self._second_differences(rows, columns, step * rates)
         asked = np.concatenate((np.zeros(self.equations), wanted))[rows] * step**2
         kept = (np.abs(bends) <= KINK * STEP * self.lengths[rows]) & (self.lengths[rows] > 0.0)
         lengths = self.lengths[rows][kept]
         needed = (asked - bends)[kept] / (STEP**2 * lengths)
         most = float(np.abs(needed).max(initial=0.0))
-        if most <= STRAIGHT:
+        # A row that hardly changes is no more than its rounding, however short a step is for it.
+        allowed = STRAIGHT * max(1.0, most) + rounding[kept] / (STEP**2 * lengths)
+        if (np.abs(needed) <= allowed).all() and most <= 1.0:
             return True
         slopes = self.slopes.only(inside).take(rows[kept]).dense(columns) / lengths[:, None]
         missing = needed - slopes @ np.linalg.lstsq(slopes, needed, rcond=1e-9)[0]
-        return float(np.abs(missing).max()) <= STRAIGHT * max(1.0, most)
+        return bool((np.abs(missing) <= allowed).all())
 
     def _slopes(self, at: Floats) -> Sparse:
         with np.errstate(all="ignore"):
@@ -103,8 +107,10 @@ class Bending:
 
     def _second_differences(
         self, rows: NDArray[np.int64], columns: NDArray[np.int64], step: Floats
-    ) -> Floats:
-        """(r,) the value of each row one step along and one step back, less twice that between."""
+    ) -> tuple[Floats, Floats]:
+        """(r,) the value of each row one step along and one step back, less twice that between; and how much
+        of it may be rounding.
+        """
         roots = self.roots[rows].tolist()
         valuation = self.valuation
         cone = valuation.cone(roots)
@@ -114,5 +120,4 @@ class Bending:
             valuation.assign(zip(columns.tolist(), ahead.tolist(), strict=True))
             valuation.refresh(cone)
             values.append(np.array([valuation.nodes[root] for root in roots]))
-        found: Floats = values[0] - 2.0 * values[2] + values[1]
-        return found
+        return values[0] - 2.0 * values[2] + values[1], ROUNDING * (1.0 + np.abs(values[2]))
