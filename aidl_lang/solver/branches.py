@@ -166,10 +166,12 @@ class _Attempt:
         """Solves with the branches active at `base`; says which, and whether the result lies in others."""
         region: list[Root] = []
         outside: tuple[list[float], Verdict] | None = None
+        self._move_to(base)
+        choice = self.freezer.choice(flipped)
         while True:
             self._move_to(base)
             roots: list[Root] = [self.task.rows[i].expression for i in self.considered]
-            frozen = self.freezer.freeze([*roots, *region], flipped)
+            frozen = choice.freeze([*roots, *region])
             verdict = self._judge(self._solve(frozen, base, 0 if flipped else self.task.restarts))
             if verdict.satisfied:
                 return verdict, frozen.branches, False

@@ -68,23 +68,25 @@ class Freezer:
         self.hanging: set[int] = set()
         """Knots that hang on a choice, which free unknowns decide."""
 
-    def freeze(self, roots: Sequence[Root], flipped: frozenset[int] = frozenset()) -> Frozen:
-        """Programs for `roots` at the current values, which must be up to date. Branching nodes in `flipped`
-        take the branch that is not active.
+    def choice(self, flipped: frozenset[int] = frozenset()) -> Choice:
+        """The branches that are active at the current values, which must be up to date; nodes in `flipped`
+        take the other one.
         """
-        if len(roots) < MANY:
-            return _Freezing(self, flipped).freeze(roots)
-        return _freeze_to_arrays(self.values, roots, self.free, flipped)
+        return Choice(self, flipped)
+
+    def freeze(self, roots: Sequence[Root]) -> Frozen:
+        """Programs for `roots` in the branches that are active."""
+        return self.choice().freeze(roots)
 
     def form(self, node: int) -> Form | None:
         """What a node became; None if that hangs on a choice."""
         form = self.forms[node]
-        found = _Freezing(self, frozenset()).form(form)
+        found = self.choice().form(form)
         return None if self.hangs(form) else found
 
     def slopes(self, node: int) -> dict[int, float] | None:
         """The slopes of a node in the branch that is active, by unknown; None where it bends."""
-        form, width = _Freezing(self, frozenset()).form(self.forms[node]), self.forms.width
+        form, width = self.choice().form(self.forms[node]), self.forms.width
         if isinstance(form, float):
             return {}
         return None if any(slot >= width for slot in form.terms) else dict(form.terms)
@@ -95,7 +97,7 @@ class Freezer:
 
     def choices(self, roots: Iterable[int]) -> list[int]:
         """The nodes below `roots` at which free unknowns choose the branch, outermost first."""
-        forms, freezing = self.forms, _Freezing(self, frozenset())
+        forms, freezing = self.forms, self.choice()
         found: set[int] = set()
         stack: list[int] = []
         for root in roots:
@@ -133,8 +135,8 @@ def _freeze_to_arrays(
 
 
 @dataclass
-class _Freezing:
-    """One choice of branches."""
+class Choice:
+    """One choice of branches, at the values at which it was made."""
 
     freezer: Freezer
     flipped: frozenset[int]
@@ -149,6 +151,9 @@ class _Freezing:
         self.free, self.recipes = self.freezer.free, self.freezer.recipes
 
     def freeze(self, roots: Sequence[Root]) -> Frozen:
+        """Programs for `roots`; the values must be those of the choice, and up to date."""
+        if len(roots) >= MANY:
+            return _freeze_to_arrays(self.freezer.values, roots, self.free, self.flipped)
         whole = [self._whole(root) for root in roots]
         forms = [self.form(form) for form in whole]
         constant = [row for row, form in enumerate(forms) if isinstance(form, float)]
