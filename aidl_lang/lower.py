@@ -171,7 +171,7 @@ class _Lowering:
         s = unknown.frame_of
         if s is None or not s.frame.x.value == s.frame.y.value == s.frame.rotation.value == 0.0:
             return False
-        return any(len(at) == 2 and all(e.is_constant for e in at) for _, _, at in seen(s))
+        return any(len(at) == 2 and all(u.kept or u.angular for u in ex.unknowns(at)) for _, _, at in seen(s))
 
     # --- Expressions ---------------------------------------------------------------------------
 

@@ -216,7 +216,7 @@ def test_a_point_moves_from_where_it_is() -> None:
         "drawing a { hand = line(fixed((10, 5)), (40, 5)); constrain { hand.length == 30 } }"
     ).values()
     (arrow,) = way.arrows
-    assert way.words == "slide along y at its end"
+    assert way.words == "slide along a curve that begins along y at its end"
     assert arrow.start == pytest.approx((40, 5))
     assert arrow.end[0] == pytest.approx(40, abs=1e-3)
 
