@@ -165,11 +165,13 @@ class _Lowering:
         return _RADIAN / self.size if unknown.angular else 1.0
 
     def _stands(self, unknown: Unknown) -> bool:
-        """Whether it places a frame that lies on its parent's, with something in it at an exact place: that
-        is exact in the parent, too, as long as the frame stays.
+        """Whether it shifts a frame that lies on its parent's, with something in it at an exact place: that
+        is exact in the parent, too, as long as the frame stays. A frame turns only where that is asked for.
         """
         s = unknown.frame_of
-        if s is None or not s.frame.x.value == s.frame.y.value == s.frame.rotation.value == 0.0:
+        if s is None or unknown.angular:
+            return False
+        if not s.frame.x.value == s.frame.y.value == s.frame.rotation.value == 0.0:
             return False
         return any(len(at) == 2 and all(u.kept or u.angular for u in ex.unknowns(at)) for _, _, at in seen(s))
 

@@ -19,11 +19,14 @@ def lists_as_statements(source: SourceFile, tokens: list[Token]) -> list[Diagnos
     """
     found: list[tuple[int, Diagnostic]] = []
     opened: list[str] = []
+    asserting = False  # the comma before the message of an `assert` ends nothing
     for n, token in enumerate(tokens):
+        asserting = token.kind == "assert" or (asserting and token.kind not in ("{", "}", ";"))
         if token.kind == "[" and opened[-1:] in ([], ["{"]) and len(found) < _MOST_LISTS:
             before = tokens[n - 1].kind if n else ";"
             joined = before in _VALUE_ENDS and begins_line(source.text, token.start)
-            close = closing(tokens, n) if joined or before in _STATEMENT_ENDS else -1
+            ends = before in _STATEMENT_ENDS and not (asserting and before == ",")
+            close = closing(tokens, n) if joined or ends else -1
             after = [t.kind for t in tokens[close + 1 : close + 3]]
             if close > 0 and (after == [".", "CALL"] or (not joined and after[0] in _GO_ON)):
                 found.append((n, _list_as_statement(source, token, joined)))
