@@ -137,9 +137,7 @@ class _Lowering:
             if s.is_within(c.holder) and s is not c.holder
         }
         for unknown in self.model.unknowns:
-            is_variable = (
-                isinstance(unknown.holder, Structure) and unknown.frame_of is None and not unknown.outline
-            )
+            is_variable = _is_variable(unknown)
             live = is_variable or unknown in mentioned or unknown in drawn or unknown.frame_of in named
             if live and not unknown.exact and unknown.owner in self.groups:
                 self.numbers[unknown] = len(self.numbers)
@@ -321,10 +319,14 @@ def _clinging(parent: Structure) -> Sequence[Structure]:
 _NO_BODY = ("hole", "drawing")
 
 
+def _is_variable(unknown: Unknown) -> bool:
+    """Whether it is a number of a structure, and no part of its frame or outline."""
+    return isinstance(unknown.holder, Structure) and unknown.frame_of is None and not unknown.outline
+
+
 def _axis(unknown: Unknown) -> int:
     """Along which axis a coordinate lies; -1 for what is no place."""
-    is_variable = isinstance(unknown.holder, Structure) and unknown.frame_of is None and not unknown.outline
-    if unknown.kept or unknown.angular or is_variable:
+    if unknown.kept or unknown.angular or _is_variable(unknown):
         return -1
     return {"x": 0, "y": 1, "left": 0, "bottom": 1}.get(unknown.field.rpartition(".")[2], -1)
 

@@ -18,7 +18,7 @@ from aidl_lang.remedies import left_out
 from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Settings, Solution, Status, solve
 from aidl_lang.solver.analysis import Freedom, analyse
-from aidl_lang.solver.gradients import below
+from aidl_lang.solver.expression import mentioned
 from aidl_lang.solver.operations import Op
 from aidl_lang.solver.redundancy import Redundancy
 from aidl_lang.solver.solution import Failure
@@ -167,7 +167,7 @@ def _are_redundant(
     constants[sizes] = solution.values[operands[sizes, 0]]
     ops[sizes], operands[sizes] = Op.CONSTANT, -1
     fixed = replace(tape, ops=ops, operands=operands, constants=constants)
-    moving = [c for c in equations if (fixed.ops[below(fixed, [c.rows[0].expression])] == Op.UNKNOWN).any()]
+    moving = [c for c in equations if mentioned(fixed, [c.rows[0].expression])]
     known = replace(problem, tape=fixed).with_constraints([*others, *moving])
     count = len(others) + len(moving)
     found = analyse(known, replace(solution, satisfied=(True,) * count)).redundant if moving else ()

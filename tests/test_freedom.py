@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
@@ -159,6 +161,19 @@ RELATIONS = (
 
 
 @st.composite
+def relations(
+    draw: st.DrawFn, count: int, most: int, templates: Sequence[str], numbers: st.SearchStrategy[int]
+) -> list[str]:
+    """Up to `most` relations of parts p0, p1, … to earlier ones."""
+    pairs = st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)).filter(lambda p: p[0] < p[1])
+    stated = []
+    for a, b in draw(st.lists(pairs, max_size=most, unique=True)):
+        relation = draw(st.sampled_from(templates))
+        stated.append(relation.format(a=f"p{b}", b=f"p{a}", n=draw(numbers), d=40 * (b - a)))
+    return stated
+
+
+@st.composite
 def assemblies(draw: st.DrawFn) -> str:
     count = draw(st.integers(2, 5))
     parts = []
@@ -170,11 +185,7 @@ def assemblies(draw: st.DrawFn) -> str:
             f"solid p{i} {{ body = rectangle(center: ({x}, {y}), width: 10, height: 8)"
             f" rim = circle(center: ({x + 2}, {y}), radius: 2) {inner} {own} }}"
         )
-    pairs = st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)).filter(lambda p: p[0] < p[1])
-    stated = []
-    for a, b in draw(st.lists(pairs, max_size=5, unique=True)):
-        relation = draw(st.sampled_from(RELATIONS))
-        stated.append(relation.format(a=f"p{b}", b=f"p{a}", n=draw(st.integers(-20, 20)), d=40 * (b - a)))
+    stated = draw(relations(count, 5, RELATIONS, st.integers(-20, 20)))
     return "assembly top {\n" + "\n".join(parts) + "\nconstrain {\n" + "\n".join(stated) + "\n}\n}"
 
 
@@ -228,11 +239,7 @@ def linkages(draw: st.DrawFn) -> str:
             f"solid p{i} at {place} {turned} {{ body = rectangle(center: fixed((0, 0)), width: {width},"
             f" height: {height}) rim = circle(center: {where}, radius: {radius}) }}"
         )
-    pairs = st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)).filter(lambda p: p[0] < p[1])
-    stated = []
-    for a, b in draw(st.lists(pairs, max_size=3, unique=True)):
-        relation = draw(st.sampled_from(TURNING))
-        stated.append(relation.format(a=f"p{b}", b=f"p{a}", n=draw(st.integers(10, 40)), d=40 * (b - a)))
+    stated = draw(relations(count, 3, TURNING, st.integers(10, 40)))
     return "@detached assembly top {\n" + "\n".join(parts) + "\nconstrain {\n" + "\n".join(stated) + "\n}\n}"
 
 
@@ -258,10 +265,10 @@ def test_what_is_told_goes_on_as_it_is_told(text: str) -> None:
 
 @settings(max_examples=20, deadline=None)
 @given(assemblies(), st.randoms(use_true_random=False))
-def test_the_order_of_constraints_does_not_change_what_is_counted(text: str, random: object) -> None:
+def test_the_order_of_constraints_does_not_change_what_is_counted(text: str, chance: Random) -> None:
     head, stated = text.split("constrain {\n", 1)
     lines = stated.removesuffix("\n}\n}").split("\n")
-    random.shuffle(lines)  # type: ignore[attr-defined]
+    chance.shuffle(lines)
     other = head + "constrain {\n" + "\n".join(lines) + "\n}\n}"
     degrees = [Analysed("top.aidl", each).freedom.degrees for each in (text, other)]
     assert degrees[0] == degrees[1]

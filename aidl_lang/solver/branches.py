@@ -166,7 +166,6 @@ class _Attempt:
         """Solves with the branches active at `base`; says which, and whether the result lies in others."""
         region: list[Root] = []
         outside: tuple[list[float], Verdict] | None = None
-        self._move_to(base)
         choice = self.freezer.choice(flipped)
         while True:
             self._move_to(base)

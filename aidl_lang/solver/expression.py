@@ -7,7 +7,7 @@ A tape is a directed acyclic graph in plain arrays, each node after its operands
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,6 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.solver.operations import ARITY, VALUE, Floats, Op
+
+DENSE = 8
+"""Nodes to a root up to which the whole tape is looked through for those below."""
 
 
 @dataclass(frozen=True)
@@ -222,3 +225,33 @@ class TapeBuilder:
             levels = self._levels
             levels.append(1 + max([levels[a] for a in operands]) if op > Op.UNKNOWN else 0)
         return node
+
+
+def below(tape: Tape, roots: Iterable[int]) -> list[int]:
+    """The nodes that `roots` are made of, operands first."""
+    ops, operands = tape.op_list, tape.operand_lists
+    seen = set(roots)
+    if len(tape) < DENSE * len(seen):
+        marks = bytearray(len(tape))
+        for root in seen:
+            marks[root] = 1
+        for node in range(len(tape) - 1, -1, -1):
+            if marks[node] and ops[node] > Op.UNKNOWN:
+                for a in operands[node]:
+                    marks[a] = 1
+        return [node for node, mark in enumerate(marks) if mark]
+    stack = list(seen)
+    while stack:
+        node = stack.pop()
+        if ops[node] > Op.UNKNOWN:
+            for a in operands[node]:
+                if a not in seen:
+                    seen.add(a)
+                    stack.append(a)
+    return sorted(seen)
+
+
+def mentioned(tape: Tape, roots: Iterable[int]) -> list[int]:
+    """The unknowns that `roots` are made of, in the order of their nodes."""
+    ops, operands = tape.op_list, tape.operand_lists
+    return [operands[node][0] for node in below(tape, roots) if ops[node] == Op.UNKNOWN]

@@ -68,14 +68,6 @@ class Forms:
         found = self._found.get(node)
         return self._find(node) if found is None else found
 
-    def unknowns(self, node: int) -> frozenset[int]:
-        """The unknowns that a node depends on."""
-        form, width = self[node], self.width
-        if isinstance(form, float):
-            return frozenset()
-        plain = [slot for slot in form.terms if slot < width]
-        return frozenset(plain).union(*(self.knots[slot].inputs for slot in form.terms if slot >= width))
-
     def below(self, form: Form) -> list[int]:
         """The slots of the knots in a form."""
         width = self.width

@@ -69,8 +69,8 @@ class Freezer:
         """Knots that hang on a choice, which free unknowns decide."""
 
     def choice(self, flipped: frozenset[int] = frozenset()) -> Choice:
-        """The branches that are active at the current values, which must be up to date; nodes in `flipped`
-        take the other one.
+        """The branches that are active at the values at which they are first asked for, which must be up to
+        date; nodes in `flipped` take the other one.
         """
         return Choice(self, flipped)
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.solver import arrays
-from aidl_lang.solver.expression import Tape
+from aidl_lang.solver.expression import Tape, below
 from aidl_lang.solver.operations import PARTIALS, VALUE, Bools, Floats, Ints, Op
 from aidl_lang.solver.schedule import Schedule
 from aidl_lang.solver.valuation import Valuation
@@ -28,8 +28,6 @@ Gradient: TypeAlias = dict[int, float]
 
 FEW = 3000
 """Number of nodes up to which dictionaries are quicker than arrays."""
-DENSE = 8
-"""Nodes to a root up to which the whole tape is looked through for those below."""
 MANY = 100
 """Nodes to a root beyond which it is not worth it to evaluate the whole tape."""
 STEEPEST = 1e100
@@ -106,30 +104,6 @@ class Sparse:
 
 def _starts(counts: NDArray[np.intp]) -> Ints:
     return np.concatenate((np.zeros(1, dtype=np.int64), np.cumsum(counts, dtype=np.int64)))
-
-
-def below(tape: Tape, roots: Iterable[int]) -> list[int]:
-    """The nodes that `roots` are made of, operands first."""
-    ops, operands = tape.op_list, tape.operand_lists
-    seen = set(roots)
-    if len(tape) < DENSE * len(seen):
-        marks = bytearray(len(tape))
-        for root in seen:
-            marks[root] = 1
-        for node in range(len(tape) - 1, -1, -1):
-            if marks[node] and ops[node] > Op.UNKNOWN:
-                for a in operands[node]:
-                    marks[a] = 1
-        return [node for node, mark in enumerate(marks) if mark]
-    stack = list(seen)
-    while stack:
-        node = stack.pop()
-        if ops[node] > Op.UNKNOWN:
-            for a in operands[node]:
-                if a not in seen:
-                    seen.add(a)
-                    stack.append(a)
-    return sorted(seen)
 
 
 def gradients(values: Valuation, roots: Iterable[int]) -> dict[int, Gradient]:

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from aidl_lang.solver import conflicts
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
-from aidl_lang.solver.gradients import below
+from aidl_lang.solver.expression import mentioned
 from aidl_lang.solver.group import Group, Scope, Tier, stage_name
 from aidl_lang.solver.memory import Recollection
 from aidl_lang.solver.naming import rides
 from aidl_lang.solver.newton import Clock
-from aidl_lang.solver.operations import Bools, Floats, Op
+from aidl_lang.solver.operations import Bools, Floats
 from aidl_lang.solver.problem import Problem, Row, Settings, depths, violations
 from aidl_lang.solver.solution import GroupFailure, StageReport
 from aidl_lang.solver.valuation import Valuation
@@ -313,8 +313,7 @@ class _Mentions(dict[int, frozenset[int]]):
         if self._levels is not None:
             unknowns = self._levels.unknowns[self._starts[index] : self._starts[index + 1]].tolist()
         else:
-            tape, rows = self._problem.tape, self._problem.constraints[index].rows
-            nodes = below(tape, [row.expression for row in rows])
-            unknowns = [tape.operand_lists[node][0] for node in nodes if tape.op_list[node] == Op.UNKNOWN]
+            rows = self._problem.constraints[index].rows
+            unknowns = mentioned(self._problem.tape, [row.expression for row in rows])
         found = self[index] = frozenset(unknowns)
         return found

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from aidl_lang.solver.gradients import below
-from aidl_lang.solver.operations import Bools, Ints, Op
+from aidl_lang.solver import expression
+from aidl_lang.solver.operations import Bools, Ints
 from aidl_lang.solver.problem import Problem
 
 
@@ -75,6 +75,5 @@ def _marked(numbers: Ints, count: int) -> Bools:
 
 def mentioned(problem: Problem) -> Bools:
     """The unknowns (n,) that occur in any row."""
-    tape = problem.tape
-    nodes = np.array(below(tape, problem.rows.expression.tolist()), dtype=np.int64)
-    return _marked(tape.operands[nodes[tape.ops[nodes] == Op.UNKNOWN], 0], len(problem.initial))
+    found = expression.mentioned(problem.tape, problem.rows.expression.tolist())
+    return _marked(np.array(found, dtype=np.int64), len(problem.initial))

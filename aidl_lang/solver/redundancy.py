@@ -16,8 +16,9 @@ from functools import cached_property
 import numpy as np
 
 from aidl_lang.solver.dependence import Relation
-from aidl_lang.solver.gradients import Sparse, below, linearise
-from aidl_lang.solver.operations import Floats, Ints, Op
+from aidl_lang.solver.expression import mentioned
+from aidl_lang.solver.gradients import Sparse, linearise
+from aidl_lang.solver.operations import Floats, Ints
 from aidl_lang.solver.problem import Problem
 from aidl_lang.solver.stacks import LARGE, RANK
 
@@ -143,9 +144,8 @@ class _Trial:
 
     def _unknowns(self, rows: Sequence[int] | Ints) -> Ints:
         """What rows mention, whether or not it has a slope here."""
-        tape = self.problem.tape
-        nodes = np.array(below(tape, self.expressions[rows].tolist()), dtype=np.int64)
-        return np.unique(tape.operands[nodes[tape.ops[nodes] == Op.UNKNOWN], 0]).astype(np.int64)
+        found = mentioned(self.problem.tape, self.expressions[rows].tolist())
+        return np.unique(np.array(found, dtype=np.int64))
 
     def _follows(self, row: int, others: Sequence[int]) -> bool:
         rows = np.array([*others, row], dtype=np.int64)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
-from aidl_lang.solver.expression import Tape
+from aidl_lang.solver.expression import Tape, below
 from aidl_lang.solver.forms import Forms
 from aidl_lang.solver.operations import VALUE, Op
 from aidl_lang.solver.schedule import Schedule
@@ -31,7 +31,6 @@ class Valuation:
         self.tape, self.kept = tape, kept
         self.unknowns = [float(value) for value in initial]
         self.nodes = [float(value) for value in tape.constants]
-        self._seen = [False] * len(tape)
         self._code: list[Compiled | None] = [None] * len(tape)
         self._fresh: set[int] = set()
         """Nodes that, with all that they are made of, are up to date."""
@@ -68,7 +67,7 @@ class Valuation:
         return found
 
     def _find_cone(self, roots: tuple[int, ...]) -> Cone:
-        nodes = reachable(self.tape, roots, self._seen)
+        nodes = below(self.tape, roots)
         ops, operands = self.tape.op_list, self.tape.operand_lists
         inputs = [(node, operands[node][0]) for node in nodes if ops[node] == Op.UNKNOWN]
         code = [self._compiled(node) for node in nodes if ops[node] > Op.UNKNOWN]
@@ -121,21 +120,3 @@ def run(code: list[Compiled], values: list[float]) -> None:
             values[out] = function(values[a], values[b])  # type: ignore[index]
         else:
             values[out] = function(*[values[i] for i in a])  # type: ignore[union-attr]
-
-
-def reachable(tape: Tape, roots: Iterable[int], seen: list[bool]) -> list[int]:
-    """The nodes below `roots`, operands first. `seen` is scratch: all False before and after."""
-    ops, operands = tape.op_list, tape.operand_lists
-    found: list[int] = []
-    stack = list(roots)
-    while stack:
-        node = stack.pop()
-        if not seen[node]:
-            seen[node] = True
-            found.append(node)
-            if ops[node] > Op.UNKNOWN:
-                stack.extend(operands[node])
-    for node in found:
-        seen[node] = False
-    found.sort()
-    return found
