@@ -70,12 +70,10 @@ class Reach:
     def is_possible(self, velocity: Floats) -> bool:
         return float(np.linalg.norm(self._missing(velocity))) <= POSSIBLE * float(np.linalg.norm(velocity))
 
-    def know(self, velocity: Floats) -> bool:
-        """Whether a motion is no combination of those that are known; it is from now on."""
-        way = self._news(velocity)
-        if way is not None:
+    def know(self, velocity: Floats) -> None:
+        """Takes up a motion among those that are known, unless it is a combination of them."""
+        if (way := self._news(velocity)) is not None:
             self.taken.append(way)
-        return way is not None
 
     def _news(self, velocity: Floats) -> Floats | None:
         """What of a motion is no combination of those that are known, in the space of all."""

@@ -175,13 +175,13 @@ class _Telling(Reach):
         """
         if self.is_done or not velocity.any() or not self.is_possible(velocity):
             return
-        if self._news(velocity) is None:
+        if (way := self._news(velocity)) is None:
             return
         if kind in _FOLLOWED and not self.goes_on(velocity, spin):
             if kind not in _LEAVING:
                 return
             words = _LEAVING[kind].format(words.removeprefix("slide along "))
-        self.know(velocity)
+        self.taken.append(way)
         moving = self._moving(velocity) if moving is None else moving
         yield Motion(kind, tuple(things), words, self.rates(velocity)), self.part.observables[moving]
 
