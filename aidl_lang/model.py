@@ -444,6 +444,8 @@ class Assertion:
     label: str = ""
     shape: str = ""
     """the shape that asks this of its arguments"""
+    wording: object = field(default=None, repr=False)
+    """the condition, to be read again in parts (see building.wording)"""
 
 
 @record(eq=False)

@@ -6,9 +6,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from aidl_lang.boxes import SIDES
-from aidl_lang.building.conditions import holds
-from aidl_lang.diagnostics import Diagnostic
-from aidl_lang.expression import Evaluator
+from aidl_lang.building.arithmetic import differences, givens
+from aidl_lang.building.conditions import RELATIONS, holds
+from aidl_lang.building.wording import Wording
+from aidl_lang.diagnostics import Diagnostic, Label
+from aidl_lang.expression import Evaluator, nodes
 from aidl_lang.failures import failure_notes
 from aidl_lang.geometry.boolean import clearance, overlap_area
 from aidl_lang.geometry.drawing import Drawing, draw
@@ -63,17 +65,48 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
         return None
     message = assertion.message or f"`{assertion.text}` does not hold"
     where = f" [{assertion.label}]" if assertion.label else ""
-    shown = "; ".join(_compared(c, evaluate) for c in _false_parts(assertion.condition, evaluate))
+    false = list(_false_parts(assertion.condition, evaluate))
+    wording = assertion.wording
+    shown = differences(wording, evaluate, _TOLERANCE) if isinstance(wording, Wording) else []
+    places = givens(wording) if isinstance(wording, Wording) and not false and not assertion.shape else ()
     return Diagnostic(
         "E0604",
         f"assertion failed: {message}{where}",
         assertion.span,
-        f"here {shown}" if shown else "false as written",
-        hints=(
-            f"`{assertion.shape}` asks this of its arguments: see `aidl doc {assertion.shape}`"
-            if assertion.shape
-            else "an `assert` steers nothing: to make it hold, state it with `constrain` as well",
-        ),
+        "; ".join(shown or [_compared(c, evaluate) for c in false]) or "false as written",
+        places,
+        (_remedy(assertion, false, places),),
+    )
+
+
+def _remedy(assertion: Assertion, false: Sequence[Comparison], places: Sequence[Label]) -> str:
+    """What to do about an assertion that does not hold, and nothing that would be an error in its turn."""
+    if assertion.shape:
+        return f"`{assertion.shape}` asks this of its arguments: see `aidl doc {assertion.shape}`"
+    if not false and isinstance(assertion.condition, bool):
+        change = "change one of these, or" if places else "change a number, or"
+        return f"nothing in it moves, so `constrain` would not help: {change} what the `assert` asks"
+    if _is_measured(false):
+        return (
+            "this is measured on what is drawn, which `constrain` cannot steer: change the sizes that it "
+            "follows from, or what the `assert` asks"
+        )
+    if not _can_be_stated(assertion.condition):
+        return "an `assert` steers nothing: constrain the one of these that is meant, or change what it asks"
+    return "an `assert` steers nothing: to make it hold, state it with `constrain` as well"
+
+
+def _is_measured(comparisons: Sequence[Comparison]) -> bool:
+    sides = (side for c in comparisons for side in (c.left, c.right) if side.is_open)
+    return any(isinstance(node.payload, Measurement) for node in nodes(sides, only_open=True))
+
+
+def _can_be_stated(condition: Condition | bool) -> bool:
+    """Whether `constrain` takes it: comparisons that all hold, by relations that a solver knows."""
+    return (
+        isinstance(condition, Condition)
+        and condition.operator == "and"
+        and all(isinstance(part, Comparison) and part.relation in RELATIONS for part in condition.parts)
     )
 
 
@@ -90,7 +123,7 @@ def _false_parts(
 
 def _compared(comparison: Comparison, evaluate: Callable[..., float]) -> str:
     left, right = evaluate(comparison.left), evaluate(comparison.right)
-    return f"{short(left)} {comparison.relation} {short(right)}"
+    return f"{short(left)} is not {comparison.relation} {short(right)}"
 
 
 def measured(kind: str, regions: Sequence[Region], size: float) -> float:

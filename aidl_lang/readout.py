@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TypeAlias
 
+from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.building.scopes import ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.cancelling import checkpoint
@@ -73,6 +74,16 @@ def read_out(
         solution.status.value, root, reports, freedom.degrees, free, changed, readings, floating, describe
     )
     return solved, evaluator
+
+
+def _literal(model: Model, finish: Finish) -> ast.Number | None:
+    """The number in the call that is the size of a fillet or chamfer, where no constraint speaks of it."""
+    size, *more = finish.sizes
+    rows = (c for constraint in model.constraints for c in constraint.comparisons)
+    if more or size.expression.payload in set(ex.unknowns(side for c in rows for side in (c.left, c.right))):
+        return None
+    node = next((each.node for each in model.literals if each.became is size.expression), None)
+    return node if isinstance(node, ast.Number) and finish.span.overlaps(node.span) else None
 
 
 def _floating(lowered: Lowered, freedom: Freedom) -> Iterator[str]:
@@ -254,7 +265,8 @@ class _Reader:
             at = self._at(convert_point(finish.at, s, self.model.root))
         of = tuple(g.path for g in finish.of)
         sizes = tuple(map(self._number, finish.sizes))
-        return SolvedFinish(finish.kind, of, at, sizes, finish.text, finish.span)
+        literal = partial(_literal, self.model, finish)
+        return SolvedFinish(finish.kind, of, at, sizes, finish.text, finish.span, literal=literal)
 
     def _text(self, g: Geometry, core: Mapping[str, Value]) -> SolvedGeometry:
         """A text with its characters as parts, and the curves of each as theirs."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeAlias
 
+from aidl_lang import ast
 from aidl_lang.geometry.curves import Arc, Circle, Piece, Vec
 from aidl_lang.source import Span
 
@@ -56,7 +57,8 @@ class Recipe:
 class Finish:
     """A fillet or chamfer: of the corner `at`, or of all corners of the geometry at the paths `of`.
 
-    `corners` are the places where it was carried out.
+    `corners` are the places where it was carried out, `literal` tells the number that its size is written as,
+    where nothing else depends on it.
     """
 
     kind: str
@@ -66,6 +68,7 @@ class Finish:
     text: str
     span: Span
     corners: tuple[Vec, ...] = ()
+    literal: Callable[[], ast.Number | None] = field(default=lambda: None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

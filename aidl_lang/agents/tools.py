@@ -55,6 +55,7 @@ Formats: TypeAlias = Annotated[
     Sequence[Literal["png", "model", "svg", "pdf", "dxf", "step", "stl", "3mf"]],
     "What to make: png is a picture, model the solved model as JSON, the others are files.",
 ]
+_UNSOLVED = "no mistakes found; nothing was solved: `compile` tells whether the constraints hold"
 _WITHOUT_CONFLICT = {
     "wrong": "the program does not get as far as solving",
     "solved": "every constraint holds: there is no conflict",
@@ -76,7 +77,7 @@ class Tools:
         mended = mend(source, world, settings) if any(d.fix for d in found) else Mended(source, found)
         is_changed = bool(mended.fixes)
         left_over = world.reader(mended.source).diagnostics(mended.diagnostics)
-        blocks = [compact(found) or "no mistakes found"]
+        blocks = [compact(found) or _UNSOLVED]
         if is_changed:
             left = compact(left_over) or "nothing is left to mend"
             blocks += [f"With these fixes: {', '.join(mended.fixes)}.", mended.source.text, f"Then: {left}"]

@@ -31,7 +31,7 @@ from aidl_lang.values import (
 RELATIONS = ("==", "<=", ">=", "<", ">")
 """What can constrain; `!=` can only be asserted or tested."""
 
-_EXACT = 1e-9
+EXACT = 1e-9
 """How far constants may differ, relative to their size, and still count as equal."""
 
 
@@ -105,7 +105,7 @@ def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.No
         return NOTHING
     left, right = spelled_out(a.expression, b.expression, equal=relation == "==")
     if left.is_constant and right.is_constant:
-        return _relates(relation, left.value, right.value, dimension == ANGLE, _EXACT, strict=True)
+        return _relates(relation, left.value, right.value, dimension == ANGLE, EXACT, strict=True)
     boxes, beside = boxes_in(a.expression, b.expression)
     return Condition("and", (Comparison(relation, left, right, dimension, None, boxes, beside),))
 

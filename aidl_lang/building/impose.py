@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.boxes import SIDES, Box
+from aidl_lang.building.arithmetic import differences, givens, sides
 from aidl_lang.building.coerce import as_point
-from aidl_lang.building.conditions import RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
+from aidl_lang.building.conditions import EXACT, RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.turning import ask_to_turn
@@ -93,12 +94,21 @@ def _turn(env: Env) -> str:
 
 def _never(it: Interpreter, node: ast.Expression, env: Env) -> None:
     shape = _library_shape(it, node, env)
+    wording = Wording(node, it, env, _read)
+    false, both = differences(wording, ex.Evaluator({}), EXACT), sides(wording, ex.Evaluator({}))
+    values = f", {both}" if both else ""
+    places = () if shape is not None else givens(wording)
+    change = "one of these, or what is stated" if places else "what it speaks of, or leave it out"
+    hints = [f"nothing in it moves: change {change}"]
+    if any(isinstance(part, ast.Member) for part in ast.walk(node)):
+        hints.append("a size that shall move is written as a first guess, as in `radius: guess(5)`")
     it.report(
         "E0513",
-        f"`{node.span.one_line}` can never hold: both sides are constants{_turn(env)}",
+        f"`{node.span.one_line}` can never hold: both sides are constants{values}{_turn(env)}",
         shape.span if shape is not None else node,
-        label="false as written",
-        hints=["a number or `param` does not move; make one side a `var`, a `guess(…)` or a reference"],
+        label="; ".join(false) or "false as written",
+        hints=hints,
+        secondary=places,
     )
 
 
@@ -264,7 +274,9 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
     message = evaluate(it, node.message, env) if node.message is not None else None
     if value is False and shape:
         why = message.value if isinstance(message, Text) else f"`{node.test.span.one_line}` is false"
-        it.report("E0604", f"assertion failed: {why}{_turn(env)}", node.test, label="false as written")
+        false = differences(Wording(node.test, it, env, evaluate), ex.Evaluator({}), EXACT)
+        label = "; ".join(false) or "false as written"
+        it.report("E0604", f"assertion failed: {why}{_turn(env)}", node.test, label=label)
         return
     it.assertions.append(
         Assertion(
@@ -275,6 +287,7 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
             it.place(node.test) or node.span,
             ", ".join(env.scope.labels),
             shape,
+            Wording(node.test, it, env, evaluate),
         )
     )
 

@@ -1,25 +1,44 @@
-"""`aidl check`: find what is wrong without drawing, and mend what can be mended."""
+"""`aidl check`: find what is wrong without writing anything, and mend what can be mended."""
 
 from __future__ import annotations
 
 import argparse
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from aidl_lang.cli import files
 from aidl_lang.cli.options import add_variant
 from aidl_lang.cli.report import UseError, exit_code, say, show
 from aidl_lang.diagnostics import Diagnostic
-from aidl_lang.source import SourceFile
 
 if TYPE_CHECKING:
-    from aidl_lang.mending import Mended
-    from aidl_lang.variants import Variant
+    from aidl_lang.pipeline import Settings
+    from aidl_lang.source import SourceFile
+    from aidl_lang.world import World
+
+
+@dataclass(frozen=True)
+class _Checked:
+    """What was found in a file, the titles of the fixes made, and what came of solving: `solved`, `partial`,
+    `failed`; nothing where it was not tried.
+    """
+
+    diagnostics: list[Diagnostic]
+    fixes: tuple[str, ...] = ()
+    status: str = ""
+    was_read: bool = True
 
 
 def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("check", help="find mistakes without drawing", description=__doc__)
+    parser = verbs.add_parser("check", help="find mistakes, write nothing", description=__doc__)
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - reads standard input")
     parser.add_argument("--fix", action="store_true", help="write the program with all fixes applied")
+    parser.add_argument(
+        "--no-solve",
+        dest="solve",
+        action="store_false",
+        help="find only what can be found without solving and drawing, which is quick",
+    )
     parser.add_argument("--json", action="store_true", help="print the diagnostics as JSON")
     add_variant(parser)
     parser.set_defaults(run=run)
@@ -28,10 +47,12 @@ def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
 def run(arguments: argparse.Namespace) -> int:
     found: list[Diagnostic] = []
     fixes: list[dict[str, str]] = []
+    is_solved = True
     for name in arguments.files:
-        checked = _check(name, arguments.fix, arguments.variant)
+        checked = _check(name, arguments)
         found += checked.diagnostics
         fixes += [{"file": name, "title": title} for title in checked.fixes]
+        is_solved = is_solved and checked.status == "solved"
         if not arguments.json:
             _tell(name, checked)
     if arguments.json:
@@ -39,34 +60,55 @@ def run(arguments: argparse.Namespace) -> int:
 
         from aidl_lang.render import to_dict
 
-        document = {"ok": exit_code(found) == 0, "fixed": fixes, "diagnostics": [to_dict(d) for d in found]}
+        document = {
+            "ok": exit_code(found) == 0,
+            "solved": is_solved,
+            "fixed": fixes,
+            "diagnostics": [to_dict(d) for d in found],
+        }
         print(json.dumps(document, indent=2, ensure_ascii=False))
     return exit_code(found)
 
 
-def _check(name: str, fix: bool, variant: Variant) -> Mended:
+def _check(name: str, arguments: argparse.Namespace) -> _Checked:
     """Check one file; a file that cannot be read is a finding like others, so that the rest is checked."""
     from aidl_lang import pipeline
-    from aidl_lang.mending import Mended, mend
 
-    settings = pipeline.Settings(variant=variant)
+    settings = pipeline.Settings(variant=arguments.variant)
     try:
         source, world = files.read(name), files.world(name)
-        if not fix:
-            return Mended(source, pipeline.check(source, world, settings))
-        checked = mend(source, world, settings)
-        if name == files.STANDARD or checked.source.text != source.text:
-            files.write(name, checked.source.text.encode())
+        if not arguments.fix:
+            return _found(source, world, settings, solve=arguments.solve)
+        from aidl_lang.mending import mend
+
+        mended = mend(source, world, settings)
+        if name == files.STANDARD or mended.source.text != source.text:
+            files.write(name, mended.source.text.encode())
+        if not arguments.solve:
+            return _Checked(mended.diagnostics, mended.fixes)
+        return _found(mended.source, world, settings, solve=True, fixes=mended.fixes)
     except UseError as reason:
-        return Mended(SourceFile(name, ""), [reason.diagnostic])
-    return checked
+        return _Checked([reason.diagnostic], was_read=False)
 
 
-def _tell(name: str, checked: Mended) -> None:
+def _found(
+    source: SourceFile, world: World, settings: Settings, *, solve: bool, fixes: tuple[str, ...] = ()
+) -> _Checked:
+    """What there is to say of a program as it stands."""
+    from aidl_lang import pipeline
+
+    if not solve:
+        return _Checked(pipeline.check(source, world, settings), fixes)
+    compiled = pipeline.compile(source, world, settings=settings)
+    return _Checked(compiled.diagnostics, fixes, compiled.status if compiled.model is not None else "")
+
+
+def _tell(name: str, checked: _Checked) -> None:
     from aidl_lang.render import summary
 
     for title in checked.fixes:
         say(f"{name}: fixed: {title}")
     show(checked.diagnostics)
-    if not any(d.span is None for d in checked.diagnostics):
-        say(f"{name}: {summary(checked.diagnostics) or 'no mistakes found'}")
+    if checked.was_read:
+        unsolved = "" if checked.status else "; nothing was solved"
+        say(f"{name}: {summary(checked.diagnostics) or 'no mistakes found'}{unsolved}")

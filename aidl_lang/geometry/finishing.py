@@ -80,16 +80,14 @@ class Finished:
 
 @dataclass(frozen=True, slots=True)
 class TooLarge:
-    """A finish that does not fit; `largest` is the largest size that does, with the others as they are.
-
-    `other` is the one it runs into on curve `number`, if there is one, and `together` what fits for both.
+    """A finish that does not fit: its corner has room for `largest`, or it runs into `other` on the curve of
+    that `number`.
     """
 
     work: Work
     largest: float
     other: Work | None = None
     number: int = -1
-    together: float = 0.0
 
 
 @dataclass
@@ -156,7 +154,7 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
     for number in sorted({key[0] for key in lost}):
         a, b = lost.get((number, True)), lost.get((number, False))
         if a is not None and b is not None and _cut(a, number, True) + _cut(b, number, False) > 1 + _EXACT:
-            result.failures.append(_collision(a, b, number))
+            result.failures.append(TooLarge(b.work, 0.0, a.work, number))
     if not result.failures:
         result.finished = done
         for number in {key[0] for key in lost}:
@@ -168,32 +166,17 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
 
 def _misfit(work: Work) -> TooLarge:
     """A finish that an arm is too short for."""
-    return TooLarge(work, _largest(lambda size: solve(_sized(work, size)) is not None, max(work.sizes)))
+    return TooLarge(work, largest(lambda size: solve(sized(work, size)) is not None, max(work.sizes)))
 
 
-def _collision(a: Finished, b: Finished, number: int) -> TooLarge:
-    """Two finishes that need more of a curve than there is."""
-
-    def fits(first: Work, second: Work) -> bool:
-        one, other = solve(first), solve(second)
-        if one is None or other is None:
-            return False
-        return _cut(one, number, True) + _cut(other, number, False) <= 1 + _EXACT
-
-    size = max(b.work.sizes)
-    largest = _largest(lambda s: fits(a.work, _sized(b.work, s)), size)
-    both = max(*a.work.sizes, *b.work.sizes)
-    together = _largest(lambda s: fits(_sized(a.work, s), _sized(b.work, s)), both)
-    return TooLarge(b.work, largest, a.work, number, together)
-
-
-def _sized(work: Work, size: float) -> Work:
+def sized(work: Work, size: float) -> Work:
     """The same finish with its larger size changed, the other in proportion."""
     share = size / max(work.sizes)
     return Work(work.kind, work.corner, (work.sizes[0] * share, work.sizes[1] * share))
 
 
-def _largest(fits: Callable[[float], bool], too_large: float) -> float:
+def largest(fits: Callable[[float], bool], too_large: float) -> float:
+    """The largest size below one that is too large, by halving."""
     low, high = 0.0, too_large
     for _ in range(_HALVINGS):
         middle = (low + high) / 2

@@ -7,21 +7,13 @@ from collections.abc import Iterable, Sequence
 
 from aidl_lang.diagnostics import Diagnostic, Label
 from aidl_lang.geometry.curves import Piece
-from aidl_lang.geometry.finishing import Corner, TooLarge, Work, arms_at, corners_of
-from aidl_lang.geometry.notes import at, listed, local, short
+from aidl_lang.geometry.finishing import Corner, arms_at, corners_of
+from aidl_lang.geometry.notes import at, listed, short
 from aidl_lang.solved import Finish, Recipe, SolvedGeometry, SolvedStructure
 
 Leaves = Sequence[tuple[SolvedGeometry, Piece]]
 
 _OPERATION = {"difference": "cut"}
-
-
-def floor(value: float) -> str:
-    """A size for a sentence, rounded down to four digits so that it fits when it is written."""
-    if value <= 0:
-        return "0"
-    step = 10.0 ** (math.floor(math.log10(value)) - 3)
-    return short(math.floor(value / step * (1 + 1e-9)) * step)
 
 
 def _sources(recipe: Recipe) -> list[str]:
@@ -40,7 +32,7 @@ def nothing_left(g: SolvedGeometry, recipe: Recipe, depth: float | None = None) 
             amount = short(abs(recipe.numbers["distance"]))
             message = f"nothing is left of `{sources[0]}` when it is moved inwards by {amount}"
             gone = short(depth or 0)
-            hint = f"it is gone from {gone} on: choose a smaller distance, or make the outline larger"
+            hint = f"less than {gone} fits: choose a smaller distance, or make the outline larger"
         case "hull":
             lie = "lie" if len(set(sources)) > 1 else "lies"
             message = f"`{g.path}` has no area: {listed(sources)} {lie} on one line"
@@ -139,48 +131,4 @@ def twice(f: Finish, earlier: Finish, corner: Corner, told: SolvedStructure) -> 
         (Label(earlier.span, f"finished here already, by `{earlier.text}`"),),
         ("keep one of them; to treat corners differently, name them one by one",),
         points=(corner.at,),
-    )
-
-
-def too_large(
-    failure: TooLarge, works: Sequence[Work], reasons: Sequence[Finish], leaves: Leaves, told: SolvedStructure
-) -> Diagnostic:
-    """For a size that does not fit its corner, or not beside another one."""
-    f = reasons[next(k for k, w in enumerate(works) if w is failure.work)]
-    what = "radius" if f.kind == "fillet" else "size"
-    corner = (
-        f"`{f.text}`" if f.at is not None else f"the corner at {at(failure.work.corner.at)} of `{f.text}`"
-    )
-    size = short(max(failure.work.sizes))
-    if failure.other is None:
-        edges = listed([local(told, leaves[arm.number][0]) for arm in failure.work.corner.arms])
-        if failure.work.corner.is_cusp:
-            message, hint = (
-                f"{corner} has no {f.kind}: {edges} meet there without an angle",
-                "let them meet at an angle",
-            )
-        else:
-            most = floor(failure.largest)
-            message = (
-                f"the {f.kind} of {corner} does not fit: {what} {size}, and {edges} have room for {most}"
-            )
-            hint = f"the largest {what} that fits is {most}"
-        points = (failure.work.corner.at,)
-        return Diagnostic("E0518", message, f.span, "too large", hints=(hint,), points=points)
-    other = reasons[next(k for k, w in enumerate(works) if w is failure.other)]
-    edge = local(told, leaves[failure.number][0])
-    a, b = at(failure.other.corner.at), at(failure.work.corner.at)
-    together = floor(failure.together)
-    hint = f"with the same {what} at both ends at most {together} fits"
-    if max(failure.other.sizes) != max(failure.work.sizes):
-        hint = f"the largest {what} at {b} that fits beside the other is {floor(failure.largest)}"
-    labels = (Label(other.span, "the other one"),) if other.span != f.span else ()
-    return Diagnostic(
-        "E0518",
-        f"the {f.kind} at {b} runs into the {other.kind} at {a} on `{edge}`: {what} {size} is too large",
-        f.span,
-        "too large",
-        labels,
-        (hint,),
-        points=(failure.other.corner.at, failure.work.corner.at),
     )

@@ -21,6 +21,7 @@ from aidl_lang.geometry.faces import Shape, own_faces, union_of
 from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish
 from aidl_lang.geometry.hulls import hull
 from aidl_lang.geometry.measures import area, length
+from aidl_lang.geometry.misfits import Misfit, in_one, misfits
 from aidl_lang.geometry.network import Network, exactly, union_bounds
 from aidl_lang.geometry.offsets import NEAR, offset, thick
 from aidl_lang.geometry.region import Region
@@ -40,7 +41,7 @@ def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
     index = {g.path: g for g in model.root.walk_geometry()}
     outliner = _Outliner(tuple(f for s in model.root.walk() for f in s.finishes), index)
     root = outliner.structure(model.root)
-    return replace(model, root=root), list(dict.fromkeys(outliner.notes))
+    return replace(model, root=root), list(dict.fromkeys([*outliner.notes, *in_one(outliner.misfits)]))
 
 
 def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:
@@ -70,6 +71,7 @@ class _Outliner:
     notes: list[Diagnostic] = field(default_factory=list)
     made: dict[str, SolvedGeometry] = field(default_factory=dict)
     carried_out: dict[Finish, list[Vec]] = field(default_factory=dict)
+    misfits: list[Misfit] = field(default_factory=list)
 
     def structure(self, s: SolvedStructure) -> SolvedStructure:
         geometry = tuple(map(self._completed, s.geometry))
@@ -224,8 +226,8 @@ class _Outliner:
                 self.notes.append(notes.twice(f, reasons[earlier], corner, told))
         result = finish([c for _, c in leaves], works)
         if told is not None:
-            for failure in result.failures:
-                self.notes.append(notes.too_large(failure, works, reasons, leaves, told))
+            if result.failures:
+                self.misfits += misfits(result, works, reasons, leaves, told)
             for made in result.finished:
                 reason = reasons[works.index(made.work)]
                 self.carried_out.setdefault(reason, []).append(made.work.corner.at)

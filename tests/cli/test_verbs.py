@@ -29,17 +29,45 @@ def test_check_says_what_it_found(aidl: Aidl) -> None:
     assert aidl("check", "good.aidl") == Result(0, "", "good.aidl: no mistakes found\n")
     result = aidl("check", "wrong.aidl", "good.aidl", "missing.aidl")
     assert result.code == 2
-    assert "wrong.aidl: 1 error" in result.err
-    assert "good.aidl: no mistakes found" in result.err
+    assert "wrong.aidl: 1 error; nothing was solved\n" in result.err
+    assert "good.aidl: no mistakes found\n" in result.err
     assert "E0901" in result.err
+    assert "missing.aidl: " not in result.err
+
+
+def test_check_solves_and_draws_unless_told_not_to(aidl: Aidl, folder: Path) -> None:
+    result = aidl("check", "unsolvable.aidl")
+    assert result.code == 1
+    assert "error[E0601]" in result.err
+    assert result.err.endswith("unsolvable.aidl: 1 error\n")
+    quick = "unsolvable.aidl: no mistakes found; nothing was solved\n"
+    assert aidl("check", "--no-solve", "unsolvable.aidl") == Result(0, "", quick)
+    (folder / "corner.aidl").write_text("solid a { b = square(center: origin, size: 10); fillet(b, 6) }\n")
+    assert "error[E0518]" in aidl("check", "corner.aidl").err
+    (folder / "thin.aidl").write_text(
+        "solid a { b = square(center: origin, size: 10); assert b.width > 20 }\n"
+    )
+    assert "error[E0604]" in aidl("check", "thin.aidl").err
+    assert list(folder.glob("*.svg")) == []
 
 
 def test_check_as_json(aidl: Aidl) -> None:
     document = json.loads(aidl("check", "wrong.aidl", "--json").out)
     assert document["ok"] is False
+    assert document["solved"] is False
     assert document["fixed"] == []
     found = document["diagnostics"][0]
     assert (found["file"], found["line"], found["severity"]) == ("wrong.aidl", 2, "error")
+
+
+def test_check_as_json_says_whether_it_solved(aidl: Aidl) -> None:
+    def document(*arguments: str) -> dict[str, object]:
+        return json.loads(aidl("check", "--json", *arguments).out)
+
+    assert document("good.aidl") == {"ok": True, "solved": True, "fixed": [], "diagnostics": []}
+    assert document("good.aidl", "--no-solve") == {**document("good.aidl"), "solved": False}
+    failed = document("good.aidl", "unsolvable.aidl")
+    assert (failed["ok"], failed["solved"], len(failed["diagnostics"])) == (False, False, 1)
 
 
 def test_check_fix_mends_the_file(aidl: Aidl, folder: Path) -> None:
@@ -56,6 +84,16 @@ def test_check_fix_of_standard_input(aidl: Aidl) -> None:
     result = aidl("check", "--fix", "-", stdin=OUT_OF_REACH)
     assert result.code == 0
     assert result.out.startswith("assembly a {")
+
+
+def test_check_fix_tells_what_solving_finds_in_what_it_mended(aidl: Aidl) -> None:
+    program = "solid a { b = circle(center: origin, raduis: 5); constrain { b.radius == 6; b.radius == 7 } }"
+    result = aidl("check", "--fix", "-", stdin=program)
+    assert (result.code, result.out) == (1, program.replace("raduis", "radius"))
+    assert "error[E0601]" in result.err
+    quick = aidl("check", "--fix", "--no-solve", "-", stdin=program)
+    assert (quick.code, quick.out) == (0, result.out)
+    assert quick.err.endswith("-: no mistakes found; nothing was solved\n")
 
 
 def test_check_fix_leaves_a_good_program_alone(aidl: Aidl, folder: Path) -> None:
@@ -214,7 +252,7 @@ def test_interrupt_is_quiet(aidl: Aidl, monkeypatch: pytest.MonkeyPatch) -> None
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("aidl_lang.pipeline.check", interrupted)
+    monkeypatch.setattr("aidl_lang.pipeline.compile", interrupted)
     assert aidl("check", "good.aidl") == Result(130, "", "")
 
 

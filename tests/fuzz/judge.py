@@ -191,7 +191,7 @@ def _cause(error: BaseException) -> str:
 
 
 def _errors(source: SourceFile) -> list[str] | None:
-    """The codes of the errors that checking finds, in alphabetical order; None where it ran out of time, which
+    """The codes of the errors that checking finds, in order of the alphabet; None where time ran out, which
     the same program may do at one time and not at another.
     """
     found = [d for d in pipeline.check(source, settings=SETTINGS) if d.is_error]

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from aidl_lang.geometry.clipping import clipped
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import bounds, ends, inward, point, points
-from aidl_lang.geometry.finishing import Work, corners_of, direction, finish
+from aidl_lang.geometry.finishing import Work, corners_of, direction, finish, sized
 from aidl_lang.geometry.hulls import hull
 from aidl_lang.geometry.measures import area, length, perimeter
 from aidl_lang.geometry.offsets import offset, thick
@@ -138,9 +138,10 @@ def test_largest_radius_is_told() -> None:
     (failure,) = finish(sides, [Work("fillet", lower_left, (50, 50))]).failures
     assert failure.largest == pytest.approx(40)
     works = [Work("fillet", c, (25, 25)) for c in corners_of(sides, 1e-6)]
-    for failure in finish(sides, works).failures:
-        assert failure.largest == pytest.approx(15)
-        assert failure.together == pytest.approx(20)
+    failures = finish(sides, works).failures
+    assert {abs(f.work.corner.at[0] - f.other.corner.at[0]) for f in failures} == {0}
+    assert not finish(sides, [sized(work, 20) for work in works]).failures
+    assert finish(sides, [sized(work, 20.01) for work in works]).failures
 
 
 # --- Offsets -----------------------------------------------------------------------------------------

@@ -1,0 +1,192 @@
+"""What a statement compares, in numbers: `14 - 11 = 3, which is not >= 4`; and what gives these numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+from aidl_lang import ast, units
+from aidl_lang.boxes import spelled_out
+from aidl_lang.building.coerce import as_point
+from aidl_lang.building.conditions import holds
+from aidl_lang.building.wording import Wording
+from aidl_lang.diagnostics import Label
+from aidl_lang.expression import Expression
+from aidl_lang.expression_printer import format_expression
+from aidl_lang.model import Comparison, Geometry, Structure
+from aidl_lang.resolving.symbols import SymbolKind
+from aidl_lang.source import Span
+from aidl_lang.values import Num, PointVal
+
+_DIGITS = range(6, 18)
+"""In so many a number is shown: as few as tell the two sides apart."""
+_GIVEN = 4
+"""Places that are shown at most."""
+
+Evaluate = Callable[[Expression], float]
+Side = tuple[ast.Expression, tuple[Num, ...]]
+
+
+def differences(wording: Wording, evaluate: Evaluate, tolerance: float) -> list[str]:
+    """What is false of the comparisons in a statement; nothing where it is none that can be read so."""
+    if isinstance(wording.node, ast.Membership):
+        return _beyond(wording, wording.node, evaluate)
+    found = []
+    for left, relation, right in _comparisons(wording.node):
+        one, other = (left, _numbers(wording, left)), (right, _numbers(wording, right))
+        if one[1] and len(one[1]) == len(other[1]):
+            text = _difference(wording, one, relation, other, evaluate, tolerance)
+            found += [text] if text else []
+    return found
+
+
+def _beyond(wording: Wording, node: ast.Membership, evaluate: Evaluate) -> list[str]:
+    """That a number is not among others, of a statement that is false."""
+    values = _values(_numbers(wording, node.value), evaluate)
+    return [f"{_shown(values, _DIGITS[0])} is not in {node.container.span.one_line}"] if values else []
+
+
+def sides(wording: Wording, evaluate: Evaluate) -> str:
+    """`110 and 120`, what a statement compares; empty where it is more than one comparison, or none."""
+    pairs = list(_comparisons(wording.node))
+    if len(pairs) != 1:
+        return ""
+    left, _, right = pairs[0]
+    shown = [_values(_numbers(wording, side), evaluate) for side in (left, right)]
+    if not all(shown):
+        return ""
+    one, other = _apart(*shown)
+    return f"{one} and {other}"
+
+
+def givens(wording: Wording) -> tuple[Label, ...]:
+    """Where the constants of a statement that have a name are given, with what they are."""
+    found: dict[Span, list[str]] = {}
+    source = wording.node.span.source
+    inside = [wording.node.value] if isinstance(wording.node, ast.Membership) else []
+    both = [side for left, _, right in _comparisons(wording.node) for side in (left, right)]
+    for side in (*inside, *both):
+        for leaf in _leaves(side):
+            at, value = _origin(wording, leaf), wording.value(leaf)
+            if at is None or at.source is not source:
+                continue
+            if isinstance(value, Num) and value.expression.is_constant:
+                texts = found.setdefault(at, [])
+                said = f"`{leaf.span.one_line}` is {_shown((value.value,), 6)}"
+                texts += [said] if said not in texts else []
+    return tuple(Label(at, ", ".join(texts)) for at, texts in list(found.items())[:_GIVEN])
+
+
+def _comparisons(node: ast.Expression) -> Iterator[tuple[ast.Expression, str, ast.Expression]]:
+    match node:
+        case ast.Comparison(operands=operands, operators=operators):
+            yield from zip(operands, operators, operands[1:], strict=False)
+        case ast.Binary(operator="and" | "or", left=left, right=right):
+            yield from _comparisons(left)
+            yield from _comparisons(right)
+
+
+def _numbers(wording: Wording, node: ast.Expression) -> tuple[Num, ...]:
+    """The number that a side is, or the two of a point; nothing for anything else."""
+    value = wording.value(node)
+    if isinstance(value, Num):
+        return (value,)
+    is_place = isinstance(value, PointVal) or (isinstance(value, Geometry) and value.type == "point")
+    point = as_point(wording.it, value, node, wording.env) if value is not None and is_place else None
+    return (point.x, point.y) if point is not None else ()
+
+
+def _difference(
+    wording: Wording, one: Side, relation: str, other: Side, evaluate: Evaluate, tolerance: float
+) -> str:
+    """What is said of a comparison that is false; empty for one that holds."""
+    pairs = []
+    for a, b in zip(one[1], other[1], strict=True):
+        left, right = spelled_out(a.expression, b.expression, equal=relation == "==")
+        try:
+            dimension = units.add(a.dimension, b.dimension)
+        except ValueError:
+            return ""
+        pairs.append(Comparison(relation, left, right, dimension))
+    met = [holds(pair, evaluate, tolerance) for pair in pairs]
+    if any(met) if relation == "!=" else all(met):
+        return ""
+    x, y = _apart([evaluate(pair.left) for pair in pairs], [evaluate(pair.right) for pair in pairs])
+    sums = [_in_numbers(wording, node, evaluate) for node, _ in (one, other)]
+    left_side = f"{sums[0]} = {x}, which" if sums[0] else x
+    return f"{left_side} is not {relation} {y}" + (f" = {sums[1]}" if sums[1] else "")
+
+
+def _values(numbers: Sequence[Num], evaluate: Evaluate) -> list[float]:
+    return [evaluate(spelled_out(n.expression, n.expression, equal=False)[0]) for n in numbers]
+
+
+def _apart(one: Sequence[float], other: Sequence[float]) -> tuple[str, str]:
+    """Both in digits that tell them apart, where they differ."""
+    for digits in _DIGITS:
+        texts = _shown(one, digits), _shown(other, digits)
+        if texts[0] != texts[1]:
+            return texts
+    return _shown(one, _DIGITS[0]), _shown(other, _DIGITS[0])
+
+
+def _shown(values: Sequence[float], digits: int) -> str:
+    texts = [f"{round(value, digits) + 0.0:.{digits}g}" for value in values]
+    return texts[0] if len(texts) == 1 else f"({', '.join(texts)})"
+
+
+def _in_numbers(wording: Wording, node: ast.Expression, evaluate: Evaluate) -> str:
+    """A sum or product with numbers in place of names; empty for what is none."""
+    return format_expression(_substituted(wording, node, evaluate)) if _is_calculated(node) else ""
+
+
+def _is_calculated(node: ast.Expression) -> bool:
+    return isinstance(node, ast.Binary) and node.operator not in ("and", "or")
+
+
+def _substituted(wording: Wording, node: ast.Expression, evaluate: Evaluate) -> ast.Expression:
+    match node:
+        case ast.Binary(left=left, right=right) if _is_calculated(node):
+            one, other = (_substituted(wording, each, evaluate) for each in (left, right))
+            return replace(node, left=one, right=other)
+        case ast.Unary(operator="-", operand=operand) if not isinstance(operand, ast.Number):
+            return replace(node, operand=_substituted(wording, operand, evaluate))
+        case ast.Name() if _is_of_the_language(wording, node):
+            return node
+    numbers = _numbers(wording, node)
+    if len(numbers) != 1:
+        return node
+    (value,) = _values(numbers, evaluate)
+    number = ast.Number(abs(value), None, _shown((abs(value),), 6), span=node.span)
+    return ast.Unary("-", number, span=node.span) if value < 0.0 else number
+
+
+def _is_of_the_language(wording: Wording, node: ast.Name) -> bool:
+    """Whether a name is one such as `pi`."""
+    symbol = wording.it.program.resolution.uses.get(node)
+    return symbol is not None and symbol.kind is SymbolKind.BUILTIN
+
+
+def _leaves(node: ast.Expression) -> Iterator[ast.Expression]:
+    """What a side is calculated of and has a name."""
+    match node:
+        case ast.Binary(left=left, right=right):
+            yield from _leaves(left)
+            yield from _leaves(right)
+        case ast.Unary(operand=operand):
+            yield from _leaves(operand)
+        case ast.Name() | ast.Member() | ast.Index():
+            yield node
+
+
+def _origin(wording: Wording, leaf: ast.Expression) -> Span | None:
+    """Where it is written what a name stands for, or what has a size."""
+    if isinstance(leaf, ast.Name):
+        symbol = wording.it.program.resolution.uses.get(leaf)
+        return symbol.node.span if symbol is not None and symbol.node is not None else None
+    while isinstance(leaf, ast.Member | ast.Index):
+        leaf = leaf.value
+        thing = wording.value(leaf)
+        if isinstance(thing, Geometry | Structure):
+            return thing.span
+    return None
