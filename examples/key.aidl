@@ -1,6 +1,6 @@
 /// A door key: a round bow with a hole, a shank, and a bit whose cuts are listed from the tip.
 solid key {
-    param shank_length = 40mm in 25..60
+    param shank_length = 40mm in 32..60
     param pitch = 5mm in 3..6
 
     let cuts = [3, 5.5, 2, 4.5, 3.5]  // depth of each cut from the back of the blade

@@ -6,12 +6,13 @@ import argparse
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from aidl_lang.cli import files
+from aidl_lang.cli import ends, files
 from aidl_lang.cli.options import add_variant
 from aidl_lang.cli.report import UseError, exit_code, say, show
 from aidl_lang.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
+    from aidl_lang.ends import Sweep
     from aidl_lang.pipeline import Settings
     from aidl_lang.source import SourceFile
     from aidl_lang.world import World
@@ -27,13 +28,20 @@ class _Checked:
     fixes: tuple[str, ...] = ()
     status: str = ""
     was_read: bool = True
+    sweep: Sweep | None = None
 
 
 def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser = verbs.add_parser("check", help="find mistakes, write nothing", description=__doc__)
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - reads standard input")
     parser.add_argument("--fix", action="store_true", help="write the program with all fixes applied")
-    parser.add_argument(
+    how_far = parser.add_mutually_exclusive_group()
+    how_far.add_argument(
+        "--ends",
+        action="store_true",
+        help="try both ends of the range of each param as well, one at a time, and tell how far each may go",
+    )
+    how_far.add_argument(
         "--no-solve",
         dest="solve",
         action="store_false",
@@ -47,27 +55,33 @@ def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None
 def run(arguments: argparse.Namespace) -> int:
     found: list[Diagnostic] = []
     fixes: list[dict[str, str]] = []
-    is_solved = True
+    is_solved = is_well = True
+    swept: list[dict[str, object]] = []
     for name in arguments.files:
         checked = _check(name, arguments)
         found += checked.diagnostics
         fixes += [{"file": name, "title": title} for title in checked.fixes]
         is_solved = is_solved and checked.status == "solved"
+        if checked.sweep is not None:
+            is_well = is_well and checked.sweep.ok
+            swept.append(ends.data(name, checked.sweep))
         if not arguments.json:
-            _tell(name, checked)
+            _tell(name, checked, asks_for_ends=arguments.ends)
     if arguments.json:
         import json
 
         from aidl_lang.render import to_dict
 
         document = {
-            "ok": exit_code(found) == 0,
+            "ok": is_well and exit_code(found) == 0,
             "solved": is_solved,
             "fixed": fixes,
             "diagnostics": [to_dict(d) for d in found],
         }
+        if arguments.ends:
+            document["ends"] = swept
         print(json.dumps(document, indent=2, ensure_ascii=False))
-    return exit_code(found)
+    return exit_code(found) or (0 if is_well else 1)
 
 
 def _check(name: str, arguments: argparse.Namespace) -> _Checked:
@@ -78,32 +92,36 @@ def _check(name: str, arguments: argparse.Namespace) -> _Checked:
     try:
         source, world = files.read(name), files.world(name)
         if not arguments.fix:
-            return _found(source, world, settings, solve=arguments.solve)
+            return _found(source, world, settings, arguments)
         from aidl_lang.mending import mend
 
         mended = mend(source, world, settings)
         if name == files.STANDARD or mended.source.text != source.text:
             files.write(name, mended.source.text.encode())
-        if not arguments.solve:
-            return _Checked(mended.diagnostics, mended.fixes)
-        return _found(mended.source, world, settings, solve=True, fixes=mended.fixes)
+        return _found(mended.source, world, settings, arguments, mended.fixes)
     except UseError as reason:
         return _Checked([reason.diagnostic], was_read=False)
 
 
 def _found(
-    source: SourceFile, world: World, settings: Settings, *, solve: bool, fixes: tuple[str, ...] = ()
+    source: SourceFile,
+    world: World,
+    settings: Settings,
+    arguments: argparse.Namespace,
+    fixes: tuple[str, ...] = (),
 ) -> _Checked:
     """What there is to say of a program as it stands."""
     from aidl_lang import pipeline
 
-    if not solve:
+    if not arguments.solve:
         return _Checked(pipeline.check(source, world, settings), fixes)
     compiled = pipeline.compile(source, world, settings=settings)
-    return _Checked(compiled.diagnostics, fixes, compiled.status if compiled.model is not None else "")
+    status = compiled.status if compiled.model is not None else ""
+    sweep = ends.swept(source, world, settings, compiled) if arguments.ends and compiled.ok else None
+    return _Checked(compiled.diagnostics, fixes, status, sweep=sweep)
 
 
-def _tell(name: str, checked: _Checked) -> None:
+def _tell(name: str, checked: _Checked, *, asks_for_ends: bool) -> None:
     from aidl_lang.render import summary
 
     for title in checked.fixes:
@@ -111,4 +129,7 @@ def _tell(name: str, checked: _Checked) -> None:
     show(checked.diagnostics)
     if checked.was_read:
         unsolved = "" if checked.status else "; nothing was solved"
-        say(f"{name}: {summary(checked.diagnostics) or 'no mistakes found'}{unsolved}")
+        untried = "; the ends of its params were not tried" if asks_for_ends and checked.sweep is None else ""
+        say(f"{name}: {summary(checked.diagnostics) or 'no mistakes found'}{unsolved}{untried}")
+    if checked.sweep is not None:
+        ends.tell(name, checked.sweep)

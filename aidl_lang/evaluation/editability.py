@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from aidl_lang import pipeline
+from aidl_lang.ends.values import Value, allowed, rounded
 from aidl_lang.evaluation import openscad
 from aidl_lang.model import Knob
 from aidl_lang.pipeline import Compiled
@@ -17,8 +18,6 @@ SHARES = (-0.3, -0.1, 0.1, 0.3)
 _KNOBS = 25
 """Of a program that are turned at most."""
 _ASSERTION = "E0604"
-
-Value = float | str | bool
 
 
 class Outcome(StrEnum):
@@ -88,7 +87,7 @@ def turned(knob: Knob) -> tuple[list[Value], int]:
     if isinstance(knob.value, str):
         return [], 0
     aims = list(_numbers(float(knob.value)))
-    values = [_allowed(knob, _whole(aim, float(knob.value)) if knob.unit == "" else aim) for aim in aims]
+    values = [allowed(knob, _whole(aim, float(knob.value)) if knob.unit == "" else aim) for aim in aims]
     cut = sum(abs(value - aim) > 1e-9 * abs(aim) for value, aim in zip(values, aims, strict=True))
     return [value for value in dict.fromkeys(values) if value != knob.value], cut
 
@@ -96,29 +95,12 @@ def turned(knob: Knob) -> tuple[list[Value], int]:
 def _numbers(value: float) -> Iterator[float]:
     """Values around one; a zero has no share of itself and is left alone."""
     if value:
-        yield from (_rounded(value * (1 + share)) for share in SHARES)
-
-
-def _rounded(value: float) -> float:
-    return float(f"{value:.9g}")
+        yield from (rounded(value * (1 + share)) for share in SHARES)
 
 
 def _whole(aim: float, written: float) -> float:
     """What was written as a whole number, and may be a count, stays whole."""
     return float(round(aim)) if written.is_integer() else aim
-
-
-def _allowed(knob: Knob, aim: float) -> float:
-    """The value nearest to `aim` that the range and the step of a knob allow."""
-    low, high = knob.low, knob.high
-    if low is not None and high is not None:
-        aim = min(max(aim, low), high)
-    if knob.step:
-        start = low if low is not None else float(knob.value)
-        aim = start + round((aim - start) / knob.step) * knob.step
-        if high is not None and aim > high * (1 + 1e-12):
-            aim -= knob.step
-    return _rounded(aim)
 
 
 def _outcome(after: Compiled, before: Sequence[str]) -> Outcome:

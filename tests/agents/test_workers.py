@@ -12,7 +12,8 @@ import pytest
 
 from aidl_lang.agents.results import Page
 from aidl_lang.agents.tools import Tools
-from aidl_lang.agents.workers import MEMORY, Workers
+from aidl_lang.agents.workers import Workers
+from aidl_lang.processes import MEMORY
 
 
 @dataclass(frozen=True)

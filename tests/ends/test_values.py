@@ -1,0 +1,78 @@
+"""Which values of a param are tried, and the way to where it stops working."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from aidl_lang.ends.values import ends, limit
+from aidl_lang.model import Knob
+
+
+def knob(value: object, low: float | None = None, high: float | None = None, **more: object) -> Knob:
+    said = {"choices": (), "step": None, "unit": "mm", "doc": None, **more}
+    return Knob("k", value, low, high, **said)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("of", "expected"),
+    [
+        (knob(40.0, 20.0, 60.0), [20.0, 60.0]),
+        (knob(20.0, 20.0, 60.0), [60.0]),
+        (knob(40.0, 20.0, 63.0, step=5.0), [20.0, 60.0]),
+        (knob(40.0), []),
+        (knob(True), [False]),
+        (knob("a", choices=("a", "b", "c")), ["b", "c"]),
+        (knob(6.0, choices=(4.0, 6.0)), [4.0]),
+        (knob("free"), []),
+    ],
+)
+def test_ends(of: Knob, expected: list[object]) -> None:
+    assert ends(of) == expected
+
+
+def found(of: Knob, end: float, threshold: float) -> tuple[float, float, list[float]]:
+    """The limit of a param that works on this side of a threshold, and the values that were tried."""
+    sign = 1 if end > of.value else -1
+    search, asked = limit(of, end), []
+    try:
+        value = next(search)
+        while True:
+            asked.append(value)
+            value = search.send(sign * value <= sign * threshold)
+    except StopIteration as done:
+        return *done.value, asked
+
+
+@given(st.floats(1, 500), st.floats(0.5, 500), st.floats(0, 1), st.booleans())
+def test_limit_is_between_what_works_and_what_does_not(
+    value: float, way: float, share: float, up: bool
+) -> None:
+    end = value + way if up else value - way
+    threshold = value + share * (end - value)
+    of = knob(value, min(value, end), max(value, end))
+    works, beyond, asked = found(of, end, threshold)
+    inside = (lambda v: v <= threshold) if up else (lambda v: v >= threshold)
+    assert works == value or (works in asked and inside(works))
+    assert beyond == end or (beyond in asked and not inside(beyond))
+    assert abs(beyond - works) <= 2e-3 * way
+    assert len(asked) <= 24
+    assert all(float(f"{v:.12g}") == v for v in asked)
+
+
+@pytest.mark.parametrize(
+    ("of", "end", "threshold", "expected"),
+    [
+        (knob(60.0, 40.0, 120.0), 120.0, 94.0, (94.0, 94.01)),
+        (knob(60.0, 40.0, 120.0), 120.0, 60.0, (60.0, 60.01)),
+        (knob(100.0, 10.0, 120.0), 10.0, 12.5, (12.5, 12.49)),
+        (knob(3.0, 1.0, 9.0, unit=""), 9.0, 6.5, (6.0, 7.0)),
+        (knob(40.0, 20.0, 60.0, step=5.0), 60.0, 52.0, (50.0, 55.0)),
+        (knob(0.5, 0.0, 1.0, unit=""), 1.0, 0.75, (0.75, 0.7501)),
+    ],
+)
+def test_limit_is_a_short_number(
+    of: Knob, end: float, threshold: float, expected: tuple[float, float]
+) -> None:
+    assert found(of, end, threshold)[:2] == expected
