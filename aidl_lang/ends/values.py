@@ -32,6 +32,11 @@ def ends(knob: Knob) -> list[Value]:
     return [end for end in both if abs(end - knob.value) > _SLACK * max(1.0, abs(end))]
 
 
+def has_range(knob: Knob) -> bool:
+    """Whether there is anything to try of a param."""
+    return bool(ends(knob))
+
+
 def allowed(knob: Knob, aim: float) -> float:
     """The value nearest to `aim` that the range and the step of a knob allow."""
     low, high = knob.low, knob.high

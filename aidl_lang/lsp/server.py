@@ -71,6 +71,7 @@ class Server(LanguageServer):
         self.publisher = Publisher(self.text_document_publish_diagnostics)
         self.answers = Answers("answering")
         self.searches = Answers("searching")
+        self.sweeps = Answers("sweeping")
         self.on_solved: list[Callable[[Document], None]] = []
         self.on_closed: list[Callable[[Document], None]] = []
         self.runner: Runner
@@ -85,6 +86,7 @@ class Server(LanguageServer):
         self.runner.close()
         self.answers.close()
         self.searches.close()
+        self.sweeps.close()
 
     @property
     def unit(self) -> Unit:

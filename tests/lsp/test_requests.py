@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import base64
 import re
 from itertools import pairwise
@@ -354,6 +355,65 @@ async def test_lenses_tell_what_is_free(editor: Editor) -> None:
     }
     degrees = pipeline.compile(SourceFile("a", editor.texts[uri])).model.degrees
     assert f"solved, {degrees} degrees of freedom" in titles["assembly telephone {"]
+
+
+RANGED = """\
+solid plate {
+    param width = 60mm in 40..120
+    param height = 94mm in 20..200
+    body = rectangle(center: origin, width: width, height: height)
+    assert width < 100
+}
+"""
+
+
+async def test_ends_of_params_are_tried_and_told_above_them(editor: Editor) -> None:
+    uri = editor.open("untitled:ranged", RANGED)
+    await editor.status(uri)
+
+    async def lenses() -> dict[int, str]:
+        found = await editor.text_document_code_lens_async(types.CodeLensParams(editor.document(uri)))
+        return {e.range.start.line: e.command.title for e in found if e.command.command == "aidl.checkEnds"}
+
+    assert await lenses() == {1: "try the ends of 2 params"}
+    editor.refreshed.clear()
+    command = types.ExecuteCommandParams("aidl.checkEnds", [uri])
+    found = await editor.workspace_execute_command_async(command)
+    assert (found["ok"], found["left"], [each["ok"] for each in found["tried"]]) == (
+        False,
+        0,
+        [True, False, True, True],
+    )
+    assert (found["tried"][1]["works"], found["tried"][1]["beyond"]["value"]) == (99.99, 100.0)
+    await editor.until(lambda: "lenses" in editor.refreshed)
+    assert await lenses() == {
+        1: "at `width = 120mm` the assert in line 5 fails (120 is not < 100); "
+        "`width < 100` holds up to 99.99mm",
+        2: "works from 20mm to 200mm",
+    }
+    editor.replace(uri, "width < 100", "width < 100 + 50")
+    await editor.status(uri)
+    assert await lenses() == {1: "try the ends of 2 params"}
+    editor.replace(uri, "width < 100 + 50", "width > 100")
+    await editor.status(uri)
+    assert await lenses() == {}
+    with pytest.raises(JsonRpcException, match="there is nothing to try"):
+        await editor.workspace_execute_command_async(command)
+    editor.close(uri)
+    with pytest.raises(JsonRpcException, match="this document is not open"):
+        await editor.workspace_execute_command_async(command)
+
+
+async def test_trying_the_ends_ends_when_the_text_changes(editor: Editor) -> None:
+    uri = editor.open("untitled:ranged", RANGED)
+    await editor.status(uri)
+    command = types.ExecuteCommandParams("aidl.checkEnds", [uri])
+    asked = asyncio.ensure_future(editor.workspace_execute_command_async(command))
+    await asyncio.sleep(0.05)
+    editor.replace(uri, "94mm", "95mm")
+    with pytest.raises(JsonRpcException, match="the text has changed"):
+        await asked
+    editor.close(uri)
 
 
 async def test_inlay_hints_are_the_solved_values(editor: Editor) -> None:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from lsprotocol import types
 
+from aidl_lang.ide.ends import end_lenses
 from aidl_lang.ide.inlays import Inlay, InlayKind, inlays
 from aidl_lang.ide.lenses import lenses
 from aidl_lang.lsp.documents import Document
+from aidl_lang.lsp.requests.ends import CHECK_ENDS, Ends
 from aidl_lang.lsp.server import Asked, Server
 
 _PATIENCE = 0.5
@@ -16,7 +20,12 @@ _OPEN_PREVIEW = "aidl.openPreview"
 
 
 def register(server: Server) -> None:
-    answered = _Answered(server)
+    answered, ends = _Answered(server), Ends(server)
+
+    @server.command(CHECK_ENDS)
+    async def check_ends(*arguments: Any) -> dict[str, Any]:
+        """Try the ends of all params of a document, which is the argument."""
+        return await ends.check(arguments[0] if arguments else None)
 
     @server.answers_to(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions(), patience=_PATIENCE)
     def lens(asked: Asked, params: types.CodeLensParams) -> list[types.CodeLens]:
@@ -26,6 +35,9 @@ def register(server: Server) -> None:
         made = []
         for each in lenses(asked.view):
             command = types.Command(each.title, _OPEN_PREVIEW, arguments=[asked.uri])
+            made.append(types.CodeLens(asked.convert.range(each.span), command))
+        for each in end_lenses(asked.view, ends.of(asked)):
+            command = types.Command(each.title, CHECK_ENDS, arguments=[asked.uri])
             made.append(types.CodeLens(asked.convert.range(each.span), command))
         return made
 

@@ -1,0 +1,91 @@
+"""What stands above params: the offer to try their ends, and what came of it."""
+
+from __future__ import annotations
+
+import pytest
+
+from aidl_lang.ends import Sweep
+from aidl_lang.ide.ends import can_be_tried, end_lenses, tried
+from aidl_lang.ide.view import SETTINGS, View
+from tests.ide.conftest import seen
+
+PLATE = """\
+solid plate {
+    param width = 60mm in 40..120
+    param height = 94mm in 20..200
+    param look = "plain" in ["plain", "other", "third"]
+    param free = 3
+    body = rectangle(center: origin, width: width, height: height)
+    hole bore { rim = circle(center: (0, 0), radius: free) }
+    if look == "other" { hole b { rim = circle(center: (9, 9), radius: 2) } }
+    assert height > 15
+    assert width < 100
+}
+"""
+
+
+def titles(view: View, found: Sweep | None = None) -> list[tuple[str, str]]:
+    return [(lens.span.text.split()[1], lens.title) for lens in end_lenses(view, found)]
+
+
+def swept(view: View) -> Sweep:
+    return tried(view, SETTINGS, lambda done, count: None, 60.0)
+
+
+def test_first_param_offers_to_try_them_all() -> None:
+    view = seen(PLATE, solved=True)
+    assert titles(view) == [("width", "try the ends of 3 params")]
+    one = seen("param r = 3 in 1..5\nsolid a { b = circle(center: origin, radius: r) }", solved=True)
+    assert titles(one) == [("r", "try the ends of this param")]
+
+
+def test_each_param_tells_what_came_of_it() -> None:
+    view = seen(PLATE, solved=True)
+    assert titles(view, swept(view)) == [
+        (
+            "width",
+            "at `width = 120mm` the assert in line 10 fails (120 is not < 100); "
+            "`width < 100` holds up to 99.99mm",
+        ),
+        ("height", "works from 20mm to 200mm"),
+        ("look", 'works with "other" and "third"'),
+    ]
+
+
+def test_param_of_a_template_is_told_once() -> None:
+    text = """\
+assembly a {
+    @detached
+    solid leg(wide = 5) {
+        param long = 9mm in 5..20
+        body = rectangle(center: (0, 0), width: wide, height: long)
+    }
+    left = leg() at (0, 0)
+    right = leg() at (30, 0)
+}
+"""
+    view = seen(text, solved=True)
+    found = swept(view)
+    assert [each.knob.path for each in found.turned] == ["left.long", "left.long", "right.long", "right.long"]
+    assert titles(view, found) == [("long", "works from 5mm to 20mm")]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "solid a { b = circle(center: origin, radius: 4) }",
+        "solid a { param r = 3; b = circle(center: origin, radius: r) }",
+        "solid a { param r = 3 in 1..5; b = circle(center: origin, radius: r); assert r > 4 }",
+        "solid a { param r = 3 in 1..5; b = circle(center: origin, radius: ) }",
+    ],
+)
+def test_there_may_be_nothing_to_try(text: str) -> None:
+    view = seen(text, solved=True)
+    assert not can_be_tried(view)
+    assert titles(view) == []
+    with pytest.raises(ValueError, match="the program has to work as it is written"):
+        swept(view)
+
+
+def test_text_that_is_not_solved_yet_offers_nothing() -> None:
+    assert titles(seen(PLATE)) == []
