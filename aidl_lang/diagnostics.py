@@ -45,10 +45,15 @@ class Edit:
 
 @dataclass(frozen=True)
 class Fix:
-    """Edits that together mend the program without losing what its author meant."""
+    """Edits that together mend the program without losing what its author meant.
+
+    One that `is_sure` leaves the program its meaning whatever was meant, or mends what can have meant nothing
+    else: it is applied unasked. All others are offered, and applied where somebody chooses them.
+    """
 
     title: str
     edits: tuple[Edit, ...]
+    is_sure: bool = False
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,8 @@ from difflib import get_close_matches
 from itertools import accumulate
 from typing import TypeVar
 
+from aidl_lang.lexicon import NEAR_WORDS, WORDS
+
 T = TypeVar("T")
 
 _NUMBER = re.compile(r"\d+")
@@ -39,36 +41,76 @@ def find(name: str, table: Mapping[str, T]) -> str | None:
 _OPPOSITES = tuple(
     tuple(tuple(words.split()) for words in line.split(" | "))
     for line in """
-smaller narrower shorter less fewer | larger bigger wider taller longer greater more
-lower under below beneath | higher over above
+smaller narrower shorter less fewer thinner | larger bigger wider taller longer greater more thicker
+small narrow short thin | large big wide tall long thick
+lower under below beneath | higher over above upper
 left | right
 top | bottom
 up | down
 inside inner within | outside outer
-horizontal level | vertical upright
+inset | outset
+in | out
+horizontal horizontally level | vertical vertically upright
 parallel | perpendicular
 start first begin | end last
-min | max
-near | far
+min minimum | max maximum
+minor | major
+near nearest | far farthest
 row | column
+rows | columns
 front | back
 before | after
 most | least
+same equal | different unequal
 convex | concave
-clockwise | counterclockwise anticlockwise
+clockwise cw | counterclockwise anticlockwise ccw
+internal | external
+union add | difference subtract
+hole | solid
+x rx dx cx | y ry dy cy
+x1 x2 | y1 y2
+width | height
+positive | negative
 """.strip().splitlines()
 )
-"""Words that mean the reverse of those on the other side of the bar."""
+"""Words that mean the reverse of those on the other side of the bar, or its counterpart."""
+_PART_OF_A_NAME = 4
+"""Letters from which on a word is known inside a longer one: `alignleft`."""
 
 
 def are_opposite(a: str, b: str) -> bool:
     """Whether two names differ by a word and the reverse of it, as `align_left` and `align_right` do."""
-    one, other = fold(a), fold(b)
     return any(
-        any(w in one and w not in other for w in here) and any(w in other and w not in one for w in there)
+        any(_says(a, w) and not _says(b, w) for w in here) and any(_says(b, w) and not _says(a, w) for w in there)
         for pair in _OPPOSITES
         for here, there in (pair, pair[::-1])
     )
+
+
+def _says(name: str, word: str) -> bool:
+    return word in fold(name) if len(word) >= _PART_OF_A_NAME else word in name.casefold().split("_")
+
+
+def means_otherwise(name: str, other: str) -> bool:
+    """Whether two names differ in a word that says something else in each: `same_side` and `same_size`."""
+    return any(
+        a in WORDS and b in WORDS and not _are_forms(a, b) for a, b in _differing(name, other) if a and b
+    )
+
+
+def _differing(name: str, other: str) -> list[tuple[str, str]]:
+    """The words at one place that are not the same; none where the names have not as many words."""
+    words, others = name.casefold().split("_"), other.casefold().split("_")
+    return [(a, b) for a, b in zip(words, others, strict=True) if a != b] if len(words) == len(others) else []
+
+
+def _are_forms(a: str, b: str) -> bool:
+    """Whether two words are one: `center`, `centre`, `centers`, `centered`."""
+    a, b = (_ENDING.sub("", word.replace("centre", "center").replace("centr", "center")) for word in (a, b))
+    return a == b
+
+
+_ENDING = re.compile(r"(?:e?s|e?d)$")
 
 
 class Spellings:
@@ -92,8 +134,8 @@ class Spellings:
 
 
 def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
-    """Known names that `name` may be a misspelling of, best first; never one that means the reverse. A single
-    letter is a misspelling of nothing.
+    """Known names that `name` may be a misspelling of, best first; never one that means the reverse, or is
+    another word. A single letter is a misspelling of nothing.
     """
     if len(name) < 2:
         return []
@@ -104,7 +146,7 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
     wanted = fold(name)
     most = _MOST_LETTERS // max(len(wanted), 1)
     found = get_close_matches(wanted, _within(folded, len(wanted), most), n=count + _WIDER, cutoff=likeness)
-    matches = [match for match in found if not are_opposite(wanted, match)]
+    matches = [m for m in found if not are_opposite(name, folded[m]) and not means_otherwise(name, folded[m])]
     matches.sort(key=lambda match: _distance(wanted, match))
     return [folded[match] for match in matches[:count]]
 
@@ -122,10 +164,11 @@ def is_spelled_in(letters: str, word: str) -> bool:
     return all(letter in rest for letter in fold(letters))
 
 
-def is_slip(name: str, meant: str) -> bool:
-    """Whether one name is so near to the other that nobody need be asked: a letter wrong, missing, too many
-    or exchanged with its neighbour, two in a long name but not in a short word of it. A word more is none:
-    `same_center_x`; nor is another number: `hole3` is not `hole2`; nor a letter of one or two: `x10`, `s10`.
+def is_like(name: str, meant: str) -> bool:
+    """Whether one name is so near to the other that it may be put in its place where that is asked for: a
+    letter wrong, missing, too many or exchanged with its neighbour, two in a long name but not in a short
+    word of it. A word more is too much: `same_center_x`; so is another number: `hole3` is not `hole2`; or a
+    letter of one or two: `x10`, `s10`.
     """
     if fold(name) == fold(meant):
         return True
@@ -135,6 +178,37 @@ def is_slip(name: str, meant: str) -> bool:
     if len(words) != len(others) or _distance(fold(name), fold(meant)) > _most_slips(fold(name)):
         return False
     return all(_distance(x, y) <= _most_slips(x) for x, y in zip(words, others, strict=True))
+
+
+def is_slip(name: str, meant: str) -> bool:
+    """Whether nobody need be asked what a name was to be: it is like the other one, and the words in which
+    they differ are no words as they are written, but slips of the pen in those that are meant.
+    """
+    if not is_like(name, meant) or are_opposite(name, meant):
+        return False
+    return fold(name) == fold(meant) or all(_is_slip_in(a, b) for a, b in _differing(name, meant))
+
+
+def _is_slip_in(written: str, word: str) -> bool:
+    """Whether a word was meant for another: letters exchanged, one doubled or not, one missing or too many
+    within the word, or in a long word another one there. A short word may as well be another, as may be one
+    with another beginning or ending: `fat` and `flat`, `plate` and `slate`, `bolt` and `bolts`.
+    """
+    if written in WORDS or written in NEAR_WORDS or min(len(written), len(word)) < _FEWEST_LETTERS:
+        return False
+    if sorted(written) == sorted(word):
+        return True
+    if written[0] != word[0] or min(len(written), len(word)) < _SHORT:
+        return False
+    if _LETTERS.sub(r"\1", written) == _LETTERS.sub(r"\1", word):
+        return True
+    has_end = written[-1] == word[-1]
+    return has_end and (len(written) != len(word) or len(written) >= _LONG)
+
+
+_LETTERS = re.compile(r"(.)\1+")
+_SHORT, _LONG = 5, 8
+"""Letters from which on a word is no other word for one letter missing, and for another letter."""
 
 
 def _most_slips(word: str) -> int:

@@ -104,7 +104,7 @@ class Resolver:
         known = [*source.values, *source.callables, *source.aliases]
         for identifier in statement.names:
             if identifier.text not in known:
-                like = nearest(identifier.text, known)
+                like = nearest(identifier.text, known, 2)
                 self.report(
                     "E0213",
                     f"`{statement.path.value}` has no `{identifier.text}`" + complaints.did_you_mean(like),
@@ -250,7 +250,7 @@ class Resolver:
         for attribute in attributes:
             name = attribute.name.text
             if word_meant(name, ATTRIBUTES) is None:
-                like = nearest(name, [a for a in ATTRIBUTES if a != "colour"])
+                like = nearest(name, [a for a in ATTRIBUTES if a != "colour"], 2)
                 self.report(
                     "E0204",
                     f"there is no attribute `@{name}`" + complaints.did_you_mean(like, "@"),

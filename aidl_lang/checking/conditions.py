@@ -33,7 +33,7 @@ def _called(infer: Inference, node: ast.Call) -> str:
 def check_empty(infer: Inference, node: ast.Constrain) -> None:
     """Report a `constrain { }` without anything in it."""
     if not node.items.statements and not node.items.span.text.strip("{} \t\r\n"):
-        fix = Fix("remove it", (Edit(node.span.with_separator, ""),))
+        fix = Fix("remove it", (Edit(node.span.with_separator, ""),), is_sure=True)
         infer.report("W0202", "this `constrain` holds nothing", node, fix=fix)
 
 
@@ -92,7 +92,7 @@ def _needs_name(infer: Inference, node: ast.Call, may_make: bool) -> None:
         node,
         label="made and lost",
         hints=[f"{remedy}: `{name} = {shown(node)}`"],
-        fix=Fix(f"name it `{name}`", (Edit(start, f"{name} = "),)) if may_make else None,
+        fix=Fix(f"name it `{name}`", (Edit(start, f"{name} = "),), is_sure=True) if may_make else None,
     )
 
 

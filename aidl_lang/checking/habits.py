@@ -44,7 +44,7 @@ def check_habits(check: Inference, node: ast.Call, nodes: Sequence[ast.Expressio
             f"`{shown(node)}` is about its centre, here as everywhere",
             node,
             hints=["for one that begins at the origin: `constrain s.bottom_left == origin`"],
-            fix=Fix("name the size", (Edit(_before(value), "size: "),)),
+            fix=Fix("name the size", (Edit(_before(value), "size: "),), is_sure=True),
         )
     pair = next((s for s in fit.sources if s.other is not None and "width" in fit.signature.by_fold), None)
     if pair is not None and pair.other is not None:
@@ -57,7 +57,7 @@ def check_habits(check: Inference, node: ast.Call, nodes: Sequence[ast.Expressio
             f"`{shown(x)}` and `{shown(y)}` are read as the centre of the `{node.callee.text}`",
             x,
             hints=["to place a corner, constrain it, as in `plate.bottom_left == (0, 0)`"],
-            fix=Fix(f"write `{point}`", (Edit(both, point),)) if is_both else None,
+            fix=Fix(f"write `{point}`", (Edit(both, point),), is_sure=True) if is_both else None,
         )
 
 
@@ -143,14 +143,20 @@ def _check_angles(check: Inference, node: ast.Call, nodes: Sequence[ast.Expressi
         elif called in _TRIGONOMETRY and _is_module(check, node) and _is_plain(check, value):
             _not_degrees(check, value, value, "rad", f"`{shown(node)}` is read in radians elsewhere")
         elif called == "degrees" and _is_written(check, value):
-            _not_degrees(check, node, value, "deg", f"`{shown(node)}` turns radians into an angle")
+            message = f"`{shown(node)}` turns radians into an angle"
+            _not_degrees(check, node, value, "deg", message, is_sure=False)
 
 
 _TRIGONOMETRY = ("sin", "cos", "tan")
 
 
 def _not_degrees(
-    check: Inference, place: ast.Expression, value: ast.Expression, unit: str, message: str
+    check: Inference,
+    place: ast.Expression,
+    value: ast.Expression,
+    unit: str,
+    message: str,
+    is_sure: bool = True,
 ) -> None:
     """An angle says its unit: the fix puts the one that is meant behind the number."""
     text = value.span.text
@@ -169,7 +175,7 @@ def _not_degrees(
         f"{message}; an angle is written with its unit: `{right}`",
         place,
         hints=["a number without a unit is in degrees where an angle is due"],
-        fix=Fix(f"write `{right}`", (Edit(place.span, right),)),
+        fix=Fix(f"write `{right}`", (Edit(place.span, right),), is_sure),
     )
 
 
@@ -233,5 +239,5 @@ def two_sizes(check: Inference, node: ast.Call, argument: ast.Argument) -> None:
         f"a square has one size; two make a rectangle: `rectangle(size: {shown(argument.value)})`",
         argument.value,
         label="two sizes",
-        fix=Fix("make it a rectangle", (Edit(node.callee.span, "rectangle"), Edit(name, "size: "))),
+        fix=Fix("make it a rectangle", (Edit(node.callee.span, "rectangle"), Edit(name, "size: ")), is_sure=True),
     )

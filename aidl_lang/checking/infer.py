@@ -194,7 +194,7 @@ class Inference:
                     f"`for` runs through a range or a list, and this is {a(fact.type)}",
                     node,
                     hints=[f"`0..<{shown(node)}` counts from 0 up to it"],
-                    fix=Fix(f"write `0..<{shown(node)}`", (Edit(_at(node), "0..<"),))
+                    fix=Fix(f"write `0..<{shown(node)}`", (Edit(_at(node), "0..<"),), is_sure=True)
                     if isinstance(node, ast.Name | ast.Number | ast.Member | ast.Call)
                     else None,
                 )

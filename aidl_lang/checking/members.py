@@ -14,6 +14,7 @@ from aidl_lang.checking.standard import body_of, part
 from aidl_lang.checking.wording import a, shown
 from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.names import find, fold, nearest
+from aidl_lang.resolving.complaints import respell
 from aidl_lang.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.synonyms import MEMBERS
 from aidl_lang.types import (
@@ -182,7 +183,7 @@ def _function_or_coordinate(check: Inference, node: ast.Member, known: Sequence[
             "E0206",
             f"`{function}` is a function and has to be called: `{function}({shown(node.value)})`",
             node.name,
-            fix=Fix(f"write `{function}(…)`", (Edit(node.span, f"{function}({of})"),)),
+            fix=Fix(f"write `{function}(…)`", (Edit(node.span, f"{function}({of})"),), is_sure=True),
         )
     if fold(name) in ("x", "y") and "center" in known and "width" in known:
         side = "left" if fold(name) == "x" else "bottom"
@@ -200,7 +201,7 @@ def _no_member(check: Inference, node: ast.Member, what: str, known: Sequence[st
     name = node.name.text
     if (answer := _function_or_coordinate(check, node, known)) is not None:
         return answer
-    like = nearest(name, known)
+    like = nearest(name, known, 2)
     shown_names = ", ".join(f"`{n}`" for n in list(dict.fromkeys(known))[:8])
     members = f"its members are {shown_names}, …"
     if fold(name) in ("apex", "tip", "peak") and {"a", "b", "c", "centroid"} <= set(known):
@@ -211,5 +212,5 @@ def _no_member(check: Inference, node: ast.Member, what: str, known: Sequence[st
         node.name,
         label=f"not a member of {what}",
         hints=() if like else (members,) if known else (),
-        fix=Fix(f"write `{like[0]}`", (Edit(node.name.span, like[0]),)) if like else None,
+        fix=respell(node.name, like),
     )

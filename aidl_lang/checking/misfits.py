@@ -10,7 +10,7 @@ from aidl_lang.checking.habits import two_sizes
 from aidl_lang.checking.wording import shown
 from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.names import fold, nearest
-from aidl_lang.resolving.complaints import called_field
+from aidl_lang.resolving.complaints import called_field, respell
 from aidl_lang.source import Span
 from aidl_lang.synonyms import FIELDS, PAIRS, PARAMETERS
 from aidl_lang.types import (
@@ -152,7 +152,7 @@ def _loose_coordinates(
             node.callee,
             label="takes points, and these are single numbers",
             hints=_called_as([miss.signature]),
-            fix=Fix("put the coordinates in parentheses", tuple(edits)),
+            fix=Fix("put the coordinates in parentheses", tuple(edits), is_sure=True),
         )
         return True
     return False
@@ -178,7 +178,7 @@ def _pair_for_one(
             argument.value,
             label="read as a point",
             hints=_called_as([m.signature for m in misses][:1]),
-            fix=Fix("name it `size`", (Edit(span, "size: "),)),
+            fix=Fix("name it `size`", (Edit(span, "size: "),), is_sure=len(given) == 1),
         )
     elif takes_one:
         two_sizes(check, node, argument)
@@ -215,7 +215,7 @@ def _half_or_double(
                 "E0324",
                 f"`{node.callee.text}` takes a `{wanted}`, not a {other}",
                 argument.name,
-                fix=Fix(f"write `{wanted}: {value}`", (Edit(span, f"{wanted}: {value}"),)),
+                fix=Fix(f"write `{wanted}: {value}`", (Edit(span, f"{wanted}: {value}"),), is_sure=True),
             )
             return True
     return False
@@ -253,7 +253,7 @@ def _unknown_parameter(
     ]
     taken = {fold(a.name.text) for a in node.arguments if a.name is not None}
     for identifier in wrong:
-        like = nearest(identifier.text, [n for n in names if fold(n) not in taken])
+        like = nearest(identifier.text, [n for n in names if fold(n) not in taken], 2)
         if not like and len(identifier.text) > 4 and (near := nearest(identifier.text, synonyms)):
             like = [synonyms[near[0]]]
         hints = _called_as([closest]) if closest.parameters else ["it takes no arguments"]
@@ -265,7 +265,7 @@ def _unknown_parameter(
             + (f"; did you mean `{like[0]}`?" if like else ""),
             identifier,
             hints=() if like else hints,
-            fix=Fix(f"write `{like[0]}`", (Edit(identifier.span, like[0]),)) if like else None,
+            fix=respell(identifier, like),
         )
     return bool(wrong)
 

@@ -194,10 +194,12 @@ class Violation:
             return Fix(
                 f"move the constraint to {_name(ancestor)}",
                 (Edit(self._emptied().span.with_separator, ""), Edit(where, text)),
+                is_sure=True,
             )
         return Fix(
             f"make it a first guess and state the relation in {_name(ancestor)}",
             (Edit(self.target.node.span, self._guess(written)), Edit(where, text)),
+            is_sure=True,
         )
 
     def _emptied(self) -> ast.Node:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from aidl_lang import ast
 from aidl_lang.builtins import WORDS
 from aidl_lang.diagnostics import Edit, Fix, Label
-from aidl_lang.names import fold, is_slip, nearest
+from aidl_lang.names import fold, is_like, is_slip, nearest
 from aidl_lang.resolving.foreign import call_answer, value_hint
 from aidl_lang.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind, word_meant
 from aidl_lang.source import Span
@@ -102,9 +102,9 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: Scope) -> None:
         resolver.report("E0206", message, node.callee, fix=fix)
         return
     is_condition = resolver.condition is node
-    like = nearest(name, scope.callable_names())
-    if is_condition and not (like and is_slip(name, like[0])):
-        like = nearest(name, [n for n in scope.callable_names() if _may_hold(scope, n)])
+    like = nearest(name, scope.callable_names(), 2)
+    if is_condition and not (like and is_like(name, like[0])):
+        like = nearest(name, [n for n in scope.callable_names() if _may_hold(scope, n)], 2)
     hint = _RELATIONS if is_condition else "define it with `fn`, `shape` or as a template"
     is_meant = bool(like) and not _is_spelled_right(name, like[0], scope)
     is_safe = is_meant and (is_condition or not _only_holds(scope, like[0]))
@@ -157,7 +157,7 @@ def called_field(node: ast.Call) -> tuple[str, Fix]:
     at = node.callee.span
     parentheses = Edit(Span(at.source, at.end, node.span.end), "")
     message = f"`{node.callee.text}` is a field, which is named without parentheses"
-    return message, Fix("leave out the parentheses", (parentheses,))
+    return message, Fix("leave out the parentheses", (parentheses,), is_sure=True)
 
 
 def declared_twice(resolver: Resolver, name: ast.Identifier, earlier: Symbol) -> None:
@@ -193,7 +193,7 @@ def check_aliases(resolver: Resolver, scope: Scope) -> None:
                 hints=("let one of them name a function, shape, constraint or template",),
             )
             continue
-        like = nearest(target.text, [n for n in scope.callable_names() if n != symbol.name])
+        like = nearest(target.text, [n for n in scope.callable_names() if n != symbol.name], 2)
         resolver.report(
             "E0203",
             f"there is no function, shape or constraint `{target.text}`" + did_you_mean(like),
@@ -251,10 +251,14 @@ def did_you_mean(like: Sequence[str], mark: str = "") -> str:
 
 
 def respell(node: ast.Node, like: Sequence[str]) -> Fix | None:
-    """Writes the nearest name where nobody would doubt that it was meant."""
-    if not like or not (is_slip(node.span.text, like[0]) or like == ["self"]):
+    """Writes the nearest of the names that a name is like. It is sure where the name as written is a slip for
+    that one and no other.
+    """
+    name = node.span.text
+    if not like or not (is_like(name, like[0]) or like == ["self"]):
         return None
-    return Fix(f"write `{like[0]}`", (Edit(node.span, like[0]),))
+    is_sure = like == ["self"] or [other for other in like if is_slip(name, other)] == like[:1]
+    return Fix(f"write `{like[0]}`", (Edit(node.span, like[0]),), is_sure)
 
 
 def list_of(start: str, names: Sequence[str], mark: str = "") -> str:

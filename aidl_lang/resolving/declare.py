@@ -117,7 +117,7 @@ class Declarer:
             if is_shape or word.text in shapes:
                 found.append(word.text)
                 continue
-            like = nearest(word.text, [*PARAMETER_TYPES, *shapes])
+            like = nearest(word.text, [*PARAMETER_TYPES, *shapes], 2)
             self.resolver.report(
                 "E0215",
                 f"`{word.text}` is not a type" + (f"; did you mean `{like[0]}`?" if like else ""),
@@ -125,7 +125,7 @@ class Declarer:
                 hints=(
                     "types are " + ", ".join(f"`{t}`" for t in PARAMETER_TYPES) + " and the names of shapes",
                 ),
-                fix=Fix(f"write `{like[0]}`", (Edit(word.span, like[0]),)) if like else None,
+                fix=complaints.respell(word, like),
             )
         return found
 
@@ -173,7 +173,9 @@ class Declarer:
             name,
             label="one name for several members",
             hints=(f"`{name.text}[{index}]` gives each turn a member of its own",),
-            fix=Fix(f"write `{name.text}[{index}]`", (Edit(name.span, f"{name.text}[{index}]"),)),
+            fix=Fix(
+                f"write `{name.text}[{index}]`", (Edit(name.span, f"{name.text}[{index}]"),), is_sure=True
+            ),
         )
 
     def _indexed(self, statements: Sequence[ast.Statement], branch: Branch, local: set[str]) -> None:

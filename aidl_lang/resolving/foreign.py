@@ -140,7 +140,7 @@ def _idle(node: ast.ExpressionStatement) -> Diagnostic:
         f"`{node.value.callee.text}(…)` has nothing to do: compiling solves, draws and writes",
         node.span,
         hints=("the output is named on the command line: `aidl compile plate.aidl -o plate.svg`",),
-        fix=Fix("remove it", (Edit(node.span.with_separator, ""),)),
+        fix=Fix("remove it", (Edit(node.span.with_separator, ""),), is_sure=True),
     )
 
 

@@ -161,5 +161,5 @@ def _misplaced(node: ast.Import, insertion: Edit) -> Diagnostic:
         "an import stands at the top of the file",
         node.span,
         "what it brings is known in the whole file",
-        fix=Fix("move it to the top", (Edit(node.span.with_separator, ""), insertion)),
+        fix=Fix("move it to the top", (Edit(node.span.with_separator, ""), insertion), is_sure=True),
     )

@@ -172,7 +172,7 @@ class Scope:
         return any(scope.missing is None or name in scope.missing for scope in self.chain())
 
     def near_values(self, name: str) -> list[str]:
-        return nearest(name, [*self.visible(), "origin", "x_axis", "y_axis", "self", "pi"])
+        return nearest(name, [*self.visible(), "origin", "x_axis", "y_axis", "self", "pi"], 2)
 
 
 def word_meant(name: str, known: Iterable[str]) -> str | None:

@@ -119,7 +119,7 @@ def indented_block(t: Trouble) -> Problem | None:
             f"the block of `{t.first.text}` stands in braces, not behind a colon",
             t.span(),
             "`{` belongs here, and `}` at the end of the block",
-            fix=Fix("put the block in braces", (opening, close)),
+            fix=Fix("put the block in braces", (opening, close), is_sure=True),
         ),
         Repair(t.position, last + 1, (braces[0], *t.tokens[t.position + 1 : last + 1], braces[1])),
     )

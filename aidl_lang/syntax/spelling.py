@@ -14,6 +14,7 @@ from aidl_lang.syntax.words import (
     SIGNS,
     SINGLE_QUOTES,
     STATEMENT_WORDS,
+    TWO_WAYS,
     UNIT_WORDS,
     UNITS,
     example,
@@ -34,7 +35,7 @@ def unclosed_comment(t: Trouble) -> Problem | None:
             opening,
             "the comment begins here and takes in the rest of the file",
             hints=("close it with `*/`, or begin each line of it with `//`",),
-            fix=replaced("close the comment at the end of the file", end, " */"),
+            fix=replaced("close the comment at the end of the file", end, " */", is_sure=False),
         ),
         Repair(t.position, t.position + 1),
     )
@@ -109,10 +110,11 @@ def foreign_character(t: Trouble) -> Problem | None:
     shown = char if char.isprintable() else "?"
     if sign is None:
         message = f"the character `{shown}`{point} has no meaning in the language"
-        fix = replaced("remove it", t.span(), "") if char != "?" else None
+        fix = replaced("remove it", t.span(), "", is_sure=not char.isprintable()) if char != "?" else None
     else:
         message = f"`{shown}` is written `{sign}`"
-        fix = replaced(f"write `{sign}`", t.span(), sign if not sign.isalpha() else f" {sign} ")
+        written = sign if not sign.isalpha() else f" {sign} "
+        fix = replaced(f"write `{sign}`", t.span(), written, is_sure=char != "≈")
     stand_in = (t.token._replace(kind=sign, text=sign),) if sign else ()
     hints = (words,) if words else ()
     repair: Repair | None = Repair(t.position, t.position + 1, stand_in)
@@ -141,7 +143,7 @@ def _curly_quote(t: Trouble) -> Problem:
             f"text stands in straight quotes: `{quote}`",
             t.span() if close is None else Span(t.source, t.token.start, close + 1),
             "this is a typographic quote",
-            fix=Fix("make the quotes straight", tuple(edits)),
+            fix=Fix("make the quotes straight", tuple(edits), is_sure=True),
         ),
         Repair(t.position, stop, stand_in),
     )
@@ -253,10 +255,11 @@ def foreign_statement(t: Trouble) -> Problem | None:
             Repair(t.begin, t.begin + 1),
         )
     if right:
-        fix = replaced(f"write `{right}`", span, right)
         stand_in = [Token(part, part, first.start, first.end) for part in right.split()]
         if first.kind == "NAME" and _would_take(t, stand_in):
             repair = Repair(t.begin, t.begin + 1, tuple(stand_in))
+        is_sure = repair is not None and word.lower() not in TWO_WAYS
+        fix = replaced(f"write `{right}`", span, right, is_sure=is_sure)
     return Problem(Diagnostic("E0113", f"there is no `{word}`: {message}", span, fix=fix), repair)
 
 

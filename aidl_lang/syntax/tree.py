@@ -6,7 +6,6 @@ say (a second `at`, an unknown kind) is said here, as a diagnostic beside a node
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable
 from keyword import iskeyword
 from typing import Any, cast
@@ -14,6 +13,7 @@ from typing import Any, cast
 from aidl_lang import ast
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.kinds import KIND_OF_WORD, KINDS, kind_of
+from aidl_lang.names import is_slip, nearest
 from aidl_lang.source import Span
 from aidl_lang.syntax.expressions import ExpressionBuilder, arguments_of
 from aidl_lang.syntax.tokens import Token
@@ -88,9 +88,10 @@ class Builder(ExpressionBuilder):
                 Diagnostic("E0113", f"there is no `{word.text}`: {foreign[0]}", word.span, fix=fix)
             )
             return "solid"
-        near = difflib.get_close_matches(word.text.lower(), KIND_OF_WORD, 1, 0.6)
+        near = nearest(word.text, KIND_OF_WORD)
         guess = KIND_OF_WORD[near[0]] if near else "solid"
         canonical = near[0] if near and near[0] in KINDS else guess
+        is_sure = bool(near) and is_slip(word.text, near[0])
         self.diagnostics.append(
             Diagnostic(
                 "E0115",
@@ -101,7 +102,7 @@ class Builder(ExpressionBuilder):
                 hints=()
                 if near
                 else ("write what it is: `solid` for material, `hole` for what is cut away",),
-                fix=Fix(f"write `{canonical}`", (Edit(word.span, canonical),)) if near else None,
+                fix=Fix(f"write `{canonical}`", (Edit(word.span, canonical),), is_sure) if near else None,
             )
         )
         return guess

@@ -123,9 +123,9 @@ class Trouble:
         return self.indentation(self.token.start) <= self.indentation(self.first.start)
 
 
-def replaced(title: str, span: Span, text: str) -> Fix:
-    """The fix that puts a text in the place of another."""
-    return Fix(title, (Edit(span, text),))
+def replaced(title: str, span: Span, text: str, *, is_sure: bool = True) -> Fix:
+    """The fix that puts a text in the place of another; where nothing else can have been meant it is sure."""
+    return Fix(title, (Edit(span, text),), is_sure)
 
 
 LONGEST = 500

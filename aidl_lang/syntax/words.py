@@ -88,6 +88,8 @@ FOREIGN_WORDS: dict[str, tuple[str, str | None]] = {
     "constraints": ("constraints stand in `constrain { … }`", "constrain"),
     "end": ("a block ends with `}`", None),
 }  # fmt: skip
+TWO_WAYS = frozenset({"require", "ensure"})
+"""Those of the words above that may mean another one, too."""
 
 _EXAMPLES = {
     "param": "`param` declares a parameter: `param w = 80`",

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -100,15 +100,41 @@ def soup(chance: random.Random) -> str:
     )
 
 
-def mutant(chance: random.Random) -> str:
-    """A seed with some of its tokens left out, doubled, exchanged or brought in from others."""
-    text = chance.choice(seeds())
+def mutant(chance: random.Random, texts: Sequence[str] = ()) -> str:
+    """A seed, or one of other texts, with some of its tokens left out, doubled, exchanged or brought in."""
+    text = chance.choice(texts or seeds())
     tokens = list(_tokens(text))
     for _ in range(chance.choice((1, 1, 1, 2, 3, 6, 12))):
         _CHANGES[chance.randrange(len(_CHANGES))](chance, tokens)
         if not tokens:
             break
     return "".join(tokens)
+
+
+def misspelt(chance: random.Random, texts: Sequence[str] = ()) -> str:
+    """A seed, or one of other texts, with slips in some of its names."""
+    tokens = list(_tokens(chance.choice(texts or seeds())))
+    places = [k for k, token in enumerate(tokens) if len(_NAME.findall(token.strip())) == 1]
+    for at in chance.sample(places, min(len(places), chance.choice((1, 1, 2, 3, 6)))):
+        tokens[at] = _NAME.sub(lambda found: slip(chance, found[0]), tokens[at])
+    return "".join(tokens)
+
+
+_NAME = re.compile(r"\b[A-Za-z_]\w*")
+
+
+def slip(chance: random.Random, name: str) -> str:
+    """A name with one letter left out, doubled, exchanged with its neighbour, or another one."""
+    at = chance.randrange(len(name))
+    before, here, after = name[:at], name[at], name[at + 1 :]
+    return chance.choice(
+        (
+            before + after or here,
+            before + here + here + after,
+            before + after[:1] + here + after[1:],
+            before + chance.choice("aeioustrnlm") + after,
+        )
+    )
 
 
 def _leave_out(chance: random.Random, tokens: list[str]) -> None:
