@@ -80,7 +80,7 @@ class _Mender:
         return None
 
     def _after(self, now: Mended, part: Sequence[Diagnostic]) -> Mended | None:
-        """The program after some of its fixes, and after those that they bring to light; None if it is worse."""
+        """The program after some of its fixes and those that they bring to light; None if it is worse."""
         stated, errors, after = constraining(now.source), _errors(now.diagnostics), now
         for _ in range(_AHEAD):
             text, applied = apply_fixes(after.source, part)
@@ -88,7 +88,8 @@ class _Mender:
                 return None
             titles = tuple(d.fix.title for d in part if d.fix)[:applied]
             after = self._looked_at(SourceFile(now.source.name, text), (*after.fixes, *titles))
-            if constraining(after.source) < stated or any(d.code.startswith(_CUT_OFF) for d in after.diagnostics):
+            is_cut_off = any(d.code.startswith(_CUT_OFF) for d in after.diagnostics)
+            if is_cut_off or constraining(after.source) < stated:
                 return None
             if _errors(after.diagnostics) <= errors:
                 return after
@@ -123,7 +124,9 @@ def constraining(source: SourceFile) -> int:
     nodes = list(ast.walk(module))
     blocks = (node.items for node in nodes if isinstance(node, ast.Constrain))
     demanded = {id(inner) for block in blocks for inner in ast.walk(block)}
-    known = _known_constraints() | {fold(n.name.text) for n in nodes if isinstance(n, ast.ConstraintDefinition)}
+    known = _known_constraints() | {
+        fold(n.name.text) for n in nodes if isinstance(n, ast.ConstraintDefinition)
+    }
 
     def constrains(node: ast.Node) -> bool:
         match node:

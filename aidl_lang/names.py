@@ -63,6 +63,7 @@ before | after
 most | least
 same equal | different unequal
 convex | concave
+concentric | eccentric
 clockwise cw | counterclockwise anticlockwise ccw
 internal | external
 union add | difference subtract
@@ -74,17 +75,31 @@ positive | negative
 """.strip().splitlines()
 )
 """Words that mean the reverse of those on the other side of the bar, or its counterpart."""
+_TURNING = ("no", "not", "non", "never", "without", "by")
+"""Words that turn the meaning of the rest round."""
 _PART_OF_A_NAME = 4
 """Letters from which on a word is known inside a longer one: `alignleft`."""
 
 
 def are_opposite(a: str, b: str) -> bool:
-    """Whether two names differ by a word and the reverse of it, as `align_left` and `align_right` do."""
+    """Whether two names differ by a word and the reverse of it, as `align_left` and `align_right` do, or one
+    of them denies or turns round what the other says: `no_overlap`, `contained_by`.
+    """
+    if any(_says(a, word) != _says(b, word) for word in _TURNING) or any(
+        _denies(*p) for p in _differing(a, b)
+    ):
+        return True
     return any(
-        any(_says(a, w) and not _says(b, w) for w in here) and any(_says(b, w) and not _says(a, w) for w in there)
+        any(_says(a, w) and not _says(b, w) for w in here)
+        and any(_says(b, w) and not _says(a, w) for w in there)
         for pair in _OPPOSITES
         for here, there in (pair, pair[::-1])
     )
+
+
+def _denies(a: str, b: str) -> bool:
+    """Whether one of two words is the other with a syllable before it that turns it round."""
+    return any(a == before + b or b == before + a for before in ("anti", "counter", "dis", "non", "un"))
 
 
 def _says(name: str, word: str) -> bool:
@@ -106,8 +121,8 @@ def _differing(name: str, other: str) -> list[tuple[str, str]]:
 
 def _are_forms(a: str, b: str) -> bool:
     """Whether two words are one: `center`, `centre`, `centers`, `centered`."""
-    a, b = (_ENDING.sub("", word.replace("centre", "center").replace("centr", "center")) for word in (a, b))
-    return a == b
+    a, b = (word.replace("centre", "center").replace("centr", "center") for word in (a, b))
+    return not {a, _ENDING.sub("", a)}.isdisjoint((b, _ENDING.sub("", b)))
 
 
 _ENDING = re.compile(r"(?:e?s|e?d)$")
@@ -146,9 +161,20 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
     wanted = fold(name)
     most = _MOST_LETTERS // max(len(wanted), 1)
     found = get_close_matches(wanted, _within(folded, len(wanted), most), n=count + _WIDER, cutoff=likeness)
-    matches = [m for m in found if not are_opposite(name, folded[m]) and not means_otherwise(name, folded[m])]
-    matches.sort(key=lambda match: _distance(wanted, match))
+    matches = [match for match in found if _may_be_meant(name, folded[match])]
+    matches.sort(key=lambda match: (_distance(wanted, match), sorted(wanted) != sorted(match)))
     return [folded[match] for match in matches[:count]]
+
+
+def _may_be_meant(name: str, other: str) -> bool:
+    """Whether one may ask if a name was meant for another: they are near, and do not say different things."""
+    if are_opposite(name, other) or means_otherwise(name, other):
+        return False
+    wanted, match = fold(name), fold(other)
+    if wanted in match or match in wanted:
+        return True
+    pairs = [(wanted, match), *_differing(name, other)]
+    return all(_distance(a, b) <= max(1, len(a) // 3) for a, b in pairs)
 
 
 def _within(names: Mapping[str, str], length: int, letters: int) -> list[str]:
@@ -198,15 +224,19 @@ def _is_slip_in(written: str, word: str) -> bool:
         return False
     if sorted(written) == sorted(word):
         return True
-    if written[0] != word[0] or min(len(written), len(word)) < _SHORT:
+    if _are_forms(written, word) or written[0] != word[0] or min(len(written), len(word)) < _SHORT:
         return False
     if _LETTERS.sub(r"\1", written) == _LETTERS.sub(r"\1", word):
+        return True
+    if word[:-1] == written and len(written) > _SHORT and word[-1] not in _INFLECTIONS:
         return True
     has_end = written[-1] == word[-1]
     return has_end and (len(written) != len(word) or len(written) >= _LONG)
 
 
 _LETTERS = re.compile(r"(.)\1+")
+_INFLECTIONS = "sdry"
+"""Letters that make another form of a word."""
 _SHORT, _LONG = 5, 8
 """Letters from which on a word is no other word for one letter missing, and for another letter."""
 

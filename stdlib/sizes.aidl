@@ -105,6 +105,65 @@ constraint shorter(a: box, b: box, at_least: length) { a.height <= b.height - at
 constraint shorter(a: point, b: box) { has_no_size(a) }
 constraint shorter(a: box, b: point) { has_no_size(b) }
 
+/// a is at most as wide as b and at most as tall; of lines, a is no longer; of numbers, a is no greater.
+///
+/// With `by`, width and height (or the lengths) differ by exactly so much.
+///
+/// ```aidl
+/// drawing d {
+///     plate = rectangle(center: fixed((0, 0)), width: 40, height: 30)
+///     lid   = rectangle(center: (60, 0), width: guess(50), height: guess(20))
+///     constrain smaller(lid, plate)
+/// }
+/// ```
+constraint smaller(a: box, b: box) {
+    a.width <= b.width
+    a.height <= b.height
+}
+constraint smaller(a: box, b: box, by: length) {
+    a.width == b.width - by
+    a.height == b.height - by
+}
+constraint smaller(a: box, b: box, at_least: length) {
+    a.width <= b.width - at_least
+    a.height <= b.height - at_least
+}
+constraint smaller(a: line, b: line) { a.length <= b.length }
+constraint smaller(a: line, b: line, by: length) { a.length == b.length - by }
+constraint smaller(a: line, b: line, at_least: length) { a.length <= b.length - at_least }
+constraint smaller(a: length, b: length) { a <= b }
+constraint smaller(a: angle, b: angle) { a <= b }
+constraint smaller(a: number, b: number) { a <= b }
+constraint smaller(a: point, b: box) { has_no_size(a) }
+constraint smaller(a: box, b: point) { has_no_size(b) }
+
+/// a is at least as wide as b and at least as tall: `smaller` the other way round.
+///
+/// ```aidl
+/// drawing d {
+///     plate = rectangle(center: fixed((0, 0)), width: 40, height: 30)
+///     cover = rectangle(center: (60, 0), width: guess(30), height: guess(20))
+///     constrain larger(cover, plate, by: 4)
+/// }
+/// ```
+constraint larger(a: box, b: box) { smaller(b, a) }
+constraint larger(a: box, b: box, by: length) {
+    a.width == b.width + by
+    a.height == b.height + by
+}
+constraint larger(a: box, b: box, at_least: length) {
+    a.width >= b.width + at_least
+    a.height >= b.height + at_least
+}
+constraint larger(a: line, b: line) { a.length >= b.length }
+constraint larger(a: line, b: line, by: length) { a.length == b.length + by }
+constraint larger(a: line, b: line, at_least: length) { a.length >= b.length + at_least }
+constraint larger(a: length, b: length) { a >= b }
+constraint larger(a: angle, b: angle) { a >= b }
+constraint larger(a: number, b: number) { a >= b }
+constraint larger(a: point, b: box) { has_no_size(a) }
+constraint larger(a: box, b: point) { has_no_size(b) }
+
 alias equal_width = same_width
 alias equal_widths = same_width
 alias equal_height = same_height
@@ -115,3 +174,21 @@ alias wider_than = wider
 alias narrower_than = narrower
 alias taller_than = taller
 alias shorter_than = shorter
+alias smaller_than = smaller
+alias less_than = smaller
+alias at_most = smaller
+alias no_larger_than = smaller
+alias no_bigger_than = smaller
+alias larger_than = larger
+alias bigger = larger
+alias bigger_than = larger
+alias greater = larger
+alias greater_than = larger
+alias at_least = larger
+alias no_smaller_than = larger
+alias same_widths = same_width
+alias same_heights = same_height
+alias same_sizes = same_size
+alias same_width_as = same_width
+alias same_height_as = same_height
+alias same_size_as = same_size

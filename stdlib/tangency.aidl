@@ -95,3 +95,4 @@ fn round_radius(a: arc) = a.radius
 alias tangential = tangent
 alias tangent_to = tangent
 alias smooth = tangent
+alias tangent_with = tangent

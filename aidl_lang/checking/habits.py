@@ -239,5 +239,7 @@ def two_sizes(check: Inference, node: ast.Call, argument: ast.Argument) -> None:
         f"a square has one size; two make a rectangle: `rectangle(size: {shown(argument.value)})`",
         argument.value,
         label="two sizes",
-        fix=Fix("make it a rectangle", (Edit(node.callee.span, "rectangle"), Edit(name, "size: ")), is_sure=True),
+        fix=Fix(
+            "make it a rectangle", (Edit(node.callee.span, "rectangle"), Edit(name, "size: ")), is_sure=True
+        ),
     )

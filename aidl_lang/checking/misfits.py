@@ -9,7 +9,7 @@ from aidl_lang import ast
 from aidl_lang.checking.habits import two_sizes
 from aidl_lang.checking.wording import shown
 from aidl_lang.diagnostics import Edit, Fix
-from aidl_lang.names import fold, nearest
+from aidl_lang.names import fold, is_slip, nearest
 from aidl_lang.resolving.complaints import called_field, respell
 from aidl_lang.source import Span
 from aidl_lang.synonyms import FIELDS, PAIRS, PARAMETERS
@@ -239,6 +239,11 @@ def _not_together(
     return True
 
 
+def _meanings(word: str, names: Sequence[str]) -> list[str]:
+    """The parameters that another word for one may stand for."""
+    return [meaning for meaning in PARAMETERS[word] if meaning in names]
+
+
 def _unknown_parameter(
     check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
 ) -> bool:
@@ -254,8 +259,11 @@ def _unknown_parameter(
     taken = {fold(a.name.text) for a in node.arguments if a.name is not None}
     for identifier in wrong:
         like = nearest(identifier.text, [n for n in names if fold(n) not in taken], 2)
+        fix = respell(identifier, like)
         if not like and len(identifier.text) > 4 and (near := nearest(identifier.text, synonyms)):
             like = [synonyms[near[0]]]
+            is_sure = is_slip(fold(identifier.text), near[0]) and _meanings(near[0], names) == like
+            fix = Fix(f"write `{like[0]}`", (Edit(identifier.span, like[0]),), is_sure)
         hints = _called_as([closest]) if closest.parameters else ["it takes no arguments"]
         if fold(identifier.text) == "length" and {"width", "height"} <= set(names):
             hints = ["its sizes are `width`, from left to right, and `height`, from bottom to top"]
@@ -265,7 +273,7 @@ def _unknown_parameter(
             + (f"; did you mean `{like[0]}`?" if like else ""),
             identifier,
             hints=() if like else hints,
-            fix=respell(identifier, like),
+            fix=fix,
         )
     return bool(wrong)
 

@@ -111,7 +111,10 @@ class _Walker:
             case ast.Var(name=name):
                 word = Span(node.span.source, node.span.start, node.span.start + len("var"))
                 self._report(
-                    Construct.UNKNOWN, name.span, name.text, Fix("make it a `let`", (Edit(word, "let"),), is_sure=True)
+                    Construct.UNKNOWN,
+                    name.span,
+                    name.text,
+                    Fix("make it a `let`", (Edit(word, "let"),), is_sure=True),
                 )
             case ast.Call(callee=callee):
                 if isinstance(self._type(node), StructureType) and self._may_call(node, ast.Structure):

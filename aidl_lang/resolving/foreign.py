@@ -60,13 +60,14 @@ _CALLS: Mapping[str, str] = {
         ("circular_pattern", "copies about a centre are made by `polar_array(…)`"),
         ("if_then_else ternary select", "a choice is written `if c then a else b`"),
         (
-            "smaller larger bigger smaller_than larger_than bigger_than",
+            "thicker thinner thicker_than thinner_than higher lower",
             "sizes compare by `wider`, `narrower`, `taller` and `shorter`, or as numbers: "
-            "`a.width <= b.width`",
+            "`a.width <= b.width`; places by `above` and `below`",
         ),
         (
             "connect connects connected attach attaches attached join joins joined weld welded glue glued "
-            "snap snapped mate mated fasten fastened link linked bond meet meets hinge hinged pinned",
+            "attached_to attach_to connected_to connect_to joined_to snap snapped mate mated "
+            "fasten fastened link linked bond meet meets hinge hinged pinned",
             "points become one by `coincident(a.end, b.start)`, "
             "parts lie against each other by `touching(a, b)`",
         ),

@@ -146,7 +146,9 @@ def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | 
         Edit(Span(source, tokens[at].start, tokens[at].end), "in"),
         Edit(Span(source, low[-1].end, tokens[middle + 1].start), ".."),
     )
-    problem = Diagnostic("E0109", f"a range is written `{right}`", span, fix=Fix(f"write `{right}`", edits, is_sure=True))
+    problem = Diagnostic(
+        "E0109", f"a range is written `{right}`", span, fix=Fix(f"write `{right}`", edits, is_sure=True)
+    )
     return Problem(problem, Repair(0, middle + 1 - at, (word, *low, dots)))
 
 

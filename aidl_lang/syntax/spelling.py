@@ -298,6 +298,9 @@ def reserved_word(t: Trouble) -> Problem | None:
         as_name = Token("CALL", word + "(", token.start, t.tokens[at + 1].end)
         stop = at + 2
     role = "called" if called else "a name"
+    is_declared = (at > 0 and t.tokens[at - 1].kind in STATEMENT_WORDS) or (
+        at == t.begin and t.tokens[stop].kind == "="
+    )
     return Problem(
         Diagnostic(
             "E0104",
@@ -305,7 +308,9 @@ def reserved_word(t: Trouble) -> Problem | None:
             t.span(token),
             example(word),
             hints=(f"choose another name, as `{word}_1`",) if not called else (),
-            fix=replaced(f"call it `{word}_1` instead", t.span(token), f"{word}_1") if not called else None,
+            fix=replaced(f"call it `{word}_1` instead", t.span(token), f"{word}_1", is_sure=is_declared)
+            if not called
+            else None,
         ),
         Repair(at, stop, (as_name,)),
     )

@@ -98,7 +98,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--programs", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1, help="of the first program; the others follow it")
-    parser.add_argument("--texts", type=Path, action="append", default=[], help="a folder of further programs")
+    parser.add_argument(
+        "--texts", type=Path, action="append", default=[], help="a folder of further programs"
+    )
     parser.add_argument("--out", type=Path, default=Path("build/mends"), help="where what is wrong is kept")
     arguments = parser.parse_args()
     sys.setrecursionlimit(max(sys.getrecursionlimit(), RECURSION))
