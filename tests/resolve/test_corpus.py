@@ -41,8 +41,8 @@ class Case:
 
 @dataclass(frozen=True)
 class Verdict:
-    """`kind` is `mended` or `mended wrongly`, unasked; `read` as it is written, or `read otherwise`; `offered`
-    or `offered another`, in a message; or else `told`.
+    """`kind` is `mended` or `mended wrongly`, unasked; `read` as written, or `read otherwise`; `offered` or
+    `offered another`, in a message; or else `told`.
     """
 
     kind: str
