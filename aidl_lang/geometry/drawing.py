@@ -17,11 +17,11 @@ from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
-from aidl_lang.geometry.legibility import Ground, Lying, covered_note, unseen_note
+from aidl_lang.geometry.legibility import COVERED, Ground, Lying, covered_note, lettering_note, unseen_note
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import Network, exactly, union_bounds
 from aidl_lang.geometry.notes import color_note, detached_notes, finding_note, gap_note, unusable_note
-from aidl_lang.geometry.pieces import loose_piece_notes
+from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.seams import visible_seams
 from aidl_lang.geometry.trace import Traced, trace_all
@@ -141,6 +141,8 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     ]
     ground = Ground(network, sorted(lying, key=lambda body: body.place))
     strokes = tuple(_strokes(model.root, shapes, walk, styles, regions, ground, notes))
+    notes += _covered_letters(model.root, walk, masses, ground, order)
+    notes += fallen_piece_notes(model.root, walk, masses, solids, pairs)
     plans = tuple(_plans(model.root))
     boxes = [b.box for b in bodies]
     boxes += [bounds(piece) for s in strokes for piece in s.pieces]
@@ -276,6 +278,23 @@ def _number(values: tuple[Scalar, ...] | None, default: float | None) -> float |
     return float(first) if isinstance(first, int | float) and not isinstance(first, bool) else default
 
 
+def _covered_letters(
+    root: SolvedStructure, walk: Bodies, masses: list[Mass], ground: Ground, order: dict[str, int]
+) -> Iterator[Diagnostic]:
+    """Warnings about letters of solids and holes that later bodies lie over."""
+    place = {path: order[m.structure.path] for m in masses for path in (*m.inner, m.structure.path)}
+    above = {child.path: s.path for s in root.walk() for child in s.structures}
+    for structure in root.walk():
+        holder: str | None = structure.path
+        while holder is not None and holder not in place:
+            holder = above.get(holder)
+        for face in walk.faces.get(structure.path, ()) if holder is not None else ():
+            if all(g.type == LETTERING for g in face.geometries) and holder is not None:
+                share, by = ground.hidden_part(face.section, place[holder])
+                if share >= COVERED:
+                    yield lettering_note(structure, face.geometries[0], share, by)
+
+
 def _strokes(
     root: SolvedStructure,
     shapes: dict[str, list[Shape]],
@@ -320,6 +339,10 @@ def _inked(
         hidden = ground.hides(look.color, numbers, place)
         if (by := ground.covering(numbers, place)) is not None:
             covered.setdefault(by, []).append(shape.geometry.name)
+        elif shape.geometry.type == LETTERING:
+            share, over_it = ground.covered_part(numbers, place)
+            if share >= COVERED:
+                notes.append(lettering_note(drawing, shape.geometry, share, over_it))
         if is_asked and look.color and hidden and all(hidden):
             lost.setdefault(look.color, []).append(shape.geometry.name)
         over = look.color if any(hidden) and not is_asked else None

@@ -1,4 +1,4 @@
-"""Strokes that cannot be seen, because what they lie on has their colour."""
+"""Strokes that cannot be seen, because what they lie on has their colour; lettering that parts lie over."""
 
 from __future__ import annotations
 
@@ -10,10 +10,24 @@ import numpy as np
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.geometry.colors import look_alike
 from aidl_lang.geometry.evaluate import Bounds, bounds
+from aidl_lang.geometry.measures import length
 from aidl_lang.geometry.network import Network, union_bounds
 from aidl_lang.geometry.notes import listed
-from aidl_lang.geometry.sections import Polygon, Section, inside_mask
-from aidl_lang.solved import SolvedStructure
+from aidl_lang.geometry.sections import (
+    Polygon,
+    Section,
+    boxes_meet,
+    covers,
+    inside_mask,
+    intersection,
+    is_nothing,
+    union,
+)
+from aidl_lang.solved import SolvedGeometry, SolvedStructure
+
+COVERED = 0.01
+"""Part of the letters below which nobody misses what is covered."""
+_WHOLE = 0.995
 
 
 @dataclass(frozen=True)
@@ -57,6 +71,27 @@ class Ground:
         spots = self._spots(curves) if above else []
         return next((b.path for b in above if inside_mask(b.section, spots).all()), None)
 
+    def covered_part(self, curves: Sequence[int], place: int) -> tuple[float, list[str]]:
+        """How much of some curves drawn at a place, of their length, later bodies lie over, and which."""
+        above = [b for b in self.bodies if b.place > place]
+        edges = [edge for curve in curves for edge, _ in self.network.uses[curve]]
+        if not above or not edges:
+            return 0.0, []
+        spots = [self.network.midpoint(edge) for edge in edges]
+        lengths = np.array([length(self.network.piece((edge, True))) for edge in edges])
+        inside = np.array([inside_mask(b.section, spots) for b in above])
+        by = [b.path for b, mask in zip(above, inside, strict=True) if lengths[mask].sum() > 0]
+        whole = float(lengths.sum())
+        return (float(lengths[inside.any(axis=0)].sum()) / whole if whole else 0.0), by
+
+    def hidden_part(self, faces: Section, place: int) -> tuple[float, list[str]]:
+        """The same of faces, by their area. A body that lies within them is an inlay and shows them."""
+        above = [b for b in self.bodies if b.place > place and boxes_meet(b.section, faces)]
+        above = [b for b in above if not covers(faces, b.section)]
+        by = [b.path for b in above if not is_nothing(intersection(b.section, faces))]
+        hidden = intersection(union([b.section for b in above]), faces) if by else None
+        return (hidden.area() / faces.area() if hidden is not None else 0.0), by
+
     def _spots(self, curves: Sequence[int]) -> list[Polygon]:
         return [self.network.midpoint(edge) for curve in curves for edge, _ in self.network.uses[curve]]
 
@@ -74,6 +109,25 @@ def covered_note(drawing: SolvedStructure, names: Sequence[str], by: str) -> Dia
         drawing.span,
         "what stands further down is drawn over it",
         hints=(f"write the drawing below `{name}`, or inside it",),
+    )
+
+
+def lettering_note(
+    structure: SolvedStructure, text: SolvedGeometry, share: float, by: Sequence[str]
+) -> Diagnostic:
+    """For letters that later bodies lie over, in part or as a whole."""
+    part = f"{max(1, round(100 * share))} % of the" if share < _WHOLE else "the"
+    names = [path.rpartition(".")[2] for path in by]
+    over = "is" if len(by) == 1 else "are"
+    order = f"write {listed(names)} before what the letters belong to"
+    if structure.kind == "drawing":
+        order = f"write the drawing below {listed(names)}"
+    return Diagnostic(
+        "W0713",
+        f"{part} lettering `{text.path}` cannot be seen: {listed(by)} {over} drawn over it",
+        text.span or structure.span,
+        "what stands further down is drawn over it",
+        hints=(f"move one of them, or {order}",),
     )
 
 

@@ -1,6 +1,7 @@
-"""Solids that fall into pieces which nothing joins, though no hole cut them apart.
+"""Solids that fall into pieces which nothing joins, and pieces that a hole cut free all around.
 
-Pieces that are alike are a pattern and meant, as are letters, and what a single geometry consists of.
+Where no hole is between them, pieces that are alike are a pattern and meant, as are letters, and what a
+single geometry consists of.
 """
 
 from __future__ import annotations
@@ -20,15 +21,27 @@ from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.notes import UNNOTICED, listed, marked_detached, short
 from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.sections import Section, boxes_meet, intersection, is_nothing, union
+from aidl_lang.geometry.sections import (
+    Section,
+    boxes_meet,
+    covers,
+    difference,
+    holes_of,
+    intersection,
+    is_nothing,
+    union,
+)
 from aidl_lang.geometry.trace import trace_all
 from aidl_lang.solved import SolvedStructure
 
+_RING = 3
+"""Outlines that a solid has at least where a piece of it lies in an opening of another."""
 _PATTERN = 4
 """So many pieces of one area, or of one definition, are a pattern."""
 _MOST = 3
 """Loose pieces of a solid that are told."""
-_LETTERING = "text"
+LETTERING = "text"
+"""The type of letters."""
 
 
 @dataclass(frozen=True)
@@ -158,7 +171,7 @@ def _traits(piece: _Piece) -> Iterator[object]:
 
 
 def _is_meant(piece: _Piece, alike: Counter[object]) -> bool:
-    lettering = all(g.type == _LETTERING for f in piece.faces for g in f.geometries)
+    lettering = all(g.type == LETTERING for f in piece.faces for g in f.geometries)
     return lettering or any(alike[trait] >= _PATTERN for trait in _traits(piece))
 
 
@@ -185,6 +198,127 @@ def _note(solid: SolvedStructure, group: Sequence[_Piece], rest: Sequence[_Piece
             "if they are parts of their own, make each a `solid`",
             f"if the gap is meant, say so: `@detached` before `{solid.name}`",
         ),
+    )
+
+
+# --- Cut free ------------------------------------------------------------------------------------
+
+
+def fallen_piece_notes(
+    root: SolvedStructure,
+    walk: Bodies,
+    masses: Sequence[Mass],
+    solids: Sequence[Solid],
+    pairs: Sequence[Contact],
+) -> Iterator[Diagnostic]:
+    """A warning for each hole that cuts pieces free which nothing else holds, as the inside of an O."""
+    free = marked_detached(root)
+    held = _held_by_others(solids, pairs)
+    known, holes = {s.path: s for s in root.walk()}, _holes(root, masses)
+    for mass, solid in zip(masses, solids, strict=True):
+        if mass.structure.path in free or mass.section.num_contour() < _RING:
+            continue
+        loose: dict[str, int] = {}
+        islands = union([f.section for s in _islands(mass.structure) for f in walk.faces.get(s.path, ())])
+        for piece, gap in _enclosed(mass.section.decompose()):
+            if not is_nothing(intersection(piece, islands)):
+                continue  # put there on purpose
+            if _was_joined(walk, mass, piece, gap) and not _touches(walk, piece, held.get(solid.path, ())):
+                for path in _cutting(walk, holes.get(mass.structure.path, ()), gap, piece):
+                    loose[path] = loose.get(path, 0) + 1
+        for path, count in loose.items():
+            yield _fallen(known[path], mass.structure, walk, count)
+
+
+def _islands(structure: SolvedStructure) -> Iterator[SolvedStructure]:
+    """The structures in the holes of one."""
+    for each in structure.walk():
+        if each.kind == "hole":
+            yield from (s for child in each.structures if child.kind != "hole" for s in _material(child))
+
+
+def _holes(root: SolvedStructure, masses: Sequence[Mass]) -> dict[str, list[SolvedStructure]]:
+    """For each body the holes that may cut it: its own, and those of the structures around it."""
+    found: dict[str, list[SolvedStructure]] = {mass.structure.path: [] for mass in masses}
+
+    def visit(structure: SolvedStructure, around: Sequence[SolvedStructure]) -> None:
+        own = [child for child in structure.structures if child.kind == "hole"]
+        if structure.path in found:
+            inside = (s for s in structure.walk() if s.kind == "hole" and s not in own)
+            found[structure.path] = [*around, *own, *inside]
+        for child in structure.structures:
+            visit(child, [*around, *own])
+
+    visit(root, [])
+    return found
+
+
+def _held_by_others(solids: Sequence[Solid], pairs: Sequence[Contact]) -> dict[str, list[Solid]]:
+    """For each body those that touch or overlap it."""
+    known = {solid.path: solid for solid in solids}
+    held: dict[str, list[Solid]] = {}
+    for pair in pairs:
+        if pair.relation != "apart" or (pair.gap or 0.0) <= UNNOTICED:
+            held.setdefault(pair.a, []).append(known[pair.b])
+            held.setdefault(pair.b, []).append(known[pair.a])
+    return held
+
+
+def _enclosed(sections: Sequence[Section]) -> Iterator[tuple[Section, Section]]:
+    """The pieces that lie in openings of others, each with the smallest such opening."""
+    if len(sections) < 2:
+        return
+    openings = [hole for s in sections if s.num_contour() > 1 for hole in holes_of(s)]
+    count, around = len(sections), dict[int, Section]()
+    for i, j in near_pairs([s.bounds() for s in (*sections, *openings)], 0.0):
+        if not i < count <= j or not covers(opening := openings[j - count], sections[i]):
+            continue
+        if i not in around or opening.area() < around[i].area():
+            around[i] = opening
+    yield from ((sections[i], around[i]) for i in sorted(around))
+
+
+def _was_joined(walk: Bodies, mass: Mass, piece: Section, opening: Section) -> bool:
+    """Whether a piece hung together with what is around the opening before anything was cut out."""
+    faces = [f.section for s in _material(mass.structure) for f in walk.faces.get(s.path, ())]
+    near = union([f for f in faces if boxes_meet(f, opening)])
+    return any(covers(whole, opening) and covers(whole, piece) for whole in near.decompose())
+
+
+def _touches(walk: Bodies, piece: Section, others: Sequence[Solid]) -> bool:
+    if not others:
+        return False
+    region = trace_all(walk.network, [piece])[0].region
+    known = _Piece(piece, region, region_bounds(region), ())
+    return any(known.meets(other.section, other.region) for other in others)
+
+
+def _cutting(
+    walk: Bodies, holes: Iterable[SolvedStructure], opening: Section, piece: Section
+) -> Iterator[str]:
+    """The paths of those holes that took away what was between a piece and the rest."""
+    between = difference(opening, piece)
+    for hole in holes:
+        if hole.path in walk.faces:
+            cut = union([f.section for f in walk.faces[hole.path]])
+            if not is_nothing(intersection(cut, between)):
+                yield hole.path
+
+
+def _fallen(hole: SolvedStructure, solid: SolvedStructure, walk: Bodies, count: int) -> Diagnostic:
+    letters = all(g.type == LETTERING for f in walk.faces[hole.path] for g in f.geometries)
+    pieces = "a piece falls" if count == 1 else f"{count} pieces fall"
+    hints = [f"leave a bridge: a `solid` in `{hole.name}` stays, so one across the gap holds the piece"]
+    if letters:
+        hints.insert(0, "to write on it in place of cutting through, make it a `drawing`")
+    hints.append(f"if that is meant, say so: `@detached` before `{solid.name}`")
+    return Diagnostic(
+        "W0714",
+        f"{pieces} out of {solid.kind} `{solid.path}`: hole `{hole.path}` cuts all around "
+        f"{'it' if count == 1 else 'them'}",
+        hole.span or solid.span,
+        "nothing holds what is inside",
+        hints=tuple(hints),
     )
 
 
