@@ -172,7 +172,7 @@ def test_roles_are_found_by_what_things_are_called(text: str) -> None:
 def test_what_fails_is_told_in_numbers_and_names() -> None:
     text = CARTS["synonyms"].replace("radius: 5", "radius: 6", 1)
     assert unmet(WHEELS, f"assembly cart {{ {text} }}") == {
-        "wheels of 10 mm": "here 12 == 10 (wheel: cart.tyre, cart.tire_2)"
+        "wheels of 10 mm": "12 is not == 10 (wheel: cart.tyre, cart.tire_2)"
     }
 
 
@@ -206,7 +206,7 @@ def test_what_lies_apart_is_another_part() -> None:
     bodies = "for i in 0..1 { solid body[i] { b = rectangle(center: (50 * i, 8), width: 40, height: 5) } }"
     wheels = f"solid wheels {{ front = {LEFT} rear = {RIGHT} }}"
     assert unmet(WHEELS, f"assembly cart {{ {bodies} {wheels} }}") == {
-        "one piece": "here 2 == 1",
+        "one piece": "2 is not == 1",
     }
 
 
