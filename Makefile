@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test fuzz test-model lint format reference colours editors vscode test-vscode bench bench-editor bench-check bench-regions bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test fuzz fuzz-mends test-model lint format reference colours editors vscode test-vscode bench bench-editor bench-check bench-regions bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -21,6 +21,9 @@ test: $(READY) ## run all tests
 
 fuzz: $(READY) ## try programs that ask for trouble, for MINUTES (2), from a SEED if one is given
 	$(BIN)/python -m tests.fuzz --minutes $(or $(MINUTES),2) $(if $(SEED),--seed $(SEED))
+
+fuzz-mends: $(READY) ## try how PROGRAMS (1000) mutants are mended, from a SEED (1), with those of TEXTS
+	$(BIN)/python -m tests.fuzz.mends --programs $(or $(PROGRAMS),1000) --seed $(or $(SEED),1) $(if $(TEXTS),--texts $(TEXTS))
 
 test-model: $(READY) ## ask a real small model; installs it and llama.cpp into build/model, once
 	$(BIN)/python tests/model/install.py build/model

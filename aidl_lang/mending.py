@@ -19,6 +19,8 @@ _STEPS = 100
 """Times that a program is made better, and no more."""
 _AHEAD = 6
 """Times that fixes may bring more errors to light before they are taken back."""
+_SHARE = 0.5
+"""Of the time that building a program may take: all looks at it together, but for the first."""
 _LEAST_SECONDS = 0.05
 """That a program is given to be looked at again."""
 _CUT_OFF = "E08"
@@ -40,8 +42,8 @@ def mend(
     """Apply the fixes that are sure, and look again until nothing changes.
 
     What was done is kept where the program has no more errors for it, states all that it stated, and does not
-    return to an earlier text. Where all fixes together make it worse, parts of them are tried. All looks
-    together take no longer than building the program may.
+    return to an earlier text. Where all fixes together make it worse, parts of them are tried. No look after
+    the first is begun once half the time is over that building a program may take.
     """
     return _Mender(world, settings).mended(source)
 
@@ -57,7 +59,7 @@ class _Mender:
         self.last = 0.0
 
     def mended(self, source: SourceFile) -> Mended:
-        self.last = time.thread_time() + self.settings.building.seconds
+        self.last = time.thread_time() + _SHARE * self.settings.building.seconds
         now = Mended(source, pipeline.check(source, self.world, self.settings))
         seen: dict[object, Mended] = {_outlook(now): now}
         try:

@@ -68,8 +68,8 @@ class Tools:
 
     def check(self, program: Program, files: Files = None) -> Checked:
         """Find the mistakes in an AIDL program without solving it, each with its place, the reason and, where
-        there is one, a fix; also the program with all fixes applied. Quick: use it after every edit, before
-        compile.
+        there is one, a fix; also the program with those fixes applied that can mean nothing else. Quick: use
+        it after every edit, before compile.
         """
         source, world = self.workspace.open(program, files)
         settings = self.workspace.limits.settings

@@ -34,7 +34,9 @@ class _Checked:
 def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser = verbs.add_parser("check", help="find mistakes, write nothing", description=__doc__)
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - reads standard input")
-    parser.add_argument("--fix", action="store_true", help="write the program with all fixes applied")
+    parser.add_argument(
+        "--fix", action="store_true", help="write the program with the fixes applied that are sure"
+    )
     how_far = parser.add_mutually_exclusive_group()
     how_far.add_argument(
         "--ends",

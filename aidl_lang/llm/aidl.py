@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, field, replace
 
 from aidl_lang import ast, parser, pipeline
-from aidl_lang.diagnostics import apply_fixes, has_errors
+from aidl_lang.diagnostics import has_errors
 from aidl_lang.discretion import Programs, Reader
 from aidl_lang.export import Options
 from aidl_lang.llm import feedback
@@ -101,12 +101,11 @@ class AidlConversation:
         return replace(verdict, feedback=told)
 
     def finish(self, verdict: Verdict) -> Verdict:
-        """The last word: fixes of constraints that conflict, then what fits back of what was lost."""
+        """The last word: what fits is put back of what was lost. A constraint that conflicts is given up by
+        nobody but the model, or who reads of it.
+        """
         source, fixes = self._source(verdict.program), verdict.fixes
         compiled = verdict.compiled or self._compiled(source)
-        if not compiled.ok:
-            source, compiled, made = self._forced(source, compiled)
-            fixes += made
         self.ledger.note(source, compiled)
         if compiled.ok:
             restored = self.ledger.restore(source)
@@ -123,15 +122,6 @@ class AidlConversation:
     def _compiled(self, source: SourceFile) -> Compiled:
         compiled = pipeline.compile(source, self.world, settings=self.settings)
         return Reader.of(source).compiled(compiled)
-
-    def _forced(self, source: SourceFile, compiled: Compiled) -> tuple[SourceFile, Compiled, tuple[str, ...]]:
-        """The program with the fixes that choose among conflicting constraints, if that makes it right."""
-        text, made = apply_fixes(source, compiled.diagnostics)
-        forced = self._source(text)
-        result = self._compiled(forced) if made else compiled
-        if not made or not result.ok:
-            return source, compiled, ()
-        return forced, result, tuple(d.fix.title for d in compiled.diagnostics if d.fix)[:made]
 
     def _verdict(self, source: SourceFile, compiled: Compiled, fixes: tuple[str, ...]) -> Verdict:
         wrong = [d for d in compiled.diagnostics if d.is_error]

@@ -36,7 +36,7 @@ def _place(span: Span | None) -> dict[str, Any]:
 
 
 def _fix(fix: Fix) -> dict[str, Any]:
-    return {"title": fix.title, "edits": [_edit(edit) for edit in fix.edits]}
+    return {"title": fix.title, "sure": fix.is_sure, "edits": [_edit(edit) for edit in fix.edits]}
 
 
 def _edit(edit: Edit) -> dict[str, Any]:

@@ -21,13 +21,13 @@ def fixes(view: View, start: int, end: int) -> Iterator[Action]:
     for d in near:
         if d.fix is not None:
             offered.append(d.fix)
-            yield _action(d.fix, d, is_preferred=d.is_error)
+            yield _action(d.fix, d, is_preferred=d.is_error and d.fix.is_sure)
     for d in near:
         for fix in _remedies(view, d):
             if fix not in offered:
                 offered.append(fix)
                 yield _action(fix, d, is_preferred=False)
-    if any(d.fix is not None for d in view.diagnostics):
+    if any(d.fix is not None and d.fix.is_sure for d in view.diagnostics):
         yield Action("Apply all fixes", "source.fixAll", lambda: _everything(view))
 
 
@@ -58,5 +58,5 @@ def _action(fix: Fix, d: Diagnostic, *, is_preferred: bool) -> Action:
 def _everything(view: View) -> Sequence[Edit]:
     mended = mend(view.source, view.world)
     if mended.source.text == view.source.text:
-        raise CannotError("the fixes stand in files that this one imports, or undo one another")
+        raise CannotError("the fixes stand in files that this one imports, or make nothing better")
     return between(view.source, mended.source.text)

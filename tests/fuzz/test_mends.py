@@ -1,0 +1,35 @@
+"""Mutants of real programs are mended without a new error, with all constraints they had, and for good."""
+
+from __future__ import annotations
+
+import pytest
+
+from aidl_lang.source import SourceFile
+from tests.fuzz.mends import constraining, finding, program
+from tests.fuzz.sources import seeds
+
+_EACH = 20
+"""Programs to a test."""
+
+
+@pytest.mark.parametrize("first", range(0, 300, _EACH))
+def test_mending_makes_nothing_worse(first: int) -> None:
+    for seed in range(first, first + _EACH):
+        text = program(seed, seeds())
+        found = finding(text)
+        assert found is None, f"seed {seed}: {found.kind}\n{text}\n=== {found.details}"
+
+
+def test_what_constrains_is_counted() -> None:
+    text = """\
+drawing d {
+    a = circle(radius: 3)
+    b = circle(center: (9, 0), radius: guess(2))
+    tangent(a, b)
+    constrain { a.left == 0; b.nonsense(a) }
+    prefer b.radius == 4
+    assert a.radius == 3
+    show(a)
+}
+"""
+    assert constraining(SourceFile("d.aidl", text)) == 5
