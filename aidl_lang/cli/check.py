@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from aidl_lang.cli import ends, files
 from aidl_lang.cli.options import add_variant
 from aidl_lang.cli.report import UseError, exit_code, say, show
-from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.diagnostics import Diagnostic, has_errors
 
 if TYPE_CHECKING:
     from aidl_lang.ends import Sweep
@@ -100,6 +100,8 @@ def _check(name: str, arguments: argparse.Namespace) -> _Checked:
         mended = mend(source, world, settings)
         if name == files.STANDARD or mended.source.text != source.text:
             files.write(name, mended.source.text.encode())
+        if has_errors(mended.diagnostics):
+            return _Checked(mended.diagnostics, mended.fixes)  # the rest would say no more
         return _found(mended.source, world, settings, arguments, mended.fixes)
     except UseError as reason:
         return _Checked([reason.diagnostic], was_read=False)
