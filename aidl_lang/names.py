@@ -162,7 +162,7 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
     most = _MOST_LETTERS // max(len(wanted), 1)
     found = get_close_matches(wanted, _within(folded, len(wanted), most), n=count + _WIDER, cutoff=likeness)
     matches = [match for match in found if _may_be_meant(name, folded[match])]
-    matches.sort(key=lambda match: (_distance(wanted, match), sorted(wanted) != sorted(match)))
+    matches.sort(key=lambda match: _distance(wanted, match))
     return [folded[match] for match in matches[:count]]
 
 

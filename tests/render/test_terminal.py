@@ -248,6 +248,7 @@ def test_to_dict_has_every_field() -> None:
         "hints": ["hint"],
         "fix": {
             "title": "name it",
+            "sure": False,
             "edits": [{**place, "start": start, "end": start + 4, "replacement": "width"}],
         },
     }
