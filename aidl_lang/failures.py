@@ -2,34 +2,49 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
+from aidl_lang import ast
 from aidl_lang.building.wording import Wording
 from aidl_lang.diagnostics import Diagnostic, Fix, Label
 from aidl_lang.expression import Unknown
+from aidl_lang.givens import Dial, behind
+from aidl_lang.givens import stated as stated_in
 from aidl_lang.lower import Lowered
 from aidl_lang.model import Constraint
-from aidl_lang.remedies import Remedy, left_out, remedy, rewritten, says, short, wished
+from aidl_lang.remedies import Remedy, left_out, remedy, short, turned, wished
 from aidl_lang.solver.solution import Failure, GroupFailure, Member, Solution
 from aidl_lang.source import Span
+from aidl_lang.trials import Trials
 from aidl_lang.units import ANGLE, LENGTH
 
 _PROVEN = (Failure.CONTRADICTORY, Failure.OVERDETERMINED)
 """Reasons that do not depend on where the search began."""
 _TOLERANCE = 1e-6
 """Below this a constraint is not called off, in its own units."""
+_FINISHED = 5
+"""Fixes of which it is tried whether the program then compiles to the end."""
+_FIXED = 2.0
+"""How much dearer it is to change what is `fixed` than another number by the same part."""
+_LONG = 2.0
+"""The same of a number of many digits."""
 _NAMED = 3
 """Things that a list names."""
 _QUOTED = 60
 """Characters of a constraint that a headline quotes."""
 
 
-def failure_notes(lowered: Lowered, solution: Solution) -> list[Diagnostic]:
-    """One error for each group that could not be solved for reasons of its own."""
-    return [report.diagnostic() for report in _reports(lowered, solution)]
+def explained(lowered: Lowered, solution: Solution, trials: Trials) -> list[Explanation]:
+    """One explanation for each group that could not be solved for reasons of its own. What would help is
+    tried by `trials` when it is first asked for.
+    """
+    own = [f for f in solution.failures if not _follows(f, solution.failures, lowered.groups)]
+    return [Explanation(lowered, solution, failure, trials) for failure in own]
 
 
 @dataclass(frozen=True)
@@ -47,25 +62,25 @@ class Party:
 
 
 @dataclass(frozen=True)
+class Given:
+    """An exact number behind a conflict: its name if it has one, its place, and what would fit there."""
+
+    name: str
+    span: Span
+    would_fit: str
+    fix: Fix
+
+
+@dataclass(frozen=True)
 class Conflict:
-    """Constraints that do not hold together, in order of writing. `is_minimal`: without any one of them the
-    others do.
+    """Constraints that do not hold together, in order of writing, and exact numbers that have a share in
+    that. `is_minimal`: without any one of the constraints the others hold.
     """
 
     headline: str
     is_minimal: bool
     parties: tuple[Party, ...]
-
-
-def conflicts(lowered: Lowered, solution: Solution) -> tuple[Conflict, ...]:
-    """What the errors of `failure_notes` are about, one for one, as data."""
-    return tuple(report.conflict() for report in _reports(lowered, solution))
-
-
-def _reports(lowered: Lowered, solution: Solution) -> list[_Report]:
-    stated = Counter(constraint.span for constraint in lowered.stated if constraint is not None)
-    own = [f for f in solution.failures if not _follows(f, solution.failures, lowered.groups)]
-    return [_Report(lowered, solution, failure, stated) for failure in own]
+    givens: tuple[Given, ...] = ()
 
 
 def _follows(failure: GroupFailure, failures: Sequence[GroupFailure], paths: Sequence[str]) -> bool:
@@ -79,12 +94,10 @@ def _follows(failure: GroupFailure, failures: Sequence[GroupFailure], paths: Seq
 
 @dataclass(frozen=True)
 class _Party:
-    """A constraint in a conflict, as its author knows it, and what would mend it alone."""
+    """A constraint in a conflict, as its author knows it."""
 
     member: Member
     stated: Constraint
-    remedy: Remedy | None
-    fix: Fix | None
 
     @property
     def name(self) -> str:
@@ -92,24 +105,36 @@ class _Party:
         return f"`{text if len(text) <= _QUOTED else text[: _QUOTED - 1] + '…'}`"
 
     @property
-    def prominence(self) -> tuple[bool, bool, bool, int]:
-        """Who is asked to change: one that can be mended by a number, and of those the last written."""
-        literal = self.remedy is not None and self.remedy.is_literal
-        return self.fix is not None, literal, self.remedy is not None, self.stated.span.start
+    def node(self) -> ast.Expression | None:
+        """The statement, where what is written at its place is just that."""
+        wording = self.stated.wording
+        if isinstance(wording, Wording) and wording.node.span == self.stated.span:
+            return wording.node
+        return None
 
 
-class _Report:
+class Explanation:
+    """Why a group could not be solved, and what would help."""
+
     def __init__(
-        self, lowered: Lowered, solution: Solution, failure: GroupFailure, stated: Counter[Span]
+        self,
+        lowered: Lowered,
+        solution: Solution,
+        failure: GroupFailure,
+        trials: Trials,
     ) -> None:
-        self.lowered, self.solution, self.failure, self.times = lowered, solution, failure, stated
+        self.lowered, self.solution, self.failure, self.trials = lowered, solution, failure, trials
         self.is_proven = failure.reason in _PROVEN
-        stated_here = [s for i in failure.conflict if (s := lowered.stated[i]) is not None]
-        self.places = Counter(constraint.span for constraint in stated_here)
+        self.times = Counter(c.span for c in lowered.stated if c is not None)
         self.sizes = [self._size(i) for i in failure.conflict if lowered.stated[i] is None]
-        parties = filter(None, map(self._party, failure.members))
+        parties = [_Party(m, stated) for m in failure.members if (stated := lowered.stated[m.index])]
         self.parties = sorted(parties, key=lambda party: party.stated.span.start)
+        self.turns: dict[Span, list[_Party]] = {}
+        """The parties by the place at which they are stated, in the turns of a loop perhaps."""
+        for party in self.parties:
+            self.turns.setdefault(party.stated.span, []).append(party)
 
+    @cached_property
     def diagnostic(self) -> Diagnostic:
         code, headline = self._headline()
         labels = [
@@ -119,45 +144,26 @@ class _Report:
         ]
         if not self.parties:
             return Diagnostic(code, headline, secondary=tuple(labels))
-        chief = self._chief()
-        labels = list(self._labels(chief)) + labels
+        chief = self._chief
+        labels = [*self._givens(), *self._labels(chief), *labels]
         hints = tuple(self._hints())
         return Diagnostic(
-            code, headline, chief.stated.span, self._claim(chief), tuple(labels), hints, self._fix(chief)
+            code, headline, chief.stated.span, self._claim(chief), tuple(labels), hints, self._fix
         )
 
+    @cached_property
     def conflict(self) -> Conflict:
-        return Conflict(self._headline()[1], self.failure.minimal, tuple(map(self._told, self.parties)))
+        parties = tuple(map(self._told, self.parties))
+        givens = tuple(
+            Given(r.dial.name, r.dial.places[0], r.shown, r.fix) for r in self._remedies if r.dial.is_exact
+        )
+        return Conflict(self._headline()[1], self.failure.minimal, parties, givens)
 
     def _told(self, party: _Party) -> Party:
-        """One of the parties; where no number mends it alone, as a wish if an edit can make it one."""
-        stated, fix = party.stated, party.fix
-        if fix is None and self.is_proven and self._is_single(stated):
-            fix = wished(stated)
-        would_fit = party.remedy.text if party.remedy else ""
+        stated, found = party.stated, self._remedy_of(party)
+        fix = found.fix if found else None
+        would_fit = f"{found.shown} would fit" if found else ""
         return Party(stated.holder.path, stated.text, stated.span, party.member.off, would_fit, fix)
-
-    def _party(self, member: Member) -> _Party | None:
-        stated = self.lowered.stated[member.index]
-        if stated is None:
-            return None
-        wording, found, fix = stated.wording, None, None
-        once = self.places[stated.span] == 1
-        if member.fit is not None and once and isinstance(wording, Wording):
-            unknowns, problem = self.lowered.unknowns, self.lowered.problem
-            values = dict(zip(unknowns, self.solution.values.tolist(), strict=True))
-            values.update((unknowns[number], value) for number, value in member.fit.values)
-            size = float(problem.rows.scale.max())
-            found = remedy(wording, member.fit, values, size, vanishing=bool(self.sizes))
-            if found is not None and self._is_single(stated):
-                fix = rewritten(wording, found)
-        return _Party(member, stated, found, fix)
-
-    def _is_single(self, stated: Constraint) -> bool:
-        """Whether an edit at its place changes this constraint and no other: no loop, no template."""
-        wording = stated.wording
-        own = isinstance(wording, Wording) and wording.node.span == stated.span
-        return own and not stated.label and self.times[stated.span] == 1
 
     def _size(self, index: int) -> Unknown:
         """The size that a constraint which nobody stated keeps from vanishing: `least - size <= 0` or
@@ -168,32 +174,108 @@ class _Report:
         *_, size = operands[problem.constraints[index].rows[0].expression]
         return self.lowered.unknowns[operands[size][0]]
 
-    def _chief(self) -> _Party:
-        """The party that the message is about."""
-        if self.is_proven:
-            return max(self.parties, key=lambda party: party.prominence)
-        return max(self.parties, key=lambda party: (party.member.off, party.stated.span.start))
+    # -- what would help
 
-    def _fix(self, chief: _Party) -> Fix | None:
-        if not self.is_proven or not self._is_single(chief.stated):
-            return None
-        if chief.fix is None:
-            return wished(chief.stated)
-        assert isinstance(chief.stated.wording, Wording)
-        said = says(chief.stated.wording, chief.fix)
-        if said not in (party.stated.text for party in self.parties):
-            return chief.fix
-        assert chief.remedy is not None
-        return wished(chief.stated) if chief.remedy.is_relation else left_out(chief.stated)
+    @cached_property
+    def _remedies(self) -> list[Remedy]:
+        """What would fit in place of numbers: those of the parties, one for each place, and exact ones."""
+        if not self.is_proven:
+            return []
+        found: list[Remedy] = []
+        stated = {span: self._dials(parties[0]) for span, parties in self.turns.items()}
+        for span in sorted(stated, key=lambda span: any(dial.is_rough for dial in stated[span])):
+            parties, dials = self.turns[span], stated[span]
+            if self.sizes:  # of which would have to vanish there is only to say that a sign is wrong
+                fitting = (turned(dial, self.failure, self.trials) for dial in dials)
+            else:
+                member = parties[0].member.index if len(parties) == 1 else None
+                fitting = (remedy(dial, self.failure, self.trials, member) for dial in dials)
+            found += itertools.islice(filter(None, fitting), 1)
+        if self.sizes:
+            return found
+        wordings = [party.stated.wording for party in self.parties]
+        uses = next((w.it.program.resolution.uses for w in wordings if isinstance(w, Wording)), {})
+        for dial in behind([p.node for p in self.parties if p.node is not None], uses):
+            if (fitting_there := remedy(dial, self.failure, self.trials)) is not None:
+                found.append(fitting_there)
+        return found
+
+    @staticmethod
+    def _dials(party: _Party) -> list[Dial]:
+        """The numbers of a statement for which others may be told: by what something is multiplied is no
+        measure.
+        """
+        return [] if party.node is None else [dial for dial in stated_in(party.node) if not dial.is_factor]
+
+    def _remedy_of(self, party: _Party) -> Remedy | None:
+        span = party.stated.span
+        inside = (r for r in self._remedies if not r.dial.is_exact)
+        return next((r for r in inside if all(map(span.overlaps, r.dial.places))), None)
+
+    @cached_property
+    def _fix(self) -> Fix | None:
+        """The smallest change of a number that mends it, those first that keep what is written alike alike;
+        at last that one of the constraints is a wish.
+        """
+        cheapest = sorted(self._remedies, key=self._dearness)
+        for found in cheapest[:_FINISHED]:
+            fix = self._once(found)
+            if self.trials.finishes(fix.edits):
+                return fix
+        if len(self.solution.failures) > 1 and cheapest:  # none mends all that is wrong
+            return self._once(cheapest[0])
+        for party in reversed(self.parties if self.is_proven else []):
+            if party.node is not None and len(self.turns[party.stated.span]) == 1:
+                edits = (fix := wished(party.stated)).edits
+                if self.trials.mends(edits, self.failure) and self.trials.finishes(edits):
+                    return fix
+        return None
+
+    def _once(self, found: Remedy) -> Fix:
+        """The fix; where it would say what another party says, that the statement is left out."""
+        for party in self.parties:
+            span = party.stated.span
+            if party.node is None or not all(map(span.overlaps, found.dial.places)):
+                continue
+            said = span.text
+            for edit in found.fix.edits:
+                start, end = edit.span.start - span.start, edit.span.end - span.start
+                said = said[:start] + edit.replacement + said[end:]
+            if any(said == other.stated.span.text for other in self.parties):
+                fix = left_out(party.stated)
+                if fix is not None and self.trials.mends(fix.edits, self.failure):
+                    return fix
+        return found.fix
+
+    def _dearness(self, found: Remedy) -> tuple[bool, bool, float, int]:
+        others = [d for parties in self.turns.values() for d in self._dials(parties[0])]
+        size = abs(found.dial.value)
+        twins = [d for d in others if abs(d.value) == size and d.places != found.dial.places]
+        breaks = not found.dial.is_exact and bool(twins)
+        share = found.share * (_FIXED if found.dial.is_exact and not found.dial.name else 1.0)
+        share *= 1.0 if found.plain else _LONG
+        return found.counts, breaks, round(share, 4), -found.dial.places[0].start
+
+    @cached_property
+    def _chief(self) -> _Party:
+        """The party that the message is about: the one that is mended, else the last of those that can be."""
+        if not self.is_proven:
+            return max(self.parties, key=lambda party: (party.member.off, party.stated.span.start))
+        places = [edit.span for edit in self._fix.edits] if self._fix else []
+        return max(
+            self.parties,
+            key=lambda party: (
+                any(map(party.stated.span.overlaps, places)),
+                self._remedy_of(party) is not None,
+                party.stated.span.start,
+            ),
+        )
 
     # -- words
 
     def _headline(self) -> tuple[str, str]:
         failure = self.failure
-        turns: dict[Span, list[_Party]] = {}
-        for party in self.parties:
-            turns.setdefault(party.stated.span, []).append(party)
-        names = listed([_name(parties) for parties in turns.values()])
+        names = listed([_name(parties) for parties in self.turns.values()])
         names = names or listed([unknown.told for unknown in self.sizes])
         several = len(self.parties) > 1
         match failure.reason:
@@ -210,8 +292,8 @@ class _Report:
 
     def _claim(self, chief: _Party) -> str:
         """What is wrong with the one that the message is about."""
-        if chief.remedy is not None:
-            return chief.remedy.text
+        if (would_fit := self._would_fit(chief)) != "":
+            return would_fit
         off = chief.member.off
         if not math.isfinite(off):
             return "this has no value where the solver stopped"
@@ -219,14 +301,29 @@ class _Report:
             return f"off by {_measured(off, chief.stated)} at best" if off > _TOLERANCE else ""
         return ("", "", "conflicts with the other", "conflicts with the others")[min(len(self.parties), 3)]
 
+    def _would_fit(self, party: _Party) -> str:
+        found = self._remedy_of(party)
+        if found is None:
+            return ""
+        assert party.node is not None
+        several = len(stated_in(party.node)) > 1
+        instead = f" instead of `{found.dial.places[0].text}`" if several else ""
+        times = self.times[party.stated.span]
+        return f"{found.shown}{instead} would fit" + (f", all {times} times" if times > 1 else "")
+
     def _labels(self, chief: _Party) -> Iterator[Label]:
         """The other places, each once."""
         text = "conflicts with this" if self.is_proven else "takes part"
-        seen = {chief.stated.span}
-        for party in self.parties:
-            if party.stated.span not in seen:
-                seen.add(party.stated.span)
-                yield Label(party.stated.span, f"{text}; {party.remedy.text}" if party.remedy else text)
+        for span, parties in self.turns.items():
+            if span != chief.stated.span:
+                would_fit = self._would_fit(parties[0])
+                yield Label(span, f"{text}; {would_fit}" if would_fit else text)
+
+    def _givens(self) -> Iterator[Label]:
+        """The exact numbers that have a share in it."""
+        for found in self._remedies:
+            if found.dial.is_exact:
+                yield Label(found.dial.places[0], f"exact; {found.shown} would fit")
 
     def _hints(self) -> Iterator[str]:
         match self.failure.reason:

@@ -28,8 +28,8 @@ _STILL = 1e-6
 
 @dataclass(frozen=True)
 class GaveWay:
-    """Unknowns that gave way together, with the values they had and have, and the constraints that left no
-    other way, in order of writing; without any one of them they would have stayed, if these are `minimal`.
+    """Unknowns that gave way together, with the values they had and have, and the constraints that ask for it,
+    in order of writing; without any one of them they would have stayed, if these are `minimal`.
     """
 
     moved: Mapping[Unknown, tuple[float, float]]
@@ -175,13 +175,13 @@ def _is_named(structure: Structure, given: GaveWay) -> bool:
 
 
 def _whose(given: GaveWay) -> tuple[str, ...]:
-    """Who left no other way, in a sentence."""
+    """Who asks for it, in a sentence."""
     if not given.because:
         return ()
     names = [f"`{c.text}`" + (f" [{c.label}]" if c.label else "") for c in given.because]
-    left = f"{listed(names, 6)} left no other way"
+    ask = f"{listed(names, 6)} ask{'s' * (len(names) == 1)} for it"
     single = len(names) > 1 and given.minimal
-    return (f"{left}: without any one of them it would have stayed" if single else left,)
+    return (f"{ask}: without any one of them it would have stayed" if single else ask,)
 
 
 def _told(
@@ -193,7 +193,5 @@ def _told(
     hints: tuple[str, ...],
 ) -> Diagnostic:
     places = dict.fromkeys(c.span for c in given.because)
-    asked = tuple(Label(place, "leaves no other way") for place in places if place != span)
-    return Diagnostic(
-        code, message, span, "the constraints could not hold otherwise", (*labels, *asked), hints
-    )
+    asked = tuple(Label(place, "asks for it") for place in places if place != span)
+    return Diagnostic(code, message, span, "this gave way", (*labels, *asked), hints)

@@ -45,9 +45,13 @@ def interpret(
     program: Program,
     overrides: Mapping[str, str | float | bool] | None = None,
     limits: Limits = DEFAULT_LIMITS,
+    turned: Mapping[int, int] | None = None,
 ) -> Interpretation:
-    """Run a program. Never raises for what a program says; errors are among the diagnostics."""
+    """Run a program. Never raises for what a program says; errors are among the diagnostics. `turned` are
+    readings of ambiguous calls, by number, and how many places from the nearest they are to be taken.
+    """
     it = Interpreter(program, overrides or {}, limits, EXECUTORS, evaluate, call)
+    it.turned = turned or {}
     it.frames_turn = any(map(_speaks_of_rotation, program.resolution.modules))
     it.watched = frozenset(node for violation in program.violations for node in violation.nodes)
     try:

@@ -11,7 +11,7 @@ from aidl_lang.building.conditions import RELATIONS, holds
 from aidl_lang.building.wording import Wording
 from aidl_lang.diagnostics import Diagnostic, Label
 from aidl_lang.expression import Evaluator, nodes
-from aidl_lang.failures import failure_notes
+from aidl_lang.failures import Explanation
 from aidl_lang.geometry.boolean import clearance, overlap_area
 from aidl_lang.geometry.drawing import Drawing, draw
 from aidl_lang.geometry.evaluate import bounds, inward
@@ -37,9 +37,10 @@ def solution_notes(
     freedom: Freedom,
     model: SolvedModel,
     given: Sequence[GaveWay],
+    failures: Sequence[Explanation],
 ) -> list[Diagnostic]:
     """Failures as errors; for a model that solved, what gave way and redundant constraints."""
-    found = failure_notes(lowered, solution)
+    found = [failure.diagnostic for failure in failures]
     if solution.status is not Status.SOLVED:
         return found
     found += giving_notes(given, model)

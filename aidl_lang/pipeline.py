@@ -39,13 +39,14 @@ from aidl_lang.world import World
 
 if TYPE_CHECKING:
     from aidl_lang.expression import Evaluator
-    from aidl_lang.failures import Conflict
+    from aidl_lang.failures import Conflict, Explanation
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.giving import GaveWay
     from aidl_lang.lower import Lowered
     from aidl_lang.solved import Dimension, SolvedModel
     from aidl_lang.solver.analysis import Freedom
     from aidl_lang.solver.solution import Solution
+    from aidl_lang.trials import Trials
 
 _RECURSION = 20_000
 """Python frames for deeply nested programs; the limits on nesting and calls end sooner."""
@@ -150,6 +151,7 @@ def _build(
     settings: Settings,
     watch: _Stopwatch,
     checked: Front | None = None,
+    turned: Mapping[int, int] | None = None,
 ) -> tuple[Interpretation, list[Diagnostic]]:
     """Text → Model, with every diagnostic that does not need solving."""
     program, found = checked or _front(source, world, settings, watch)
@@ -157,7 +159,7 @@ def _build(
         return nothing_built(), within_limit(ordered(adapted(found, settings.variant)))
     static = list(found)
     with watch("interpret"):
-        built = interpret(program, params, settings.building)
+        built = interpret(program, params, settings.building, turned)
     static += [violation.diagnostic(built.written) for violation in program.violations]
     found = [*static, *_new(built.diagnostics, static)]
     return built, within_limit(ordered(adapted(found, settings.variant)))
@@ -197,16 +199,51 @@ def _sizes(built: Model, evaluator: Evaluator) -> Callable[[SolvedModel], tuple[
     return sizes
 
 
-def _conflicts(lowered: Lowered, solution: Solution) -> Callable[[], tuple[Conflict, ...]]:
+def _conflicts(failures: Sequence[Explanation]) -> Callable[[], tuple[Conflict, ...]]:
     """What tells the conflicts of a program, worked out when they are asked for."""
 
     def conflicts() -> tuple[Conflict, ...]:
-        from aidl_lang.failures import conflicts
-
         with _working:
-            return conflicts(lowered, solution)
+            return tuple(failure.conflict for failure in failures)
 
     return conflicts
+
+
+def _trials(
+    source: SourceFile,
+    world: World | None,
+    params: Mapping[str, str | float | bool],
+    settings: Settings,
+    lowered: Lowered,
+    solution: Solution,
+) -> Trials:
+    """What tries other texts of a program whose problem and solution these are."""
+    from aidl_lang.lower import lower
+    from aidl_lang.trials import Trials
+
+    solving = replace(settings.solving, explain=False, seconds=min(settings.solving.seconds, 1.0))
+    unexplained = replace(settings, solving=solving)
+
+    def build(changed: SourceFile) -> Lowered | None:
+        built, found = _build(changed, world, params, unexplained, _Stopwatch())
+        return None if has_errors(found) else lower(built.model)
+
+    def compiled(changed: SourceFile) -> Compiled:
+        return compile(changed, world, params, unexplained)
+
+    return Trials(source, build, compiled, lowered, solution, settings.solving)
+
+
+def _again(
+    source: SourceFile, world: World | None, params: Mapping[str, str | float | bool], settings: Settings
+) -> Callable[[Mapping[int, int]], Interpretation | None]:
+    """What builds the same program with ambiguous calls taken otherwise; None where that goes wrong."""
+
+    def again(turned: Mapping[int, int]) -> Interpretation | None:
+        built, found = _build(source, world, params, settings, _Stopwatch(), turned=turned)
+        return None if has_errors(found) else built
+
+    return again
 
 
 def _beside(notes: Sequence[Diagnostic], errors: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
@@ -272,7 +309,9 @@ def compile(
         known = tuple(built.model.knobs)
         if has_errors(diagnostics):
             return Compiled("wrong", diagnostics, watch.seconds, known)
-        return _finish(built, diagnostics, settings, watch, known, frozenset(show), memory)
+        program = source, world, params or {}, settings
+        trials, again = partial(_trials, *program), _again(*program)
+        return _finish(built, diagnostics, settings, watch, known, frozenset(show), memory, trials, again)
 
 
 def placed(
@@ -329,9 +368,13 @@ def _finish(
     known: tuple[Knob, ...],
     show: frozenset[str],
     memory: Memory | None,
+    trials: Callable[[Lowered, Solution], Trials],
+    again: Callable[[Mapping[int, int]], Interpretation | None],
 ) -> Compiled:
+    from aidl_lang.failures import explained
     from aidl_lang.giving import gave_way, refused
     from aidl_lang.lower import lower
+    from aidl_lang.otherwise import elsewhere_notes, otherwise
     from aidl_lang.repetitions import follows, preference
     from aidl_lang.solver import Status, solve
     from aidl_lang.solver.analysis import analyse
@@ -340,19 +383,27 @@ def _finish(
         lowered = lower(built.model)
     with watch("solve"):
         solution = solve(lowered.problem, settings.solving, memory)
+        other = otherwise(built, lowered, solution, again, settings.solving)
+    if other is not None:
+        built, lowered, solution = other.built, other.lowered, other.solution
     with watch("freedom"):
         freedom = analyse(lowered.problem, solution, preference(lowered))
     with watch("reasons"):
         given = gave_way(lowered, solution, settings.solving)
+    tried = trials(lowered, solution)
+    failures = explained(lowered, solution, tried)
+    elsewhere = list(elsewhere_notes(built.model, lowered, solution, other, tried))
     try:
         with within(settings.drawing, "drawing"):
-            model, evaluator, drawing, found, notes = _drawn(built, lowered, solution, freedom, given, watch)
+            model, evaluator, drawing, found, notes = _drawn(
+                built, lowered, solution, freedom, given, failures, watch
+            )
     except TooLongError as reason:
         return Compiled("wrong", ordered([*diagnostics, reason.diagnostic]), watch.seconds, known)
     found = list(map(refused, found)) if settings.strict else found
     if solution.status is not Status.SOLVED:
         notes = []  # the parts are not where they belong
-    notes = list(_beside(notes, found))
+    notes = list(_beside([*elsewhere, *notes], found))
     everything = ordered([*diagnostics, *adapted([*found, *notes], settings.variant)])
     stages = tuple((lowered.groups[stage.group], stage) for stage in solution.stages)
     return Compiled(
@@ -364,7 +415,7 @@ def _finish(
         drawing,
         show,
         stages,
-        _conflicts(lowered, solution),
+        _conflicts(failures),
         partial(follows, lowered, solution),
         built.model,
         evaluator,
@@ -378,6 +429,7 @@ def _drawn(
     solution: Solution,
     freedom: Freedom,
     given: tuple[GaveWay, ...],
+    failures: Sequence[Explanation],
     watch: _Stopwatch,
 ) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic], list[Diagnostic]]:
     """The solved model and its drawing; what there is to say of the solution, and of what is drawn."""
@@ -387,7 +439,7 @@ def _drawn(
     model, evaluator, drawing, notes = _pictured(built.model, lowered, solution, freedom, watch)
     with watch("asserts"):
         model = explained(model, given)
-        found = solution_notes(lowered, solution, freedom, model, given)
+        found = solution_notes(lowered, solution, freedom, model, given, failures)
         is_solved = solution.status.value == "solved"
         found += assertion_notes(built.model, model, drawing, evaluator, solved_fully=is_solved)
     return model, evaluator, drawing, found, notes

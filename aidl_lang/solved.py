@@ -177,7 +177,7 @@ class ConstraintReport:
 @dataclass(frozen=True)
 class Change:
     """A kept size that had to change. `told`: what it is, for people; `is_size`: no angle or offset;
-    `because`: the constraints, as written, that left no other way.
+    `because`: the constraints, as written, that ask for it.
     """
 
     path: str

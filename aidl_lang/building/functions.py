@@ -260,7 +260,9 @@ def _written(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _nearest(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """The candidate that is nearest to a value as written; the choice is part of the report."""
+    """The candidate that is nearest to a value as written, or one further off where that is asked for; the
+    choice is part of the report.
+    """
     value = _num(it, a, "value", node, env)
     candidates = _numbers(it, a, "candidates", node, env)
     if value is None or not candidates:
@@ -272,8 +274,11 @@ def _nearest(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         difference = candidate.value - target.value
         return abs((difference + 180) % 360 - 180) if is_angle else abs(difference)
 
-    chosen = min(candidates, key=away)
-    if it.call_sites and (span := it.place(node)) is not None and len(candidates) > 1:
+    is_told = it.call_sites and (span := it.place(node)) is not None and len(candidates) > 1
+    rank = it.turned.get(len(it.readings), 0) if is_told else 0
+    chosen = sorted(candidates, key=away)[rank % len(candidates)]
+    if is_told:
+        assert span is not None
         it.readings.append(
             (span, f"taken as {chosen.value:.6g} ({candidates.index(chosen) + 1} of {len(candidates)})")
         )

@@ -99,6 +99,8 @@ class Interpreter:
     assertions: list[Assertion] = field(default_factory=list)
     knobs: list[Knob] = field(default_factory=list)
     readings: list[tuple[Span, str]] = field(default_factory=list)
+    turned: Mapping[int, int] = field(default_factory=dict)
+    """readings, by number, that are not the nearest to what is written, but so many places further off"""
     literals: list[Literal] = field(default_factory=list)
     pending: dict[Structure, list[tuple[ast.Statement, Scope]]] = field(default_factory=dict)
     written: dict[ast.Node, tuple[float, float] | float] = field(default_factory=dict)

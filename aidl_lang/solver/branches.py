@@ -25,6 +25,7 @@ from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Floats, Op
 from aidl_lang.solver.problem import Relation, Row, Settings
 from aidl_lang.solver.program import AffineProgram, Program
+from aidl_lang.solver.refuting import Relaxation
 from aidl_lang.solver.valuation import Valuation
 
 TIGHTER = 0.5
@@ -33,6 +34,8 @@ LAZY_ROUNDS = 4
 """Rounds of adding violated inequalities before all of them are taken into account."""
 NEIGHBOURS = 12
 """Combinations of other branches tried as a last resort, for each perturbed start that the stage is worth."""
+SURE = 6
+"""Combinations after which it is asked whether it can be shown that none would do."""
 DEEPEST = 6
 """Branches that are turned together at most."""
 SHARE = 1e-7
@@ -232,6 +235,9 @@ class _Attempt:
                     return verdict
                 known.add(flipped)
                 left -= 1
+                if len(known) == SURE and not any(self.task.softness) and self._is_refuted():
+                    self._move_to(reached)
+                    return verdict
                 other, _, _ = self._solve_in_branch(self.origin, flipped)
                 if other.satisfied:
                     return other
@@ -253,6 +259,12 @@ class _Attempt:
             others = self.freezer.choices(row.expression for row in rows)
             nodes += [node for node in others if node not in nodes]
         return nodes
+
+    def _is_refuted(self) -> bool:
+        """Whether it is shown that no branches would help."""
+        rows = self.task.rows
+        relaxation = Relaxation(self.values, rows, self.free, self.settings.tolerance, rows)
+        return bool(relaxation.refutation(range(len(rows))))
 
     def _proof_without_branches(self) -> Mapping[int, float] | None:
         """Nothing if the rows that no other branch could help can be met by themselves; else why not, or None
@@ -330,7 +342,8 @@ class _Attempt:
         if outcome.contradiction is not None:
             factors = outcome.contradiction / row_scale
             taking_part = np.flatnonzero(np.abs(outcome.contradiction) > SHARE).tolist()
-            self._blame(frozen, {int(program.rows[i]): float(factors[i]) for i in taking_part})
+            if taking_part:
+                self._blame(frozen, {int(program.rows[i]): float(factors[i]) for i in taking_part})
         x = anchor + scale * outcome.z[: len(scale)]
         if np.isfinite(x).all():
             self.values.assign(zip(program.columns, x.tolist(), strict=True))

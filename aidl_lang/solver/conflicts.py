@@ -1,27 +1,29 @@
-"""Which constraints of a failed group cannot hold together, each of them needed, and what would fit instead.
+"""Which constraints of a failed group cannot hold together, each of them needed.
 
-The suspects are named by the place where the search stalled (`suspects`). If they fail together they are
-reduced: by QuickXplain (Junker, AAAI 2004), in which halves of the constraints are background for one
-another, so that k culprits among n are found in about k log(n / k) solves; then by leaving out each member in
-turn. What is left is minimal: without any one of them the others hold, and where they do, the member that was
-left out says what it would have to ask for instead.
+What is refuted (`refuting`) is so for good. Else the suspects are named by the place where the search stalled
+(`suspects`). If they fail together they are reduced: by QuickXplain (Junker, AAAI 2004), in which halves of
+the constraints are background for one another, so that k culprits among n are found in about k log(n / k)
+solves; then by leaving out each member in turn. What is left is minimal: without any one of them the others
+hold. That a search fails is no proof, so for such a set it begins in many other places before it is called
+contradictory.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from aidl_lang.solver import branches
-from aidl_lang.solver.branches import Task, violation_of
+from aidl_lang.solver.branches import violation_of
 from aidl_lang.solver.gradients import gradients
 from aidl_lang.solver.newton import Clock, End, perturbation
 from aidl_lang.solver.problem import Relation
-from aidl_lang.solver.solution import Failure, Fit, GroupFailure, Member
-from aidl_lang.solver.suspects import Linearised, suspects
+from aidl_lang.solver.refuting import Relaxation
+from aidl_lang.solver.solution import Failure, GroupFailure, Member
+from aidl_lang.solver.suspects import suspects
 
 if TYPE_CHECKING:
     from aidl_lang.solver.group import Scope
@@ -37,26 +39,32 @@ RESTARTS = 2
 """Perturbed starts for each set that is tried."""
 THOROUGH = 5
 """Perturbed starts before a set is called contradictory."""
-GIVE, PASSES = 1e-2, 4
-"""Unit of the slack of a member whose least violation is sought, in the units of its row, and how often it is
-sought, each time from the last place: a slack so dear that once is enough would be lost in rounding.
-"""
-COSTLY = 1000
-"""Work beyond which it is not tried what would fit."""
+FLAT = 1e-9
+"""A slope below this is none: coordinates that cancel, as in the width of a box."""
 CURVED = 1e-6
 """Change of a slope, relatively, that shows that a row is not affine."""
-SAME = 1e-6
-"""Relative difference by which one place is not better than another."""
+STARTS = 32
+"""Other places in which the search for a set begins before it is called contradictory."""
+FIRST = 8
+"""The same for all constraints, before any are looked for that conflict."""
+LONGEST = 1.0
+"""Seconds for these searches."""
+COSTLY = 4000
+"""Work of one attempt beyond which all constraints are not tried in other places."""
+SPREADS = (0.3, 1.0, 3.0)
+"""How far from the first guesses these are, in sizes of the drawing."""
+SEED = 1
 MANY = 12
 """Suspects above which halves of them are tried before single ones."""
 
 
 @dataclass(frozen=True)
 class _Trial:
-    """How an attempt ended, and the values of the free unknowns there."""
+    """How an attempt ended, the values of the free unknowns there, and the greatest violation."""
 
     end: End
     reached: dict[int, float]
+    violation: float = 0.0
 
     @property
     def holds(self) -> bool:
@@ -113,20 +121,88 @@ class _Search:
         self.left = WORK - sum(failure.work for failure in hierarchy.failures)
 
     def explain(self, group: int, best: dict[int, float]) -> GroupFailure:
-        hierarchy = self.hierarchy
+        hierarchy, scope = self.hierarchy, self.scope
+        refuted = self._refuted(scope.constraints)
+        if not refuted and self._cost(scope.constraints) <= COSTLY:
+            whole = self._nearest(scope.constraints, _Trial(End.INFEASIBLE, best, np.inf), FIRST)
+            if whole.holds:
+                return self._found(group, self._violated(best), whole)
         conflict = self._conflict(best)
         minimal = not self._spent
+        is_proven = bool(self._refuted(conflict))
         thorough = self._attempt(tuple(conflict), THOROUGH)
-        hierarchy.values.assign(thorough.reached.items())
-        members = [self.member(hierarchy, index) for index in conflict]
+        nearest = thorough if is_proven else self._nearest(conflict, thorough, STARTS)
+        if nearest.holds:
+            return self._found(group, conflict, nearest)
+        hierarchy.values.assign(nearest.reached.items())
+        members = tuple(self.member(hierarchy, index) for index in conflict)
         moving, equations = self._count(conflict)
+        is_curved = bool(moving) and self._curved(conflict)
         reason = Failure.NOT_CONVERGED
-        if minimal and thorough.end in (End.INFEASIBLE, End.CONTRARY):
-            excess = equations > len(moving) > 0 and self._curved(conflict)
+        if is_proven or (minimal and thorough.end in (End.INFEASIBLE, End.CONTRARY)):
+            excess = equations > len(moving) > 0 and is_curved
             reason = Failure.OVERDETERMINED if excess else Failure.CONTRADICTORY
-            members = [replace(m, fit=self._fit(m.index, conflict, thorough.reached)) for m in members]
         hierarchy.values.assign(self.before.items())
-        return GroupFailure(group, reason, tuple(members), minimal, moving, equations, self.work)
+        return GroupFailure(
+            group,
+            reason,
+            members,
+            minimal,
+            moving,
+            equations,
+            self.work,
+            within=tuple(scope.constraints),
+            nearest=tuple(sorted(nearest.reached.items())),
+            is_curved=is_curved,
+            sizes=self._sizes(conflict),
+        )
+
+    def _found(self, group: int, failing: Sequence[int], place: _Trial) -> GroupFailure:
+        """A failure of constraints that hold in another place."""
+        hierarchy = self.hierarchy
+        hierarchy.values.assign(self.before.items())
+        members = tuple(self.member(hierarchy, index) for index in failing)
+        return GroupFailure(
+            group,
+            Failure.NOT_CONVERGED,
+            members,
+            work=self.work,
+            elsewhere=tuple(sorted(place.reached.items())),
+            within=tuple(self.scope.constraints),
+        )
+
+    def _nearest(self, conflict: Sequence[int], best: _Trial, starts: int) -> _Trial:
+        """The best of searches from many places: where the constraints hold after all, if one finds that,
+        with no kept size changed if possible.
+        """
+        hierarchy, clock = self.hierarchy, Clock(min(LONGEST, self.hierarchy.clock.left / 2.0))
+        mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, conflict))
+        free = sorted(mentioned & self.scope.free)
+        positions = frozenset(u for u in free if not hierarchy.is_kept(u) or hierarchy.is_spanned(u))
+        for scope in dict.fromkeys((positions, frozenset(free))):
+            for start in itertools.islice(self._starts(sorted(scope)), starts):
+                if best.holds or clock.expired:
+                    return best
+                found = self._attempt(tuple(conflict), 0, {**self.before, **start}, scope)
+                best = min(best, found, key=lambda trial: trial.violation)
+        return best
+
+    def _starts(self, free: Sequence[int]) -> Iterator[dict[int, float]]:
+        """Places about the first guesses: directions anywhere, sizes between a third and three times."""
+        problem, random = self.hierarchy.problem, np.random.default_rng(SEED)
+        size = float(problem.rows.scale.max(initial=1.0))
+        for turn in range(STARTS):
+            spread = SPREADS[turn % len(SPREADS)] * size
+            start = {}
+            for unknown in free:
+                share, here = random.uniform(-1.0, 1.0), self.before[unknown]
+                if problem.longest is not None and np.isfinite(problem.longest[unknown]):
+                    start[unknown] = 180.0 * share
+                elif problem.kept[unknown] and not self.hierarchy.is_spanned(unknown):
+                    start[unknown] = here * 3.0**share
+                else:
+                    start[unknown] = here + spread * share
+            yield start
 
     @staticmethod
     def member(hierarchy: Hierarchy, index: int) -> Member:
@@ -138,16 +214,35 @@ class _Search:
 
     def _conflict(self, best: dict[int, float]) -> list[int]:
         """A set that cannot hold together; minimal unless the budget was spent."""
+        if refuted := self._refuted(self.scope.constraints):
+            return self._needed(refuted)
         found = next((c for c in self._candidates(best) if not self._holds(c)), None)
         if found is None:
             return self._violated(best)
         if len(found) > MANY:
             found = self._halve([], False, found)
+        return self._needed(found)
+
+    def _needed(self, found: list[int]) -> list[int]:
+        """What is left of a set that fails without those that it fails without."""
         for index in list(found):
             rest = [other for other in found if other != index]
             if not self._spent and not self._holds(rest):
                 found = rest
         return sorted(found)
+
+    def _refuted(self, constraints: Sequence[int]) -> list[int]:
+        """Constraints among these that are shown never to hold together; none if that cannot be shown."""
+        relaxation = self._relaxation(constraints)
+        owner = [index for index in constraints for _ in self.hierarchy.rows([index])]
+        return sorted({owner[row] for row in relaxation.smallest(range(len(owner)))})
+
+    def _relaxation(self, constraints: Sequence[int]) -> Relaxation:
+        hierarchy = self.hierarchy
+        hierarchy.values.assign(self.before.items())
+        hierarchy.refresh(constraints)
+        rows = hierarchy.rows(constraints)
+        return Relaxation(hierarchy.values, rows, self.scope.free, hierarchy.settings.tolerance)
 
     def _candidates(self, best: dict[int, float]) -> Iterator[list[int]]:
         """Sets that may fail, those first that are likely to be small."""
@@ -199,6 +294,18 @@ class _Search:
         rows = hierarchy.rows(conflict)
         return tuple(sorted(mentioned & self.scope.free)), sum(r.relation is Relation.EQUAL for r in rows)
 
+    def _sizes(self, conflict: Sequence[int]) -> frozenset[int]:
+        """The kept sizes that constraints are about which hang on no position."""
+        hierarchy, found = self.hierarchy, set[int]()
+        for index in conflict:
+            roots = [row.expression for row in hierarchy.rows([index])]
+            hierarchy.refresh([index])
+            slopes = gradients(hierarchy.values, roots)
+            reached = {u for root in roots for u, slope in slopes[root].items() if abs(slope) > FLAT}
+            if all(map(hierarchy.is_kept, reached)):
+                found |= reached
+        return frozenset(found)
+
     def _curved(self, conflict: Sequence[int]) -> bool:
         """Whether the slopes of the rows depend on the place."""
         hierarchy = self.hierarchy
@@ -215,62 +322,6 @@ class _Search:
         hierarchy.values.assign(here.items())
         return bool(np.abs(slopes[0] - slopes[1]).max() > CURVED * np.abs(slopes[0]).max())
 
-    def _fit(self, index: int, conflict: Sequence[int], stalled: dict[int, float]) -> Fit | None:
-        """What `index` would ask for if it gave way as little as the others allow: all of the scope if
-        possible, else those of the conflict.
-        """
-        hierarchy, everything = self.hierarchy, self.scope.constraints
-        for others in (everything, tuple(conflict)):
-            rest = tuple(other for other in others if other != index)
-            if self._cost(others) > COSTLY or not (trial := self._try(rest)).holds:
-                continue
-            places = [trial.reached, *self._nearer(index, rest, trial.reached, stalled)]
-            residuals = [self._residuals(index, place) for place in places]
-            lacks = [self._lack(index, found) for found in residuals]
-            best = next(i for i, lack in enumerate(lacks) if lack <= (1.0 + SAME) * min(lacks))
-            hierarchy.values.assign(places[0].items())
-            pinned = Linearised(hierarchy, (*rest, index), self.scope.free).implies(index)
-            hierarchy.values.assign(self.before.items())
-            regardless = residuals[best if pinned else 0]
-            return Fit(residuals[best], regardless, tuple(sorted(places[best].items())))
-        return None
-
-    def _nearer(
-        self, index: int, rest: tuple[int, ...], reached: dict[int, float], stalled: dict[int, float]
-    ) -> Iterator[dict[int, float]]:
-        """Places where `rest` holds and `index` may lack less: that nearest to where the search for all of
-        them stalled, and that at which a slack given to `index` is least.
-        """
-        hierarchy, free = self.hierarchy, self.scope.free
-        if (projected := self._attempt(rest, 0, stalled)).holds:
-            yield projected.reached
-        hard, soft = hierarchy.rows(rest), hierarchy.rows([index])
-        task = Task([*hard, *soft], [0.0] * len(hard) + [GIVE / row.scale for row in soft], free)
-        for _ in range(PASSES):
-            self.work += self._cost(rest)
-            hierarchy.values.assign(reached.items())
-            found = branches.attempt(task, hierarchy.values, hierarchy.metric, hierarchy.settings, self.clock)
-            if not found.satisfied:
-                break
-            reached = hierarchy.save(free)
-        yield reached
-
-    def _residuals(self, index: int, reached: dict[int, float]) -> tuple[float, ...]:
-        hierarchy = self.hierarchy
-        hierarchy.values.assign(reached.items())
-        hierarchy.refresh([index])
-        return tuple(hierarchy.values.nodes[row.expression] for row in hierarchy.rows([index]))
-
-    def _lack(self, index: int, residuals: Sequence[float]) -> float:
-        """How far the rows are from holding together; infinite if one has no value."""
-        rows = self.hierarchy.rows([index])
-        lacks = [
-            max(value, 0.0) if row.relation is Relation.AT_MOST else value
-            for row, value in zip(rows, residuals, strict=True)
-        ]
-        length = float(np.linalg.norm(lacks))
-        return length if length == length else np.inf
-
     # -- trying
 
     @property
@@ -278,7 +329,14 @@ class _Search:
         return self.clock.expired or self.work >= self.left
 
     def _holds(self, constraints: Sequence[int]) -> bool:
-        return self._try(tuple(sorted(constraints))).holds
+        """Whether constraints can hold together, as far as a proof or a search tells."""
+        wanted = tuple(sorted(constraints))
+        if wanted not in self.trials:
+            relaxation = self._relaxation(wanted)
+            refuted = bool(relaxation.refutation(range(len(self.hierarchy.rows(wanted)))))
+            if refuted or relaxation.is_exact:
+                return not refuted
+        return self._try(wanted).holds
 
     def _try(self, constraints: tuple[int, ...]) -> _Trial:
         if constraints not in self.trials:
@@ -291,13 +349,18 @@ class _Search:
         return len(self.hierarchy.rows(constraints)) * len(unknowns & self.scope.free)
 
     def _attempt(
-        self, constraints: tuple[int, ...], restarts: int, start: dict[int, float] | None = None
+        self,
+        constraints: tuple[int, ...],
+        restarts: int,
+        start: dict[int, float] | None = None,
+        free: frozenset[int] | None = None,
     ) -> _Trial:
         """From `start`, or from where the group was; leaves the values where the group was."""
         hierarchy = self.hierarchy
         self.work += self._cost(constraints)
         hierarchy.values.assign((start or self.before).items())
-        end = hierarchy.attempt(replace(self.scope, constraints=constraints), restarts, self.clock).end
+        scope = replace(self.scope, constraints=constraints, free=self.scope.free if free is None else free)
+        verdict = hierarchy.attempt(scope, restarts, self.clock, turning=start is None)
         reached = hierarchy.save(self.scope.free)
         hierarchy.values.assign(self.before.items())
-        return _Trial(end, reached)
+        return _Trial(verdict.end, reached, verdict.violation)

@@ -38,7 +38,8 @@ from aidl_lang.solver.freezing import Freezer
 from aidl_lang.solver.gradients import gradients
 from aidl_lang.solver.preferences import prefer
 from aidl_lang.solver.problem import Relation
-from aidl_lang.solver.solution import Giving, StageReport
+from aidl_lang.solver.refuting import Relaxation
+from aidl_lang.solver.solution import Giving, GroupFailure, StageReport
 from aidl_lang.solver.thinning import thin
 
 if TYPE_CHECKING:
@@ -110,6 +111,7 @@ class Group:
         self._tiers: dict[int, Tier] = {}
         self._everything: dict[tuple[int, ...], Scope] = {}
         """What takes part if all is free, by the constraints that are to hold."""
+        self._refuted: dict[tuple[int, ...], bool] = {}
 
     def _place(self, indices: Iterable[int]) -> None:
         """Takes up what these constraints place: what they name first and what has a share in them. A width
@@ -172,6 +174,7 @@ class Group:
             self.hard.remove(left_out)
             hierarchy.give_up([left_out])
             self._everything.clear()
+            self._refuted.clear()
 
     def _leave_out(self) -> int | None:
         """The constraint to go on without after a failure; None if it is not known which would help."""
@@ -235,13 +238,33 @@ class Group:
         else:
             positions = [tier for tier in tiers if tier <= POSITIONS]
         reached, best, obstacle = self._climb(positions, part, best)
-        if reached is None:
+        if reached is None and not self._refuted.get(tuple(part)):
             reached = self._resize(part, obstacle)
+            if reached is None:
+                reached, best, _ = self._climb([tier for tier in tiers if tier > POSITIONS], part, best)
         if reached is None:
-            reached, best, _ = self._climb([tier for tier in tiers if tier > POSITIONS], part, best)
-        if reached is None:
-            self._fail(violated, everything, before, best[1])
+            failure = conflicts.explain(hierarchy, self.group, violated, everything, before, best[1])
+            reached = self._from_elsewhere(failure, part, before)
+            if reached is None:
+                self._fail(failure, everything, best[1])
         return reached
+
+    def _from_elsewhere(
+        self, failure: GroupFailure, part: list[int], before: dict[int, float]
+    ) -> Tier | None:
+        """The stage that satisfies everything from the place at which those that failed hold; None if none
+        does.
+        """
+        hierarchy = self.hierarchy
+        for tier in (POSITIONS, (9, 0)) if failure.elsewhere else ():
+            scope = self.scope(tier, part)
+            hierarchy.values.assign(before.items())
+            hierarchy.values.assign(pair for pair in failure.elsewhere if pair[0] in scope.free)
+            if hierarchy.attempt(scope, 1).satisfied:
+                self._report(tier, scope, before, failure.conflict)
+                return tier
+        hierarchy.values.assign(before.items())
+        return None
 
     def _climb(
         self, tiers: list[Tier], seeds: list[int], best: Best
@@ -268,6 +291,8 @@ class Group:
                 continue
             if self._stands(obstacle[1], scope.free):
                 continue
+            if turning and self._is_refuted(seeds):
+                break
             tried[turning] = scope.free
             # What builds on a part that failed is drawn as well as it goes, and not searched for long.
             last = turning and tier == tiers[-1] and not hierarchy.failures
@@ -285,6 +310,17 @@ class Group:
         return None, best, obstacle
 
     # -- what stands in the way
+
+    def _is_refuted(self, seeds: Sequence[int]) -> bool:
+        """Whether it is shown that no stage can satisfy `seeds` and what binds all that is free for them."""
+        key = tuple(seeds)
+        if key not in self._refuted:
+            hierarchy, scope = self.hierarchy, self.everything(seeds)
+            hierarchy.refresh(scope.constraints)
+            rows = hierarchy.rows(scope.constraints)
+            relaxation = Relaxation(hierarchy.values, rows, scope.free, hierarchy.settings.tolerance, rows)
+            self._refuted[key] = bool(relaxation.refutation(range(len(rows))))
+        return self._refuted[key]
 
     def _proof(self, scope: Scope, verdict: Verdict) -> Proof:
         rows = self.hierarchy.rows(scope.constraints)
@@ -430,8 +466,16 @@ class Group:
         mentions = self.hierarchy.mentions
         return all(any(self.tier(unknown) <= tier for unknown in mentions[index]) for index in violated)
 
-    def _report(self, tier: Tier, scope: Scope, before: dict[int, float] | None) -> None:
-        """Reports a stage. If it succeeded, from the values `before`, what need not move is held first."""
+    def _report(
+        self,
+        tier: Tier,
+        scope: Scope,
+        before: dict[int, float] | None,
+        despite: tuple[int, ...] = (),
+    ) -> None:
+        """Reports a stage. If it succeeded, from the values `before`, what need not move is held first; those
+        it held `despite` are the constraints for which a search from there had failed.
+        """
         hierarchy, gave = self.hierarchy, None
         if before is not None:
             before = hierarchy.since(before, scope.free)
@@ -442,7 +486,8 @@ class Group:
                 values[list(before)] = list(before.values())
                 gave = Giving(moved, scope.free, scope.constraints, values)
         rows = len(hierarchy.rows(scope.constraints))
-        report = StageReport(self.group, stage_name(tier), len(scope.free), rows, before is not None, gave)
+        name = "elsewhere" if despite else stage_name(tier)
+        report = StageReport(self.group, name, len(scope.free), rows, before is not None, gave, despite)
         hierarchy.stages.append(report)
 
     def _is_dear(self, unknown: int) -> bool:
@@ -452,11 +497,8 @@ class Group:
         tier = self.tier(unknown)
         return tier > RIDING or (tier > PLACED and bool(self.hierarchy.problem.standing[unknown]))
 
-    def _fail(
-        self, violated: list[int], everything: Scope, before: dict[int, float], best: dict[int, float]
-    ) -> None:
+    def _fail(self, failure: GroupFailure, everything: Scope, best: dict[int, float]) -> None:
         hierarchy = self.hierarchy
-        failure = conflicts.explain(hierarchy, self.group, violated, everything, before, best)
         hierarchy.failures.append(failure)
         if self._leave_out() is not None:
             return

@@ -231,6 +231,10 @@ class Hierarchy:
         """Whether an unknown is a size."""
         return self._kept[unknown]
 
+    def is_spanned(self, unknown: int) -> bool:
+        """Whether an unknown is a size that was read off two places."""
+        return self._spanned[unknown]
+
     def held_by(self, group: int) -> list[int]:
         return self._held_by.get(group, [])
 

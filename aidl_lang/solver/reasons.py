@@ -1,6 +1,6 @@
 """Because of which constraints something dear gave way: a size, a frame with exact content, what rides along.
 
-What gave way is held where it was; the constraints that then cannot hold together left no other way. They are
+What gave way is held where it was; the constraints that then cannot hold together ask for it. They are
 found as for a conflict. Where several things gave way, each set is asked for by those that have a share in
 it.
 """
@@ -20,7 +20,7 @@ from aidl_lang.solver.solution import Giving
 
 @dataclass(frozen=True)
 class Reason:
-    """The unknowns that gave way, and the constraints, by index, that left no other way; without any one of
+    """The unknowns that gave way, and the constraints, by index, that ask for it; without any one of
     them the others would have, if they are `minimal`. None are given where what gave way need not have.
     """
 

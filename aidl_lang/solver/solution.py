@@ -21,7 +21,7 @@ class Failure(StrEnum):
     """Why a group could not be solved."""
 
     CONTRADICTORY = "contradictory"
-    """The search for the conflict ends from several starts with the same violation."""
+    """It was refuted, or the search for the conflict failed from many places."""
     OVERDETERMINED = "over-determined"
     """The same, and curved equations ask more of the unknowns than they are: it is not for their values."""
     NOT_CONVERGED = "not converged"
@@ -29,29 +29,13 @@ class Failure(StrEnum):
 
 
 @dataclass(frozen=True)
-class Fit:
-    """What a member of a conflict would ask for, were it to give way to the others.
-
-    residuals  of its rows, where the others hold and it lacks least: `a == 9` would hold as `a == 6` where
-               its residual is -3
-    regardless of its rows, where the others hold and it has no say: the same, unless they leave a choice
-    values     (unknown, value) at the former place
-    """
-
-    residuals: tuple[float, ...]
-    regardless: tuple[float, ...]
-    values: tuple[tuple[int, float], ...] = field(repr=False)
-
-
-@dataclass(frozen=True)
 class Member:
     """A constraint in a conflict. `off` is its greatest violation where the search came nearest, in the units
-    of its row; `fit` is None where it is not known.
+    of its row.
     """
 
     index: int
     off: float
-    fit: Fit | None = None
 
 
 @dataclass(frozen=True)
@@ -63,6 +47,12 @@ class GroupFailure:
     moving    the unknowns that could move for them
     equations the number of their rows that are equations
     work      rows times unknowns of the attempts that this took
+    elsewhere (unknown, value) where the members hold after all, found from another place than the first
+              guesses; empty if none was
+    within    all constraints that took part in the search, by index
+    nearest   (unknown, value) where the search for the members came nearest, of all that was free
+    is_curved whether the slopes of the members' rows depend on the place
+    sizes     the kept sizes that members are about which hang on no position, as `a.radius == 6` does
     """
 
     group: int
@@ -72,6 +62,11 @@ class GroupFailure:
     moving: tuple[int, ...] = ()
     equations: int = 0
     work: int = 0
+    elsewhere: tuple[tuple[int, float], ...] = field(default=(), repr=False)
+    within: tuple[int, ...] = field(default=(), repr=False)
+    nearest: tuple[tuple[int, float], ...] = field(default=(), repr=False)
+    is_curved: bool = False
+    sizes: frozenset[int] = frozenset()
 
     @property
     def conflict(self) -> tuple[int, ...]:
@@ -106,6 +101,8 @@ class StageReport:
     rows: int
     succeeded: bool
     gave: Giving | None = None
+    despite: tuple[int, ...] = ()
+    """The constraints that no search from the first guesses satisfied, where one from elsewhere did."""
 
 
 @dataclass(frozen=True)

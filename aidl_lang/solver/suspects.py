@@ -74,14 +74,6 @@ class Linearised:
         part = multipliers > SHARE * multipliers.max(initial=0.0)
         return sorted(set(self.owner[rows][part].tolist()))
 
-    def implies(self, index: int) -> bool:
-        """Whether the equations of the others leave the rows of `index` nowhere to go."""
-        own = self.owner == index
-        others = self.jacobian[~own & ~self.inequality]
-        combined = np.linalg.lstsq(others.T, self.jacobian[own].T, rcond=FAINT)[0]
-        rest = self.jacobian[own] - combined.T @ others
-        return bool((np.linalg.norm(rest, axis=1) <= FAINT).all())
-
     def can_hold(self, constraints: Iterable[int]) -> bool:
         """Whether the linearised rows of these constraints hold together within a sensible distance."""
         rows: NDArray[np.bool_] = np.isin(self.owner, list(constraints))

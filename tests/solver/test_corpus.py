@@ -20,7 +20,6 @@ KINDS = {
 }  # fmt: skip
 FAILING = {
     "branch-remainder-of-another-turn": "no other number of turns is tried",
-    "far-exponential": "squares of the residuals overflow, and damping does not come down again",
 }
 """What the solver does not manage yet, and why."""
 

@@ -1,0 +1,60 @@
+"""How far some constraints of a problem are from holding together."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+import numpy as np
+
+from aidl_lang.solver.group import Scope
+from aidl_lang.solver.hierarchy import Hierarchy
+from aidl_lang.solver.newton import Clock
+from aidl_lang.solver.problem import Problem, Settings
+from aidl_lang.solver.refuting import Relaxation
+
+RESTARTS = 3
+"""Perturbed starts."""
+
+
+def lack(
+    problem: Problem,
+    settings: Settings,
+    constraints: Collection[int],
+    within: Collection[int],
+    start: Mapping[int, float],
+) -> float:
+    """How far constraints are from holding with the unknowns of `start` free; 0 where a search from there
+    satisfies them. All of `within` take part where they are affine, but for choices, and are shown to
+    contradict each other: the lack, in units of its own, then changes evenly with a number among them.
+    """
+    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
+    hierarchy.refresh(within)
+    rows, free = hierarchy.rows(within), frozenset(start)
+    relaxation = Relaxation(hierarchy.values, rows, free, settings.tolerance)
+    if not relaxation.bends and (off := relaxation.lack(range(len(rows)))) > 0.0:
+        return off
+    first, least = hierarchy.save(free), np.inf
+    for place in (start, first):
+        hierarchy.values.assign(place.items())
+        verdict = hierarchy.attempt(Scope(free, tuple(sorted(constraints))), RESTARTS)
+        least = min(least, 0.0 if verdict.satisfied else verdict.violation)
+    return least
+
+
+def settled(
+    problem: Problem, settings: Settings, constraints: Collection[int], start: Mapping[int, float]
+) -> dict[int, float] | None:
+    """Where constraints hold with the unknowns of `start` free, near to that; None if no search found it."""
+    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
+    hierarchy.values.assign(start.items())
+    verdict = hierarchy.attempt(Scope(frozenset(start), tuple(sorted(constraints))), RESTARTS)
+    return hierarchy.save(start) if verdict.satisfied else None
+
+
+def residual(problem: Problem, settings: Settings, constraint: int, place: Mapping[int, float]) -> float:
+    """The row of a constraint that is furthest from zero in some place, with its sign."""
+    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
+    hierarchy.values.assign(place.items())
+    hierarchy.refresh([constraint])
+    rows = hierarchy.rows([constraint])
+    return max((hierarchy.values.nodes[row.expression] for row in rows), key=abs)

@@ -1,0 +1,383 @@
+"""Rows that are shown never to hold together, wherever the free unknowns are and whichever branches they
+take.
+
+A row is a combination of unknowns and knots (`forms`). Here a knot is a number of its own, of which only
+bounds are kept that always hold: `max(a, b)` is no less than `a` and no less than `b`, a root is not
+negative. Rows that contradict each other even then are contradictory, and the factors with which they add up
+to an impossibility prove it (Farkas' lemma). The reverse is not true, unless there are no knots.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from aidl_lang.solver.forms import Affine, Form, add_terms, applied, branched, combined, scaled
+from aidl_lang.solver.operations import BRANCHING, Bools, Floats, Op
+from aidl_lang.solver.problem import Relation, Row
+from aidl_lang.solver.quadratic import nearest
+from aidl_lang.solver.valuation import Valuation
+
+CANCELLED = 1e-9
+"""Part of the slopes that are added up which may be left of them by rounding."""
+DECIDED = 10.0
+"""How many times what the tolerances allow the rows must be off together."""
+FEW_TERMS = 3
+"""Slots in what is taken for granted, beyond which it is not."""
+MOST_LIMITS = 12
+"""Times that a slot is put at a limit to see whether a form can be negative."""
+FEW = 60
+"""Bounds and rows up to which the contradiction is found without loading a library for linear programs."""
+MANY = 3000
+"""Bounds and rows beyond which no proof is sought."""
+
+
+class Relaxation:
+    """Some rows with the unknowns `free`, and the bounds of what bends or chooses in them. The nodes that the
+    rows are made of must be up to date. What each row of the `background` says of one unknown alone, as that
+    a size is not negative, is taken for granted.
+    """
+
+    def __init__(
+        self,
+        values: Valuation,
+        rows: Sequence[Row],
+        free: Iterable[int],
+        tolerance: float,
+        background: Iterable[Row] = (),
+    ) -> None:
+        self._values, self._free, self._tolerance = values, frozenset(free), tolerance
+        self._forms = values.forms(self._free)
+        self._put: dict[int, Form] = {}
+        self._parts: dict[int, list[Form]] = {}
+        """Of the knots that are numbers of their own."""
+        self._least: dict[int, float] = {}
+        self._most: dict[int, float] = {}
+        self._above: dict[int, list[Form]] = {}
+        """What each slot is nowhere above."""
+        self._below: dict[int, list[Form]] = {}
+        self._never: dict[object, bool] = {}
+        """Whether forms are nowhere negative, by what they are but for rounding."""
+        granted = [self._plain(row.expression) for row in background if row.relation is Relation.AT_MOST]
+        for form in granted:
+            self._grant(form)
+        self._put.clear()  # more is known of them now
+        self._parts.clear()
+        self._rows = [(self._plain(row.expression), row) for row in rows]
+        self.is_exact = not any(self._knots(form) for form, _ in self._rows)
+        """Whether the rows are affine, so that they hold together where nothing refutes it."""
+        self.bends = any(self._forms.knots[slot].op not in BRANCHING for slot in self._parts)
+        """Whether something in the rows neither is affine nor chooses."""
+
+    def _grant(self, form: Form) -> None:
+        """Notes that a form is never positive, and what that says of one slot alone."""
+        for each in (form, *self._bounds([form])):
+            terms = each.terms if isinstance(each, Affine) else {}
+            for slot, slope in terms.items() if 1 < len(terms) <= FEW_TERMS else ():
+                self._never.clear()
+                limit = scaled(combined(each, Affine({slot: slope}, 0.0), -1.0), -1.0 / slope)
+                (self._above if slope > 0.0 else self._below).setdefault(slot, []).append(limit)
+            if len(terms) == 1 and isinstance(each, Affine):
+                ((slot, slope),) = terms.items()
+                end = -each.constant / slope
+                if slope > 0.0:
+                    self._most[slot] = min(end, self._most.get(slot, np.inf))
+                else:
+                    self._least[slot] = max(end, self._least.get(slot, -np.inf))
+
+    def refutation(self, among: Iterable[int]) -> Mapping[int, float]:
+        """Factors of some of the rows `among`, by number, with which they add up to what cannot be; empty if
+        none were found.
+        """
+        return self._refuted(list(among))[0]
+
+    def lack(self, among: Iterable[int]) -> float:
+        """By how much the sum that refutes rows `among` is off, the greatest factor in it taken as one; 0 if
+        they are not refuted.
+        """
+        return self._refuted(list(among))[1]
+
+    def _refuted(self, numbers: list[int]) -> tuple[Mapping[int, float], float]:
+        system = [(form, row.relation is Relation.EQUAL) for form, row in (self._rows[i] for i in numbers)]
+        system += [(bound, False) for bound in self._bounds(form for form, _ in system)]
+        if len(system) > MANY:
+            return {}, 0.0
+        jacobian, constant = _arrays([form for form, _ in system])
+        if not (np.isfinite(jacobian).all() and np.isfinite(constant).all()):
+            return {}, 0.0
+        inequality = np.array([not equal for _, equal in system], dtype=np.bool_)
+        allowed = np.zeros(len(system))
+        allowed[: len(numbers)] = [self._tolerance * self._rows[i][1].scale for i in numbers]
+        factors = _contradiction(jacobian, constant, inequality, allowed)
+        if factors is None:
+            return {}, 0.0
+        taking_part = {i: factor for i, factor in zip(numbers, factors.tolist(), strict=False) if factor}
+        greatest = float(np.abs(factors[: len(numbers)]).max(initial=0.0)) or 1.0
+        return taking_part, float(factors @ constant) / greatest
+
+    def smallest(self, among: Iterable[int]) -> list[int]:
+        """Rows `among` that are refuted together, without any one of which they are not; empty if they are
+        not refuted.
+        """
+        found = list(self.refutation(among))
+        for number in list(found):
+            if number in found and (fewer := self.refutation(n for n in found if n != number)):
+                found = list(fewer)
+        return found
+
+    # -- forms over what is free
+
+    def _plain(self, node: int) -> Form:
+        """The form of a node with numbers for what is not free, and in place of knots that are decided."""
+        return self._put_in(self._forms[node])
+
+    def _put_in(self, form: Form) -> Form:
+        if isinstance(form, float):
+            return form
+        width = self._forms.width
+        if all(slot < width and slot in self._free for slot in form.terms):
+            return form
+        terms: dict[int, float] = {}
+        constant = form.constant
+        for slot, slope in form.terms.items():
+            inner = self._put.get(slot)
+            if inner is None:
+                inner = self._put[slot] = self._of_slot(slot)
+            if isinstance(inner, float):
+                constant += slope * inner
+            else:
+                add_terms(terms, inner.terms, slope)
+                constant += slope * inner.constant
+        return Affine(terms, constant) if terms else constant
+
+    def _of_slot(self, slot: int) -> Form:
+        itself = Affine({slot: 1.0}, 0.0)
+        if slot < self._forms.width:
+            return itself if slot in self._free else self._values.unknowns[slot]
+        knot = self._forms.knots[slot]
+        if self._free.isdisjoint(knot.inputs):
+            return self._values.nodes[knot.node]
+        parts = [self._put_in(part) for part in knot.parts]
+        if knot.op in (Op.MAXIMUM, Op.MINIMUM):
+            parts = self._outermost(knot.op, parts)
+            if len(parts) == 1:
+                return parts[0]
+            self._parts[slot] = parts
+            return itself
+        form = branched(knot.op, parts) if knot.op in BRANCHING else applied(knot.op, parts)
+        form = self._decided(knot.op, parts) if form is None else form
+        if form is None:
+            self._parts[slot] = parts
+            return itself
+        return form
+
+    def _decided(self, op: int, parts: Sequence[Form]) -> Form | None:
+        """What an operation comes to by the signs that are known of what it is made of; None if they do not
+        decide it.
+        """
+        first, second = parts[0], parts[1] if len(parts) > 1 else 0.0
+        match op:
+            case Op.ABS:
+                sign = self._sign(first)
+                return scaled(first, float(sign)) if sign else None
+            case Op.SELECT:
+                sign = self._sign(first)
+                return parts[1 if sign > 0 else 2] if sign else None
+            case Op.ATAN2 if first == 0.0 and (sign := self._sign(second)):
+                return 0.0 if sign > 0 else 180.0
+            case Op.ATAN2 if second == 0.0 and (sign := self._sign(first)):
+                return 90.0 * sign
+            case Op.HYPOT if 0.0 in (first, second):
+                other = second if first == 0.0 else first
+                sign = self._sign(other)
+                return scaled(other, float(sign)) if sign else None
+        return None
+
+    def _outermost(self, op: int, parts: Sequence[Form]) -> list[Form]:
+        """What `max` or `min` of some parts is taken of: the parts of those that are such themselves, without
+        what never is further out than another.
+        """
+        outward = 1.0 if op == Op.MAXIMUM else -1.0
+        found: list[Form] = []
+        for leaf in (leaf for part in parts for leaf in self._leaves(op, part)):
+            if any(self._is_never_behind(scaled(combined(o, leaf, -1.0), outward)) for o in found):
+                continue
+            found = [o for o in found if not self._is_never_behind(scaled(combined(leaf, o, -1.0), outward))]
+            found.append(leaf)
+        return found
+
+    def _is_never_behind(self, ahead: Form) -> bool:
+        """Whether a form is nowhere negative, by what is known of each slot or by what is never positive."""
+        if self._range(ahead)[0] >= 0.0:
+            return True
+        if isinstance(ahead, float) or not (self._above or self._below):
+            return False
+        key = (
+            frozenset((slot, round(slope, 9)) for slot, slope in ahead.terms.items()),
+            round(ahead.constant, 9),
+        )
+        known = self._never.get(key)
+        if known is None:
+            known = self._never[key] = self._is_granted(ahead)
+        return known
+
+    def _is_granted(self, ahead: Affine) -> bool:
+        """Whether a form is nowhere negative where nothing is positive that never is: slots are put at their
+        limits, one after another.
+        """
+        waiting: list[Form] = [ahead]
+        for form in waiting:
+            if self._range(form)[0] >= 0.0:
+                return True
+            for limited in self._at_limits(form):
+                if len(waiting) == MOST_LIMITS:
+                    break
+                waiting.append(limited)
+        return False
+
+    def _at_limits(self, form: Form) -> Iterator[Form]:
+        """A form with a slot that makes it endless, or any, put where it makes the form least."""
+        terms = form.terms if isinstance(form, Affine) else {}
+        endless = [s for s, slope in terms.items() if s not in (self._most if slope < 0.0 else self._least)]
+        for slot in endless[:1] or terms:
+            slope = terms[slot]
+            for limit in (self._above if slope < 0.0 else self._below).get(slot, ()):
+                further = combined(limit, Affine({slot: 1.0}, 0.0), -1.0)
+                yield combined(form, scaled(further, slope), 1.0)
+
+    def _leaves(self, op: int, part: Form) -> list[Form]:
+        """What `part` is the outermost of, if it is that but for what is added to it, else itself."""
+        knots = self._knots(part)
+        if len(knots) != 1 or isinstance(part, float):
+            return [part]
+        slope = part.terms[knots[0]]
+        inner = self._forms.knots[knots[0]].op
+        if inner not in (Op.MAXIMUM, Op.MINIMUM) or (inner == op) != (slope > 0.0):
+            return [part]
+        rest = combined(part, Affine({knots[0]: slope}, 0.0), -1.0)
+        return [combined(rest, leaf, slope) for leaf in self._parts[knots[0]]]
+
+    def _sign(self, form: Form) -> int:
+        """1 or -1 where a form is positive or negative wherever the free unknowns are, else 0."""
+        least, most = self._range(form)
+        return 1 if least > 0.0 else -1 if most < 0.0 else 0
+
+    def _range(self, form: Form) -> tuple[float, float]:
+        """Between what numbers a form lies wherever the free unknowns are."""
+        if isinstance(form, float):
+            return (form, form) if form == form else (-np.inf, np.inf)
+        least = most = form.constant
+        for slot, slope in form.terms.items():
+            low, high = self._least.get(slot, -np.inf), self._most.get(slot, np.inf)
+            least += slope * (low if slope > 0.0 else high)
+            most += slope * (high if slope > 0.0 else low)
+        return least, most
+
+    def _knots(self, form: Form) -> list[int]:
+        return [slot for slot in form.terms if slot in self._parts] if isinstance(form, Affine) else []
+
+    def _bounds(self, forms: Iterable[Form]) -> list[Form]:
+        """What is never positive of the knots in some forms, of those in their parts, and so on."""
+        found: list[Form] = []
+        waiting, known = list(forms), set[int]()
+        while waiting:
+            for slot in self._knots(waiting.pop()):
+                if slot not in known:
+                    known.add(slot)
+                    fresh = list(self._bounds_of(slot))
+                    found += fresh
+                    waiting += fresh
+        return found
+
+    def _bounds_of(self, slot: int) -> Iterator[Form]:
+        parts, itself = self._parts[slot], Affine({slot: 1.0}, 0.0)
+        match self._forms.knots[slot].op:
+            case Op.MAXIMUM:
+                yield from (combined(part, itself, -1.0) for part in parts)
+            case Op.MINIMUM:
+                yield from (combined(itself, part, -1.0) for part in parts)
+            case Op.ABS | Op.HYPOT:
+                for part in parts:
+                    yield combined(part, itself, -1.0)
+                    yield combined(scaled(part, -1.0), itself, -1.0)
+            case Op.SQRT | Op.SQUARE:
+                yield scaled(itself, -1.0)
+            case Op.SIN | Op.COS:
+                yield combined(itself, 1.0, -1.0)
+                yield combined(scaled(itself, -1.0), 1.0, -1.0)
+
+
+def _arrays(forms: Sequence[Form]) -> tuple[Floats, Floats]:
+    """The slopes (m, n) and constants (m,) of m forms in n slots."""
+    columns: dict[int, int] = {}
+    for form in forms:
+        for slot in form.terms if isinstance(form, Affine) else ():
+            columns.setdefault(slot, len(columns))
+    jacobian, constant = np.zeros((len(forms), len(columns))), np.zeros(len(forms))
+    for i, form in enumerate(forms):
+        constant[i] = form.constant if isinstance(form, Affine) else form
+        for slot, slope in form.terms.items() if isinstance(form, Affine) else ():
+            jacobian[i, columns[slot]] = slope
+    return jacobian, constant
+
+
+def _contradiction(jacobian: Floats, constant: Floats, inequality: Bools, allowed: Floats) -> Floats | None:
+    """Factors with which rows `jacobian @ x + constant`, each 0 or at most 0 within `allowed`, contradict
+    each other; None if they are not found, or not beyond doubt.
+    """
+    flat = ~jacobian.any(axis=1)
+    off = flat & (np.where(inequality, constant, np.abs(constant)) > allowed)
+    if off.any():
+        factors = np.zeros(len(constant))
+        worst = int(np.argmax(np.where(off, np.abs(constant), -1.0)))
+        factors[worst] = np.sign(constant[worst])
+    elif flat.all():
+        return None
+    else:
+        find = _multipliers if len(constant) <= FEW else _many_multipliers
+        found = find(jacobian, constant, inequality)
+        if found is None:
+            return None
+        factors = np.where(np.abs(found) > CANCELLED * np.abs(found).max(initial=0.0), found, 0.0)
+        if float(factors @ constant) < 0.0:
+            factors = -factors
+    left = np.abs(factors @ jacobian)
+    is_sum = (left <= CANCELLED * (np.abs(factors) @ np.abs(jacobian)) + 1e-15).all()
+    rounding = 1e-12 * float(np.abs(factors) @ np.abs(constant))
+    proven = float(factors @ constant) > DECIDED * float(np.abs(factors) @ allowed) + rounding
+    return factors if is_sum and proven and (factors[inequality] >= 0.0).all() else None
+
+
+def _multipliers(jacobian: Floats, constant: Floats, inequality: Bools) -> Floats | None:
+    return nearest(jacobian, -constant, inequality).contradiction
+
+
+def _many_multipliers(jacobian: Floats, constant: Floats, inequality: Bools) -> Floats | None:
+    """The same for many rows: what it costs to bring each of them nearer, where they lack least together."""
+    from scipy.optimize import linprog
+    from scipy.sparse import csr_array, hstack
+
+    length = np.linalg.norm(jacobian, axis=1)
+    weight = 1.0 / np.where(length > 0.0, length, 1.0)
+    rows, off, unknowns = jacobian * weight[:, None], constant * weight, jacobian.shape[1]
+    equal = ~inequality
+    lacks = np.eye(len(off))
+    sides = hstack([csr_array(rows), csr_array(-lacks), csr_array(lacks[:, equal])], format="csr")
+    cost = np.append(np.zeros(unknowns), np.ones(len(off) + int(equal.sum())))
+    bounds = [(None, None)] * unknowns + [(0.0, None)] * (len(cost) - unknowns)
+    system: dict[str, object] = {}
+    if inequality.any():
+        system |= {"A_ub": sides[inequality], "b_ub": -off[inequality]}
+    if equal.any():
+        system |= {"A_eq": sides[equal], "b_eq": -off[equal]}
+    found = linprog(cost, bounds=bounds, method="highs", **system)
+    if found.status != 0:
+        return None
+    factors = np.zeros(len(off))
+    if inequality.any():
+        factors[inequality] = -found.ineqlin.marginals
+    if equal.any():
+        factors[equal] = -found.eqlin.marginals
+    scaled: Floats = factors * weight
+    return scaled
