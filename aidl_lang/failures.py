@@ -225,7 +225,7 @@ class Explanation:
         if len(self.solution.failures) > 1 and cheapest:  # none mends all that is wrong
             return self._once(cheapest[0])
         for party in reversed(self.parties if self.is_proven else []):
-            if party.node is not None and len(self.turns[party.stated.span]) == 1:
+            if party.node is not None and self.times[party.stated.span] == 1:
                 edits = (fix := wished(party.stated)).edits
                 if self.trials.mends(edits, self.failure) and self.trials.finishes(edits):
                     return fix

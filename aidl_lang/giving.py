@@ -28,8 +28,8 @@ _STILL = 1e-6
 
 @dataclass(frozen=True)
 class GaveWay:
-    """Unknowns that gave way together, with the values they had and have, and the constraints that ask for it,
-    in order of writing; without any one of them they would have stayed, if these are `minimal`.
+    """Unknowns that gave way together, with the values they had and have, and the constraints that ask for
+    it, in order of writing; without any one of them they would have stayed, if these are `minimal`.
     """
 
     moved: Mapping[Unknown, tuple[float, float]]

@@ -228,10 +228,10 @@ def _trials(
         built, found = _build(changed, world, params, unexplained, _Stopwatch())
         return None if has_errors(found) else lower(built.model)
 
-    def compiled(changed: SourceFile) -> Compiled:
-        return compile(changed, world, params, unexplained)
+    def found(changed: SourceFile) -> list[Diagnostic]:
+        return compile(changed, world, params, unexplained).diagnostics
 
-    return Trials(source, build, compiled, lowered, solution, settings.solving)
+    return Trials(source, build, found, lowered, solution, settings.solving)
 
 
 def _again(

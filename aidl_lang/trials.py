@@ -12,8 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from aidl_lang.compiled import Compiled
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix, apply_fixes
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix, apply_fixes, has_errors
 from aidl_lang.lower import Lowered
 from aidl_lang.solver import Settings, Solution, solve
 from aidl_lang.solver.lacking import lack, residual, settled
@@ -38,13 +37,13 @@ class Trials:
     """
     source   the program as it is
     build    makes the problem of another text; None where that is wrong
-    compiled what comes of another text
+    found    what there is to say of another text when it is compiled
     lowered  the problem of the program as it is, and what came of it
     """
 
     source: SourceFile
     build: Callable[[SourceFile], Lowered | None]
-    compiled: Callable[[SourceFile], Compiled]
+    found: Callable[[SourceFile], Sequence[Diagnostic]]
     lowered: Lowered
     solution: Solution
     settings: Settings
@@ -144,15 +143,17 @@ class Trials:
         return _gave_way(other, found) <= _gave_way(self.lowered, self.solution) | asked
 
     def finishes(self, edits: Sequence[Edit]) -> bool:
-        """Whether edits that mend a failure leave no errors, as another failure or an assertion that fails."""
-        return self.compiled(self._text(edits)).ok
+        """Whether edits that mend a failure leave no errors, as another failure or an assertion that
+        fails.
+        """
+        return not has_errors(self.found(self._text(edits)))
 
     def settles(self, edits: Sequence[Edit]) -> bool:
         """Whether after the edits the program solves from its first guesses, and nothing gives way."""
         if self.is_over or not self.can_edit(edits):
             return False
-        found = self.compiled(self._text(edits))
-        return found.ok and not any(d.code in _TOLD for d in found.diagnostics)
+        found = self.found(self._text(edits))
+        return not has_errors(found) and not any(d.code in _TOLD for d in found)
 
     @property
     def _quick(self) -> Settings:
