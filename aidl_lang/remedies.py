@@ -24,7 +24,7 @@ _STEPS = 4
 """Times that the place of a number is sought anew where what it does is not even."""
 _NOTHING = 1e-9
 """A change of what is lacking, relatively, that is none."""
-_VANISHES = 1e-6
+_VANISHES = 1e-4
 """A number so near to nothing, relatively, is 0."""
 _ARRIVED = 1e-7
 """Part of what is lacking that is left by rounding where a number fits."""
@@ -79,6 +79,8 @@ def remedy(dial: Dial, failure: GroupFailure, trials: Trials, member: int | None
     it stands in one member of the failure alone, that is the `member`.
     """
     search = _Search(dial, failure, trials)
+    if (opposite := search.turned()) is not None:
+        return opposite
     pinned = search.pinned(member) if member is not None and failure.is_curved else None
     return pinned if pinned is not None and not search.fits_nearer(pinned) else search.found() or pinned
 
@@ -102,8 +104,6 @@ class _Search:
         self.dial, self.failure, self.trials = dial, failure, trials
 
     def found(self) -> Remedy | None:
-        if (opposite := self.turned()) is not None:
-            return opposite
         value = self.dial.value
         off = self._lack(value)
         if not off:
@@ -141,6 +141,8 @@ class _Search:
         if not now or nudged is None or nudged == now:
             return None
         target = value - now * step / (nudged - now)
+        if abs(target) <= _VANISHES * max(abs(value), 1.0):
+            target = 0.0
         if not self.dial.may_be(target) or abs(target - value) > _FAR * max(abs(value), 10.0):
             return None
         written = next(filter(self._fits, self._spelled(target, 0.0)), None)

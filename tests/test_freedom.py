@@ -250,7 +250,7 @@ def test_what_is_told_goes_on_as_it_is_told(text: str) -> None:
     which it is told that they leave their line or their centre do not.
     """
     analysed = Analysed("top.aidl", text)
-    assume(analysed.solution.status is Status.SOLVED)
+    assume(analysed.solution.status is Status.SOLVED and analysed.freedom.degrees is not None)
     assume(all(abs(ahead + behind) < 1e-2 * STEP for ahead, behind in analysed.residuals()))
     analysed.hold_true()
     for motion in analysed.ways:
@@ -260,7 +260,7 @@ def test_what_is_told_goes_on_as_it_is_told(text: str) -> None:
             continue
         missed = analysed.misses(motion, 0.5)
         leaves = "a curve" in motion.words or "at first" in motion.words
-        assert (missed > 1e-4) == leaves, (motion, missed)
+        assert (missed > 1e-5) == leaves, (motion, missed)
 
 
 @settings(max_examples=20, deadline=None)
