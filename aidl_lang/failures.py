@@ -12,7 +12,7 @@ from functools import cached_property
 from aidl_lang import ast
 from aidl_lang.building.wording import Wording
 from aidl_lang.diagnostics import Diagnostic, Fix, Label
-from aidl_lang.expression import Unknown
+from aidl_lang.expression import Expression, Unknown
 from aidl_lang.givens import Dial, behind
 from aidl_lang.givens import stated as stated_in
 from aidl_lang.lower import Lowered
@@ -22,6 +22,7 @@ from aidl_lang.solver.solution import Failure, GroupFailure, Member, Solution
 from aidl_lang.source import Span
 from aidl_lang.trials import Trials
 from aidl_lang.units import ANGLE, LENGTH
+from aidl_lang.values import Num
 
 _PROVEN = (Failure.CONTRADICTORY, Failure.OVERDETERMINED)
 """Reasons that do not depend on where the search began."""
@@ -111,6 +112,12 @@ class _Party:
         if isinstance(wording, Wording) and wording.node.span == self.stated.span:
             return wording.node
         return None
+
+    def value(self, part: ast.Expression) -> Expression | None:
+        """The number that a part of the statement is."""
+        wording = self.stated.wording
+        value = wording.value(part) if isinstance(wording, Wording) else None
+        return value.expression if isinstance(value, Num) else None
 
 
 class Explanation:
@@ -298,7 +305,7 @@ class Explanation:
         if not math.isfinite(off):
             return "this has no value where the solver stopped"
         if not self.is_proven:
-            return f"off by {_measured(off, chief.stated)} at best" if off > _TOLERANCE else ""
+            return f"off by {measured_in(off, chief.stated)} at best" if off > _TOLERANCE else ""
         return ("", "", "conflicts with the other", "conflicts with the others")[min(len(self.parties), 3)]
 
     def _would_fit(self, party: _Party) -> str:
@@ -326,6 +333,11 @@ class Explanation:
                 yield Label(found.dial.places[0], f"exact; {found.shown} would fit")
 
     def _hints(self) -> Iterator[str]:
+        gaps = dict(self.failure.gaps)
+        parties = sorted(self.parties, key=lambda party: party is not self._chief)
+        yield from itertools.islice(
+            filter(None, (_apart(p, gaps[p.member.index]) for p in parties if p.member.index in gaps)), 1
+        )
         match self.failure.reason:
             case Failure.OVERDETERMINED:
                 wordings = [w for party in self.parties if isinstance(w := party.stated.wording, Wording)]
@@ -337,6 +349,23 @@ class Explanation:
                 yield "the search starts from what is written: first guesses near to what is meant help it"
             case Failure.TIMED_OUT:
                 yield "what concerns one part only is solved faster if that part states it"
+
+
+def _apart(party: _Party, gap: float) -> str:
+    """How far the sides of `a == b` are apart where the other parties hold; "" for what is no such
+    equation.
+    """
+    node, stated = party.node, party.stated
+    if not isinstance(node, ast.Comparison) or node.operators != ("==",) or len(stated.comparisons) != 1:
+        return ""
+    (comparison,) = stated.comparisons
+    sides = [party.value(operand) for operand in node.operands]
+    written = [comparison.left.value, comparison.right.value]  # how it is lowered may have turned them round
+    if comparison.dimension == ANGLE or [s and s.value for s in sides] != written or written[0] == written[1]:
+        return ""
+    left, right = (operand.span.one_line for operand in node.operands)
+    more = "more" if gap > 0.0 else "less"
+    return f"given the others, `{left}` is {short(abs(gap))} {more} than `{right}`"
 
 
 def _name(parties: Sequence[_Party]) -> str:
@@ -354,8 +383,8 @@ def listed(names: Sequence[str], most: int = _NAMED) -> str:
     return " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
 
 
-def _measured(value: float, stated: Constraint) -> str:
-    """With its unit where all that is compared has the same."""
+def measured_in(value: float, stated: Constraint) -> str:
+    """A value with its unit, where all that a constraint compares has the same."""
     dimensions = {comparison.dimension for comparison in stated.comparisons}
     unit = " mm" if dimensions <= {LENGTH, None} else "°" if dimensions == {ANGLE} else ""
     return f"{short(value)}{unit}"

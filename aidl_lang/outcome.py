@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
@@ -11,7 +12,7 @@ from aidl_lang.building.conditions import RELATIONS, holds
 from aidl_lang.building.wording import Wording
 from aidl_lang.diagnostics import Diagnostic, Label
 from aidl_lang.expression import Evaluator, nodes
-from aidl_lang.failures import Explanation
+from aidl_lang.failures import Explanation, measured_in
 from aidl_lang.geometry.boolean import clearance, overlap_area
 from aidl_lang.geometry.drawing import Drawing, draw
 from aidl_lang.geometry.evaluate import bounds, inward
@@ -44,7 +45,25 @@ def solution_notes(
     if solution.status is not Status.SOLVED:
         return found
     found += giving_notes(given, model)
+    found += _wishes(lowered, solution)
     return found + repetition_notes(lowered, solution, freedom)
+
+
+def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
+    """A note for each wish that is not met."""
+    for stated, off, is_met in zip(lowered.stated, solution.residuals, solution.satisfied, strict=True):
+        if stated is None or stated.weight is None or is_met:
+            continue
+        where = f" [{stated.label}]" if stated.label else ""
+        yield Diagnostic(
+            "N0605",
+            f"the wish `{stated.text}`{where} is not met",
+            stated.span,
+            f"off by {measured_in(off, stated)}" if math.isfinite(off) else "it has no value here",
+            hints=(
+                "a wish gives way to every constraint; without `prefer` it is told what stands against it",
+            ),
+        )
 
 
 # --- Assertions ----------------------------------------------------------------------------------

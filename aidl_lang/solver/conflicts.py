@@ -155,6 +155,7 @@ class _Search:
             nearest=tuple(sorted(nearest.reached.items())),
             is_curved=is_curved,
             sizes=self._sizes(conflict),
+            gaps=self._gaps(conflict) if is_proven else (),
         )
 
     def _found(self, group: int, failing: Sequence[int], place: _Trial) -> GroupFailure:
@@ -236,6 +237,14 @@ class _Search:
         relaxation = self._relaxation(constraints)
         owner = [index for index in constraints for _ in self.hierarchy.rows([index])]
         return sorted({owner[row] for row in relaxation.smallest(range(len(owner)))})
+
+    def _gaps(self, conflict: Sequence[int]) -> tuple[tuple[int, float], ...]:
+        """What the members of a conflict that are one row come to where the others hold; none if that is not
+        known.
+        """
+        owner = [index for index in conflict for _ in self.hierarchy.rows([index])]
+        gaps = self._relaxation(conflict).gaps(range(len(owner)))
+        return tuple((owner[row], gap) for row, gap in gaps.items() if owner.count(owner[row]) == 1)
 
     def _relaxation(self, constraints: Sequence[int]) -> Relaxation:
         hierarchy = self.hierarchy

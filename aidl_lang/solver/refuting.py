@@ -10,6 +10,7 @@ to an impossibility prove it (Farkas' lemma). The reverse is not true, unless th
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -31,6 +32,20 @@ FEW = 60
 """Bounds and rows up to which the contradiction is found without loading a library for linear programs."""
 MANY = 3000
 """Bounds and rows beyond which no proof is sought."""
+
+
+@dataclass(frozen=True)
+class _Refutation:
+    """Factors of rows, by number, what the rows add up to with them, and whether all of these are
+    equations.
+    """
+
+    factors: Mapping[int, float]
+    off: float
+    is_even: bool
+
+
+_NONE = _Refutation({}, 0.0, False)
 
 
 class Relaxation:
@@ -90,31 +105,38 @@ class Relaxation:
         """Factors of some of the rows `among`, by number, with which they add up to what cannot be; empty if
         none were found.
         """
-        return self._refuted(list(among))[0]
+        return self._refuted(list(among)).factors
 
     def lack(self, among: Iterable[int]) -> float:
         """By how much the sum that refutes rows `among` is off, the greatest factor in it taken as one; 0 if
         they are not refuted.
         """
-        return self._refuted(list(among))[1]
+        found = self._refuted(list(among))
+        return found.off / max(map(abs, found.factors.values()), default=1.0)
 
-    def _refuted(self, numbers: list[int]) -> tuple[Mapping[int, float], float]:
+    def gaps(self, among: Iterable[int]) -> dict[int, float]:
+        """For each of the rows `among` that equations alone refute, what it comes to where the others hold;
+        empty if inequalities take part.
+        """
+        found = self._refuted(list(among))
+        return {i: found.off / factor for i, factor in found.factors.items()} if found.is_even else {}
+
+    def _refuted(self, numbers: list[int]) -> _Refutation:
         system = [(form, row.relation is Relation.EQUAL) for form, row in (self._rows[i] for i in numbers)]
         system += [(bound, False) for bound in self._bounds(form for form, _ in system)]
         if len(system) > MANY:
-            return {}, 0.0
+            return _NONE
         jacobian, constant = _arrays([form for form, _ in system])
         if not (np.isfinite(jacobian).all() and np.isfinite(constant).all()):
-            return {}, 0.0
+            return _NONE
         inequality = np.array([not equal for _, equal in system], dtype=np.bool_)
         allowed = np.zeros(len(system))
         allowed[: len(numbers)] = [self._tolerance * self._rows[i][1].scale for i in numbers]
         factors = _contradiction(jacobian, constant, inequality, allowed)
         if factors is None:
-            return {}, 0.0
+            return _NONE
         taking_part = {i: factor for i, factor in zip(numbers, factors.tolist(), strict=False) if factor}
-        greatest = float(np.abs(factors[: len(numbers)]).max(initial=0.0)) or 1.0
-        return taking_part, float(factors @ constant) / greatest
+        return _Refutation(taking_part, float(factors @ constant), not factors[inequality].any())
 
     def smallest(self, among: Iterable[int]) -> list[int]:
         """Rows `among` that are refuted together, without any one of which they are not; empty if they are

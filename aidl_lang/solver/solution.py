@@ -51,6 +51,7 @@ class GroupFailure:
               guesses; empty if none was
     within    all constraints that took part in the search, by index
     nearest   (unknown, value) where the search for the members came nearest, of all that was free
+    gaps      (member, what its one row comes to where the others hold), where equations alone contradict
     is_curved whether the slopes of the members' rows depend on the place
     sizes     the kept sizes that members are about which hang on no position, as `a.radius == 6` does
     """
@@ -65,6 +66,7 @@ class GroupFailure:
     elsewhere: tuple[tuple[int, float], ...] = field(default=(), repr=False)
     within: tuple[int, ...] = field(default=(), repr=False)
     nearest: tuple[tuple[int, float], ...] = field(default=(), repr=False)
+    gaps: tuple[tuple[int, float], ...] = ()
     is_curved: bool = False
     sizes: frozenset[int] = frozenset()
 
