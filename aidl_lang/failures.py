@@ -254,14 +254,18 @@ class Explanation:
                     return fix
         return found.fix
 
-    def _dearness(self, found: Remedy) -> tuple[bool, bool, float, int]:
+    def _dearness(self, found: Remedy) -> tuple[int, bool, bool, float, int]:
+        """What is to be kept: what takes part in other failures goes first, as one cause has several."""
+        other = [f for f in self.solution.failures if f is not self.failure]
+        places = [{c.span for i in f.conflict if (c := self.lowered.stated[i]) is not None} for f in other]
+        shared = sum(any(s.overlaps(found.dial.places[0]) for s in spans) for spans in places)
         others = [d for parties in self.turns.values() for d in self._dials(parties[0])]
         size = abs(found.dial.value)
         twins = [d for d in others if abs(d.value) == size and d.places != found.dial.places]
         breaks = not found.dial.is_exact and bool(twins)
         share = found.share * (_FIXED if found.dial.is_exact and not found.dial.name else 1.0)
         share *= 1.0 if found.plain else _LONG
-        return found.counts, breaks, round(share, 4), -found.dial.places[0].start
+        return -shared, found.counts, breaks, round(share, 4), -found.dial.places[0].start
 
     @cached_property
     def _chief(self) -> _Party:

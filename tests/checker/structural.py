@@ -178,13 +178,17 @@ def _same(*sizes: str) -> Relation:
     return relation
 
 
-def _compared(size: str, sign: int) -> Relation:
-    """Larger (sign 1) or smaller than another, `by` exactly so much."""
+def _compared(sign: int, *sizes: str) -> Relation:
+    """Larger (sign 1) or smaller than another in some sizes, `by` exactly so much."""
 
     def relation(ev: Evaluator, a: Any, b: Any, by: Any = None, at_least: Any = None) -> list[float]:
         def residual(p: Box, q: Box) -> list[float]:
-            more = sign * (getattr(p, size) - getattr(q, size))
-            return [max(0.0, _number(ev, at_least) - more) if by is None else abs(more - _number(ev, by))]
+            found = []
+            for size in sizes:
+                more = sign * (getattr(p, size) - getattr(q, size))
+                short = max(0.0, _number(ev, at_least) - more)
+                found.append(short if by is None else abs(more - _number(ev, by)))
+            return found
 
         return _pair(ev, a, b, residual)
 
@@ -384,10 +388,12 @@ STRUCTURAL: dict[str, Relation] = {
     "same_width": _same("width"),
     "same_height": _same("height"),
     "same_size": _same("width", "height"),
-    "wider": _compared("width", 1),
-    "taller": _compared("height", 1),
-    "narrower": _compared("width", -1),
-    "shorter": _compared("height", -1),
+    "wider": _compared(1, "width"),
+    "taller": _compared(1, "height"),
+    "larger": _compared(1, "width", "height"),
+    "narrower": _compared(-1, "width"),
+    "shorter": _compared(-1, "height"),
+    "smaller": _compared(-1, "width", "height"),
     "row": _sequence("right", "left", "center_x", 1, _LEVEL),
     "column": _sequence("bottom", "top", "center_y", -1, _UPRIGHT),
     "evenly_spaced": _evenly_spaced,

@@ -41,6 +41,8 @@ drawing lined_up {
         shorter(shed, house, by: 12)
         wider(house, shed, at_least: 24)
         narrower(post, house, by: 30)
+        larger(house, shed)
+        smaller(shed, house, at_least: 5)
         same_size(jar[0], jar[0])
     }
 }
