@@ -36,6 +36,7 @@ def test_a_conflict() -> None:
         "  why: 40 would fit\n"
         "  line 5: conflicts with this; 10 would fit | foot.below(board, gap: 0)\n"
         "  line 6: conflicts with this; 30 would fit | foot.bottom == board.bottom - 40\n"
+        "  hint: given the others, `foot.bottom` is 10 more than `board.bottom - 40`\n"
         "  fix (write `40`): line 7 becomes\n"
         "            foot.height == 40"
     )
