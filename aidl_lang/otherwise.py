@@ -8,7 +8,7 @@ Before anything is refused, and before a size changes much, the calls that take 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from aidl_lang import ast
@@ -20,16 +20,18 @@ from aidl_lang.lower import Lowered, lower
 from aidl_lang.model import Constraint, Model
 from aidl_lang.remedies import short
 from aidl_lang.solver import Settings, Solution, Status, solve
+from aidl_lang.solver.newton import Clock
+from aidl_lang.solver.solution import Failure
 from aidl_lang.source import Span
 from aidl_lang.trials import Trials
 from aidl_lang.units import UNITS
 
-_MOST = 12
+_MOST = 40
 """Other ways that are tried."""
 _RANKS = (1, 2, 3)
 """How many places further off than the nearest a reading is tried."""
-_SECONDS = 0.5
-"""Time for one of them."""
+_SECONDS, _LONGEST = 1.0, 0.5
+"""Time for all of them, and for one."""
 _MUCH = 0.1
 """Part of a size by which it may change before it is asked whether something was meant otherwise."""
 _STILL = 1e-6
@@ -55,27 +57,54 @@ def otherwise(
     solution: Solution,
     again: Callable[[Mapping[int, int]], Interpretation | None],
     settings: Settings,
-) -> Otherwise | None:
+) -> tuple[Otherwise | None, Solution]:
     """The program with ambiguous calls taken so that it solves and nothing dear gives way; None where it does
-    as it is, or no way was found.
+    as it is, or no way was found. With the solution as it is: what conflicts by such calls is no
+    contradiction in it unless they were taken in every way.
     """
     readings = list(built.model.readings)
-    if not readings or not settings.explain:
-        return None
-    spans = {c.span for i in _troubled(lowered, solution) if (c := lowered.stated[i]) is not None}
-    numbers = [n for n, (span, _) in enumerate(readings) if any(map(span.overlaps, spans))]
-    singles = [{number: rank} for rank in _RANKS for number in numbers]
-    pairs = [{a: 1, b: 1} for a, b in itertools.combinations(numbers, 2)]
-    for turned in [*singles, *pairs][:_MOST]:
+    troubled = _troubled(lowered, solution) if readings and settings.explain else ()
+    if not troubled:
+        return None, solution
+    clock, seen = Clock(_SECONDS), [readings]
+    near = _numbers(readings, lowered, troubled)
+    far = _numbers(readings, lowered, {i for failure in solution.failures for i in failure.within})
+    for turned in _ways([*near, *(n for n in far if n not in near)]):
+        if clock.expired or len(seen) > _MOST:
+            return None, _undecided(lowered, solution, readings)
         other = again(turned)
-        if other is None or other.model.readings == readings:
+        if other is None or (taken := list(other.model.readings)) in seen:
             continue
+        seen.append(taken)
         made = lower(other.model)
-        found = solve(made.problem, replace(settings, explain=False, seconds=min(settings.seconds, _SECONDS)))
+        found = solve(made.problem, replace(settings, explain=False, seconds=min(settings.seconds, _LONGEST)))
         if found.status is Status.SOLVED and not any(stage.gave for stage in found.stages):
-            taken = list(other.model.readings)
-            return Otherwise(other, made, found, tuple(taken[n] for n in turned if n < len(taken)))
-    return None
+            calls = tuple(taken[n] for n in turned if n < len(taken))
+            return Otherwise(other, made, found, calls), solution
+    return None, solution
+
+
+def _numbers(readings: Sequence[tuple[Span, str]], lowered: Lowered, indices: Iterable[int]) -> list[int]:
+    """The readings, by number, that have a share in some constraints."""
+    spans = {c.span for i in indices if (c := lowered.stated[i]) is not None}
+    return [n for n, (span, _) in enumerate(readings) if any(map(span.overlaps, spans))]
+
+
+def _ways(numbers: Sequence[int]) -> Iterator[dict[int, int]]:
+    """The ways in which readings can be taken otherwise: one of them, two, and so on."""
+    for count in range(1, len(numbers) + 1):
+        for chosen in itertools.combinations(numbers, count):
+            for ranks in itertools.product(_RANKS, repeat=count):
+                yield dict(zip(chosen, ranks, strict=True))
+
+
+def _undecided(lowered: Lowered, solution: Solution, readings: Sequence[tuple[Span, str]]) -> Solution:
+    """The solution, in which failures that ambiguous calls have a share in are not taken for proven."""
+    failures = tuple(
+        replace(f, reason=Failure.NOT_CONVERGED) if _numbers(readings, lowered, f.conflict) else f
+        for f in solution.failures
+    )
+    return replace(solution, failures=failures)
 
 
 def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:

@@ -383,7 +383,7 @@ def _finish(
         lowered = lower(built.model)
     with watch("solve"):
         solution = solve(lowered.problem, settings.solving, memory)
-        other = otherwise(built, lowered, solution, again, settings.solving)
+        other, solution = otherwise(built, lowered, solution, again, settings.solving)
     if other is not None:
         built, lowered, solution = other.built, other.lowered, other.solution
     with watch("freedom"):
