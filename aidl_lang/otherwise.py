@@ -26,11 +26,11 @@ from aidl_lang.source import Span
 from aidl_lang.trials import Trials
 from aidl_lang.units import UNITS
 
-_MOST = 40
+_MOST = 64
 """Other ways that are tried."""
 _RANKS = (1, 2, 3)
 """How many places further off than the nearest a reading is tried."""
-_SECONDS, _LONGEST = 1.0, 0.5
+_SECONDS, _LONGEST = 6.0, 0.5
 """Time for all of them, and for one."""
 _MUCH = 0.1
 """Part of a size by which it may change before it is asked whether something was meant otherwise."""

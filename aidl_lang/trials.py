@@ -84,6 +84,14 @@ class Trials:
         ]
         return lack(other.problem, self._quick, members, within, start)
 
+    def _together(self, failure: GroupFailure) -> list[int]:
+        """The constraints of a failure and those that took part in the search, but for what other failures
+        are about.
+        """
+        others = {i for f in self.solution.failures if f is not failure for i in f.conflict}
+        hard = np.isnan(self.lowered.problem.weight)
+        return [i for i in failure.within if hard[i] and (i in failure.conflict or i not in others)]
+
     def residual(self, edits: Sequence[Edit], failure: GroupFailure, member: int) -> float | None:
         """How far a member of a failure is from holding after the edits, with its sign, where its other
         members hold; None where they were not found to.
@@ -99,7 +107,7 @@ class Trials:
 
     def _without(self, failure: GroupFailure, member: int) -> dict[int, float] | None:
         if member not in self._places:
-            rest = [index for index in failure.conflict if index != member]
+            rest = [index for index in self._together(failure) if index != member]
             self._places[member] = settled(self.lowered.problem, self._quick, rest, self._free(failure))
         return self._places[member]
 

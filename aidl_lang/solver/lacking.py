@@ -14,6 +14,8 @@ from aidl_lang.solver.refuting import Relaxation
 
 RESTARTS = 3
 """Perturbed starts."""
+FEW = 40
+"""Rows up to which all that takes part is searched for together."""
 
 
 def lack(
@@ -34,9 +36,10 @@ def lack(
     if not relaxation.bends and (off := relaxation.lack(range(len(rows)))) > 0.0:
         return off
     first, least = hierarchy.save(free), np.inf
+    searched = within if len(rows) <= FEW else constraints
     for place in (start, first):
         hierarchy.values.assign(place.items())
-        verdict = hierarchy.attempt(Scope(free, tuple(sorted(constraints))), RESTARTS)
+        verdict = hierarchy.attempt(Scope(free, tuple(sorted(searched))), RESTARTS)
         least = min(least, 0.0 if verdict.satisfied else verdict.violation)
     return least
 
