@@ -20,6 +20,7 @@ from aidl_lang.lower import Lowered, lower
 from aidl_lang.model import Constraint, Model
 from aidl_lang.remedies import short
 from aidl_lang.solver import Settings, Solution, Status, solve
+from aidl_lang.solver.lacking import lack
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.solution import Failure
 from aidl_lang.source import Span
@@ -30,7 +31,7 @@ _MOST = 64
 """Other ways that are tried."""
 _RANKS = (1, 2, 3)
 """How many places further off than the nearest a reading is tried."""
-_SECONDS, _LONGEST = 6.0, 0.5
+_SECONDS, _LONGEST = 10.0, 0.5
 """Time for all of them, and for one."""
 _MUCH = 0.1
 """Part of a size by which it may change before it is asked whether something was meant otherwise."""
@@ -77,6 +78,11 @@ def otherwise(
             continue
         seen.append(taken)
         made = lower(other.model)
+        # The same statements in the same order: what conflicts has the same numbers there.
+        if any(
+            lack(made.problem, settings, f.conflict, f.conflict, dict(f.nearest)) for f in solution.failures
+        ):
+            continue
         found = solve(made.problem, replace(settings, explain=False, seconds=min(settings.seconds, _LONGEST)))
         if found.status is Status.SOLVED and not any(stage.gave for stage in found.stages):
             calls = tuple(taken[n] for n in turned if n < len(taken))
