@@ -27,8 +27,8 @@ from aidl_lang.source import Span
 from aidl_lang.trials import Trials
 from aidl_lang.units import UNITS
 
-_MOST = 64
-"""Other ways that are tried."""
+_FIRST, _MOST = 16, 64
+"""Other ways that are solved at once, and those that are tried at all."""
 _RANKS = (1, 2, 3)
 """How many places further off than the nearest a reading is tried."""
 _SECONDS, _LONGEST = 10.0, 0.5
@@ -88,6 +88,15 @@ def otherwise(
             calls = tuple(taken[n] for n in turned if n < len(taken))
             return Otherwise(other, made, found, calls), solution
     return None, solution
+
+
+def _still_fails(made: Lowered, solution: Solution, settings: Settings) -> bool:
+    """Whether what conflicted does so with calls taken otherwise, by a search that is quicker than solving.
+    The same statements in the same order have the same numbers there.
+    """
+    return any(
+        lack(made.problem, settings, f.conflict, f.conflict, dict(f.nearest)) for f in solution.failures
+    )
 
 
 def _numbers(readings: Sequence[tuple[Span, str]], lowered: Lowered, indices: Iterable[int]) -> list[int]:

@@ -170,6 +170,7 @@ class _Search:
             work=self.work,
             elsewhere=tuple(sorted(place.reached.items())),
             within=tuple(self.scope.constraints),
+            nearest=tuple(sorted(place.reached.items())),
         )
 
     def _nearest(self, conflict: Sequence[int], best: _Trial, starts: int) -> _Trial:
