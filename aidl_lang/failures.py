@@ -162,7 +162,7 @@ class Explanation:
     def conflict(self) -> Conflict:
         parties = tuple(map(self._told, self.parties))
         givens = tuple(
-            Given(r.dial.name, r.dial.places[0], r.shown, r.fix) for r in self._remedies if r.dial.is_exact
+            Given(r.dial.name, r.dial.place, r.shown, r.fix) for r in self._remedies if r.dial.is_exact
         )
         return Conflict(self._headline()[1], self.failure.minimal, parties, givens)
 
@@ -217,7 +217,7 @@ class Explanation:
     def _remedy_of(self, party: _Party) -> Remedy | None:
         span = party.stated.span
         inside = (r for r in self._remedies if not r.dial.is_exact)
-        return next((r for r in inside if all(map(span.overlaps, r.dial.places))), None)
+        return next((r for r in inside if span.overlaps(r.dial.place)), None)
 
     @cached_property
     def _fix(self) -> Fix | None:
@@ -242,12 +242,11 @@ class Explanation:
         """The fix; where it would say what another party says, that the statement is left out."""
         for party in self.parties:
             span = party.stated.span
-            if party.node is None or not all(map(span.overlaps, found.dial.places)):
+            if party.node is None or not span.overlaps(found.dial.place):
                 continue
-            said = span.text
-            for edit in found.fix.edits:
-                start, end = edit.span.start - span.start, edit.span.end - span.start
-                said = said[:start] + edit.replacement + said[end:]
+            behind_it = len(span.source.text) - span.end
+            text = self.trials.edited(found.fix.edits).text
+            said = text[span.start : len(text) - behind_it]
             if any(said == other.stated.span.text for other in self.parties):
                 fix = left_out(party.stated)
                 if fix is not None and self.trials.mends(fix.edits, self.failure):
@@ -258,14 +257,14 @@ class Explanation:
         """What is to be kept: what takes part in other failures goes first, as one cause has several."""
         other = [f for f in self.solution.failures if f is not self.failure]
         places = [{c.span for i in f.conflict if (c := self.lowered.stated[i]) is not None} for f in other]
-        shared = sum(any(s.overlaps(found.dial.places[0]) for s in spans) for spans in places)
+        shared = sum(any(s.overlaps(found.dial.place) for s in spans) for spans in places)
         others = [d for parties in self.turns.values() for d in self._dials(parties[0])]
         size = abs(found.dial.value)
-        twins = [d for d in others if abs(d.value) == size and d.places != found.dial.places]
+        twins = [d for d in others if abs(d.value) == size and d.place != found.dial.place]
         breaks = not found.dial.is_exact and bool(twins)
         share = found.share * (_FIXED if found.dial.is_exact and not found.dial.name else 1.0)
         share *= 1.0 if found.plain else _LONG
-        return -shared, found.counts, breaks, round(share, 4), -found.dial.places[0].start
+        return -shared, found.counts, breaks, round(share, 4), -found.dial.place.start
 
     @cached_property
     def _chief(self) -> _Party:
@@ -318,7 +317,7 @@ class Explanation:
             return ""
         assert party.node is not None
         several = len(stated_in(party.node)) > 1
-        instead = f" instead of `{found.dial.places[0].text}`" if several else ""
+        instead = f" instead of `{found.dial.place.text}`" if several else ""
         times = self.times[party.stated.span]
         return f"{found.shown}{instead} would fit" + (f", all {times} times" if times > 1 else "")
 
@@ -334,7 +333,7 @@ class Explanation:
         """The exact numbers that have a share in it."""
         for found in self._remedies:
             if found.dial.is_exact:
-                yield Label(found.dial.places[0], f"exact; {found.shown} would fit")
+                yield Label(found.dial.place, f"exact; {found.shown} would fit")
 
     def _hints(self) -> Iterator[str]:
         gaps = dict(self.failure.gaps)

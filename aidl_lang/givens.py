@@ -33,7 +33,7 @@ class Sign(Enum):
 class Dial:
     """A number of the text.
 
-    places     where it stands, with its sign
+    place      where it stands, with its sign
     value      in the `unit` in which it is written (empty: mm, degrees or none)
     name       of the `param` or `let` that it is the value of
     is_exact   nothing but the text changes it, and it stands in none of the constraints
@@ -42,7 +42,7 @@ class Dial:
     is_rough   a number of many digits in its place would not be what anyone means
     """
 
-    places: tuple[Span, ...]
+    place: Span
     value: float
     unit: str
     name: str = ""
@@ -81,7 +81,7 @@ def stated(node: ast.Expression) -> list[Dial]:
                 found += (replace(dial, is_rough=True) for dial in _among((x, y), Sign.ANY, stack))
             case other:
                 stack.extend(ast.children(other))
-    return sorted(found, key=lambda dial: -dial.places[0].start)
+    return sorted(found, key=lambda dial: -dial.place.start)
 
 
 def _among(
@@ -109,7 +109,7 @@ def behind(nodes: Iterable[ast.Node], uses: Mapping[ast.Node, Symbol]) -> list[D
                 if isinstance(part, ast.Call) and fold(part.callee.text) == "fixed":
                     for argument in part.arguments:
                         for dial in stated(argument.value):
-                            found.setdefault(dial.places[0], _exact(dial))
+                            found.setdefault(dial.place, _exact(dial))
                 symbol = uses.get(part)
                 if symbol is None or symbol.node is None or symbol.node in seen:
                     continue
@@ -118,7 +118,7 @@ def behind(nodes: Iterable[ast.Node], uses: Mapping[ast.Node, Symbol]) -> list[D
                 seen.add(symbol.node)
                 if isinstance(symbol.node, ast.Param | ast.Let) and _is_literal(symbol.node.value):
                     dial = _dial(symbol.node.value)
-                    found.setdefault(dial.places[0], _exact(dial, symbol.name))
+                    found.setdefault(dial.place, _exact(dial, symbol.name))
                 else:
                     waiting.append(symbol.node)
     return sorted(found.values(), key=lambda dial: dial.value == 0.0)[:_MOST]
@@ -138,4 +138,4 @@ def _dial(literal: ast.Node) -> Dial:
     number = literal.operand if isinstance(literal, ast.Unary) else literal
     assert isinstance(number, ast.Number)
     value = -number.value if isinstance(literal, ast.Unary) else number.value
-    return Dial((literal.span,), value, number.unit or "")
+    return Dial(literal.span, value, number.unit or "")

@@ -133,7 +133,7 @@ class _Search:
         """What fits where the other members hold."""
 
         def off(value: float) -> float | None:
-            return self.trials.residual(self._edits(f"{value:.15g}{self.dial.unit}"), self.failure, member)
+            return self.trials.residual(self._at(value), self.failure, member)
 
         value = self.dial.value
         step = _NUDGE * max(abs(value), 1.0)
@@ -226,10 +226,14 @@ class _Search:
     # -- trying
 
     def _edits(self, text: str) -> tuple[Edit, ...]:
-        return tuple(Edit(span, text) for span in self.dial.places)
+        return (Edit(self.dial.place, text),)
+
+    def _at(self, value: float) -> tuple[Edit, ...]:
+        """The number turned to a value, with all its digits."""
+        return self._edits(f"{value + 0.0:.15g}{self.dial.unit}")
 
     def _lack(self, value: float) -> float | None:
-        return self.trials.lack(self._edits(f"{value + 0.0:.15g}{self.dial.unit}"), self.failure)
+        return self.trials.lack(self._at(value), self.failure)
 
     def _fits(self, written: _Written) -> bool:
         if self.dial.is_rough and not _is_plain(written.value, _ROUGH):

@@ -77,20 +77,20 @@ class Trials:
         other, matched, numbered = found
         start = {numbered[u]: value for u, value in self._free(failure).items()}
         members = [matched[index] for index in failure.conflict]
-        others = {i for f in self.solution.failures if f is not failure for i in f.conflict}
-        hard = np.isnan(self.lowered.problem.weight)
-        within = [
-            matched[i] for i in failure.within if hard[i] and (i in failure.conflict or i not in others)
-        ]
+        within = [matched[index] for index in self._together(failure)]
         return lack(other.problem, self._quick, members, within, start)
 
     def _together(self, failure: GroupFailure) -> list[int]:
         """The constraints of a failure and those that took part in the search, but for what other failures
         are about.
         """
-        others = {i for f in self.solution.failures if f is not failure for i in f.conflict}
+        others = self._others(failure)
         hard = np.isnan(self.lowered.problem.weight)
         return [i for i in failure.within if hard[i] and (i in failure.conflict or i not in others)]
+
+    def _others(self, failure: GroupFailure) -> set[int]:
+        """The constraints that other failures are about."""
+        return {i for f in self.solution.failures if f is not failure for i in f.conflict}
 
     def residual(self, edits: Sequence[Edit], failure: GroupFailure, member: int) -> float | None:
         """How far a member of a failure is from holding after the edits, with its sign, where its other
@@ -130,7 +130,7 @@ class Trials:
             return None
         if (matched := _matched(self.lowered, other)) is None:
             return None
-        names, keys = _numbered(other), _keys(self.lowered)
+        names, keys = {key: u for u, key in enumerate(_keys(other))}, self._own_keys
         numbered = {u: names[keys[u]] for u, _ in failure.nearest if keys[u] in names}
         return (other, matched, numbered) if len(numbered) == len(failure.nearest) else None
 
@@ -140,7 +140,7 @@ class Trials:
         """
         if self.is_over or (other := self._with(edits)) is None:
             return False
-        others = {i for f in self.solution.failures if f is not failure for i in f.conflict}
+        others = self._others(failure)
         found = solve(other.problem, replace(self._quick, explain=bool(others)))
         unmet = [i for i in np.flatnonzero(np.isnan(other.problem.weight)).tolist() if not found.satisfied[i]]
         if unmet:
@@ -154,27 +154,32 @@ class Trials:
         """Whether edits that mend a failure leave no errors, as another failure or an assertion that
         fails.
         """
-        return not has_errors(self.found(self._text(edits)))
+        return not has_errors(self.found(self.edited(edits)))
 
     def settles(self, edits: Sequence[Edit]) -> bool:
         """Whether after the edits the program solves from its first guesses, and nothing gives way."""
         if self.is_over or not self.can_edit(edits):
             return False
-        found = self.found(self._text(edits))
+        found = self.found(self.edited(edits))
         return not has_errors(found) and not any(d.code in _TOLD for d in found)
+
+    @cached_property
+    def _own_keys(self) -> list[tuple[str, int]]:
+        return _keys(self.lowered)
 
     @property
     def _quick(self) -> Settings:
         return replace(self.settings, explain=False, seconds=min(self.settings.seconds, _LONGEST))
 
-    def _text(self, edits: Sequence[Edit]) -> SourceFile:
+    def edited(self, edits: Sequence[Edit]) -> SourceFile:
+        """The program after edits."""
         text, _ = apply_fixes(self.source, [Diagnostic("E0601", "", fix=Fix("", tuple(edits)))])
         return SourceFile(self.source.name, text)
 
     def _with(self, edits: Sequence[Edit]) -> Lowered | None:
         if not self.can_edit(edits):
             return None
-        changed = self._text(edits)
+        changed = self.edited(edits)
         if changed.text not in self._built:
             self._built[changed.text] = self.build(changed)
         return self._built[changed.text]
@@ -220,10 +225,6 @@ def _keys(lowered: Lowered) -> list[tuple[str, int]]:
         found.append((path, met[path]))
         met[path] += 1
     return found
-
-
-def _numbered(lowered: Lowered) -> dict[tuple[str, int], int]:
-    return {key: unknown for unknown, key in enumerate(_keys(lowered))}
 
 
 def _gave_way(lowered: Lowered, solution: Solution) -> set[str]:

@@ -121,7 +121,7 @@ def _groups(
     """Pieces that hold together, directly or by other bodies; the largest group first."""
     joined = _Joined()
     for contact in pairs:
-        if contact.relation != "apart" or (contact.gap or 0.0) <= UNNOTICED:
+        if _meet(contact):
             if own.path not in (contact.a, contact.b):
                 joined.join(contact.a, contact.b)
                 continue
@@ -140,6 +140,10 @@ def _groups(
     for number, piece in enumerate(pieces):
         groups.setdefault(joined.root(number), []).append(piece)
     return sorted(groups.values(), key=lambda group: -sum(p.section.area() for p in group))
+
+
+def _meet(contact: Contact) -> bool:
+    return contact.relation != "apart" or (contact.gap or 0.0) <= UNNOTICED
 
 
 class _Joined:
@@ -258,7 +262,7 @@ def _held_by_others(solids: Sequence[Solid], pairs: Sequence[Contact]) -> dict[s
     known = {solid.path: solid for solid in solids}
     held: dict[str, list[Solid]] = {}
     for pair in pairs:
-        if pair.relation != "apart" or (pair.gap or 0.0) <= UNNOTICED:
+        if _meet(pair):
             held.setdefault(pair.a, []).append(known[pair.b])
             held.setdefault(pair.b, []).append(known[pair.a])
     return held

@@ -25,7 +25,7 @@ from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Floats, Op
 from aidl_lang.solver.problem import Relation, Row, Settings
 from aidl_lang.solver.program import AffineProgram, Program
-from aidl_lang.solver.refuting import Relaxation
+from aidl_lang.solver.refuting import is_refuted
 from aidl_lang.solver.valuation import Valuation
 
 TIGHTER = 0.5
@@ -262,9 +262,7 @@ class _Attempt:
 
     def _is_refuted(self) -> bool:
         """Whether it is shown that no branches would help."""
-        rows = self.task.rows
-        relaxation = Relaxation(self.values, rows, self.free, self.settings.tolerance, rows)
-        return bool(relaxation.refutation(range(len(rows))))
+        return is_refuted(self.values, self.task.rows, self.free, self.settings.tolerance)
 
     def _proof_without_branches(self) -> Mapping[int, float] | None:
         """Nothing if the rows that no other branch could help can be met by themselves; else why not, or None

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from aidl_lang.solver.branches import violation_of
-from aidl_lang.solver.gradients import gradients
+from aidl_lang.solver.gradients import FLAT, gradients
 from aidl_lang.solver.newton import Clock, End, perturbation
 from aidl_lang.solver.problem import Relation
 from aidl_lang.solver.refuting import Relaxation
@@ -39,8 +39,6 @@ RESTARTS = 2
 """Perturbed starts for each set that is tried."""
 THOROUGH = 5
 """Perturbed starts before a set is called contradictory."""
-FLAT = 1e-9
-"""A slope below this is none: coordinates that cancel, as in the width of a box."""
 CURVED = 1e-6
 """Change of a slope, relatively, that shows that a row is not affine."""
 STARTS = 32
@@ -101,7 +99,7 @@ def conflict(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) -> tu
     trial = search._try(tuple(sorted(scope.constraints)))
     if trial.holds:
         return [], True
-    found = search._conflict(trial.reached)
+    found = search._conflict(trial.reached, search._refuted(scope.constraints))
     return found, not search._spent
 
 
@@ -127,7 +125,7 @@ class _Search:
             whole = self._nearest(scope.constraints, _Trial(End.INFEASIBLE, best, np.inf), FIRST)
             if whole.holds:
                 return self._found(group, self._violated(best), whole)
-        conflict = self._conflict(best)
+        conflict = self._conflict(best, refuted)
         minimal = not self._spent
         is_proven = bool(self._refuted(conflict))
         thorough = self._attempt(tuple(conflict), THOROUGH)
@@ -168,7 +166,7 @@ class _Search:
             Failure.NOT_CONVERGED,
             members,
             work=self.work,
-            elsewhere=tuple(sorted(place.reached.items())),
+            holds_elsewhere=True,
             within=tuple(self.scope.constraints),
             nearest=tuple(sorted(place.reached.items())),
         )
@@ -214,9 +212,11 @@ class _Search:
 
     # -- the set
 
-    def _conflict(self, best: dict[int, float]) -> list[int]:
-        """A set that cannot hold together; minimal unless the budget was spent."""
-        if refuted := self._refuted(self.scope.constraints):
+    def _conflict(self, best: dict[int, float], refuted: list[int]) -> list[int]:
+        """A set that cannot hold together, found among those that are `refuted` if there are any; minimal
+        unless the budget was spent.
+        """
+        if refuted:
             return self._needed(refuted)
         found = next((c for c in self._candidates(best) if not self._holds(c)), None)
         if found is None:

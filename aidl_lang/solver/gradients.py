@@ -40,6 +40,9 @@ BRANCHES = 4
 _Adjoints: TypeAlias = tuple[Ints, Ints, Floats]
 """Roots, nodes, and the derivatives of the former along the latter."""
 
+FLAT = 1e-9
+"""A slope below this is none: coordinates that cancel, as in the width of a box."""
+
 
 @dataclass(frozen=True)
 class Sparse:

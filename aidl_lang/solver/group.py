@@ -35,10 +35,10 @@ import numpy as np
 from aidl_lang.solver import conflicts
 from aidl_lang.solver.forms import Affine
 from aidl_lang.solver.freezing import Freezer
-from aidl_lang.solver.gradients import gradients
+from aidl_lang.solver.gradients import FLAT, gradients
 from aidl_lang.solver.preferences import prefer
 from aidl_lang.solver.problem import Relation
-from aidl_lang.solver.refuting import Relaxation
+from aidl_lang.solver.refuting import is_refuted
 from aidl_lang.solver.solution import Giving, GroupFailure, StageReport
 from aidl_lang.solver.thinning import thin
 
@@ -61,8 +61,6 @@ RIDING: Tier = (5, -1)
 POSITIONS: Tier = (6, -1)
 """Before the first tier of kept sizes."""
 SIZES: Tier = (6, 0)
-FLAT = 1e-9
-"""A slope below this is none: coordinates that cancel, as in the width of a box."""
 LAST_RESTARTS = 5
 """Perturbed starts at the last stage; the earlier ones have one."""
 MOST_FAILURES = 20
@@ -256,10 +254,10 @@ class Group:
         does.
         """
         hierarchy = self.hierarchy
-        for tier in (POSITIONS, (9, 0)) if failure.elsewhere else ():
+        for tier in (POSITIONS, (9, 0)) if failure.holds_elsewhere else ():
             scope = self.scope(tier, part)
             hierarchy.values.assign(before.items())
-            hierarchy.values.assign(pair for pair in failure.elsewhere if pair[0] in scope.free)
+            hierarchy.values.assign(pair for pair in failure.nearest if pair[0] in scope.free)
             if hierarchy.attempt(scope, 1).satisfied:
                 self._report(tier, scope, before, failure.conflict)
                 return tier
@@ -318,8 +316,8 @@ class Group:
             hierarchy, scope = self.hierarchy, self.everything(seeds)
             hierarchy.refresh(scope.constraints)
             rows = hierarchy.rows(scope.constraints)
-            relaxation = Relaxation(hierarchy.values, rows, scope.free, hierarchy.settings.tolerance, rows)
-            self._refuted[key] = bool(relaxation.refutation(range(len(rows))))
+            tolerance = hierarchy.settings.tolerance
+            self._refuted[key] = is_refuted(hierarchy.values, rows, scope.free, tolerance)
         return self._refuted[key]
 
     def _proof(self, scope: Scope, verdict: Verdict) -> Proof:

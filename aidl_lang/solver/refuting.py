@@ -330,6 +330,14 @@ class Relaxation:
                 yield combined(scaled(itself, -1.0), 1.0, -1.0)
 
 
+def is_refuted(values: Valuation, rows: Sequence[Row], free: Iterable[int], tolerance: float) -> bool:
+    """Whether it is shown that rows cannot hold together; what each says of one unknown alone helps with the
+    others.
+    """
+    relaxation = Relaxation(values, rows, free, tolerance, rows)
+    return bool(relaxation.refutation(range(len(rows))))
+
+
 def _arrays(forms: Sequence[Form]) -> tuple[Floats, Floats]:
     """The slopes (m, n) and constants (m,) of m forms in n slots."""
     columns: dict[int, int] = {}

@@ -47,8 +47,8 @@ class GroupFailure:
     moving    the unknowns that could move for them
     equations the number of their rows that are equations
     work      rows times unknowns of the attempts that this took
-    elsewhere (unknown, value) where the members hold after all, found from another place than the first
-              guesses; empty if none was
+    holds_elsewhere whether the members hold at `nearest` after all, found from another place than the first
+              guesses
     within    all constraints that took part in the search, by index
     nearest   (unknown, value) where the search for the members came nearest, of all that was free
     gaps      (member, what its one row comes to where the others hold), where equations alone contradict
@@ -63,7 +63,7 @@ class GroupFailure:
     moving: tuple[int, ...] = ()
     equations: int = 0
     work: int = 0
-    elsewhere: tuple[tuple[int, float], ...] = field(default=(), repr=False)
+    holds_elsewhere: bool = False
     within: tuple[int, ...] = field(default=(), repr=False)
     nearest: tuple[tuple[int, float], ...] = field(default=(), repr=False)
     gaps: tuple[tuple[int, float], ...] = ()

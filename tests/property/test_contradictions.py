@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from tests.property.contradictions import badly_guessed, broken_program, faults, guess_fault
+from tests.property.contradictions import Program, badly_guessed, broken_program, faults, guess_fault
 
 BROKEN = [p for p in map(broken_program, range(40)) if p is not None][:16]
 
 
 @pytest.mark.parametrize("program", BROKEN, ids=range(len(BROKEN)))
-def test_a_broken_number_is_found_and_mended(program: object) -> None:
-    assert list(faults(program)) == []  # type: ignore[arg-type]
+def test_a_broken_number_is_found_and_mended(program: Program) -> None:
+    assert list(faults(program)) == []
 
 
 @pytest.mark.parametrize("seed", range(16))
