@@ -18,7 +18,7 @@ from aidl_lang.solver import Settings, Solution
 from aidl_lang.solver.reasons import reasons
 from aidl_lang.source import Span
 
-_CODES = frozenset({"N0601", "W0601", "W0602"})
+GAVE_WAY = frozenset({"N0601", "W0601", "W0602"})
 """What strictness does not let pass."""
 _A_TENTH = 0.1 + 1e-9
 """Part of a size by which it may change without a warning."""
@@ -64,7 +64,7 @@ def explained(model: SolvedModel, given: Sequence[GaveWay]) -> SolvedModel:
 
 def refused(note: Diagnostic) -> Diagnostic:
     """A diagnostic, as an error if it tells that something gave way."""
-    return replace(note, code="E0606") if note.code in _CODES else note
+    return replace(note, code="E0606") if note.code in GAVE_WAY else note
 
 
 def giving_notes(given: Sequence[GaveWay], model: SolvedModel) -> Iterator[Diagnostic]:

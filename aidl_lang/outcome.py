@@ -10,7 +10,7 @@ from aidl_lang.boxes import SIDES
 from aidl_lang.building.arithmetic import differences, givens
 from aidl_lang.building.conditions import RELATIONS, holds
 from aidl_lang.building.wording import Wording
-from aidl_lang.diagnostics import Diagnostic, Label
+from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.expression import Evaluator, nodes
 from aidl_lang.failures import Explanation, measured_in
 from aidl_lang.geometry.boolean import clearance, overlap_area
@@ -27,9 +27,11 @@ from aidl_lang.repetitions import repetition_notes
 from aidl_lang.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.solution import Solution, Status
+from aidl_lang.source import Span
 
 _TOLERANCE = 1e-6
 """How far an assertion may be off, relative to what it compares (and never less than this in mm)."""
+_WORD = "assert"
 
 
 def solution_notes(
@@ -95,12 +97,13 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
         assertion.span,
         "; ".join(shown or [_compared(c, evaluate) for c in false]) or "false as written",
         places,
-        (_remedy(assertion, false, places),),
+        (_hint(assertion, false, places),),
+        _stated(assertion),
     )
 
 
-def _remedy(assertion: Assertion, false: Sequence[Comparison], places: Sequence[Label]) -> str:
-    """What to do about an assertion that does not hold, and nothing that would be an error in its turn."""
+def _hint(assertion: Assertion, false: Sequence[Comparison], places: Sequence[Label]) -> str:
+    """What is true of an assertion that does not hold, and nothing that would be an error in its turn."""
     if assertion.shape:
         return f"`{assertion.shape}` asks this of its arguments: see `aidl doc {assertion.shape}`"
     if not false and isinstance(assertion.condition, bool):
@@ -111,9 +114,23 @@ def _remedy(assertion: Assertion, false: Sequence[Comparison], places: Sequence[
             "this is measured on what is drawn, which `constrain` cannot steer: change the sizes that it "
             "follows from, or what the `assert` asks"
         )
-    if not _can_be_stated(assertion.condition):
-        return "an `assert` steers nothing: constrain the one of these that is meant, or change what it asks"
-    return "an `assert` steers nothing: to make it hold, state it with `constrain` as well"
+    return "an `assert` steers nothing: it is looked at once everything is solved"
+
+
+def _stated(assertion: Assertion) -> Fix | None:
+    """Constrains what an assertion asks, before it; None where no `assert` of the author stands, or where it
+    is nothing that constrains.
+    """
+    span, wording = assertion.span, assertion.wording
+    before = span.source.text[: span.start].rstrip()
+    is_own = isinstance(wording, Wording) and wording.node.span == span
+    if not is_own or not before.endswith(_WORD) or not _can_be_stated(assertion.condition):
+        return None
+    start = len(before) - len(_WORD)
+    indent = before[before.rfind("\n") + 1 : start]
+    beside = "; " if indent.strip() else f"\n{indent}"
+    edit = Edit(Span(span.source, start, start), f"constrain {span.text}{beside}")
+    return Fix("state it with `constrain` as well", (edit,))
 
 
 def _is_measured(comparisons: Sequence[Comparison]) -> bool:
@@ -122,12 +139,13 @@ def _is_measured(comparisons: Sequence[Comparison]) -> bool:
 
 
 def _can_be_stated(condition: Condition | bool) -> bool:
-    """Whether `constrain` takes it: comparisons that all hold, by relations that a solver knows."""
-    return (
-        isinstance(condition, Condition)
-        and condition.operator == "and"
-        and all(isinstance(part, Comparison) and part.relation in RELATIONS for part in condition.parts)
-    )
+    """Whether `constrain` takes it: comparisons that all hold, by relations that a solver knows, of what is
+    known before everything is solved.
+    """
+    if not isinstance(condition, Condition) or condition.operator != "and":
+        return False
+    parts = [part for part in condition.parts if isinstance(part, Comparison) and part.relation in RELATIONS]
+    return len(parts) == len(condition.parts) and not _is_measured(parts)
 
 
 def _false_parts(

@@ -378,6 +378,7 @@ def _finish(
     from aidl_lang.repetitions import follows, preference
     from aidl_lang.solver import Status, solve
     from aidl_lang.solver.analysis import analyse
+    from aidl_lang.verifying import verified
 
     with watch("lower"):
         lowered = lower(built.model)
@@ -404,7 +405,11 @@ def _finish(
     if solution.status is not Status.SOLVED:
         notes = []  # the parts are not where they belong
     notes = list(_beside([*elsewhere, *notes], found))
-    everything = ordered([*diagnostics, *adapted([*found, *notes], settings.variant)])
+    told = adapted([*found, *notes], settings.variant)
+    if settings.solving.explain:
+        with watch("fixes"):
+            told = verified(told, [*diagnostics, *told], tried)
+    everything = ordered([*diagnostics, *told])
     stages = tuple((lowered.groups[stage.group], stage) for stage in solution.stages)
     return Compiled(
         model.status,
