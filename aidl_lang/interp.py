@@ -46,12 +46,17 @@ def interpret(
     overrides: Mapping[str, str | float | bool] | None = None,
     limits: Limits = DEFAULT_LIMITS,
     turned: Mapping[int, int] | None = None,
+    states_constants: bool = False,
 ) -> Interpretation:
-    """Run a program. Never raises for what a program says; errors are among the diagnostics. `turned` are
-    readings of ambiguous calls, by number, and how many places from the nearest they are to be taken.
+    """Run a program. Never raises for what a program says; errors are among the diagnostics.
+
+    turned            readings of ambiguous calls, by number, and how many places from the nearest they are to
+                      be taken
+    states_constants  conditions over constants, which are decided at once, are constraints all the same
     """
     it = Interpreter(program, overrides or {}, limits, EXECUTORS, evaluate, call)
     it.turned = turned or {}
+    it.states_constants = states_constants
     it.frames_turn = any(map(_speaks_of_rotation, program.resolution.modules))
     it.watched = frozenset(node for violation in program.violations for node in violation.nodes)
     try:

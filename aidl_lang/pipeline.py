@@ -152,6 +152,7 @@ def _build(
     watch: _Stopwatch,
     checked: Front | None = None,
     turned: Mapping[int, int] | None = None,
+    states_constants: bool = False,
 ) -> tuple[Interpretation, list[Diagnostic]]:
     """Text → Model, with every diagnostic that does not need solving."""
     program, found = checked or _front(source, world, settings, watch)
@@ -159,7 +160,7 @@ def _build(
         return nothing_built(), within_limit(ordered(adapted(found, settings.variant)))
     static = list(found)
     with watch("interpret"):
-        built = interpret(program, params, settings.building, turned)
+        built = interpret(program, params, settings.building, turned, states_constants)
     static += [violation.diagnostic(built.written) for violation in program.violations]
     found = [*static, *_new(built.diagnostics, static)]
     return built, within_limit(ordered(adapted(found, settings.variant)))
@@ -209,41 +210,68 @@ def _conflicts(failures: Sequence[Explanation]) -> Callable[[], tuple[Conflict, 
     return conflicts
 
 
-def _trials(
-    source: SourceFile,
-    world: World | None,
-    params: Mapping[str, str | float | bool],
-    settings: Settings,
-    lowered: Lowered,
-    solution: Solution,
-) -> Trials:
-    """What tries other texts of a program whose problem and solution these are."""
-    from aidl_lang.lower import lower
-    from aidl_lang.trials import Trials
+@dataclass(frozen=True)
+class _Tries:
+    """Tries a program in other ways, and other texts of it."""
 
-    solving = replace(settings.solving, explain=False, seconds=min(settings.solving.seconds, 1.0))
-    unexplained = replace(settings, solving=solving)
+    source: SourceFile
+    world: World | None
+    params: Mapping[str, str | float | bool]
+    settings: Settings
 
-    def build(changed: SourceFile) -> Lowered | None:
-        built, found = _build(changed, world, params, unexplained, _Stopwatch())
-        return None if has_errors(found) else lower(built.model)
+    def trials(self, lowered: Lowered, solution: Solution, states_constants: bool = False) -> Trials:
+        """What tries other texts of the program whose problem and solution these are."""
+        from aidl_lang.lower import lower
+        from aidl_lang.trials import Trials
 
-    def found(changed: SourceFile) -> list[Diagnostic]:
-        return compile(changed, world, params, unexplained).diagnostics
+        solving = self.settings.solving
+        hurried = replace(solving, explain=False, seconds=min(solving.seconds, 1.0))
+        unexplained = replace(self, settings=replace(self.settings, solving=hurried))
 
-    return Trials(source, build, found, lowered, solution, settings.solving)
+        def build(changed: SourceFile) -> Lowered | None:
+            built = replace(unexplained, source=changed)._built(states_constants=states_constants)
+            return None if built is None else lower(built.model)
 
+        def found(changed: SourceFile) -> list[Diagnostic]:
+            return compile(changed, self.world, self.params, unexplained.settings).diagnostics
 
-def _again(
-    source: SourceFile, world: World | None, params: Mapping[str, str | float | bool], settings: Settings
-) -> Callable[[Mapping[int, int]], Interpretation | None]:
-    """What builds the same program with ambiguous calls taken otherwise; None where that goes wrong."""
+        return Trials(self.source, build, found, lowered, solution, solving)
 
-    def again(turned: Mapping[int, int]) -> Interpretation | None:
-        built, found = _build(source, world, params, settings, _Stopwatch(), turned=turned)
+    def again(self, turned: Mapping[int, int]) -> Interpretation | None:
+        """The program with ambiguous calls taken otherwise; None where that goes wrong."""
+        return self._built(turned)
+
+    def answered(
+        self, found: list[Diagnostic], everything: Sequence[Diagnostic], stated: Model
+    ) -> list[Diagnostic]:
+        """Findings among everything that is said of a program, those on constants with what would fit."""
+        from aidl_lang.decided import NEVER, answered, failing
+        from aidl_lang.lower import lower
+        from aidl_lang.solver import solve
+
+        solving = self.settings.solving
+        is_decided = any(d.code == NEVER for d in found) or any(
+            a.condition is False for a in stated.assertions
+        )
+        if not solving.explain or not is_decided or (built := self._built(states_constants=True)) is None:
+            return found
+        lowered = lower(built.model)
+        solution = failing(lowered, solve(lowered.problem, replace(solving, explain=False)))
+        return answered(found, everything, self.trials(lowered, solution, states_constants=True))
+
+    def _built(
+        self, turned: Mapping[int, int] | None = None, states_constants: bool = False
+    ) -> Interpretation | None:
+        built, found = _build(
+            self.source,
+            self.world,
+            self.params,
+            self.settings,
+            _Stopwatch(),
+            turned=turned,
+            states_constants=states_constants,
+        )
         return None if has_errors(found) else built
-
-    return again
 
 
 def _beside(notes: Sequence[Diagnostic], errors: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
@@ -307,11 +335,12 @@ def compile(
     with _working:
         built, diagnostics = _build(source, world, params or {}, settings, watch, checked)
         known = tuple(built.model.knobs)
+        tries = _Tries(source, world, params or {}, settings)
         if has_errors(diagnostics):
+            with watch("fixes"):
+                diagnostics = tries.answered(diagnostics, diagnostics, built.model)
             return Compiled("wrong", diagnostics, watch.seconds, known)
-        program = source, world, params or {}, settings
-        trials, again = partial(_trials, *program), _again(*program)
-        return _finish(built, diagnostics, settings, watch, known, frozenset(show), memory, trials, again)
+        return _finish(built, diagnostics, settings, watch, known, frozenset(show), memory, tries)
 
 
 def placed(
@@ -368,8 +397,7 @@ def _finish(
     known: tuple[Knob, ...],
     show: frozenset[str],
     memory: Memory | None,
-    trials: Callable[[Lowered, Solution], Trials],
-    again: Callable[[Mapping[int, int]], Interpretation | None],
+    tries: _Tries,
 ) -> Compiled:
     from aidl_lang.failures import explained
     from aidl_lang.giving import gave_way, refused
@@ -384,14 +412,14 @@ def _finish(
         lowered = lower(built.model)
     with watch("solve"):
         solution = solve(lowered.problem, settings.solving, memory)
-        other, solution = otherwise(built, lowered, solution, again, settings.solving)
+        other, solution = otherwise(built, lowered, solution, tries.again, settings.solving)
     if other is not None:
         built, lowered, solution = other.built, other.lowered, other.solution
     with watch("freedom"):
         freedom = analyse(lowered.problem, solution, preference(lowered))
     with watch("reasons"):
         given = gave_way(lowered, solution, settings.solving)
-    tried = trials(lowered, solution)
+    tried = tries.trials(lowered, solution)
     failures = explained(lowered, solution, tried)
     elsewhere = list(elsewhere_notes(built.model, lowered, solution, other, tried))
     try:
@@ -409,6 +437,7 @@ def _finish(
     if settings.solving.explain:
         with watch("fixes"):
             told = verified(told, [*diagnostics, *told], tried)
+            told = tries.answered(told, [*diagnostics, *told], built.model)
     everything = ordered([*diagnostics, *told])
     stages = tuple((lowered.groups[stage.group], stage) for stage in solution.stages)
     return Compiled(

@@ -8,7 +8,7 @@ from dataclasses import replace
 from aidl_lang import ast, units
 from aidl_lang.boxes import spelled_out
 from aidl_lang.building.coerce import as_point
-from aidl_lang.building.conditions import holds
+from aidl_lang.building.conditions import RELATIONS, holds
 from aidl_lang.building.wording import Wording
 from aidl_lang.diagnostics import Label
 from aidl_lang.expression import Expression
@@ -100,14 +100,9 @@ def _difference(
     wording: Wording, one: Side, relation: str, other: Side, evaluate: Evaluate, tolerance: float
 ) -> str:
     """What is said of a comparison that is false; empty for one that holds."""
-    pairs = []
-    for a, b in zip(one[1], other[1], strict=True):
-        left, right = spelled_out(a.expression, b.expression, equal=relation == "==")
-        try:
-            dimension = units.add(a.dimension, b.dimension)
-        except ValueError:
-            return ""
-        pairs.append(Comparison(relation, left, right, dimension))
+    pairs = _pairs(one, relation, other)
+    if not pairs:
+        return ""
     met = [holds(pair, evaluate, tolerance) for pair in pairs]
     if any(met) if relation == "!=" else all(met):
         return ""
@@ -115,6 +110,36 @@ def _difference(
     sums = [_in_numbers(wording, node, evaluate) for node, _ in (one, other)]
     left_side = f"{sums[0]} = {x}, which" if sums[0] else x
     return f"{left_side} is not {relation} {y}" + (f" = {sums[1]}" if sums[1] else "")
+
+
+def _pairs(one: Side, relation: str, other: Side) -> list[Comparison]:
+    """The numbers that a comparison compares; nothing where they do not go together."""
+    pairs = []
+    for a, b in zip(one[1], other[1], strict=True):
+        left, right = spelled_out(a.expression, b.expression, equal=relation == "==")
+        try:
+            dimension = units.add(a.dimension, b.dimension)
+        except ValueError:
+            return []
+        pairs.append(Comparison(relation, left, right, dimension))
+    return pairs
+
+
+def compared(wording: Wording) -> tuple[Comparison, ...]:
+    """The comparisons of numbers that a statement asks to hold together, constants or not; nothing where it
+    is more than that, or a relation of which there is none.
+    """
+    if any(isinstance(n, ast.Binary) and n.operator == "or" for n in ast.walk(wording.node)):
+        return ()
+    found: list[Comparison] = []
+    for left, relation, right in _comparisons(wording.node):
+        one, other = (left, _numbers(wording, left)), (right, _numbers(wording, right))
+        is_known = relation in RELATIONS and one[1] and len(one[1]) == len(other[1])
+        pairs = _pairs(one, relation, other) if is_known else []
+        if not pairs:
+            return ()
+        found += pairs
+    return tuple(found)
 
 
 def _values(numbers: Sequence[Num], evaluate: Evaluate) -> list[float]:

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from aidl_lang import ast
 from aidl_lang import expression as ex
 from aidl_lang.boxes import SIDES, Box
-from aidl_lang.building.arithmetic import differences, givens, sides
+from aidl_lang.building.arithmetic import compared, differences, givens, sides
 from aidl_lang.building.coerce import as_point
 from aidl_lang.building.conditions import EXACT, RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.turning import ask_to_turn
-from aidl_lang.building.wording import Wording
+from aidl_lang.building.wording import Read, Wording
 from aidl_lang.model import Assertion, Comparison, Condition, Constraint, Geometry, Measurement, Structure
 from aidl_lang.names import fold
 from aidl_lang.primitives import defining
@@ -33,7 +33,11 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
     else:
         value = _read(it, node, env)
     match value:
-        case Nothing() | True:
+        case Nothing():
+            return
+        case bool() if it.states_constants and weight is None:
+            _state_constants(it, node, env, _read)
+        case True:
             return
         case False:
             if weight is None:
@@ -112,6 +116,19 @@ def _never(it: Interpreter, node: ast.Expression, env: Env) -> None:
     )
 
 
+def _state_constants(it: Interpreter, node: ast.Expression, env: Env, read: Read) -> None:
+    """A condition that is decided already, as a constraint: so it can be asked what would decide it
+    otherwise.
+    """
+    wording = Wording(node, it, env, read)
+    found = compared(wording) if _library_shape(it, node, env) is None else ()
+    if not found:
+        return
+    turn = ", ".join(env.scope.labels)
+    span = it.place(node) or node.span
+    it.add_constraint(Constraint(env.here, found, node.span.one_line, span, None, turn, wording))
+
+
 def _library_shape(it: Interpreter, node: ast.Expression, env: Env) -> Geometry | None:
     """The shape of the library that holds a condition for itself."""
     shape = env.scope.declaring().container
@@ -123,6 +140,9 @@ def _impose_condition(
 ) -> None:
     comparisons: list[Comparison] = []
     for part in condition.parts if condition.operator == "and" else (condition,):
+        if part is False and it.states_constants:
+            _state_constants(it, node, env, _read)
+            return
         if part is False:
             _never(it, node, env)
             return
@@ -277,6 +297,9 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
         false = differences(Wording(node.test, it, env, evaluate), ex.Evaluator({}), EXACT)
         label = "; ".join(false) or "false as written"
         it.report("E0604", f"assertion failed: {why}{_turn(env)}", node.test, label=label)
+        return
+    if isinstance(value, bool) and it.states_constants and not shape:
+        _state_constants(it, node.test, env, evaluate)
         return
     it.assertions.append(
         Assertion(

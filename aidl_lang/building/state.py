@@ -101,6 +101,8 @@ class Interpreter:
     readings: list[tuple[Span, str]] = field(default_factory=list)
     turned: Mapping[int, int] = field(default_factory=dict)
     """readings, by number, that are not the nearest to what is written, but so many places further off"""
+    states_constants: bool = False
+    """whether conditions over constants are constraints of the model like others, and those of asserts too"""
     literals: list[Literal] = field(default_factory=list)
     pending: dict[Structure, list[tuple[ast.Statement, Scope]]] = field(default_factory=dict)
     written: dict[ast.Node, tuple[float, float] | float] = field(default_factory=dict)

@@ -18,6 +18,9 @@ from aidl_lang.values import Num, PointVal, Value, members
 
 _Tree = TypeVar("_Tree", bound=ast.Node)
 
+Read = Callable[[Interpreter, ast.Expression, Env], Value]
+"""Evaluates a statement in an environment."""
+
 
 @dataclass(frozen=True, eq=False)
 class Wording:
@@ -26,7 +29,7 @@ class Wording:
     node: ast.Expression
     it: Interpreter
     env: Env
-    read: Callable[[Interpreter, ast.Expression, Env], Value]
+    read: Read
 
     def comparisons(self, node: ast.Expression) -> tuple[Comparison, ...]:
         """What `node` would state here; nothing if it makes no sense or is decided already."""

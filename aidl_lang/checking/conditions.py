@@ -30,6 +30,14 @@ def _called(infer: Inference, node: ast.Call) -> str:
     return infer.resolution.canonical.get(node.callee, node.callee.text)
 
 
+def operation(infer: Inference, node: ast.Expression) -> str | None:
+    """The name of what changes a drawing, where it is called; None for anything else."""
+    is_condition = isinstance(infer.fact(node).type, TruthType)
+    if not isinstance(node, ast.Call) or is_condition:
+        return None
+    return name if (name := _called(infer, node)) in _OPERATIONS else None
+
+
 def check_empty(infer: Inference, node: ast.Constrain) -> None:
     """Report a `constrain { }` without anything in it."""
     if not node.items.statements and not node.items.span.text.strip("{} \t\r\n"):
@@ -39,8 +47,7 @@ def check_empty(infer: Inference, node: ast.Constrain) -> None:
 
 def check_item(infer: Inference, node: ast.Expression) -> None:
     """Report what cannot stand among constraints, where nothing is made and nothing edited."""
-    is_condition = isinstance(infer.fact(node).type, TruthType)
-    if isinstance(node, ast.Call) and (name := _called(infer, node)) in _OPERATIONS and not is_condition:
+    if (name := operation(infer, node)) is not None:
         text = shown(node)
         hints = [f"`{text}` is a statement of its own, outside `constrain`"]
         if name in EDITS:

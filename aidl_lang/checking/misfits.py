@@ -9,6 +9,7 @@ from aidl_lang import ast
 from aidl_lang.checking.habits import two_sizes
 from aidl_lang.checking.wording import shown
 from aidl_lang.diagnostics import Edit, Fix
+from aidl_lang.lexicon import WORDS
 from aidl_lang.names import fold, is_slip, nearest
 from aidl_lang.resolving.complaints import called_field, respell
 from aidl_lang.source import Span
@@ -260,7 +261,8 @@ def _unknown_parameter(
     for identifier in wrong:
         like = nearest(identifier.text, [n for n in names if fold(n) not in taken], 2)
         fix = respell(identifier, like)
-        if not like and len(identifier.text) > 4 and (near := nearest(identifier.text, synonyms)):
+        is_word = len(identifier.text) <= 4 or fold(identifier.text) in WORDS
+        if not like and not is_word and (near := nearest(identifier.text, synonyms)):
             like = [synonyms[near[0]]]
             is_sure = is_slip(fold(identifier.text), near[0]) and _meanings(near[0], names) == like
             fix = Fix(f"write `{like[0]}`", (Edit(identifier.span, like[0]),), is_sure)

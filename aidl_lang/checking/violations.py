@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from aidl_lang import ast
+from aidl_lang.checking.conditions import operation
 from aidl_lang.checking.facts import Place, is_point
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.relocate import Move, Site, insertion_after
@@ -91,7 +92,7 @@ class Violation:
         """What to tell the author. `written`: the values of `nodes` at the first guesses, where known."""
         home, culprit = _name(self.site.home), self._culprit()
         owner = self._owner(culprit)
-        subject = f"geometry of {home}" if self.rule == 1 else f"a constraint of {home}"
+        subject = f"geometry of {home}" if self.rule == 1 else f"{self._stated} of {home}"
         ancestor = self.ancestor
         relation = self._relation(ancestor) if ancestor is not None else None
         fix = (
@@ -111,7 +112,17 @@ class Violation:
             fix=fix,
         )
 
+    @property
+    def _operation(self) -> str | None:
+        """The name of what changes a drawing, where the target is a call of that."""
+        item = self.target.node
+        return operation(self.infer, item.value) if isinstance(item, ast.ExpressionStatement) else None
+
     # --- Words -----------------------------------------------------------------------------------
+
+    @property
+    def _stated(self) -> str:
+        return "a constraint" if self._operation is None else f"a `{self._operation}`"
 
     def _culprit(self) -> ast.Node:
         """The name that leads too far, with all its members."""
@@ -181,7 +192,8 @@ class Violation:
                 return move.statement(f"constrain {sides[0]} == {sides[1]}") if None not in sides else None
             case ast.ExpressionStatement(value):
                 text = move.expression(value)
-                return move.statement(f"constrain {text}") if text is not None else None
+                word = "constrain " if self._operation is None else ""
+                return move.statement(f"{word}{text}") if text is not None else None
             case _:
                 return None
 
@@ -192,7 +204,7 @@ class Violation:
         where, text = insertion_after(move.anchor, relation)
         if self.rule == 2:
             return Fix(
-                f"move the constraint to {_name(ancestor)}",
+                f"move {'the constraint' if self._operation is None else 'it'} to {_name(ancestor)}",
                 (Edit(self._emptied().span.with_separator, ""), Edit(where, text)),
                 is_sure=True,
             )

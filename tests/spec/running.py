@@ -48,6 +48,8 @@ def run(case: Case) -> Outcome:
     if case.formatted is not None:
         _check_format(case, outcome)
     plain = pipeline.compile(source, MemoryWorld(case.files))
+    if not case.pending:
+        _check_each_fix(case, source, plain.diagnostics, outcome)
     if case.message is not None:
         _check_message(case, [d for d in plain.diagnostics if d.is_error], outcome)
         plain = replace(plain, diagnostics=[d for d in plain.diagnostics if not d.is_error])
@@ -230,6 +232,56 @@ def _check_fix(case: Case, outcome: Outcome) -> bool:
         outcome.differs(case.program.at, f"the fixes of the program above give:\n{mended}")
         outcome.accepted[case.program.at, case.program.at + len(case.program.lines)] = mended.splitlines()
     return not outcome.problems
+
+
+def _check_each_fix(case: Case, source: SourceFile, found: Sequence[Diagnostic], outcome: Outcome) -> None:
+    """After a fix by itself its finding is gone, there are no more errors, and nothing more gives way but for
+    what conflicts are about.
+    """
+    for d in found:
+        text, applied = apply_fixes(source, [d])
+        if not applied or (d.code in _CONFLICTS and sum(each.code in _CONFLICTS for each in found) > 1):
+            continue
+        after = pipeline.compile(SourceFile("spec.aidl", text), MemoryWorld(case.files)).diagnostics
+        told = [
+            *(["does not mend it"] if _still(d, after) else []),
+            *(["brings another error"] if _errors(after) + d.is_error > _errors(found) else []),
+            *(
+                ["makes something give way"]
+                if d.code not in _CONFLICTS and _gave(after) > _gave(found)
+                else []
+            ),
+        ]
+        for what in told:
+            assert d.fix is not None
+            outcome.differs(case.program.at, f"the fix `{d.fix.title}` of {headline(d)} {what}")
+
+
+_CONFLICTS = frozenset({"E0601", "E0602", "E0605"})
+_GAVE_WAY = frozenset({"N0601", "W0601", "W0602"})
+
+
+def _errors(found: Sequence[Diagnostic]) -> int:
+    return sum(d.is_error for d in found)
+
+
+def _gave(found: Sequence[Diagnostic]) -> int:
+    return sum(d.code in _GAVE_WAY for d in found)
+
+
+def _still(before: Diagnostic, after: Sequence[Diagnostic]) -> bool:
+    """Whether the same is said of a program that was mended in one place: what is in front of a finding
+    stays where it is, but for what a fix puts there.
+    """
+    assert before.fix is not None
+    assert before.span is not None
+    edits = [e for e in before.fix.edits if e.span.end <= before.span.start]
+    start = before.span.start + sum(len(e.replacement) - (e.span.end - e.span.start) for e in edits)
+    same = [d for d in after if d.code == before.code and d.span is not None and d.span.start == start]
+    is_rewritten = any(
+        e.span.start <= before.span.start and before.span.end <= e.span.end for e in before.fix.edits
+    )
+    return any(d.message == before.message or not is_rewritten for d in same)
 
 
 def _check_format(case: Case, outcome: Outcome) -> None:
