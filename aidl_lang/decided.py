@@ -15,7 +15,7 @@ from aidl_lang.givens import Dial, behind
 from aidl_lang.givens import stated as stated_in
 from aidl_lang.lower import Lowered
 from aidl_lang.model import Constraint
-from aidl_lang.remedies import Remedy, remedy
+from aidl_lang.remedies import Remedy, Search, remedies
 from aidl_lang.solver import Solution
 from aidl_lang.solver.solution import Failure, GroupFailure, Member
 from aidl_lang.source import Span
@@ -72,8 +72,8 @@ def _answered(
         return d
 
     def fitting(dials: Sequence[Dial]) -> Iterator[Remedy]:
-        found = (remedy(dial, failure, trials) for dial in dials if not dial.is_factor)
-        return (each for each in found if each is not None and mends(d, each.fix, everything, trials))
+        searches = (Search(dial, failure, trials, dial.place) for dial in dials if not dial.is_factor)
+        return (each for each in remedies(searches) if mends(d, each.fix, everything, trials))
 
     uses = wording.it.program.resolution.uses
     given = sorted(fitting(behind([wording.node], uses)), key=lambda each: (each.counts, each.share))

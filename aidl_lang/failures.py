@@ -6,7 +6,7 @@ import itertools
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from aidl_lang import ast
@@ -17,7 +17,7 @@ from aidl_lang.givens import Dial, behind
 from aidl_lang.givens import stated as stated_in
 from aidl_lang.lower import Lowered
 from aidl_lang.model import Constraint
-from aidl_lang.remedies import Remedy, left_out, remedy, short, turned, wished
+from aidl_lang.remedies import Remedy, Search, left_out, remedies, short, wished
 from aidl_lang.solver.solution import Failure, GroupFailure, Member, Solution
 from aidl_lang.source import Span
 from aidl_lang.trials import Trials
@@ -36,6 +36,8 @@ _LONG = 2.0
 """The same of a number of many digits."""
 _NAMED = 3
 """Things that a list names."""
+_SHOWN = 12
+"""Places beside the one that a message is about."""
 _QUOTED = 60
 """Characters of a constraint that a headline quotes."""
 
@@ -45,7 +47,10 @@ def explained(lowered: Lowered, solution: Solution, trials: Trials) -> list[Expl
     tried by `trials` when it is first asked for.
     """
     own = [f for f in solution.failures if not _follows(f, solution.failures, lowered.groups)]
-    return [Explanation(lowered, solution, failure, trials) for failure in own]
+    found: list[Explanation] = []
+    for failure in own:
+        found.append(Explanation(lowered, solution, failure, trials, tuple(found)))
+    return found
 
 
 @dataclass(frozen=True)
@@ -121,7 +126,7 @@ class _Party:
 
 
 class Explanation:
-    """Why a group could not be solved, and what would help."""
+    """Why a group could not be solved, and what would help: perhaps what helps against an `earlier` one."""
 
     def __init__(
         self,
@@ -129,8 +134,10 @@ class Explanation:
         solution: Solution,
         failure: GroupFailure,
         trials: Trials,
+        earlier: tuple[Explanation, ...],
     ) -> None:
         self.lowered, self.solution, self.failure, self.trials = lowered, solution, failure, trials
+        self.earlier = earlier
         self.is_proven = failure.reason in _PROVEN
         self.times = Counter(c.span for c in lowered.stated if c is not None)
         self.sizes = [self._size(i) for i in failure.conflict if lowered.stated[i] is None]
@@ -188,24 +195,39 @@ class Explanation:
         """What would fit in place of numbers: those of the parties, one for each place, and exact ones."""
         if not self.is_proven:
             return []
-        found: list[Remedy] = []
+        searches = list(self._searches())
+        if self.sizes:  # of which would have to vanish there is only to say that a sign is wrong
+            return list(filter(None, (search.turned() for search in searches)))
+        order = {search.dial.place: n for n, search in enumerate(searches)}
+        known = [found for earlier in self.earlier for found in earlier._remedies]
+        both = [
+            replace(found, shown=found.written)
+            for found in known
+            if found.dial.place in order and self.trials.mends(found.fix.edits, self.failure)
+        ]
+        done = {found.dial.place for found in both}
+        fresh = remedies(search for search in searches if search.dial.place not in done)
+        return sorted([*both, *fresh], key=lambda found: order[found.dial.place])
+
+    def _searches(self) -> Iterator[Search]:
         stated = {span: self._dials(parties[0]) for span, parties in self.turns.items()}
-        for span in sorted(stated, key=lambda span: any(dial.is_rough for dial in stated[span])):
-            parties, dials = self.turns[span], stated[span]
-            if self.sizes:  # of which would have to vanish there is only to say that a sign is wrong
-                fitting = (turned(dial, self.failure, self.trials) for dial in dials)
-            else:
-                member = parties[0].member.index if len(parties) == 1 else None
-                fitting = (remedy(dial, self.failure, self.trials, member) for dial in dials)
-            found += itertools.islice(filter(None, fitting), 1)
-        if self.sizes:
-            return found
-        wordings = [party.stated.wording for party in self.parties]
-        uses = next((w.it.program.resolution.uses for w in wordings if isinstance(w, Wording)), {})
-        for dial in behind([p.node for p in self.parties if p.node is not None], uses):
-            if (fitting_there := remedy(dial, self.failure, self.trials)) is not None:
-                found.append(fitting_there)
-        return found
+        gaps = dict(self.failure.gaps)
+
+        def order(span: Span) -> tuple[int, bool, float]:
+            dials, gap = stated[span], abs(gaps.get(self.turns[span][0].member.index, 0.0))
+            share = min((gap / max(abs(dial.value), gap) for dial in dials if gap), default=0.0)
+            return -self._shares(span), any(dial.is_rough for dial in dials), share
+
+        for span in sorted(stated, key=order):
+            parties = self.turns[span]
+            member = parties[0].member.index if len(parties) == 1 else None
+            for dial in stated[span]:
+                yield Search(dial, self.failure, self.trials, span, member)
+        if not self.sizes:
+            wordings = [party.stated.wording for party in self.parties]
+            uses = next((w.it.program.resolution.uses for w in wordings if isinstance(w, Wording)), {})
+            for dial in behind([p.node for p in self.parties if p.node is not None], uses):
+                yield Search(dial, self.failure, self.trials, dial.place)
 
     @staticmethod
     def _dials(party: _Party) -> list[Dial]:
@@ -255,9 +277,7 @@ class Explanation:
 
     def _dearness(self, found: Remedy) -> tuple[int, bool, bool, float, int]:
         """What is to be kept: what takes part in other failures goes first, as one cause has several."""
-        other = [f for f in self.solution.failures if f is not self.failure]
-        places = [{c.span for i in f.conflict if (c := self.lowered.stated[i]) is not None} for f in other]
-        shared = sum(any(s.overlaps(found.dial.place) for s in spans) for spans in places)
+        shared = self._shares(found.dial.place)
         others = [d for parties in self.turns.values() for d in self._dials(parties[0])]
         size = abs(found.dial.value)
         twins = [d for d in others if abs(d.value) == size and d.place != found.dial.place]
@@ -265,6 +285,16 @@ class Explanation:
         share = found.share * (_FIXED if found.dial.is_exact and not found.dial.name else 1.0)
         share *= 1.0 if found.plain else _LONG
         return -shared, found.counts, breaks, round(share, 4), -found.dial.place.start
+
+    def _shares(self, place: Span) -> int:
+        """The number of other failures in which what stands at a place takes part."""
+        return sum(any(span.overlaps(place) for span in spans) for spans in self._others)
+
+    @cached_property
+    def _others(self) -> list[set[Span]]:
+        """Where the constraints of each other failure are stated."""
+        others = [f for f in self.solution.failures if f is not self.failure]
+        return [{c.span for i in f.conflict if (c := self.lowered.stated[i]) is not None} for f in others]
 
     @cached_property
     def _chief(self) -> _Party:
@@ -322,12 +352,12 @@ class Explanation:
         return f"{found.shown}{instead} would fit" + (f", all {times} times" if times > 1 else "")
 
     def _labels(self, chief: _Party) -> Iterator[Label]:
-        """The other places, each once."""
+        """The other places, each once; of many those where something would fit, and the first."""
         text = "conflicts with this" if self.is_proven else "takes part"
-        for span, parties in self.turns.items():
-            if span != chief.stated.span:
-                would_fit = self._would_fit(parties[0])
-                yield Label(span, f"{text}; {would_fit}" if would_fit else text)
+        others = [parties[0] for span, parties in self.turns.items() if span != chief.stated.span]
+        for party in sorted(others, key=lambda party: not self._would_fit(party))[:_SHOWN]:
+            would_fit = self._would_fit(party)
+            yield Label(party.stated.span, f"{text}; {would_fit}" if would_fit else text)
 
     def _givens(self) -> Iterator[Label]:
         """The exact numbers that have a share in it."""
@@ -336,6 +366,8 @@ class Explanation:
                 yield Label(found.dial.place, f"exact; {found.shown} would fit")
 
     def _hints(self) -> Iterator[str]:
+        if (hidden := len(self.turns) - 1 - _SHOWN) > 0:
+            yield f"{hidden} more take part, which are not shown"
         gaps = dict(self.failure.gaps)
         parties = sorted(self.parties, key=lambda party: party is not self._chief)
         yield from itertools.islice(

@@ -7,9 +7,13 @@ printed in its place, then solves and nothing gives way.
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
 
 from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.givens import Dial
@@ -20,6 +24,8 @@ from aidl_lang.trials import Trials
 
 _NUDGE = 1e-3
 """How far a number is turned to see what it does, as a share of itself."""
+_ABREAST = 6
+"""Numbers of which it is first asked how far they would have to change."""
 _STEPS = 4
 """Times that the place of a number is sought anew where what it does is not even."""
 _NOTHING = 1e-9
@@ -36,6 +42,8 @@ _COARSE = 1e-2
 """Part of a change that may be added to make a number short, where there is a choice."""
 _FURTHER = 0.25
 """Part of a change at which it is tried whether more of it would do as well."""
+_SHARP = 0.03
+"""Part of a change that would be too little of it where it leads to an end."""
 _BEYOND = (1.0, 8.0)
 """Parts of a change at which it is tried whether there is an end to that."""
 _LITTLE = 0.02
@@ -68,26 +76,31 @@ class Remedy:
     plain: bool
     counts: bool = False
 
+    @property
+    def written(self) -> str:
+        """The text that is put in its place."""
+        return self.fix.edits[0].replacement
+
 
 def short(value: float) -> str:
     """A number to six digits."""
     return f"{round(value, 6) + 0.0:.6g}"
 
 
-def remedy(dial: Dial, failure: GroupFailure, trials: Trials, member: int | None = None) -> Remedy | None:
-    """What would fit in place of a number; None if no number was found that would, or the time is spent. If
-    it stands in one member of the failure alone, that is the `member`.
+def remedies(searches: Iterable[Search]) -> Iterator[Remedy]:
+    """What would fit in place of numbers, one for each place; nothing for those for which no number was found
+    that would, or for which there was no time. Of each few, those are sought first that would change least.
     """
-    search = _Search(dial, failure, trials)
-    if (opposite := search.turned()) is not None:
-        return opposite
-    pinned = search.pinned(member) if member is not None and failure.is_curved else None
-    return pinned if pinned is not None and not search.fits_nearer(pinned) else search.found() or pinned
-
-
-def turned(dial: Dial, failure: GroupFailure, trials: Trials) -> Remedy | None:
-    """The number with the other sign, if that would fit."""
-    return _Search(dial, failure, trials).turned()
+    found = set[Span]()
+    waiting = iter(searches)
+    for first in waiting:
+        if first.trials.is_late:
+            return
+        few = [first, *itertools.islice(waiting, _ABREAST - 1)]
+        for search in sorted(few, key=lambda search: search.reach):
+            if search.place not in found and (remedy := search.remedy()) is not None:
+                found.add(search.place)
+                yield remedy
 
 
 @dataclass(frozen=True)
@@ -99,24 +112,41 @@ class _Written:
     shown: str
 
 
-class _Search:
-    def __init__(self, dial: Dial, failure: GroupFailure, trials: Trials) -> None:
-        self.dial, self.failure, self.trials = dial, failure, trials
+class Search:
+    """For what would fit in place of a number. If it stands in one member of the failure alone, that is the
+    `member`. What is found for one of several numbers at a `place` is enough.
+    """
 
-    def found(self) -> Remedy | None:
+    def __init__(
+        self, dial: Dial, failure: GroupFailure, trials: Trials, place: Span, member: int | None = None
+    ) -> None:
+        self.dial, self.failure, self.trials, self.place = dial, failure, trials, place
+        self._member = member if failure.is_curved else None
+
+    @cached_property
+    def reach(self) -> float:
+        """By what part of itself a small turn says that the number would have to change; infinite if that
+        says nothing.
+        """
         value = self.dial.value
-        off = self._lack(value)
-        if not off:
-            return None
-        step = _NUDGE * max(abs(value), 1.0)
-        if (nudged := self._lack(value + step)) is None:
-            return self._whole()
-        if abs(nudged - off) <= _NOTHING * off:
-            step = -step
-            nudged = self._lack(value + step)
-        if nudged is None or abs(nudged - off) <= _NOTHING * off:
-            return None
-        return self._near(value - off * step / (nudged - off), off)
+        if self.trials.is_late:
+            return np.inf
+        target = self._pinned_target if self._member is not None else None
+        target = self._even_target if target is None else target
+        return np.inf if target is None else abs(target - value) / max(abs(value), 1.0)
+
+    def remedy(self) -> Remedy | None:
+        if (opposite := self.turned()) is not None:
+            return opposite
+        if (pinned := self._pinned()) is None:
+            return self._found()
+        value = self.dial.value
+        change = pinned.value - value
+        is_alone = 0.0 not in (
+            self._lack(value + 0.5 * change),
+            self._lack(value + (1.0 + _FURTHER) * change),
+        )
+        return (None if is_alone else self._found()) or self._remedy(pinned, pinned.shown)
 
     def turned(self) -> Remedy | None:
         """A negative number without its sign."""
@@ -124,54 +154,73 @@ class _Search:
         fits = self.dial.value < 0.0 and self._fits(opposite)
         return self._remedy(opposite, opposite.shown) if fits else None
 
-    def fits_nearer(self, found: Remedy) -> bool:
-        """Whether less of a change may do as well."""
+    def _found(self) -> Remedy | None:
+        if self._even_target is None:
+            return self._whole()
+        return self._near(self._even_target)
+
+    @cached_property
+    def _even_target(self) -> float | None:
+        """What the number would have to be if what is lacking fell evenly with it."""
         value = self.dial.value
-        return self._lack(value + 0.5 * (found.value - value)) == 0.0
+        if not (off := self._lack(value)):
+            return None
+        for step in (self._step, -self._step):
+            if (nudged := self._lack(value + step)) is None:
+                return None
+            if abs(nudged - off) > _NOTHING * off:
+                return value - off * step / (nudged - off)
+        return None
 
-    def pinned(self, member: int) -> Remedy | None:
-        """What fits where the other members hold."""
-
-        def off(value: float) -> float | None:
-            return self.trials.residual(self._at(value), self.failure, member)
-
-        value = self.dial.value
-        step = _NUDGE * max(abs(value), 1.0)
-        now, nudged = off(value), off(value + step)
+    @cached_property
+    def _pinned_target(self) -> float | None:
+        """What the number would have to be where the other members hold."""
+        value, step = self.dial.value, self._step
+        now, nudged = self._residual(value), self._residual(value + step)
         if not now or nudged is None or nudged == now:
             return None
-        target = value - now * step / (nudged - now)
-        if abs(target) <= _VANISHES * max(abs(value), 1.0):
-            target = 0.0
-        if not self.dial.may_be(target) or abs(target - value) > _FAR * max(abs(value), 10.0):
-            return None
-        written = next(filter(self._fits, self._spelled(target, 0.0)), None)
-        if written is None:
-            return None
-        is_end = self._lack(target + _FURTHER * (target - value)) == 0.0
-        return self._told(written, target - value, is_end)
+        return value - now * step / (nudged - now)
 
-    def _near(self, target: float, off: float) -> Remedy | None:
+    @property
+    def _step(self) -> float:
+        return _NUDGE * max(abs(self.dial.value), 1.0)
+
+    def _pinned(self) -> _Written | None:
+        """What fits where the other members hold."""
+        if self._member is None or self._pinned_target is None:
+            return None
+        target = self._rounded(self._pinned_target)
+        return self._fitting(self._spelled(target, 0.0)) if self._may_be(target) else None
+
+    def _rounded(self, target: float) -> float:
+        return 0.0 if abs(target) <= _VANISHES * max(abs(self.dial.value), 1.0) else target
+
+    def _may_be(self, target: float) -> bool:
+        """Whether the author can have meant a number."""
+        value = self.dial.value
+        return self.dial.may_be(target) and abs(target - value) <= _FAR * max(abs(value), 10.0)
+
+    def _near(self, target: float) -> Remedy | None:
         """What fits at about a number, or where that leads."""
         value = self.dial.value
-        before = value, off
-        if abs(target) <= _VANISHES * max(abs(value), 1.0):
-            target = 0.0
+        if not (off := self._lack(value)):
+            return None
+        before, target = (value, off), self._rounded(target)
         for _ in range(_STEPS):
-            if self.trials.is_over or not abs(target - value) <= _FAR * max(abs(value), 10.0):
-                return None
-            if not self.dial.may_be(target) or abs(target - value) <= _NUDGE * max(abs(value), 1.0):
+            if self.trials.is_over or not self._may_be(target) or abs(target - value) <= self._step:
                 return None
             change = target - value
-            is_end = self._lack(value + (1.0 + _FURTHER) * change) == 0.0
-            now = self._lack(target)
-            if now is None:
+            if (now := self._lack(target)) is None:
                 return None
             if now <= _ARRIVED * off:
-                spelled = self._spelled(target, change if is_end else 0.0)
-                written = next(filter(self._fits, spelled), None)
-                return None if written is None else self._told(written, change, is_end)
-            if now == before[1]:
+                is_end = self._lack(value + (1.0 + _FURTHER) * change) == 0.0
+                written = self._fitting(self._spelled(target, change if is_end else 0.0))
+                if written is None:
+                    return None
+                if not is_end:
+                    return self._remedy(written, written.shown)
+                return self._range(written, target, change)
+            if now >= before[1]:
                 return None
             slope = (now - before[1]) / (target - before[0])
             before, target = (target, now), target - now / slope
@@ -180,7 +229,7 @@ class _Search:
     def _whole(self) -> Remedy | None:
         """What fits in place of a number that cannot be turned a little, as one that counts things."""
         value = self.dial.value
-        if value != round(value) or self.dial.unit:
+        if value != round(value) or self.dial.unit or self._lack(value + self._step) is not None:
             return None
         for change in _WHOLE:
             written = self._plain(value + change)
@@ -190,14 +239,16 @@ class _Search:
 
     # -- what is said
 
-    def _told(self, written: _Written, change: float, is_end: bool) -> Remedy:
-        if not is_end or not self._fits(self._plain(_neat(written.value, change, _FURTHER * abs(change)))):
-            return self._remedy(written, written.shown)
-        if (other := self._other_end(written.value, change)) is not None:
-            ends = sorted((written, other), key=lambda each: each.value)
-            return self._remedy(written, f"{ends[0].shown} to {ends[1].shown}")
-        choice = "at least" if change > 0.0 else "at most"
-        return self._remedy(written, f"{choice} {written.shown}")
+    def _range(self, end: _Written, target: float, change: float) -> Remedy:
+        """What is told of numbers that fit from an `end` onward, which was sought at a `target`."""
+        end = self._ending(end, target, change)
+        further = self._plain(_neat(end.value, change, _FURTHER * abs(change)))
+        if not self._is_sharp(end, change) or not self._fits(further):
+            return self._remedy(end, end.shown)
+        if (other := self._other_end(end.value, change)) is not None:
+            least, most = sorted((end, other), key=lambda each: each.value)
+            return self._remedy(end, f"{least.shown} to {most.shown}")
+        return self._remedy(end, f"{'at least' if change > 0.0 else 'at most'} {end.shown}")
 
     def _other_end(self, end: float, change: float) -> _Written | None:
         """Where the numbers that fit end on the other side; None if no such end was found."""
@@ -211,10 +262,27 @@ class _Search:
                 nudged = self._lack(outside + step)
                 if nudged is None or nudged >= off:
                     return None
-                target = outside - off * step / (nudged - off)
-                return next(filter(self._fits, self._spelled(target, end - target)), None)
+                onward = -off * step / (nudged - off)
+                written = self._fitting(self._spelled(outside + onward, end - outside))
+                written = written and self._ending(written, outside + onward, onward)
+                return written if written and self._is_sharp(written, onward) else None
             inside = outside
         return None
+
+    def _ending(self, written: _Written, target: float, onward: float) -> _Written:
+        """The short number at a `target` that was found by going `onward`, if it fits and is an end; else the
+        one `written`.
+        """
+        limits = (self._plain(round(target, digits)) for digits in range(_PLAIN))
+        near = 0.1 * _NUDGE * max(abs(target), 1.0)
+        limit = next((limit for limit in limits if abs(limit.value - target) <= near), written)
+        beyond = limit.value - math.copysign(10.0 * near, onward)
+        return limit if limit is not written and self._lack(beyond) and self._fits(limit) else written
+
+    def _is_sharp(self, end: _Written, onward: float) -> bool:
+        """Whether a number that lies hardly less far `onward` than an end does not fit."""
+        aside = max(_SHARP * abs(onward), _NUDGE * abs(end.value))
+        return bool(self._lack(end.value - math.copysign(aside, onward)))
 
     def _remedy(self, written: _Written, shown: str) -> Remedy:
         dial = self.dial
@@ -234,6 +302,21 @@ class _Search:
 
     def _lack(self, value: float) -> float | None:
         return self.trials.lack(self._at(value), self.failure)
+
+    def _fitting(self, spelled: Iterable[_Written]) -> _Written | None:
+        """The first way to write a number that fits. Where one does not for other reasons than its digits, no
+        other will.
+        """
+        for written in spelled:
+            if self._fits(written):
+                return written
+            if not self.dial.is_rough and self._lack(written.value) == 0.0:
+                return None
+        return None
+
+    def _residual(self, value: float) -> float | None:
+        assert self._member is not None
+        return self.trials.residual(self._at(value), self.failure, self._member)
 
     def _fits(self, written: _Written) -> bool:
         if self.dial.is_rough and not _is_plain(written.value, _ROUGH):

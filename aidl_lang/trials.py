@@ -20,10 +20,10 @@ from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.solution import GroupFailure
 from aidl_lang.source import SourceFile
 
-SECONDS, LONGEST = 1.5, 4.0
-"""Time for all that is tried for the messages of one run, and the same while less than `FEW` texts were
-tried: some programs take long to build."""
-FEW = 16
+SECONDS, LONGEST = 1.2, 3.0
+"""Time after which nothing more is begun of all that is tried for the messages of one run, and after which
+nothing is tried at all: some programs take long to build.
+"""
 _TOLD = frozenset({"N0601", "W0601", "W0602", "N0604"})
 """What is said of a program that gave way, or was solved from elsewhere."""
 _LONGEST = 0.5
@@ -48,20 +48,25 @@ class Trials:
     solution: Solution
     settings: Settings
     _built: dict[str, Lowered | None] = field(default_factory=dict, repr=False)
+    _lacks: dict[tuple[int, tuple[int, ...]], float] = field(default_factory=dict, repr=False)
+    """By the problem, which `_built` keeps, and the constraints of the failure."""
     _places: dict[int, dict[int, float] | None] = field(default_factory=dict, repr=False)
     """Where the constraints of a failure hold without one of them."""
 
     @cached_property
     def _clock(self) -> Clock:
         """Runs from the first trial."""
-        return Clock(SECONDS)
+        return Clock(LONGEST)
+
+    @property
+    def is_late(self) -> bool:
+        """Whether nothing more should be begun."""
+        return self._clock.left < LONGEST - SECONDS
 
     @property
     def is_over(self) -> bool:
         """Whether the time is spent: nothing more is tried then, and so nothing more is said."""
-        return self._clock.expired and (
-            len(self._built) >= FEW or not self._built or self._clock.left < SECONDS - LONGEST
-        )
+        return self._clock.expired
 
     def can_edit(self, edits: Iterable[Edit]) -> bool:
         """Whether edits are of the program itself, and not of what it imports."""
@@ -75,10 +80,14 @@ class Trials:
         if found is None:
             return None
         other, matched, numbered = found
+        if (known := self._lacks.get((id(other), failure.conflict))) is not None:
+            return known
         start = {numbered[u]: value for u, value in self._free(failure).items()}
         members = [matched[index] for index in failure.conflict]
         within = [matched[index] for index in self._together(failure)]
-        return lack(other.problem, self._quick, members, within, start)
+        found_lack = lack(other.problem, self._quick, members, within, start)
+        self._lacks[id(other), failure.conflict] = found_lack
+        return found_lack
 
     def _together(self, failure: GroupFailure) -> list[int]:
         """The constraints of a failure and those that took part in the search, but for what other failures
@@ -86,11 +95,12 @@ class Trials:
         """
         others = self._others(failure)
         hard = np.isnan(self.lowered.problem.weight)
-        return [i for i in failure.within if hard[i] and (i in failure.conflict or i not in others)]
+        return [i for i in failure.within if hard[i] and i not in others]
 
     def _others(self, failure: GroupFailure) -> set[int]:
-        """The constraints that other failures are about."""
-        return {i for f in self.solution.failures if f is not failure for i in f.conflict}
+        """The constraints that only other failures are about."""
+        others = {i for f in self.solution.failures if f is not failure for i in f.conflict}
+        return others.difference(failure.conflict)
 
     def residual(self, edits: Sequence[Edit], failure: GroupFailure, member: int) -> float | None:
         """How far a member of a failure is from holding after the edits, with its sign, where its other

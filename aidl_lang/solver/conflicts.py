@@ -1,9 +1,7 @@
 """Which constraints of a failed group cannot hold together, each of them needed.
 
 What is refuted (`refuting`) is so for good. Else the suspects are named by the place where the search stalled
-(`suspects`). If they fail together they are reduced: by QuickXplain (Junker, AAAI 2004), in which halves of
-the constraints are background for one another, so that k culprits among n are found in about k log(n / k)
-solves; then by leaving out each member in turn. What is left is minimal: without any one of them the others
+(`suspects`). If they fail together they are reduced until each is needed: without any one of them the others
 hold. That a search fails is no proof, so for such a set it begins in many other places before it is called
 contradictory.
 """
@@ -23,18 +21,20 @@ from aidl_lang.solver.newton import Clock, End, perturbation
 from aidl_lang.solver.problem import Relation
 from aidl_lang.solver.refuting import Relaxation
 from aidl_lang.solver.solution import Failure, GroupFailure, Member
-from aidl_lang.solver.suspects import suspects
+from aidl_lang.solver.suspects import MANY, needed, suspects
 
 if TYPE_CHECKING:
     from aidl_lang.solver.group import Scope
     from aidl_lang.solver.hierarchy import Hierarchy
 
-WORK = 20_000
+WORK = 60_000
 """Budget of all explanations of one solve: rows times unknowns, summed over the attempts."""
 SECONDS = 2.0
 """Time for one explanation, should the budget not be spent by then."""
 PATIENCE = 4.0
 """Seconds after the first failure for which explanations are sought at all."""
+RINGS = 3
+"""Times that the neighbours of what is furthest off are taken in."""
 RESTARTS = 2
 """Perturbed starts for each set that is tried."""
 THOROUGH = 5
@@ -52,8 +52,6 @@ COSTLY = 4000
 SPREADS = (0.3, 1.0, 3.0)
 """How far from the first guesses these are, in sizes of the drawing."""
 SEED = 1
-MANY = 12
-"""Suspects above which halves of them are tried before single ones."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +125,7 @@ class _Search:
                 return self._found(group, self._violated(best), whole)
         conflict = self._conflict(best, refuted)
         minimal = not self._spent
-        is_proven = bool(self._refuted(conflict))
+        is_proven = self._is_refuted(conflict)
         thorough = self._attempt(tuple(conflict), THOROUGH)
         nearest = thorough if is_proven else self._nearest(conflict, thorough, STARTS)
         if nearest.holds:
@@ -221,23 +219,25 @@ class _Search:
         found = next((c for c in self._candidates(best) if not self._holds(c)), None)
         if found is None:
             return self._violated(best)
-        if len(found) > MANY:
-            found = self._halve([], False, found)
         return self._needed(found)
 
     def _needed(self, found: list[int]) -> list[int]:
-        """What is left of a set that fails without those that it fails without."""
-        for index in list(found):
-            rest = [other for other in found if other != index]
-            if not self._spent and not self._holds(rest):
-                found = rest
-        return sorted(found)
+        """A smallest part of a set that fails which still does, or what was left of it as the budget was
+        spent.
+        """
+        if self._relaxation(found).is_tight(range(len(self.hierarchy.rows(found)))):
+            return sorted(found)
+        return needed(found, lambda part: self._spent or self._holds(part))
 
     def _refuted(self, constraints: Sequence[int]) -> list[int]:
         """Constraints among these that are shown never to hold together; none if that cannot be shown."""
         relaxation = self._relaxation(constraints)
         owner = [index for index in constraints for _ in self.hierarchy.rows([index])]
         return sorted({owner[row] for row in relaxation.smallest(range(len(owner)))})
+
+    def _is_refuted(self, constraints: Sequence[int]) -> bool:
+        """Whether it is shown that constraints can never hold together."""
+        return bool(self._relaxation(constraints).refutation(range(len(self.hierarchy.rows(constraints)))))
 
     def _gaps(self, conflict: Sequence[int]) -> tuple[tuple[int, float], ...]:
         """What the members of a conflict that are one row come to where the others hold; none if that is not
@@ -258,13 +258,34 @@ class _Search:
         """Sets that may fail, those first that are likely to be small."""
         hierarchy, scope = self.hierarchy, self.scope
         hierarchy.values.assign(best.items())
-        yield suspects(hierarchy, scope.constraints, scope.free)
+        accused = suspects(hierarchy, scope.constraints, scope.free)
+        yield from (accused, *self._around(best)) if len(accused) <= MANY else (*self._around(best), accused)
         yield self._violated(best)
         yield from self._connected()
 
     def _violated(self, best: dict[int, float]) -> list[int]:
         self.hierarchy.values.assign(best.items())
         return self.hierarchy.unmet(self.scope.constraints)
+
+    def _around(self, best: dict[int, float]) -> Iterator[list[int]]:
+        """The constraint that is furthest off and those that share free unknowns with it, then those that do
+        with these, and so on while they are few.
+        """
+        hierarchy, free = self.hierarchy, self.scope.free
+        violated = self._violated(best)
+        if not violated:
+            return
+        worst = max((self.member(hierarchy, index) for index in violated), key=lambda member: member.off)
+        touched, before = hierarchy.mentions[worst.index] & free, 1
+        for _ in range(RINGS):
+            around = [
+                index for index in self.scope.constraints if not touched.isdisjoint(hierarchy.mentions[index])
+            ]
+            if len(around) == before:
+                return
+            yield around
+            touched = touched.union(*(hierarchy.mentions[index] & free for index in around))
+            before = len(around)
 
     def _connected(self) -> Iterator[list[int]]:
         """The constraints by free unknowns that they share, directly or by others; at last all of them."""
@@ -282,18 +303,6 @@ class _Search:
             groups = [*apart, (unknowns, members)]
         yield from (sorted(members) for _, members in groups)
         yield list(self.scope.constraints)
-
-    def _halve(self, background: list[int], grown: bool, candidates: list[int]) -> list[int]:
-        """A smallest part of `candidates` that fails together with `background`."""
-        if grown and not self._holds(background):
-            return []
-        if len(candidates) <= 1 or self._spent:
-            return candidates
-        half = len(candidates) // 2
-        first, second = candidates[:half], candidates[half:]
-        from_second = self._halve(background + first, True, second)
-        from_first = self._halve(background + from_second, bool(from_second), first)
-        return from_first + from_second
 
     # -- what there is to say of it
 
@@ -342,14 +351,14 @@ class _Search:
         """Whether constraints can hold together, as far as a proof or a search tells."""
         wanted = tuple(sorted(constraints))
         if wanted not in self.trials:
-            relaxation = self._relaxation(wanted)
-            refuted = bool(relaxation.refutation(range(len(self.hierarchy.rows(wanted)))))
-            if refuted or relaxation.is_exact:
+            refuted = self._is_refuted(wanted)
+            if refuted or self._relaxation(wanted).is_exact:
                 return not refuted
         return self._try(wanted).holds
 
     def _try(self, constraints: tuple[int, ...]) -> _Trial:
         if constraints not in self.trials:
+            self.work += self._cost(constraints)
             empty = _Trial(End.CONVERGED, self.before)
             self.trials[constraints] = self._attempt(constraints, RESTARTS) if constraints else empty
         return self.trials[constraints]
@@ -367,7 +376,6 @@ class _Search:
     ) -> _Trial:
         """From `start`, or from where the group was; leaves the values where the group was."""
         hierarchy = self.hierarchy
-        self.work += self._cost(constraints)
         hierarchy.values.assign((start or self.before).items())
         scope = replace(self.scope, constraints=constraints, free=self.scope.free if free is None else free)
         verdict = hierarchy.attempt(scope, restarts, self.clock, turning=start is None)

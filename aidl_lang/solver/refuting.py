@@ -143,10 +143,24 @@ class Relaxation:
         not refuted.
         """
         found = list(self.refutation(among))
+        if self.is_tight(found):
+            return found
         for number in list(found):
             if number in found and (fewer := self.refutation(n for n in found if n != number)):
                 found = list(fewer)
         return found
+
+    def is_tight(self, among: Iterable[int]) -> bool:
+        """Whether rows that are refuted hold together as soon as any one of them is left out: they are affine
+        and add up to nothing in one way only.
+        """
+        forms = [self._rows[i][0] for i in among]
+        if not forms or len(forms) > MANY or any(map(self._knots, forms)):
+            return False
+        jacobian, _ = _arrays(forms)
+        length = np.linalg.norm(jacobian, axis=1, keepdims=True)
+        rank = np.linalg.matrix_rank(jacobian / np.where(length > 0.0, length, 1.0))
+        return bool(rank == len(forms) - 1)
 
     # -- forms over what is free
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 from hypothesis import assume, given, settings
@@ -241,3 +241,35 @@ def test_preferences_are_not_to_blame() -> None:
     assert only_failure(solve(problem)).conflict == (first, second)
     soft = [replace(c, weight=1.0) if i == second else c for i, c in enumerate(problem.constraints)]
     assert solve(problem.with_constraints(soft)).status == "solved"
+
+
+# -- large ones
+
+
+def test_a_long_chain_is_a_conflict_in_all_its_links() -> None:
+    m = Model()
+    at = [m.unknown(10.0 * i) for i in range(150)]
+    chain = [m.equal(at[0] - 0.0)]
+    chain += [m.equal(after - before - 10.0) for before, after in pairwise(at)]
+    aside = [m.equal(m.unknown(1.0) - x - 3.0) for x in at]
+    chain.append(m.equal(at[-1] - 1500.0))
+    failure = only_failure(solve(m.problem()))
+    assert failure.minimal
+    assert failure.reason == "contradictory"
+    assert sorted(failure.conflict) == chain
+    assert not set(aside) & set(failure.conflict)
+
+
+def test_a_distance_in_a_long_strip_conflicts_with_its_neighbours() -> None:
+    rng = np.random.default_rng(3)
+    points = np.column_stack([10.0 * np.arange(60), np.resize([0.0, 8.0], 60)]) + rng.normal(size=(60, 2))
+    pairs = [(i - k, i) for i in range(60) for k in (1, 2) if i - k >= 0]
+    lengths = np.array([float(np.linalg.norm(points[a] - points[b])) for a, b in pairs])
+    broken = pairs.index((29, 30))
+    lengths[broken] += 40.0
+    failures = solve(Distances(points, 0, pairs, lengths).model().problem()).failures
+    triangles = [{(28, 29), (28, 30), (29, 30)}, {(29, 30), (29, 31), (30, 31)}]
+    assert failures
+    for failure in failures:
+        assert failure.minimal
+        assert {pairs[i] for i in failure.conflict} in triangles
