@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import TypeAlias
 
 from aidl_lang import failures, pipeline
-from aidl_lang.agents.results import Conflict, Party, Replacement, place, repair
+from aidl_lang.agents.results import Conflict, Given, Party, Replacement, place, repair
 from aidl_lang.diagnostics import Diagnostic, Fix, apply_fixes
 from aidl_lang.pipeline import Settings
 from aidl_lang.remedies import short
@@ -34,7 +34,17 @@ class Remedies:
         self.tried = 0
 
     def conflict(self, found: failures.Conflict) -> Conflict:
-        return Conflict(found.headline, found.is_minimal, [self._party(party) for party in found.parties])
+        parties, givens = list(map(self._party, found.parties)), list(map(self._given, found.givens))
+        return Conflict(found.headline, found.is_minimal, parties, givens)
+
+    def _given(self, given: failures.Given) -> Given:
+        return Given(
+            given.name,
+            place(given.span),
+            f"{given.would_fit} would fit",
+            repair(given.fix),
+            self._solves(given.fix),
+        )
 
     def _party(self, party: failures.Party) -> Party:
         return Party(
@@ -62,9 +72,8 @@ class Remedies:
 def told(conflict: Conflict) -> str:
     """In lines."""
     lead = "without any one of these the others hold" if conflict.is_minimal else "these do not hold"
-    return "\n".join(
-        [f"{conflict.headline}; {lead}:", *(line for p in conflict.parties for line in _told(p))]
-    )
+    told = [line for p in conflict.parties for line in _told(p)]
+    return "\n".join([f"{conflict.headline}; {lead}:", *told, *map(_exact, conflict.givens)])
 
 
 def _told(party: Party) -> Iterator[str]:
@@ -74,6 +83,11 @@ def _told(party: Party) -> Iterator[str]:
     if party.remedy is not None:
         edits = " and ".join(map(_edit, party.remedy.replacements))
         yield f"    {party.remedy.title}: {edits}{_OUTCOMES[party.solves]}"
+
+
+def _exact(given: Given) -> str:
+    name = f" `{given.name}`" if given.name else ""
+    return f"- line {given.place.line}: exact{name}; {given.would_fit}{_OUTCOMES[given.solves]}"
 
 
 def _edit(edit: Replacement) -> str:

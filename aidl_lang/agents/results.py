@@ -304,12 +304,24 @@ class Party:
 
 
 @dataclass(frozen=True)
+class Given:
+    """An exact number behind a conflict: the value of a param that has a `name`, or one that is `fixed`."""
+
+    name: str
+    place: Place
+    would_fit: str
+    remedy: Repair
+    solves: bool | None
+
+
+@dataclass(frozen=True)
 class Conflict:
     """Constraints that do not hold together. With `is_minimal` the others hold without any one of them."""
 
     headline: str
     is_minimal: bool
     parties: list[Party]
+    givens: list[Given]
 
 
 @dataclass(frozen=True)

@@ -278,6 +278,26 @@ def test_edit_param_refuses_what_another_file_declares() -> None:
 # --- explain_conflict ------------------------------------------------------------------------------
 
 
+def test_conflict_names_the_exact_numbers_behind_it() -> None:
+    program = """solid plate {
+    param length = 110mm in 80..160
+    rim = rectangle(center: origin, width: length, height: 20)
+    peg = circle(center: (0, 0), radius: fixed(3))
+    constrain {
+        peg.left == rim.left + 57
+        peg.right == rim.right - 57
+    }
+}
+"""
+    made = ask("explain_conflict", program=program)
+    (conflict,) = made.data["conflicts"]
+    (given,) = conflict["givens"]
+    assert (given["name"], given["place"]["line"], given["would_fit"]) == ("length", 2, "120mm would fit")
+    assert given["remedy"]["title"] == "make `length` 120mm"
+    assert given["solves"] is True
+    assert "- line 2: exact `length`; 120mm would fit, and the program solves" in made.text
+
+
 def test_conflict_names_everyone_and_what_would_mend_it() -> None:
     made = ask("explain_conflict", program=CONFLICT)
     (conflict,) = made.data["conflicts"]
