@@ -204,7 +204,8 @@ def test_each_page_has_its_own_layers(client: TestClient) -> None:
 
 
 def test_fixes_are_applied_to_the_text_they_are_of(client: TestClient, file: Path) -> None:
-    file.write_text("solid a {\n    one = line((0, 0), (9, 0))\n    two = line((9, 0), (1, 2))\n}\n", "utf-8")
+    lines = ("one = line((0, 0), (9, 0))", "two = line((9, 0), (5, 5))", "three = line((5, 5), (1, 2))")
+    file.write_text(f"solid a {{ {'; '.join(lines)} }}\n", "utf-8")
     with talking(client) as page:
         page.say(type="ready")
         made = page.hear(type="picture")
@@ -215,7 +216,7 @@ def test_fixes_are_applied_to_the_text_they_are_of(client: TestClient, file: Pat
         assert "no such fix" in page.hear(type="error")["message"]
         page.say(type="fix", problem=index, fix=0)
         page.hear(type="picture", version=made["version"] + 1)
-        assert "constrain one.start == two.end" in file.read_text("utf-8")
+        assert "constrain one.start == three.end" in file.read_text("utf-8")
 
 
 def test_what_cannot_be_done_is_told(client: TestClient) -> None:
