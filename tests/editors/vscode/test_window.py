@@ -60,6 +60,9 @@ def test_how_solving_went_is_in_the_status_bar_and_what_is_wrong_in_the_text(win
 def test_hovering_tells_the_solved_value(window):
     window.open("hover.aidl", PLATE.replace("radius: 6", "radius: guess(6)"))
     expect(window.status).to_contain_text("Solved", timeout=PATIENCE)
+    # Lines move down under the pointer where a lens comes above them.
+    lens = window.editor.locator(".codelens-decoration", has_text="try the ends").first
+    expect(lens).to_be_visible(timeout=PATIENCE)
     window.editor.locator(".view-line span span", has_text="width").first.hover()
     expect(window.page.locator(".monaco-hover:visible .hover-contents").first).to_contain_text(
         "80 mm", timeout=PATIENCE
