@@ -211,12 +211,12 @@ class Explanation:
 
     def _searches(self) -> Iterator[Search]:
         stated = {span: self._dials(parties[0]) for span, parties in self.turns.items()}
-        gaps = dict(self.failure.gaps)
 
         def order(span: Span) -> tuple[int, bool, float]:
-            dials, gap = stated[span], abs(gaps.get(self.turns[span][0].member.index, 0.0))
-            share = min((gap / max(abs(dial.value), gap) for dial in dials if gap), default=0.0)
-            return -self._shares(span), any(dial.is_rough for dial in dials), share
+            dials = stated[span]
+            # Where all is straight, the largest numbers change by the smallest part of themselves.
+            largest = 0.0 if self.failure.is_curved else max((abs(dial.value) for dial in dials), default=0.0)
+            return -self._shares(span), any(dial.is_rough for dial in dials), -largest
 
         for span in sorted(stated, key=order):
             parties = self.turns[span]

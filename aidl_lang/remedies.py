@@ -89,7 +89,8 @@ def short(value: float) -> str:
 
 def remedies(searches: Iterable[Search]) -> Iterator[Remedy]:
     """What would fit in place of numbers, one for each place; nothing for those for which no number was found
-    that would, or for which there was no time. Of each few, those are sought first that would change least.
+    that would, or for which there was no time: a first one is worth more of that. Of each few, those are
+    sought first that would change least.
     """
     found = set[Span]()
     waiting = iter(searches)
@@ -98,6 +99,8 @@ def remedies(searches: Iterable[Search]) -> Iterator[Remedy]:
             return
         few = [first, *itertools.islice(waiting, _ABREAST - 1)]
         for search in sorted(few, key=lambda search: search.reach):
+            if found and search.trials.is_late:
+                return
             if search.place not in found and (remedy := search.remedy()) is not None:
                 found.add(search.place)
                 yield remedy
