@@ -17,7 +17,7 @@ from aidl_lang.givens import Dial, behind
 from aidl_lang.givens import stated as stated_in
 from aidl_lang.lower import Lowered
 from aidl_lang.model import Constraint
-from aidl_lang.remedies import Remedy, Search, left_out, remedies, short, wished
+from aidl_lang.remedies import Remedy, Search, dear, left_out, remedies, short, wished
 from aidl_lang.solver.solution import Failure, GroupFailure, Member, Solution
 from aidl_lang.source import Span
 from aidl_lang.trials import Trials
@@ -30,10 +30,6 @@ _TOLERANCE = 1e-6
 """Below this a constraint is not called off, in its own units."""
 _FINISHED = 5
 """Fixes of which it is tried whether the program then compiles to the end."""
-_FIXED = 2.0
-"""How much dearer it is to change what is `fixed` than another number by the same part."""
-_LONG = 2.0
-"""The same of a number of many digits."""
 _NAMED = 3
 """Things that a list names."""
 _SHOWN = 12
@@ -282,8 +278,7 @@ class Explanation:
         size = abs(found.dial.value)
         twins = [d for d in others if abs(d.value) == size and d.place != found.dial.place]
         breaks = not found.dial.is_exact and bool(twins)
-        share = found.share * (_FIXED if found.dial.is_exact and not found.dial.name else 1.0)
-        share *= 1.0 if found.plain else _LONG
+        share = dear(found.dial, found.share, found.plain)
         return -shared, found.counts, breaks, round(share, 4), -found.dial.place.start
 
     def _shares(self, place: Span) -> int:

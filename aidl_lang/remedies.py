@@ -26,6 +26,10 @@ _NUDGE = 1e-3
 """How far a number is turned to see what it does, as a share of itself."""
 _ABREAST = 6
 """Numbers of which it is first asked how far they would have to change."""
+_FIXED = 2.0
+"""How much dearer it is to change what is `fixed` than another number by the same part."""
+_LONG = 2.0
+"""How much dearer it is to write a number of many digits."""
 _STEPS = 4
 """Times that the place of a number is sought anew where what it does is not even."""
 _NOTHING = 1e-9
@@ -87,22 +91,28 @@ def short(value: float) -> str:
     return f"{round(value, 6) + 0.0:.6g}"
 
 
+def dear(dial: Dial, share: float, plain: bool) -> float:
+    """How dear it is to change a number by a share of itself, to one of few digits if that is `plain`."""
+    return share * (_FIXED if dial.is_exact and not dial.name else 1.0) * (1.0 if plain else _LONG)
+
+
 def remedies(searches: Iterable[Search]) -> Iterator[Remedy]:
     """What would fit in place of numbers, one for each place; nothing for those for which no number was found
-    that would, or for which there was no time: a first one is worth more of that. Of each few, those are
-    sought first that would change least.
+    that would, or for which there was no time: a first one of few digits is worth more of that. Of each few,
+    those are sought first that would change least.
     """
-    found = set[Span]()
+    found, is_enough = set[Span](), False
     waiting = iter(searches)
     for first in waiting:
         if first.trials.is_late:
             return
         few = [first, *itertools.islice(waiting, _ABREAST - 1)]
         for search in sorted(few, key=lambda search: search.reach):
-            if found and search.trials.is_late:
+            if is_enough and search.trials.is_late:
                 return
             if search.place not in found and (remedy := search.remedy()) is not None:
                 found.add(search.place)
+                is_enough = is_enough or remedy.plain
                 yield remedy
 
 
@@ -128,15 +138,18 @@ class Search:
 
     @cached_property
     def reach(self) -> float:
-        """By what part of itself a small turn says that the number would have to change; infinite if that
-        says nothing.
+        """By what part of itself a small turn says that the number would have to change, weighed by how dear
+        that is; infinite if that says nothing.
         """
         value = self.dial.value
         if self.trials.is_late:
             return np.inf
         target = self._pinned_target if self._member is not None else None
         target = self._even_target if target is None else target
-        return np.inf if target is None else abs(target - value) / max(abs(value), 1.0)
+        if target is None:
+            return np.inf
+        plain = _is_plain(float(f"{target:.{_DIGITS[0]}g}"), _PLAIN)
+        return dear(self.dial, abs(target - value) / max(abs(value), 1.0), plain)
 
     def remedy(self) -> Remedy | None:
         if (opposite := self.turned()) is not None:

@@ -20,7 +20,7 @@ from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.solution import GroupFailure
 from aidl_lang.source import SourceFile
 
-SECONDS, LONGEST = 1.2, 3.0
+SECONDS, LONGEST = 1.5, 3.0
 """Time after which nothing more is begun of all that is tried for the messages of one run, and after which
 nothing is tried at all: some programs take long to build.
 """
