@@ -86,13 +86,12 @@ def _answered(
     dials = stated_in(wording.node) if d.code == NEVER else []
     if (own := next(fitting(dials), None)) is None:
         return d
-    instead = f" instead of `{own.dial.place.text}`" if len(dials) > 1 else ""
-    return replace(d, label="; ".join(filter(None, (d.label, f"{own.shown}{instead} would fit"))))
+    return replace(d, label="; ".join(filter(None, (d.label, own.would_fit(len(dials))))))
 
 
 def _with(labels: tuple[Label, ...], found: Remedy) -> tuple[Label, ...]:
     """The labels, one of them with what would fit in place of a number."""
-    place, text = found.dial.place, f"{found.shown} would fit"
+    place, text = found.dial.place, found.would_fit()
     for index, label in enumerate(labels):
         if found.dial.name and label.span.overlaps(place):
             return *labels[:index], replace(label, text=f"{label.text}; {text}"), *labels[index + 1 :]

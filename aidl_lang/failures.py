@@ -165,14 +165,14 @@ class Explanation:
     def conflict(self) -> Conflict:
         parties = tuple(map(self._told, self.parties))
         givens = tuple(
-            Given(r.dial.name, r.dial.place, r.shown, r.fix) for r in self._remedies if r.dial.is_exact
+            Given(r.dial.name, r.dial.place, r.would_fit(), r.fix) for r in self._remedies if r.dial.is_exact
         )
         return Conflict(self._headline()[1], self.failure.minimal, parties, givens)
 
     def _told(self, party: _Party) -> Party:
         stated, found = party.stated, self._remedy_of(party)
         fix = found.fix if found else None
-        would_fit = f"{found.shown} would fit" if found else ""
+        would_fit = found.would_fit() if found else ""
         return Party(stated.holder.path, stated.text, stated.span, party.member.off, would_fit, fix)
 
     def _size(self, index: int) -> Unknown:
@@ -341,24 +341,22 @@ class Explanation:
         if found is None:
             return ""
         assert party.node is not None
-        several = len(stated_in(party.node)) > 1
-        instead = f" instead of `{found.dial.place.text}`" if several else ""
         times = self.times[party.stated.span]
-        return f"{found.shown}{instead} would fit" + (f", all {times} times" if times > 1 else "")
+        return found.would_fit(len(stated_in(party.node))) + (f", all {times} times" if times > 1 else "")
 
     def _labels(self, chief: _Party) -> Iterator[Label]:
         """The other places, each once; of many those where something would fit, and the first."""
         text = "conflicts with this" if self.is_proven else "takes part"
-        others = [parties[0] for span, parties in self.turns.items() if span != chief.stated.span]
-        for party in sorted(others, key=lambda party: not self._would_fit(party))[:_SHOWN]:
-            would_fit = self._would_fit(party)
-            yield Label(party.stated.span, f"{text}; {would_fit}" if would_fit else text)
+        spans = [span for span in self.turns if span != chief.stated.span]
+        fitting = {span: self._would_fit(self.turns[span][0]) for span in spans}
+        for span in sorted(spans, key=lambda span: not fitting[span])[:_SHOWN]:
+            yield Label(span, "; ".join(filter(None, (text, fitting[span]))))
 
     def _givens(self) -> Iterator[Label]:
         """The exact numbers that have a share in it."""
         for found in self._remedies:
             if found.dial.is_exact:
-                yield Label(found.dial.place, f"exact; {found.shown} would fit")
+                yield Label(found.dial.place, f"exact; {found.would_fit()}")
 
     def _hints(self) -> Iterator[str]:
         if (hidden := len(self.turns) - 1 - _SHOWN) > 0:

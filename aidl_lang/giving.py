@@ -17,9 +17,8 @@ from aidl_lang.solved import Change, SolvedModel
 from aidl_lang.solver import Settings, Solution
 from aidl_lang.solver.reasons import reasons
 from aidl_lang.source import Span
+from aidl_lang.trials import GAVE_WAY
 
-GAVE_WAY = frozenset({"N0601", "W0601", "W0602"})
-"""What strictness does not let pass."""
 _A_TENTH = 0.1 + 1e-9
 """Part of a size by which it may change without a warning."""
 _STILL = 1e-6

@@ -78,10 +78,7 @@ def otherwise(
             continue
         seen.append(taken)
         made = lower(other.model)
-        # The same statements in the same order: what conflicts has the same numbers there.
-        if any(
-            lack(made.problem, settings, f.conflict, f.conflict, dict(f.nearest)) for f in solution.failures
-        ):
+        if _still_fails(made, solution, settings):
             continue
         found = solve(made.problem, replace(settings, explain=False, seconds=min(settings.seconds, _LONGEST)))
         if found.status is Status.SOLVED and not any(stage.gave for stage in found.stages):

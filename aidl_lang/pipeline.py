@@ -5,13 +5,8 @@ Each stage hands over one value and its diagnostics; nothing here raises for wha
 
 from __future__ import annotations
 
-import gc
-import sys
-import threading
-import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
@@ -19,7 +14,6 @@ from typing import TYPE_CHECKING, TypeAlias
 from aidl_lang import ast, parser
 from aidl_lang import library as library_module
 from aidl_lang.building.state import DEFAULT_LIMITS, Limits
-from aidl_lang.cancelling import checkpoint
 from aidl_lang.checking.subset import adapted
 from aidl_lang.compiled import Compiled
 from aidl_lang.diagnostics import Diagnostic, has_errors, is_too_many, ordered, within_limit
@@ -29,6 +23,7 @@ from aidl_lang.model import Knob, Model
 from aidl_lang.printer import format_module
 from aidl_lang.resolve import resolve
 from aidl_lang.resolving.symbols import SymbolKind
+from aidl_lang.running import Stopwatch, working
 from aidl_lang.solver.memory import Memory
 from aidl_lang.solver.problem import Settings as SolverSettings
 from aidl_lang.source import SourceFile, Span
@@ -47,9 +42,6 @@ if TYPE_CHECKING:
     from aidl_lang.solver.analysis import Freedom
     from aidl_lang.solver.solution import Solution
     from aidl_lang.trials import Trials
-
-_RECURSION = 20_000
-"""Python frames for deeply nested programs; the limits on nesting and calls end sooner."""
 
 _HEAVY = "most of its curves are made here"
 _IMPORT_FAILURES = frozenset({"E0210", "E0211", "E0212", "E0213", "E0804"})
@@ -75,61 +67,16 @@ class Settings:
     drawing: float = 20.0
 
 
-class _Stopwatch:
-    def __init__(self) -> None:
-        self.seconds: dict[str, float] = {}
-
-    @contextmanager
-    def __call__(self, stage: str) -> Iterator[None]:
-        checkpoint()
-        start = time.perf_counter()
-        try:
-            yield
-        finally:
-            self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - start
-
-
-class _Working:
-    """What runs need of the interpreter: room for nested programs, and no pauses to look for cycles in a heap
-    that only grows until the run ends. Several threads may run at once; the last to leave tidies up.
-    """
-
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._running = 0
-        self._before = (0, False)
-
-    def __enter__(self) -> None:
-        with self._lock:
-            if not self._running:
-                self._before = sys.getrecursionlimit(), gc.isenabled()
-                sys.setrecursionlimit(max(self._before[0], _RECURSION))
-                gc.disable()
-            self._running += 1
-
-    def __exit__(self, *_: object) -> None:
-        with self._lock:
-            self._running -= 1
-            if not self._running:
-                recursion, collecting = self._before
-                sys.setrecursionlimit(recursion)
-                if collecting:
-                    gc.enable()
-
-
-_working = _Working()
-
-
 Front: TypeAlias = tuple[Program, list[Diagnostic]]
 
 
 def front(source: SourceFile, world: World | None = None, settings: Settings = Settings()) -> Front:
     """Text → Program: parsed, resolved and type-checked. What `compile` can go on from."""
-    with _working:
-        return _front(source, world, settings, _Stopwatch())
+    with working:
+        return _front(source, world, settings, Stopwatch())
 
 
-def _front(source: SourceFile, world: World | None, settings: Settings, watch: _Stopwatch) -> Front:
+def _front(source: SourceFile, world: World | None, settings: Settings, watch: Stopwatch) -> Front:
     with watch("parse"):
         parsed = parser.parse(source, settings.text)
     with watch("library"):
@@ -149,7 +96,7 @@ def _build(
     world: World | None,
     params: Mapping[str, str | float | bool],
     settings: Settings,
-    watch: _Stopwatch,
+    watch: Stopwatch,
     checked: Front | None = None,
     turned: Mapping[int, int] | None = None,
     states_constants: bool = False,
@@ -194,7 +141,7 @@ def _sizes(built: Model, evaluator: Evaluator) -> Callable[[SolvedModel], tuple[
     def sizes(solved: SolvedModel) -> tuple[Dimension, ...]:
         from aidl_lang.dimensions import sizes
 
-        with _working:
+        with working:
             return sizes(built, solved, evaluator)
 
     return sizes
@@ -204,7 +151,7 @@ def _conflicts(failures: Sequence[Explanation]) -> Callable[[], tuple[Conflict, 
     """What tells the conflicts of a program, worked out when they are asked for."""
 
     def conflicts() -> tuple[Conflict, ...]:
-        with _working:
+        with working:
             return tuple(failure.conflict for failure in failures)
 
     return conflicts
@@ -229,45 +176,46 @@ class _Tries:
         unexplained = replace(self, settings=replace(self.settings, solving=hurried))
 
         def build(changed: SourceFile) -> Lowered | None:
-            built = replace(unexplained, source=changed)._built(states_constants=states_constants)
+            built = replace(unexplained, source=changed).built(states_constants=states_constants)
             return None if built is None else lower(built.model)
 
-        def found(changed: SourceFile) -> list[Diagnostic]:
+        def said(changed: SourceFile) -> list[Diagnostic]:
             return compile(changed, self.world, self.params, unexplained.settings).diagnostics
 
-        return Trials(self.source, build, found, lowered, solution, solving)
-
-    def again(self, turned: Mapping[int, int]) -> Interpretation | None:
-        """The program with ambiguous calls taken otherwise; None where that goes wrong."""
-        return self._built(turned)
+        return Trials(self.source, build, said, lowered, solution, solving)
 
     def answered(
         self, found: list[Diagnostic], everything: Sequence[Diagnostic], stated: Model
     ) -> list[Diagnostic]:
         """Findings among everything that is said of a program, those on constants with what would fit."""
+        solving = self.settings.solving
+        if not (solving.explain and has_errors(found)):
+            return found
         from aidl_lang.decided import NEVER, answered, failing
         from aidl_lang.lower import lower
         from aidl_lang.solver import solve
 
-        solving = self.settings.solving
         is_decided = any(d.code == NEVER for d in found) or any(
             a.condition is False for a in stated.assertions
         )
-        if not solving.explain or not is_decided or (built := self._built(states_constants=True)) is None:
+        if not is_decided or (built := self.built(states_constants=True)) is None:
             return found
         lowered = lower(built.model)
         solution = failing(lowered, solve(lowered.problem, replace(solving, explain=False)))
         return answered(found, everything, self.trials(lowered, solution, states_constants=True))
 
-    def _built(
+    def built(
         self, turned: Mapping[int, int] | None = None, states_constants: bool = False
     ) -> Interpretation | None:
+        """The program with ambiguous calls taken otherwise, or conditions over constants stated; None where
+        it is wrong then.
+        """
         built, found = _build(
             self.source,
             self.world,
             self.params,
             self.settings,
-            _Stopwatch(),
+            Stopwatch(),
             turned=turned,
             states_constants=states_constants,
         )
@@ -284,13 +232,13 @@ def check(
     source: SourceFile, world: World | None = None, settings: Settings = Settings()
 ) -> list[Diagnostic]:
     """Everything that can be said of a program without solving it."""
-    with _working:
-        return _build(source, world, {}, settings, _Stopwatch())[1]
+    with working:
+        return _build(source, world, {}, settings, Stopwatch())[1]
 
 
 def formatted(source: SourceFile, world: World | None = None) -> tuple[str | None, list[Diagnostic]]:
     """The canonical form of a program, names spelled as they are defined; None if it does not parse."""
-    with _working:
+    with working:
         parsed = parser.parse(source)
         if has_errors(parsed.diagnostics):
             return None, parsed.diagnostics
@@ -311,8 +259,8 @@ def knobs(
     source: SourceFile, world: World | None = None, settings: Settings = Settings()
 ) -> tuple[tuple[Knob, ...], list[Diagnostic]]:
     """The `param`s of a program in order of writing."""
-    with _working:
-        built, diagnostics = _build(source, world, {}, settings, _Stopwatch())
+    with working:
+        built, diagnostics = _build(source, world, {}, settings, Stopwatch())
     return tuple(built.model.knobs), diagnostics
 
 
@@ -331,8 +279,8 @@ def compile(
     what `front` gave for this very program, it is not checked again. Raises Cancelled where the run is given
     up (see `cancelling`).
     """
-    watch = _Stopwatch()
-    with _working:
+    watch = Stopwatch()
+    with working:
         built, diagnostics = _build(source, world, params or {}, settings, watch, checked)
         known = tuple(built.model.knobs)
         tries = _Tries(source, world, params or {}, settings)
@@ -353,7 +301,7 @@ def placed(
     from aidl_lang.lower import lower
     from aidl_lang.solver import Status, solve
 
-    with _working:
+    with working:
         built = interpret(program, params, settings.building)
         if has_errors(built.diagnostics):
             return None
@@ -374,8 +322,8 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
 
     if outcome.built is None:
         raise ValueError("the program is wrong, so there is nothing to draw")
-    watch = _Stopwatch()
-    with _working, within(outcome.limit, "drawing"):
+    watch = Stopwatch()
+    with working, within(outcome.limit, "drawing"):
         with watch("freedom"):
             freedom = analyse(lowered.problem, solution)
         model, evaluator, drawing, _ = _pictured(outcome.built, lowered, solution, freedom, watch)
@@ -393,7 +341,7 @@ def _finish(
     built: Interpretation,
     diagnostics: list[Diagnostic],
     settings: Settings,
-    watch: _Stopwatch,
+    watch: Stopwatch,
     known: tuple[Knob, ...],
     show: frozenset[str],
     memory: Memory | None,
@@ -412,7 +360,7 @@ def _finish(
         lowered = lower(built.model)
     with watch("solve"):
         solution = solve(lowered.problem, settings.solving, memory)
-        other, solution = otherwise(built, lowered, solution, tries.again, settings.solving)
+        other, solution = otherwise(built, lowered, solution, tries.built, settings.solving)
     if other is not None:
         built, lowered, solution = other.built, other.lowered, other.solution
     with watch("freedom"):
@@ -464,7 +412,7 @@ def _drawn(
     freedom: Freedom,
     given: tuple[GaveWay, ...],
     failures: Sequence[Explanation],
-    watch: _Stopwatch,
+    watch: Stopwatch,
 ) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic], list[Diagnostic]]:
     """The solved model and its drawing; what there is to say of the solution, and of what is drawn."""
     from aidl_lang.giving import explained
@@ -480,7 +428,7 @@ def _drawn(
 
 
 def _pictured(
-    built: Model, lowered: Lowered, solution: Solution, freedom: Freedom, watch: _Stopwatch
+    built: Model, lowered: Lowered, solution: Solution, freedom: Freedom, watch: Stopwatch
 ) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic]]:
     """A solution put back into names and coordinates, its drawing, and what there is to say of that."""
     from aidl_lang.geometry.drawing import draw

@@ -80,6 +80,11 @@ class Remedy:
     plain: bool
     counts: bool = False
 
+    def would_fit(self, numbers: int = 1) -> str:
+        """What is said where so many `numbers` are written, of which this is one."""
+        instead = f" instead of `{self.dial.place.text}`" if numbers > 1 else ""
+        return f"{self.shown}{instead} would fit"
+
     @property
     def written(self) -> str:
         """The text that is put in its place."""
@@ -158,11 +163,8 @@ class Search:
             return self._found()
         value = self.dial.value
         change = pinned.value - value
-        is_alone = 0.0 not in (
-            self._lack(value + 0.5 * change),
-            self._lack(value + (1.0 + _FURTHER) * change),
-        )
-        return (None if is_alone else self._found()) or self._remedy(pinned, pinned.shown)
+        is_range = any(self._lack(value + part * change) == 0.0 for part in (0.5, 1.0 + _FURTHER))
+        return (self._found() if is_range else None) or self._remedy(pinned, pinned.shown)
 
     def turned(self) -> Remedy | None:
         """A negative number without its sign."""

@@ -24,8 +24,10 @@ SECONDS, LONGEST = 1.5, 3.0
 """Time after which nothing more is begun of all that is tried for the messages of one run, and after which
 nothing is tried at all: some programs take long to build.
 """
-_TOLD = frozenset({"N0601", "W0601", "W0602", "N0604"})
-"""What is said of a program that gave way, or was solved from elsewhere."""
+GAVE_WAY = frozenset({"N0601", "W0601", "W0602"})
+"""Codes of what is said where something gave way."""
+_TOLD = GAVE_WAY | {"N0604"}
+"""The same, or where a program was solved from elsewhere."""
 _LONGEST = 0.5
 """Seconds for one solve."""
 _MOVED = 1e-6
@@ -37,19 +39,21 @@ class Trials:
     """
     source   the program as it is
     build    makes the problem of another text; None where that is wrong
-    found    what there is to say of another text when it is compiled
+    compile  what there is to say of another text
     lowered  the problem of the program as it is, and what came of it
     """
 
     source: SourceFile
     build: Callable[[SourceFile], Lowered | None]
-    found: Callable[[SourceFile], Sequence[Diagnostic]]
+    compile: Callable[[SourceFile], Sequence[Diagnostic]]
     lowered: Lowered
     solution: Solution
     settings: Settings
     _built: dict[str, Lowered | None] = field(default_factory=dict, repr=False)
+    _said: dict[str, Sequence[Diagnostic]] = field(default_factory=dict, repr=False)
     _lacks: dict[tuple[int, tuple[int, ...]], float] = field(default_factory=dict, repr=False)
     """By the problem, which `_built` keeps, and the constraints of the failure."""
+    _mended: dict[tuple[int, tuple[int, ...]], bool] = field(default_factory=dict, repr=False)
     _places: dict[int, dict[int, float] | None] = field(default_factory=dict, repr=False)
     """Where the constraints of a failure hold without one of them."""
 
@@ -85,9 +89,9 @@ class Trials:
         start = {numbered[u]: value for u, value in self._free(failure).items()}
         members = [matched[index] for index in failure.conflict]
         within = [matched[index] for index in self._together(failure)]
-        found_lack = lack(other.problem, self._quick, members, within, start)
-        self._lacks[id(other), failure.conflict] = found_lack
-        return found_lack
+        off = lack(other.problem, self._quick, members, within, start)
+        self._lacks[id(other), failure.conflict] = off
+        return off
 
     def _together(self, failure: GroupFailure) -> list[int]:
         """The constraints of a failure and those that took part in the search, but for what other failures
@@ -150,6 +154,12 @@ class Trials:
         """
         if self.is_over or (other := self._with(edits)) is None:
             return False
+        key = id(other), failure.conflict
+        if key not in self._mended:
+            self._mended[key] = self._is_mended(failure, other)
+        return self._mended[key]
+
+    def _is_mended(self, failure: GroupFailure, other: Lowered) -> bool:
         others = self._others(failure)
         found = solve(other.problem, replace(self._quick, explain=bool(others)))
         unmet = [i for i in np.flatnonzero(np.isnan(other.problem.weight)).tolist() if not found.satisfied[i]]
@@ -164,14 +174,21 @@ class Trials:
         """Whether edits that mend a failure leave no errors, as another failure or an assertion that
         fails.
         """
-        return not has_errors(self.found(self.edited(edits)))
+        return not has_errors(self.found(edits))
 
     def settles(self, edits: Sequence[Edit]) -> bool:
         """Whether after the edits the program solves from its first guesses, and nothing gives way."""
         if self.is_over or not self.can_edit(edits):
             return False
-        found = self.found(self.edited(edits))
+        found = self.found(edits)
         return not has_errors(found) and not any(d.code in _TOLD for d in found)
+
+    def found(self, edits: Sequence[Edit]) -> Sequence[Diagnostic]:
+        """What there is to say of the program after edits."""
+        changed = self.edited(edits)
+        if changed.text not in self._said:
+            self._said[changed.text] = self.compile(changed)
+        return self._said[changed.text]
 
     @cached_property
     def _own_keys(self) -> list[tuple[str, int]]:

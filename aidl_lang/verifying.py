@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.giving import GAVE_WAY
-from aidl_lang.trials import Trials
+from aidl_lang.trials import GAVE_WAY, Trials
 
 _TRIED = frozenset({"E0601", "E0602", "E0603", "E0605", "N0604"})
 """Findings that come with fixes that were tried already."""
@@ -28,7 +27,7 @@ def mends(found: Diagnostic, fix: Fix, before: Sequence[Diagnostic], trials: Tri
     """Whether a program of which `before` is said no longer has a finding after a fix, and nothing worse."""
     if trials.is_over or not trials.can_edit(fix.edits):
         return False
-    after = trials.found(trials.edited(fix.edits))
+    after = trials.found(fix.edits)
     worse = _errors(after) - _errors(before) or _gave_way(after) - _gave_way(before)
     return not worse and not any(_is_same(d, found, fix.edits) for d in after)
 

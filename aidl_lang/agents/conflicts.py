@@ -41,7 +41,7 @@ class Remedies:
         return Given(
             given.name,
             place(given.span),
-            f"{given.would_fit} would fit",
+            given.would_fit,
             repair(given.fix),
             self._solves(given.fix),
         )

@@ -125,7 +125,7 @@ class _Search:
                 return self._found(group, self._violated(best), whole)
         conflict = self._conflict(best, refuted)
         minimal = not self._spent
-        is_proven = self._is_refuted(conflict)
+        is_proven = self._relaxation(conflict).is_refuted
         thorough = self._attempt(tuple(conflict), THOROUGH)
         nearest = thorough if is_proven else self._nearest(conflict, thorough, STARTS)
         if nearest.holds:
@@ -225,7 +225,7 @@ class _Search:
         """A smallest part of a set that fails which still does, or what was left of it as the budget was
         spent.
         """
-        if self._relaxation(found).is_tight(range(len(self.hierarchy.rows(found)))):
+        if self._relaxation(found).is_tight:
             return sorted(found)
         return needed(found, lambda part: self._spent or self._holds(part))
 
@@ -233,18 +233,14 @@ class _Search:
         """Constraints among these that are shown never to hold together; none if that cannot be shown."""
         relaxation = self._relaxation(constraints)
         owner = [index for index in constraints for _ in self.hierarchy.rows([index])]
-        return sorted({owner[row] for row in relaxation.smallest(range(len(owner)))})
-
-    def _is_refuted(self, constraints: Sequence[int]) -> bool:
-        """Whether it is shown that constraints can never hold together."""
-        return bool(self._relaxation(constraints).refutation(range(len(self.hierarchy.rows(constraints)))))
+        return sorted({owner[row] for row in relaxation.smallest()})
 
     def _gaps(self, conflict: Sequence[int]) -> tuple[tuple[int, float], ...]:
         """What the members of a conflict that are one row come to where the others hold; none if that is not
         known.
         """
         owner = [index for index in conflict for _ in self.hierarchy.rows([index])]
-        gaps = self._relaxation(conflict).gaps(range(len(owner)))
+        gaps = self._relaxation(conflict).gaps()
         return tuple((owner[row], gap) for row, gap in gaps.items() if owner.count(owner[row]) == 1)
 
     def _relaxation(self, constraints: Sequence[int]) -> Relaxation:
@@ -351,8 +347,8 @@ class _Search:
         """Whether constraints can hold together, as far as a proof or a search tells."""
         wanted = tuple(sorted(constraints))
         if wanted not in self.trials:
-            refuted = self._is_refuted(wanted)
-            if refuted or self._relaxation(wanted).is_exact:
+            relaxation = self._relaxation(wanted)
+            if (refuted := relaxation.is_refuted) or relaxation.is_exact:
                 return not refuted
         return self._try(wanted).holds
 

@@ -33,7 +33,7 @@ def lack(
     hierarchy.refresh(within)
     rows, free = hierarchy.rows(within), frozenset(start)
     relaxation = Relaxation(hierarchy.values, rows, free, settings.tolerance)
-    if not relaxation.bends and (off := relaxation.lack(range(len(rows)))) > 0.0:
+    if not relaxation.bends and (off := relaxation.lack()) > 0.0:
         return off
     first, least = hierarchy.save(free), np.inf
     searched = within if len(rows) <= FEW else constraints

@@ -80,6 +80,7 @@ class Relaxation:
         self._put.clear()  # more is known of them now
         self._parts.clear()
         self._rows = [(self._plain(row.expression), row) for row in rows]
+        self._all = list(range(len(self._rows)))
         self.is_exact = not any(self._knots(form) for form, _ in self._rows)
         """Whether the rows are affine, so that they hold together where nothing refutes it."""
         self.bends = any(self._forms.knots[slot].op not in BRANCHING for slot in self._parts)
@@ -107,18 +108,23 @@ class Relaxation:
         """
         return self._refuted(list(among)).factors
 
-    def lack(self, among: Iterable[int]) -> float:
-        """By how much the sum that refutes rows `among` is off, the greatest factor in it taken as one; 0 if
-        they are not refuted.
+    @property
+    def is_refuted(self) -> bool:
+        """Whether it is shown that the rows cannot hold together."""
+        return bool(self.refutation(self._all))
+
+    def lack(self) -> float:
+        """By how much the sum that refutes the rows is off, the greatest factor in it taken as one; 0 if they
+        are not refuted.
         """
-        found = self._refuted(list(among))
+        found = self._refuted(self._all)
         return found.off / max(map(abs, found.factors.values()), default=1.0)
 
-    def gaps(self, among: Iterable[int]) -> dict[int, float]:
-        """For each of the rows `among` that equations alone refute, what it comes to where the others hold;
-        empty if inequalities take part.
+    def gaps(self) -> dict[int, float]:
+        """For each of the rows that equations alone refute, what it comes to where the others hold; empty if
+        inequalities take part.
         """
-        found = self._refuted(list(among))
+        found = self._refuted(self._all)
         return {i: found.off / factor for i, factor in found.factors.items()} if found.is_even else {}
 
     def _refuted(self, numbers: list[int]) -> _Refutation:
@@ -138,22 +144,24 @@ class Relaxation:
         taking_part = {i: factor for i, factor in zip(numbers, factors.tolist(), strict=False) if factor}
         return _Refutation(taking_part, float(factors @ constant), not factors[inequality].any())
 
-    def smallest(self, among: Iterable[int]) -> list[int]:
-        """Rows `among` that are refuted together, without any one of which they are not; empty if they are
-        not refuted.
-        """
-        found = list(self.refutation(among))
-        if self.is_tight(found):
+    def smallest(self) -> list[int]:
+        """Rows that are refuted together, without any one of which they are not; empty if all are not."""
+        found = list(self.refutation(self._all))
+        if self._is_tight(found):
             return found
         for number in list(found):
             if number in found and (fewer := self.refutation(n for n in found if n != number)):
                 found = list(fewer)
         return found
 
-    def is_tight(self, among: Iterable[int]) -> bool:
+    @property
+    def is_tight(self) -> bool:
         """Whether rows that are refuted hold together as soon as any one of them is left out: they are affine
         and add up to nothing in one way only.
         """
+        return self._is_tight(self._all)
+
+    def _is_tight(self, among: Iterable[int]) -> bool:
         forms = [self._rows[i][0] for i in among]
         if not forms or len(forms) > MANY or any(map(self._knots, forms)):
             return False
@@ -348,8 +356,7 @@ def is_refuted(values: Valuation, rows: Sequence[Row], free: Iterable[int], tole
     """Whether it is shown that rows cannot hold together; what each says of one unknown alone helps with the
     others.
     """
-    relaxation = Relaxation(values, rows, free, tolerance, rows)
-    return bool(relaxation.refutation(range(len(rows))))
+    return Relaxation(values, rows, free, tolerance, rows).is_refuted
 
 
 def _arrays(forms: Sequence[Form]) -> tuple[Floats, Floats]:
