@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from html.parser import HTMLParser
@@ -14,9 +15,12 @@ import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
 from starlette.websockets import WebSocketDisconnect
 
+from aidl_lang.ide.preview.protocol import Json
+from aidl_lang.ide.view import View
 from aidl_lang.preview.host import MOST_UNTAKEN, Host, Page
 from aidl_lang.preview.program import Program
 from aidl_lang.preview.site import MOST_PAGES, PANE, site
+from aidl_lang.preview.worker import MOST_ORDERS
 
 TOKEN, ADDRESS = "tok-En_123", "127.0.0.1:8123"
 TEXT = "param width = 60mm in 20..100\nsolid a { body = rectangle(width: width, height: 20) }\n"
@@ -30,8 +34,15 @@ def file(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def client(file: Path) -> Iterator[TestClient]:
-    program = Program(file, lambda path, data: path.write_bytes(data) and None)
+def program(file: Path) -> Program:
+    def write(path: Path, data: bytes) -> None:
+        path.write_bytes(data)
+
+    return Program(file, write)
+
+
+@pytest.fixture
+def client(program: Program) -> Iterator[TestClient]:
     app = site(Host(program), TOKEN, [ADDRESS, "localhost:8123"])
     with TestClient(app, base_url=f"http://{ADDRESS}") as client:
         yield client
@@ -282,15 +293,34 @@ def test_many_attempts_end_with_the_last(client: TestClient) -> None:
             pass
 
 
-def test_a_page_that_asks_for_too_much_is_told_and_holds_up_no_other(client: TestClient) -> None:
+def test_a_page_that_asks_for_too_much_is_told_and_holds_up_no_other(
+    client: TestClient, program: Program, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    is_full, done = threading.Event(), []
+    export, with_knob = program.export, program.with_knob
+
+    def slow_export(name: str, show: frozenset[str]) -> Json:
+        assert is_full.wait(60)
+        done.append(name)
+        return export(name, show)
+
+    def noted_knob(path: str, value: float | str | bool) -> View:
+        done.append("knob")
+        return with_knob(path, value)
+
+    monkeypatch.setattr(program, "export", slow_export)
+    monkeypatch.setattr(program, "with_knob", noted_knob)
     with talking(client) as flood, talking(client) as page:
-        for _ in range(300):
+        for _ in range(2 * MOST_ORDERS):
             flood.say(type="export", format="svg")
-        page.say(type="knob", path="width", value=50, final=False)
-        assert page.hear(type="picture", tried=True)["box"][2] == pytest.approx(25)
         assert "more than can be done at once" in flood.hear(type="error")["message"]
+        page.say(type="knob", path="width", value=50, final=False)
+        is_full.set()
+        assert page.hear(type="picture", tried=True)["box"][2] == pytest.approx(25)
+        assert done.index("knob") <= 2
         page.say(type="export", format="dxf")
         assert page.hear(type="export")["name"] == "part.dxf"
+        flood.hear(type="export")
     with talking(client) as page:
         page.say(type="ready")
         page.hear(type="picture")
