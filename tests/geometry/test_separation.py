@@ -1,0 +1,98 @@
+"""Pairs of curves that are told apart are held against the search for crossings, which finds none in them."""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import ends, locate
+from aidl_lang.geometry.intersect import intersections
+from aidl_lang.geometry.separation import Separation
+
+TOLERANCE = 1e-5
+
+# Coarse coordinates, so that curves often touch, share ends or lie on each other.
+spots = st.tuples(*[st.integers(-6, 6).map(float)] * 2)
+radii = st.integers(1, 5).map(float)
+bends = st.sampled_from([math.pi / 2, math.pi, -math.pi / 2, 1.0, -3.0])
+
+
+def arc_between(start: Vec, end: Vec, sweep: float) -> Arc:
+    """From point to point, bent by so much."""
+    (x, y), (u, v) = start, end
+    far = 1 / (2 * math.tan(sweep / 2))
+    center = (x + u) / 2 - (v - y) * far, (y + v) / 2 + (u - x) * far
+    return Arc(center, math.dist(center, start), start, end, sweep)
+
+
+@st.composite
+def curves_from(draw: st.DrawFn, start: Vec) -> Piece:
+    end = draw(spots.filter(lambda p: p != start))
+    return draw(
+        st.one_of(
+            st.just(Line(start, end)),
+            st.builds(arc_between, st.just(start), st.just(end), bends),
+            st.builds(Bezier, st.just(start), spots, spots, st.just(end)),
+        )
+    )
+
+
+@st.composite
+def drawings(draw: st.DrawFn) -> list[Piece]:
+    """A chain of curves, each from the end of the one before it, and some that are closed."""
+    chain: list[Piece] = []
+    at = draw(spots)
+    for _ in range(draw(st.integers(1, 4))):
+        chain.append(draw(curves_from(at)))
+        at = ends(chain[-1])[1]
+    closed = st.one_of(
+        st.builds(Circle, spots, radii), st.builds(Ellipse, spots, radii, radii, st.sampled_from([0.0, 0.5]))
+    )
+    return chain + draw(st.lists(closed, max_size=2))
+
+
+def meeting(curves: list[Piece]) -> dict[tuple[int, int], bool]:
+    """Whether each pair may meet in more than a shared end."""
+    places = sorted({p for curve in curves for p in ends(curve)})
+    nodes = np.array([[places.index(p) for p in ends(curve)] for curve in curves])
+    pairs = list(combinations(range(len(curves)), 2))
+    one, other = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
+    found = Separation(curves, TOLERANCE).may_meet(one, other, nodes, np.array(places))
+    return dict(zip(pairs, found.tolist(), strict=True))
+
+
+@given(drawings())
+def test_curves_told_apart_have_only_shared_ends_in_common(curves: list[Piece]):
+    for (i, j), may_meet in meeting(curves).items():
+        a, b = curves[i], curves[j]
+        shared = set(ends(a)) & set(ends(b))
+        if not may_meet:
+            spots = [p for _, _, p in intersections(a, b, TOLERANCE)]
+            spots += [p for p in ends(a) if locate(b, p, TOLERANCE) is not None]
+            spots += [p for p in ends(b) if locate(a, p, TOLERANCE) is not None]
+            assert all(any(math.dist(p, q) <= 2 * TOLERANCE for q in shared) for p in spots)
+
+
+def test_neighbours_in_a_smooth_outline_are_told_apart():
+    arc = arc_between((0.0, 0.0), (4.0, 4.0), math.pi / 2)
+    smooth = Bezier((4.0, 4.0), (4.0, 6.0), (2.0, 8.0), (0.0, 8.0))
+    assert meeting([arc, smooth, Line((0.0, 8.0), (-4.0, 8.0))]) == {
+        (0, 1): False,
+        (0, 2): False,
+        (1, 2): False,
+    }
+
+
+def test_neighbours_that_meet_again_are_not_told_apart():
+    there, back = Line((0.0, 0.0), (4.0, 0.0)), Bezier((4.0, 0.0), (4.0, 3.0), (2.0, 3.0), (2.0, -1.0))
+    assert meeting([there, back]) == {(0, 1): True}
+
+
+def test_curves_that_lie_on_each_other_are_not_told_apart():
+    whole, half = Line((0.0, 0.0), (4.0, 0.0)), Line((0.0, 0.0), (2.0, 0.0))
+    assert meeting([whole, half, Circle((0.0, 3.0), 3.0)]) == {(0, 1): True, (0, 2): True, (1, 2): True}
