@@ -116,10 +116,21 @@ def source_unknowns(source: object, here: Structure) -> Iterator[Unknown]:
                 break
             frame = structure.frame
             yield from ex.unknowns([frame.x, frame.y, frame.rotation])
-        for structure in source.walk():
-            yield from ex.unknowns(structure.plan or ())
-            for geometry in structure.own():
-                yield from ex.unknowns(defining(geometry, structure))
+        yield from _interior(source)
+
+
+def _interior(structure: Structure) -> Iterable[Unknown]:
+    """The unknowns that place what is in a structure, each in the frame that it is in."""
+    if structure.interior is not None:
+        return structure.interior
+    found = dict.fromkeys(
+        u
+        for inner in structure.walk()
+        for u in ex.unknowns([*(inner.plan or ()), *(e for g in inner.own() for e in defining(g, inner))])
+    )
+    if structure.is_complete:
+        structure.interior = tuple(found)
+    return found
 
 
 def boxes_in(*roots: Expression) -> tuple[frozenset[Structure], frozenset[Unknown] | None]:
@@ -175,7 +186,7 @@ def extent(side: _Side, ignored: frozenset[Structure]) -> Expression:
     key = (here, name, ignored)
     if whole is not None and key in whole.extents:
         return whole.extents[key]
-    candidates = [e for s in side.box.sources for e in _extremes(s, here, name, ignored)]
+    candidates = list(dict.fromkeys(e for s in side.box.sources for e in _extremes(s, here, name, ignored)))
     found = _extreme_of(candidates, name)
     if whole is not None:
         whole.extents[key] = found
@@ -213,9 +224,8 @@ def _structure(
         right, top = ex.add(left, width), ex.add(bottom, height)
         for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
             yield convert(*corner, source, here)[side in ("top", "bottom")]
-    for geometry in source.own():
-        for primitive in geometry.primitives():
-            yield from _curve(primitive, here, side)
+    for primitive in source.drawn():
+        yield from _curve(primitive, here, side)
     for child in source.children:
         if child.kind != "hole" and child not in ignored:
             yield from _structure(child, here, side, ignored)

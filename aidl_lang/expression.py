@@ -344,7 +344,7 @@ def unknowns(roots: Iterable[Expression]) -> Iterator[Unknown]:
     """The unknowns that the roots depend on, in the order of `nodes`."""
     seen: set[Expression] = set()
     for root in roots:
-        stack = [root]
+        stack = [root] if root.op != "constant" else []
         while stack:
             node = stack.pop()
             if node in seen:
@@ -376,26 +376,27 @@ class Evaluator:
             node = stack[-1]
             if node in memo:
                 stack.pop()
-            elif missing := [a for a in _arguments(node) if a not in memo]:
-                stack.extend(missing)
+                continue
+            args = node.args if node.op != "lazy" else _arguments(node)
+            if missing := [a for a in args if a not in memo]:
+                stack += missing
+                continue
+            stack.pop()
+            if not args:
+                memo[node] = self._leaf(node)
+            elif node.op == "lazy":
+                memo[node] = memo[args[0]]
             else:
-                memo[node] = self._node(node)
-                stack.pop()
+                memo[node] = EVALUATE[node.op](*[memo[a] for a in args])
         return memo[root]
 
-    def _node(self, node: Expression) -> float:
-        match node.op:
-            case "constant":
-                return node.value
-            case "unknown":
-                assert isinstance(node.payload, Unknown)
-                return self.values.get(node.payload, node.payload.guess)
-            case "measure":
-                return self.measure(node.payload) if self.measure else math.nan
-            case "lazy":
-                return self._memo[_arguments(node)[0]]
-            case _:
-                return EVALUATE[node.op](*[self._memo[a] for a in node.args])
+    def _leaf(self, node: Expression) -> float:
+        if node.op == "unknown":
+            assert isinstance(node.payload, Unknown)
+            return self.values.get(node.payload, node.payload.guess)
+        if node.op == "measure":
+            return self.measure(node.payload) if self.measure else math.nan
+        return node.value
 
 
 def _arguments(node: Expression) -> tuple[Expression, ...]:

@@ -223,7 +223,9 @@ class Structure:
     geometry    what it draws itself; children: structures directly inside
     plan        the box of its own that an empty structure has: left, bottom, width, height
     source      the structure it is a copy of
-    extents     sides of its box that were worked out (see boxes)
+    extents     sides of its box that were worked out, and `interior` the unknowns that place what is in it,
+                once it is complete (see boxes)
+    converted   coordinates in it as other structures see them (see `convert`)
     scope       the names its body sees (see interp)
     finishes    fillets and chamfers of its geometry
     """
@@ -241,6 +243,10 @@ class Structure:
     plan: tuple[Expression, Expression, Expression, Expression] | None = None
     source: Structure | None = None
     extents: dict[object, Expression] = field(default_factory=dict, repr=False)
+    interior: tuple[Unknown, ...] | None = field(default=None, repr=False)
+    converted: dict[tuple[Expression, Expression, Structure], tuple[Expression, Expression]] = field(
+        default_factory=dict, repr=False
+    )
     finishes: list[Finish] = field(default_factory=list)
     doc: str | None = None
     is_complete: bool = False
@@ -260,9 +266,21 @@ class Structure:
             yield (top := stack.pop())
             stack.extend(reversed(top.children))
 
-    def own(self) -> Iterator[Geometry]:
+    def own(self) -> Iterable[Geometry]:
         """Named geometry of this structure itself, in order of writing."""
-        return own_geometry(self.geometry, self)
+        return self._own if self.is_complete else own_geometry(self.geometry, self)
+
+    @cached_property
+    def _own(self) -> tuple[Geometry, ...]:
+        return tuple(own_geometry(self.geometry, self))
+
+    def drawn(self) -> Iterable[Geometry]:
+        """The primitives of its own that are drawn, in order of writing."""
+        return self._drawn if self.is_complete else (p for g in self.own() for p in g.primitives())
+
+    @cached_property
+    def _drawn(self) -> tuple[Geometry, ...]:
+        return tuple(p for g in self._own for p in g.primitives())
 
     def is_within(self, other: Structure) -> bool:
         """Whether this structure is `other` or lies below it."""
@@ -319,9 +337,17 @@ def reach_of(owners: Iterable[Structure], here: Structure) -> Structure | None:
 def convert(
     x: Expression, y: Expression, source: Structure, target: Structure
 ) -> tuple[Expression, Expression]:
-    """Coordinates in the frame of `source` → in that of `target`."""
+    """Coordinates in the frame of `source` → in that of `target`; the same for the same."""
     if source is target:
         return x, y
+    if (known := source.converted.get((x, y, target))) is None:
+        known = source.converted[x, y, target] = _convert(x, y, source, target)
+    return known
+
+
+def _convert(
+    x: Expression, y: Expression, source: Structure, target: Structure
+) -> tuple[Expression, Expression]:
     meeting = common_ancestor(source, target)
     here = source
     while here is not meeting:

@@ -38,7 +38,7 @@ def hoist_callables(it: Interpreter, scope: Scope, statements: Iterable[ast.Stat
 def _hoist(it: Interpreter, scope: Scope, node: ast.Callable) -> None:
     if node not in it.signatures:
         it.signatures[node] = signature(node)
-    scope.callables.setdefault(node.name.text, []).append(Candidate(it.signatures[node], scope))
+    scope.define(Candidate(it.signatures[node], scope))
 
 
 def hoist_values(scope: Scope, statements: Iterable[ast.Statement], here: Structure) -> None:

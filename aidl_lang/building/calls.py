@@ -65,14 +65,16 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
         # References passed to a template are tied by its instantiating structure, which may reach further.
         env = Env(env.scope, env.here, Reach.SUBTREE)
     given: list[Value] = []
+    is_whole = True
     nodes: Sequence[ast.Node] = site.nodes
     if receiver is not None and node.receiver is not None and not isinstance(receiver, Namespace):
         given, nodes = [receiver], (node.receiver, *nodes)
-    given += [
-        evaluate(it, at, env) if word is None else word
-        for at, word in zip(site.nodes, site.words, strict=True)
-    ]
-    if Nothing in map(type, given):
+    for at, word in site.written:
+        value = evaluate(it, at, env) if word is None else word
+        if type(value) is Nothing:
+            is_whole = False
+        given.append(value)
+    if not is_whole:
         return NOTHING
     if site.makes_outline:
         candidates = usable(candidates, given, env)

@@ -210,7 +210,7 @@ class Copier:
         """
         self.it.count_entity(self.span)
         copy = Structure(source.kind, name, parent, self.span or source.span, frame)
-        copy.source, copy.doc, copy.is_complete = source, source.doc, source.is_complete
+        copy.source, copy.doc = source, source.doc
         copy.attributes = dict(source.attributes)
         parent.children.append(copy)
         self.structures[source] = copy
@@ -221,6 +221,7 @@ class Copier:
         for child in source.children:
             self.structure(child, copy, child.name, self._inner(child.frame))
         self._members(source, copy)
+        copy.is_complete = source.is_complete
         return copy
 
     def _inner(self, frame: Frame) -> Frame:

@@ -23,7 +23,7 @@ class Site:
     """A call as it stands in the text, with what follows from the overloads of its name.
 
     nodes          its arguments
-    words          for each of them, the text it is if it is a bare word
+    written        each of them with the text it is if it is a bare word
     doubtful       the arguments, by index, that are such words and names in reach as well
     instantiates   whether an overload is a template
     makes_outline  whether the overloads are those of an outline made of others
@@ -36,8 +36,8 @@ class Site:
         self.nodes = tuple(a.value for a in node.arguments)
         words = [i for i, a in enumerate(node.arguments) if is_word(a, signatures)]
         self.doubtful = [i for i in words if _is_declared(names.get(self.nodes[i]))]
-        self.words = tuple(
-            Text(n.span.text) if i in words and i not in self.doubtful else None
+        self.written = tuple(
+            (n, Text(n.span.text) if i in words and i not in self.doubtful else None)
             for i, n in enumerate(self.nodes)
         )
         self.instantiates = any(s.kind is ast.Structure for s in signatures)
@@ -83,16 +83,18 @@ def _is_declared(symbol: Symbol | None) -> bool:
 
 def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) -> Site:
     """What is known of a call whose name has these overloads; a body that runs again defines them anew."""
+    before, known = it.sites.get(node, (None, None))
+    if known is not None and before is candidates:
+        return known
     signatures = [c.signature for c in candidates]
-    known = it.sites.get(node)
     if known is None or known.signatures != signatures:
         is_standard = node.span.source in it.library_sources and all(s.standard for s in signatures)
-        made = (
+        known = (
             _standard_site(node, tuple(signatures))
             if is_standard
             else Site(node, signatures, it.program.resolution.uses)
         )
-        known = it.sites[node] = made
+    it.sites[node] = candidates, known
     return known
 
 

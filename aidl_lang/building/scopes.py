@@ -6,7 +6,7 @@ evaluated when it is asked for.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from aidl_lang.values import Value
 
 
-def indexed(name: str, indices: Iterable[int]) -> str:
+def indexed(name: str, indices: Sequence[int]) -> str:
     """`dot[3]`: the name of a member of an array."""
-    return name + "".join(f"[{i}]" for i in indices)
+    return name + "".join([f"[{i}]" for i in indices]) if indices else name
 
 
 @dataclass(eq=False)
@@ -115,6 +115,7 @@ class Scope:
     supply: Callable[[str], Iterable[Candidate]] | None = None
     """looks up callables that are kept elsewhere (the library's)"""
     _spellings: Spellings | None = field(default=None, repr=False)
+    _candidates: dict[str, list[Candidate]] = field(default_factory=dict, repr=False)
 
     def chain(self) -> Iterable[Scope]:
         scope: Scope | None = self
@@ -143,23 +144,34 @@ class Scope:
             scope = scope.parent
         return scope
 
+    def define(self, candidate: Candidate) -> None:
+        """Makes a callable known to what is in this scope; scopes inside have not been asked for any yet."""
+        of_name = self.callables.setdefault(candidate.signature.name, [])
+        if all(candidate.signature is not known.signature for known in of_name):
+            of_name.append(candidate)
+            self._candidates.clear()
+
     def candidates(self, name: str) -> list[Candidate]:
-        """All callables of a name, innermost first; aliases followed."""
+        """All callables of a name, innermost first; aliases followed. The same list each time."""
+        scope = self
+        while scope.parent is not None and not (scope.callables or scope.aliases):
+            scope = scope.parent
+        if (known := scope._candidates.get(name)) is None:
+            known = scope._candidates[name] = scope._found(name)
+        return known
+
+    def _found(self, name: str) -> list[Candidate]:
         found: list[Candidate] = []
         seen: list[str] = []
         key: str | None = name
         while key is not None and key not in seen:
             seen.append(key)
             alias: str | None = None
-            scope: Scope | None = self
-            while scope is not None:
-                if key in scope.callables:
-                    found += scope.callables[key]
+            for scope in self.chain():
+                found += scope.callables.get(key, ())
                 if scope.supply is not None:
                     found += scope.supply(key)
-                if alias is None:
-                    alias = scope.aliases.get(key)
-                scope = scope.parent
+                alias = alias or scope.aliases.get(key)
             key = alias
         return found
 

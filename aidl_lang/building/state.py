@@ -25,6 +25,7 @@ from aidl_lang.values import ListVal, Num, PointVal, RecordVal, Text, Value
 if TYPE_CHECKING:
     from aidl_lang.building.derive import Copier
     from aidl_lang.building.overloads import Site
+    from aidl_lang.building.scopes import Candidate
 
 
 _LARGEST_GUESS = 1e12
@@ -123,8 +124,10 @@ class Interpreter:
     edited_names: dict[int, frozenset[str]] = field(default_factory=dict)
     signatures: dict[ast.Callable, Signature] = field(default_factory=dict)
     """of the definitions of bodies"""
-    sites: dict[ast.Call, Site] = field(default_factory=dict)
-    """what is known of calls from their text and the overloads of their names"""
+    sites: dict[ast.Call, tuple[Sequence[Candidate], Site]] = field(default_factory=dict)
+    """the overloads of the names of calls, when they were last met, and what is known of the calls from these
+    and their text
+    """
     frames_turn: bool = False
     """whether the program speaks of the rotation of structures, which a constraint on it frees"""
     root: Structure | None = None

@@ -6,7 +6,7 @@ again in the scope that each of these had, and evaluated at the solved values of
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
@@ -216,7 +216,7 @@ def _below(root: Structure, path: str) -> str:
     return path.removeprefix(f"{root.path}.")
 
 
-def _all_of(found: Iterator[Geometry]) -> Iterator[Geometry]:
+def _all_of(found: Iterable[Geometry]) -> Iterator[Geometry]:
     """Geometry with the parts of which it is made."""
     stack = list(found)
     while stack:
