@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from aidl_lang import explain as pages
 from aidl_lang import pipeline
@@ -33,6 +33,7 @@ from aidl_lang.agents.workspace import RefusalError, Workspace, refusal
 from aidl_lang.diagnostics import Edit, has_errors
 from aidl_lang.discretion import Reader
 from aidl_lang.drawing_time import TooLongError
+from aidl_lang.export import OFFERED
 from aidl_lang.mending import Mended, mend
 from aidl_lang.pipeline import Compiled
 from aidl_lang.render import compact
@@ -51,8 +52,12 @@ Params: TypeAlias = Annotated[
 Path: TypeAlias = Annotated[
     str | None, "The dotted path of a structure or a geometry, as telephone.receiver or dial_plate.finger[3]."
 ]
+if TYPE_CHECKING:
+    Format: TypeAlias = str
+else:
+    Format = Literal[tuple(dict.fromkeys(("png", "model", *OFFERED)))]
 Formats: TypeAlias = Annotated[
-    Sequence[Literal["png", "model", "svg", "pdf", "dxf", "step", "stl", "3mf"]],
+    Sequence[Format],
     "What to make: png is a picture, model the solved model as JSON, the others are files.",
 ]
 _UNSOLVED = "no mistakes found; nothing was solved: `compile` tells whether the constraints hold"

@@ -15,7 +15,7 @@ from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.lists import run
 from aidl_lang.building.outlines import remember, usable
-from aidl_lang.building.overloads import candidates_of, no_overload, site_of, unknown_callable
+from aidl_lang.building.overloads import Site, candidates_of, no_overload, site_of, unknown_callable
 from aidl_lang.building.placing import placing, spliced
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
@@ -64,17 +64,8 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
     if site.instantiates and env.reach is Reach.OWN:
         # References passed to a template are tied by its instantiating structure, which may reach further.
         env = Env(env.scope, env.here, Reach.SUBTREE)
-    given: list[Value] = []
-    is_whole = True
-    nodes: Sequence[ast.Node] = site.nodes
-    if receiver is not None and node.receiver is not None and not isinstance(receiver, Namespace):
-        given, nodes = [receiver], (node.receiver, *nodes)
-    for at, word in site.written:
-        value = evaluate(it, at, env) if word is None else word
-        if type(value) is Nothing:
-            is_whole = False
-        given.append(value)
-    if not is_whole:
+    given, nodes = _given(it, site, receiver, node, env)
+    if Nothing in map(type, given):
         return NOTHING
     if site.makes_outline:
         candidates = usable(candidates, given, env)
@@ -98,6 +89,16 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
         return result
     finally:
         it.leave()
+
+
+def _given(
+    it: Interpreter, site: Site, receiver: Value | None, node: ast.Call, env: Env
+) -> tuple[list[Value], Sequence[ast.Node]]:
+    """The arguments of a call, what it is a method of among them, and the text each comes from."""
+    given = [evaluate(it, at, env) if word is None else word for at, word in site.written]
+    if receiver is None or node.receiver is None or isinstance(receiver, Namespace):
+        return given, site.nodes
+    return [receiver, *given], (node.receiver, *site.nodes)
 
 
 def bound(

@@ -83,11 +83,13 @@ class ExportError(ValueError):
 class Format:
     """A writer. `extra` names the optional extra of the package that brings the module it needs.
 
+    `label` says in menus what comes of it; what has none is asked for by its suffix alone.
     `cuts` says whether it holds outlines for a cutter, `tiles` whether it can be printed over several pages.
     What takes several sheets goes to as many files, unless `write_all` puts them into one.
     """
 
     write: Callable[[Job], Exported]
+    label: str = ""
     needs: str | None = None
     extra: str | None = None
     cuts: bool = False
@@ -212,16 +214,19 @@ def _3mf(job: Job) -> Exported:
 
 
 FORMATS: dict[str, Format] = {
-    ".svg": Format(_svg, cuts=True, tiles=True),
-    ".pdf": Format(_pdf, cuts=True, tiles=True, write_all=_pdf_of_all),
-    ".png": Format(_png, cuts=True, tiles=True),
+    ".svg": Format(_svg, "SVG drawing", cuts=True, tiles=True),
+    ".pdf": Format(_pdf, "PDF, true to scale", cuts=True, tiles=True, write_all=_pdf_of_all),
+    ".png": Format(_png, "PNG picture", cuts=True, tiles=True),
+    ".dxf": Format(_dxf, "DXF for cutters", cuts=True),
+    ".step": Format(_step, "STEP solid", "OCP", "step"),
+    ".stp": Format(_step, needs="OCP", extra="step"),
+    ".stl": Format(_stl, "STL mesh"),
+    ".3mf": Format(_3mf, "3MF for printers", "lib3mf", "3mf"),
     ".json": Format(_json),
-    ".step": Format(_step, "OCP", "step"),
-    ".stp": Format(_step, "OCP", "step"),
-    ".stl": Format(_stl),
-    ".3mf": Format(_3mf, "lib3mf", "3mf"),
-    ".dxf": Format(_dxf, cuts=True),
 }
+
+OFFERED = {suffix[1:]: made.label for suffix, made in FORMATS.items() if made.label}
+"""The formats that menus and tools offer, without the dot, and what they say of them."""
 
 
 def render(picture: Picture, suffix: str, options: Options) -> bytes:

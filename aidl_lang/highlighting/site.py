@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from aidl_lang.export import OFFERED
 from aidl_lang.highlighting.classes import classify
 from aidl_lang.highlighting.codemirror import words
 from aidl_lang.highlighting.scopes import SCOPES
@@ -22,6 +23,8 @@ def texts(root: Path) -> dict[str, str]:
         "editors/vscode/syntaxes/markdown-aidl.tmLanguage.json": _json(markdown()),
         "editors/vscode/snippets/aidl.json": _json(_snippets()),
         "editors/codemirror/src/words.ts": words(),
+        "editors/vscode/src/preview/formats.ts": _formats("[", "] as const"),
+        "aidl_lang/preview/pane/formats.js": _formats("/** @type {const} */ ([", "])"),
         **queries(),
         SAMPLES: _samples(root),
     }
@@ -38,6 +41,13 @@ def write(root: Path) -> None:
 
 def _json(data: object) -> str:
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
+
+
+def _formats(opening: str, closing: str) -> str:
+    """The files that menus offer to make of a drawing."""
+    rows = "".join(f'  ["{name}", "{label}"],\n' for name, label in OFFERED.items())
+    says = "// Made by `make colours` from aidl_lang/export/__init__.py; do not edit.\n"
+    return f"{says}\nexport const FORMATS = {opening}\n{rows}{closing};\n"
 
 
 def _snippets() -> dict[str, object]:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 
 from aidl_lang.diagnostics import Edit
-from aidl_lang.export import ExportError, Options
+from aidl_lang.export import OFFERED, ExportError, Options
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.ide.dragging import Dragged, Handle, drag
 from aidl_lang.ide.edits import applied
@@ -26,8 +26,6 @@ from aidl_lang.ide.workspace import Workspace
 from aidl_lang.pipeline import Memory
 from aidl_lang.source import SourceFile
 from aidl_lang.world import MAX_BYTES
-
-FORMATS = ("svg", "dxf", "pdf", "png", "step", "stl", "3mf")
 
 Write = Callable[[Path, bytes], None]
 """Replaces a file in one step. Raises OSError."""
@@ -147,7 +145,7 @@ class Program:
     def export(self, name: str, show: Collection[str]) -> Json:
         """The message with the file of a format. Raises CannotError."""
         outcome = self.current.outcome
-        if name not in FORMATS:
+        if name not in OFFERED:
             raise CannotError(f"there is no format {name}")
         if outcome is None or outcome.drawing is None:
             raise CannotError("the program does not draw, so there is nothing to export")

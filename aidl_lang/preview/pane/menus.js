@@ -3,6 +3,7 @@
  */
 
 import { el, part, set } from "./dom.js";
+import { FORMATS } from "./formats.js";
 import { recall, remember } from "./memory.js";
 
 const LAYERS = /** @type {[Layer, string][]} */ ([
@@ -13,15 +14,6 @@ const LAYERS = /** @type {[Layer, string][]} */ ([
   ["constraints", "Constraints"],
   ["dof", "Degrees of freedom"],
   ["plan", "Layout plan"],
-]);
-const FORMATS = /** @type {[Format, string][]} */ ([
-  ["svg", "SVG drawing"],
-  ["pdf", "PDF, true to scale"],
-  ["png", "PNG picture"],
-  ["dxf", "DXF for cutters"],
-  ["step", "STEP solid"],
-  ["stl", "STL mesh"],
-  ["3mf", "3MF for printers"],
 ]);
 const THEMES = ["as the system has it", "light", "dark"];
 

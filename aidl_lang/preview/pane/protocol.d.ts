@@ -1,6 +1,8 @@
 /** The messages between the pane and its host. Points are [x, y] in mm in the frame of the root, y up; places in a
  * text are lines and UTF-16 characters from 0. */
 
+import type { FORMATS } from "./formats.js";
+
 export type Vec = [number, number];
 export interface Position { line: number; character: number }
 export interface Range { start: Position; end: Position }
@@ -89,7 +91,7 @@ export interface Preview {
 }
 
 export type Layer = "names" | "points" | "bbox" | "constraints" | "dof" | "plan" | "dimensions" | "freedom";
-export type Format = "svg" | "dxf" | "pdf" | "png" | "step" | "stl" | "3mf";
+export type Format = (typeof FORMATS)[number][0];
 
 export type FromHost =
   | ({ type: "picture" } & Preview)

@@ -2,26 +2,13 @@
 
 import * as vscode from "vscode";
 
+import { FORMATS } from "./formats";
 import type { Ask, Format } from "./protocol";
-
-const FORMATS: Record<Format, string> = {
-  svg: "Scalable picture",
-  dxf: "Outlines with true arcs, for cutters and CAD",
-  pdf: "Pages to print, to scale",
-  png: "Picture of pixels",
-  step: "Solids for CAD",
-  stl: "Mesh for printers",
-  "3mf": "Mesh with parts and colours, for printers",
-};
 
 /** Undefined: the reader thought better of it. */
 export async function chooseFormat(): Promise<Format | undefined> {
   const picked = await vscode.window.showQuickPick(
-    Object.entries(FORMATS).map(([format, detail]) => ({
-      label: format.toUpperCase(),
-      description: detail,
-      format: format as Format,
-    })),
+    FORMATS.map(([format, description]) => ({ label: format.toUpperCase(), description, format })),
     { title: "Export the drawing as", matchOnDescription: true },
   );
   return picked?.format;
