@@ -8,7 +8,6 @@ meets the box of one of its descendants there leaves that descendant out (paper,
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from aidl_lang import expression as ex
@@ -84,7 +83,7 @@ class Box:
         return point(x.expression, y.expression)
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class _Side:
     """A side of a box that is not yet spelled out."""
 

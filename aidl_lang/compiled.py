@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from aidl_lang.cancelling import OutOfTime, limited_to
 from aidl_lang.diagnostics import Diagnostic, has_errors
 from aidl_lang.drawing_time import within
 from aidl_lang.model import Knob, Model
+from aidl_lang.records import record
 from aidl_lang.source import Span
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from aidl_lang.survey import Part, Survey
 
 
-@dataclass
+@record(frozen=False)
 class Compiled:
     """What came of a program. `model` and `drawing` are None when it is wrong before solving."""
 

@@ -12,9 +12,9 @@ the registry: `aidl explain` prints them and a test fails when a code and its pa
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile, Span
 
 
@@ -27,7 +27,7 @@ class Severity(StrEnum):
 _SEVERITY = {"E": Severity.ERROR, "W": Severity.WARNING, "N": Severity.NOTE}
 
 
-@dataclass(frozen=True)
+@record()
 class Label:
     """A place with a few words about it, as "declared here"."""
 
@@ -35,7 +35,7 @@ class Label:
     text: str = ""
 
 
-@dataclass(frozen=True)
+@record()
 class Edit:
     """Replace the text of `span` (empty for an insertion)."""
 
@@ -43,7 +43,7 @@ class Edit:
     replacement: str
 
 
-@dataclass(frozen=True)
+@record()
 class Fix:
     """Edits that together mend the program without losing what its author meant.
 
@@ -56,7 +56,7 @@ class Fix:
     is_sure: bool = False
 
 
-@dataclass(frozen=True)
+@record()
 class Diagnostic:
     """What is wrong, where, why and what to do about it. The headline must stand alone. `points` are the
     places in the drawing that it is about, in mm.

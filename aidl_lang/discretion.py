@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from aidl_lang import library
@@ -18,6 +18,7 @@ from aidl_lang.diagnostics import Diagnostic, Fix, has_errors
 from aidl_lang.failures import Conflict, Party
 from aidl_lang.parser import parse
 from aidl_lang.pipeline import Compiled
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedModel
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.world import FileError, Reason, World
@@ -26,7 +27,7 @@ _HIDDEN = "…"
 _QUOTED = re.compile(r"`[^`]*`")
 
 
-@dataclass(frozen=True)
+@record()
 class Programs:
     """The files of a world that are AIDL programs without slips in their syntax. What else has the suffix of
     one is refused as a whole, as whatever could be said of it would quote it.
@@ -41,7 +42,7 @@ class Programs:
         return text
 
 
-@dataclass(frozen=True)
+@record()
 class Reader:
     """One who wrote these files (text by name). The standard library is everybody's to read."""
 

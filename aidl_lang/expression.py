@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Protocol
+
+from aidl_lang.records import record
 
 if TYPE_CHECKING:
     from aidl_lang.model import Geometry, Structure
@@ -35,7 +37,7 @@ _WAYS = {
 }
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class Unknown:
     """A number that the solver finds.
 
@@ -358,7 +360,7 @@ def unknowns(roots: Iterable[Expression]) -> Iterator[Unknown]:
                 stack.extend(node.args)
 
 
-@dataclass
+@record(frozen=False)
 class Evaluator:
     """Evaluates expressions at given values of the unknowns, each node once.
 

@@ -6,9 +6,9 @@ An expression becomes a `Doc`: text with groups in it, the bracketed lists that 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from aidl_lang import ast
+from aidl_lang.records import record
 
 WIDTH = 100
 INDENT = 4
@@ -28,7 +28,7 @@ _BINARY = {
 }  # operator: its own level, that of the left operand, that of the right
 
 
-@dataclass(frozen=True)
+@record()
 class Group:
     """`opening item, item closing`: on one line, all items on one line of their own, or each on its own."""
 
@@ -37,7 +37,7 @@ class Group:
     closing: str
 
 
-@dataclass(frozen=True)
+@record()
 class Doc:
     """Pieces of text and groups, in order; `width` is that of the whole on one line."""
 

@@ -6,7 +6,7 @@ import itertools
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from aidl_lang import ast
@@ -17,6 +17,7 @@ from aidl_lang.givens import Dial, behind
 from aidl_lang.givens import stated as stated_in
 from aidl_lang.lower import Lowered
 from aidl_lang.model import Constraint
+from aidl_lang.records import record
 from aidl_lang.remedies import Remedy, Search, dear, left_out, remedies, short, wished
 from aidl_lang.solver.solution import Failure, GroupFailure, Member, Solution
 from aidl_lang.source import Span
@@ -49,7 +50,7 @@ def explained(lowered: Lowered, solution: Solution, trials: Trials) -> list[Expl
     return found
 
 
-@dataclass(frozen=True)
+@record()
 class Party:
     """A constraint in a conflict: the structure that holds it, how far it is off where the search came
     nearest, what would fit in it in words ("" if that is not known), and the edit that writes it.
@@ -63,7 +64,7 @@ class Party:
     fix: Fix | None
 
 
-@dataclass(frozen=True)
+@record()
 class Given:
     """An exact number behind a conflict: its name if it has one, its place, and what would fit there."""
 
@@ -73,7 +74,7 @@ class Given:
     fix: Fix
 
 
-@dataclass(frozen=True)
+@record()
 class Conflict:
     """Constraints that do not hold together, in order of writing, and exact numbers that have a share in
     that. `is_minimal`: without any one of the constraints the others hold.
@@ -94,7 +95,7 @@ def _follows(failure: GroupFailure, failures: Sequence[GroupFailure], paths: Seq
     return any(f.group != failure.group or f.reason in _PROVEN for f in inside)
 
 
-@dataclass(frozen=True)
+@record()
 class _Party:
     """A constraint in a conflict, as its author knows it."""
 

@@ -5,12 +5,13 @@ behind what they mention.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 
 from aidl_lang import ast
 from aidl_lang.model import is_size
 from aidl_lang.names import fold
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.source import Span
 
@@ -29,7 +30,7 @@ class Sign(Enum):
     POSITIVE = "a size"
 
 
-@dataclass(frozen=True)
+@record()
 class Dial:
     """A number of the text.
 

@@ -5,13 +5,14 @@ or that no constraint names and that moved all the same (language, "What gives w
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from aidl_lang.diagnostics import Diagnostic, Label
 from aidl_lang.expression import Unknown
 from aidl_lang.failures import listed
 from aidl_lang.lower import Lowered
 from aidl_lang.model import Constraint, Structure
+from aidl_lang.records import record
 from aidl_lang.remedies import short
 from aidl_lang.solved import Change, SolvedModel
 from aidl_lang.solver import Settings, Solution
@@ -25,7 +26,7 @@ _STILL = 1e-6
 """A frame that moved by less, in mm or degrees, is where it was."""
 
 
-@dataclass(frozen=True)
+@record()
 class GaveWay:
     """Unknowns that gave way together, with the values they had and have, and the constraints that ask for
     it, in order of writing; without any one of them they would have stayed, if these are `minimal`.

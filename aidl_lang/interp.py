@@ -12,7 +12,6 @@ The work is told in `building/`: `modules` (files and roots), `structures`, `sta
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 
 from aidl_lang import ast
@@ -28,11 +27,12 @@ from aidl_lang.cancelling import limited_to
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.model import Model, Structure
 from aidl_lang.names import fold
+from aidl_lang.records import record
 from aidl_lang.typecheck import Program
 from aidl_lang.values import NOTHING, Namespace
 
 
-@dataclass(frozen=True)
+@record()
 class Interpretation:
     """`written`: values at the first guesses of the expressions that break a rule of validity."""
 

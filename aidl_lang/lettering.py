@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cache, lru_cache
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
+from aidl_lang.records import record
 from aidl_lang.resources import resource
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ ALIGNMENTS = {"left": 0.0, "center": 0.5, "right": 1.0}
 _FONT = "aidl_lang/fonts/DejaVuSansAIDL.ttf"
 
 
-@dataclass(frozen=True)
+@record()
 class Glyph:
     """The outline of one character; `box` is that of its ink."""
 

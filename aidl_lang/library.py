@@ -10,12 +10,13 @@ from __future__ import annotations
 import functools
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
 from aidl_lang import ast, resources
 from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile
 from aidl_lang.syntax import plain
 from aidl_lang.types import ANY, Signature, Type, parameter_type, type_named
@@ -23,7 +24,7 @@ from aidl_lang.types import ANY, Signature, Type, parameter_type, type_named
 DERIVED = "library.jsonl"
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Library:
     """
     sources      the files, in the order of their names

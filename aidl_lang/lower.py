@@ -7,7 +7,6 @@ a frame that no constraint mentions, an argument that was read while building, a
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +25,7 @@ from aidl_lang.model import (
     is_size,
     own_geometry,
 )
+from aidl_lang.records import record
 from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Row
 from aidl_lang.solver.expression import TapeBuilder
@@ -42,7 +42,7 @@ LEAST_SHARE = 1e-3
 """A kept size may give way, but not vanish: what is left is at least this share of what was written."""
 
 
-@dataclass(frozen=True)
+@record()
 class Lowered:
     """
     unknowns  by their number in the problem

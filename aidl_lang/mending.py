@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 
 from aidl_lang import ast, library, pipeline
 from aidl_lang.diagnostics import Diagnostic, apply_fixes
 from aidl_lang.names import fold
 from aidl_lang.parser import parse
+from aidl_lang.records import record
 from aidl_lang.resolving.foreign import IDLE
 from aidl_lang.source import SourceFile
 from aidl_lang.world import World
@@ -27,7 +28,7 @@ _CUT_OFF = "E08"
 """The family of findings that tell of limits: there may be more to say of the program."""
 
 
-@dataclass(frozen=True)
+@record()
 class Mended:
     """A program as it stands now, the findings left in it, and the titles of the fixes made on the way."""
 

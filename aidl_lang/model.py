@@ -8,7 +8,7 @@ frame of the structure that holds it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property, reduce
 from typing import TYPE_CHECKING, ClassVar
 
@@ -39,7 +39,7 @@ def is_size(name: str) -> bool:
     return name.rpartition("_")[2] in _SIZE_WORDS
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class Frame:
     """Position and rotation relative to the parent; a mirrored frame reflects x before it turns."""
 
@@ -81,7 +81,7 @@ class Frame:
         return ex.cos(self.rotation), ex.sin(self.rotation)
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class Geometry:
     """A primitive (point, line, arc, circle, bezier, ellipse) or a compound shape.
 
@@ -161,7 +161,7 @@ class Geometry:
             yield from part.primitives()
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Recipe:
     """How the curves of an outline come from others, by exact geometry after solving.
 
@@ -187,7 +187,7 @@ class Recipe:
         return replace(self, operands=operands, numbers={n: measure(v) for n, v in self.numbers.items()})
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Finish:
     """A fillet or chamfer, which is applied after solving.
 
@@ -205,7 +205,7 @@ class Finish:
     span: Span
 
 
-@dataclass(frozen=True)
+@record()
 class Measurement:
     """A number that only the finished drawing has: area, perimeter, clearance, overlaps (1 or 0), or a side
     of the box of an outline made of others, in the frame of `here`.
@@ -216,7 +216,7 @@ class Measurement:
     here: Structure | None = None
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class Structure:
     """
     members     everything that has a name in it: geometry, arrays, children, numbers
@@ -460,7 +460,7 @@ class Constraint:
         return tuple(sorted({u.holder.path for u in ex.unknowns(both)}))
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Assertion:
     holder: Structure
     condition: Condition | bool
@@ -495,7 +495,7 @@ class Literal:
         return f"{self.holder.path}.{self.field}"
 
 
-@dataclass(frozen=True)
+@record()
 class Knob:
     """A `param` as seen from outside: what may be set with `-D path=value` or a slider."""
 
@@ -510,7 +510,7 @@ class Knob:
     span: Span | None = field(default=None, compare=False)
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class Model:
     """
     unknowns    in order of creation

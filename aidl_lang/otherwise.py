@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from aidl_lang import ast
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
@@ -18,6 +18,7 @@ from aidl_lang.failures import listed
 from aidl_lang.interp import Interpretation
 from aidl_lang.lower import Lowered, lower
 from aidl_lang.model import Constraint, Model
+from aidl_lang.records import record
 from aidl_lang.remedies import short
 from aidl_lang.solver import Settings, Solution, Status, solve
 from aidl_lang.solver.lacking import lack
@@ -40,7 +41,7 @@ _DIGITS = (2, 3, 6)
 _LOOK = "look whether this is how it is meant"
 
 
-@dataclass(frozen=True)
+@record()
 class Otherwise:
     """A program that solved with some ambiguous calls taken otherwise; `calls` are their places, and how each
     was taken.

@@ -9,10 +9,11 @@ is broken.
 from __future__ import annotations
 
 from bisect import bisect_left
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from aidl_lang import ast
 from aidl_lang.diagnostics import MOST_ERRORS, Diagnostic, ordered, too_many_errors
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.automaton import Automaton, Checkpoint
 from aidl_lang.syntax.brackets import lists_as_statements
@@ -26,7 +27,7 @@ from aidl_lang.syntax.trouble import Trouble
 from aidl_lang.syntax.warnings import lines_joined_by_minus
 
 
-@dataclass(frozen=True)
+@record()
 class Limits:
     """What a program may ask for: its length, the levels of its tree, and how many errors are told."""
 
@@ -38,7 +39,7 @@ class Limits:
 DEFAULT_LIMITS = Limits()
 
 
-@dataclass(frozen=True)
+@record()
 class Parsed:
     """What was understood, and everything that was not."""
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -21,6 +21,7 @@ from aidl_lang.drawing_time import TooLongError, blaming, within
 from aidl_lang.interp import Interpretation, interpret, nothing_built
 from aidl_lang.model import Knob, Model
 from aidl_lang.printer import format_module
+from aidl_lang.records import record
 from aidl_lang.resolve import resolve
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.running import Stopwatch, working
@@ -50,7 +51,7 @@ _UNUSED = "W0201"
 _MISSING_NAMES = frozenset({"E0201", "E0203"})
 
 
-@dataclass(frozen=True)
+@record()
 class Settings:
     """Limits for programs that are not trusted, the solver's settings, the subset of the language, and
     whether it is an error that something gave way unasked.
@@ -157,7 +158,7 @@ def _conflicts(failures: Sequence[Explanation]) -> Callable[[], tuple[Conflict, 
     return conflicts
 
 
-@dataclass(frozen=True)
+@record()
 class _Tries:
     """Tries a program in other ways, and other texts of it."""
 

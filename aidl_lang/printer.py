@@ -7,7 +7,6 @@ statements. Synonyms of the syntax become one spelling; numbers stay as they wer
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 
 from aidl_lang import ast
 from aidl_lang.expression_printer import (
@@ -26,6 +25,7 @@ from aidl_lang.expression_printer import (
     string_text,
 )
 from aidl_lang.parser import Parsed
+from aidl_lang.records import record
 
 __all__ = ["format_expression", "format_module", "format_statement"]
 
@@ -55,7 +55,7 @@ def format_statement(statement: ast.Statement, names: Mapping[ast.Node, str] | N
     return format_module(module, names).rstrip("\n")
 
 
-@dataclass
+@record(frozen=False)
 class _Line:
     """A line of output; `comment` follows it, aligned with those of the lines around it."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import TypeAlias
 
@@ -31,6 +31,7 @@ from aidl_lang.model import (
     own_geometry,
 )
 from aidl_lang.primitives import clockwise, number, translate, view, xy
+from aidl_lang.records import record
 from aidl_lang.solved import (
     Box,
     Change,
@@ -126,7 +127,7 @@ def report_of(stated: Constraint, residual: float, satisfied: bool) -> Constrain
     )
 
 
-@dataclass
+@record(frozen=False)
 class _Reader:
     model: Model
     evaluate: Evaluator

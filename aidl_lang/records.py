@@ -1,26 +1,118 @@
-"""Records: dataclasses that the type checker holds to be frozen, and that cost no more than others.
+"""Records: dataclasses that cost little to define, and those that are frozen no more to make than others.
+
+The methods that `dataclasses` writes for a class are compiled while the class is defined, which for a few
+hundred classes takes longer than to draw a part. Those of a record are compiled when they are first called.
 
 A frozen dataclass stores each field by way of `object.__setattr__`, so making an object takes three times as
 long, and a check makes tens of thousands: nodes, spans, numbers, types. That nobody assigns to a field of a
-record is checked where it costs nothing, by mypy.
+frozen record is checked where it costs nothing, by mypy.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import TypeVar, dataclass_transform
+from dataclasses import MISSING, dataclass, field, fields
+from reprlib import recursive_repr
+from typing import Any, TypeVar, dataclass_transform
 
 T = TypeVar("T")
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(field,))
 def record(
-    *, eq: bool = True, repr: bool = True, kw_only: bool = False, slots: bool = False
+    *, frozen: bool = True, eq: bool = True, repr: bool = True, kw_only: bool = False, slots: bool = False
 ) -> Callable[[type[T]], type[T]]:
-    """What `dataclass(frozen=True, …)` is; with `eq` hashed by its fields, else by identity."""
+    """What `dataclass(frozen=True, …)` is; with `eq` hashed by its fields if it is frozen, and else not."""
 
     def made(cls: type[T]) -> type[T]:
-        return dataclass(eq=eq, repr=repr, kw_only=kw_only, slots=slots, unsafe_hash=eq)(cls)
+        written = {name for name, value in vars(cls).items() if value is not None}  # that stands
+        cls.__doc__ = cls.__doc__ or cls.__name__  # it would be worded of the signature
+        # Left to itself: what a field is, inheritance, slots.
+        known = dataclass(init=False, repr=False, eq=False, kw_only=kw_only, slots=slots)(cls)
+        if "__init__" not in written:
+            _compiled_later(known, "__init__", _maker)
+        if repr and "__repr__" not in written:
+            _add(known, "__repr__", _told)
+        if eq and "__eq__" not in written:
+            _compiled_later(known, "__eq__", _comparison)
+        if eq and "__hash__" not in written:
+            if frozen:
+                _compiled_later(known, "__hash__", _hash)
+            else:
+                _add(known, "__hash__", None)
+        return known
 
     return made
+
+
+def _compiled_later(cls: type, name: str, source: Callable[[type, dict[str, object]], str]) -> None:
+    """Give a class a method whose source is written and compiled when it is first called."""
+
+    def first(self: object, *args: object, **named: object) -> Any:
+        space: dict[str, Any] = {}
+        exec(source(cls, space), space)
+        method = space[name]
+        method.__module__ = cls.__module__
+        _add(cls, name, method)
+        return method(self, *args, **named)
+
+    _add(cls, name, first)
+
+
+def _add(cls: type, name: str, method: Any) -> None:
+    if method is not None:
+        method.__qualname__ = f"{cls.__qualname__}.{name}"
+    setattr(cls, name, method)
+
+
+def _maker(cls: type, space: dict[str, object]) -> str:
+    """The source of `__init__`; what it needs beside its arguments is put into its space."""
+    space["MISSING"] = MISSING
+    positional, named, body = ["self"], ["*"], []
+    for each in fields(cls):
+        name, default = each.name, f"default_{each.name}"
+        value = name
+        parameter = name
+        if each.default_factory is not MISSING:
+            space[default] = each.default_factory
+            parameter = f"{name}=MISSING"
+            value = f"{default}() if {name} is MISSING else {name}" if each.init else f"{default}()"
+        elif each.default is not MISSING:
+            space[default] = each.default
+            parameter = f"{name}={default}"
+            value = name if each.init else default
+        elif not each.init:
+            continue
+        if each.init:
+            (named if each.kw_only else positional).append(parameter)
+        body.append(f"self.{name} = {value}")
+    if hasattr(cls, "__post_init__"):
+        body.append("self.__post_init__()")
+    parameters = ", ".join(positional + named * (len(named) > 1))
+    return f"def __init__({parameters}):\n " + "\n ".join(body or ["pass"])
+
+
+def _comparison(cls: type, _: dict[str, object]) -> str:
+    names = [each.name for each in fields(cls) if each.compare]
+    return (
+        "def __eq__(self, other):\n"
+        " if other.__class__ is not self.__class__:\n"
+        "  return NotImplemented\n"
+        f" return {_gathered('self', names)} == {_gathered('other', names)}"
+    )
+
+
+def _hash(cls: type, _: dict[str, object]) -> str:
+    names = [each.name for each in fields(cls) if (each.compare if each.hash is None else each.hash)]
+    return f"def __hash__(self):\n return hash({_gathered('self', names)})"
+
+
+def _gathered(owner: str, names: list[str]) -> str:
+    """The source of a tuple of fields."""
+    return f"({''.join(f'{owner}.{name}, ' for name in names)})"
+
+
+@recursive_repr()
+def _told(self: Any) -> str:
+    shown = (f"{each.name}={getattr(self, each.name)!r}" for each in fields(self) if each.repr)
+    return f"{type(self).__qualname__}({', '.join(shown)})"

@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -18,6 +18,7 @@ import numpy as np
 from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.givens import Dial
 from aidl_lang.model import Constraint
+from aidl_lang.records import record
 from aidl_lang.solver.solution import GroupFailure
 from aidl_lang.source import Span
 from aidl_lang.trials import Trials
@@ -60,7 +61,7 @@ _WHOLE = (-1.0, 1.0, -2.0, 2.0)
 """Changes that are tried of a number that must be whole."""
 
 
-@dataclass(frozen=True)
+@record()
 class Remedy:
     """
     dial   the number that would have to be another one
@@ -121,7 +122,7 @@ def remedies(searches: Iterable[Search]) -> Iterator[Remedy]:
                 yield remedy
 
 
-@dataclass(frozen=True)
+@record()
 class _Written:
     """A number as it is written and as it is told."""
 

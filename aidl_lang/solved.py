@@ -6,18 +6,19 @@ Coordinates are in the root frame, lengths in mm, angles in degrees counter-cloc
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import TypeAlias
 
 from aidl_lang import ast
 from aidl_lang.geometry.curves import Arc, Circle, Piece, Vec
+from aidl_lang.records import record
 from aidl_lang.source import Span
 
 Scalar: TypeAlias = float | int | bool | str
 
 
-@dataclass(frozen=True)
+@record()
 class Box:
     left: float
     bottom: float
@@ -33,7 +34,7 @@ class Box:
         return self.top - self.bottom
 
 
-@dataclass(frozen=True)
+@record()
 class Frame:
     """Position and rotation relative to the parent; a mirrored frame reflects x before it turns."""
 
@@ -43,7 +44,7 @@ class Frame:
     mirrored: bool = False
 
 
-@dataclass(frozen=True)
+@record()
 class Recipe:
     """How the curves of an outline come from others (see `model.Recipe`); `outlines` works them out."""
 
@@ -53,7 +54,7 @@ class Recipe:
     words: Mapping[str, str]
 
 
-@dataclass(frozen=True)
+@record()
 class Finish:
     """A fillet or chamfer: of the corner `at`, or of all corners of the geometry at the paths `of`.
 
@@ -71,7 +72,7 @@ class Finish:
     literal: Callable[[], ast.Number | None] = field(default=lambda: None, compare=False, repr=False)
 
 
-@dataclass(frozen=True)
+@record()
 class SolvedGeometry:
     """A named geometry. `name` carries its index (`dot[3]`), `path` is the dotted path from the root.
 
@@ -112,7 +113,7 @@ class SolvedGeometry:
             yield from part.curves()
 
 
-@dataclass(frozen=True)
+@record()
 class SolvedStructure:
     """`box` is None where there is nothing to bound. `orientation` is its own, or that of what is around it.
     `attributes`: name → argument values as written (`color`, `layer`, `thickness`, `elevation`, `material`,
@@ -158,7 +159,7 @@ class SolvedStructure:
         return next((s for s in self.walk() if s.path == path), None)
 
 
-@dataclass(frozen=True)
+@record()
 class ConstraintReport:
     """A constraint as written, the structure that holds it, and how well it holds. `exact`: it is made of
     equations alone.
@@ -174,7 +175,7 @@ class ConstraintReport:
     exact: bool = False
 
 
-@dataclass(frozen=True)
+@record()
 class Change:
     """A kept size that had to change. `told`: what it is, for people; `is_size`: no angle or offset;
     `because`: the constraints, as written, that ask for it.
@@ -189,7 +190,7 @@ class Change:
     because: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
+@record()
 class Motion:
     """A way in which something can still move.
 
@@ -208,7 +209,7 @@ class Motion:
     against: str = ""
 
 
-@dataclass(frozen=True)
+@record()
 class Reading:
     """Which of its meanings an ambiguous call was taken in, by what was written."""
 
@@ -216,7 +217,7 @@ class Reading:
     text: str
 
 
-@dataclass(frozen=True)
+@record()
 class Dimension:
     """A measure that a drawing of the model should state.
 
@@ -240,7 +241,7 @@ class Dimension:
         raise NotImplementedError
 
 
-@dataclass(frozen=True)
+@record()
 class Length(Dimension):
     """A length along `along` (a unit vector) from any of the points `start` to any of the points `end`."""
 
@@ -253,7 +254,7 @@ class Length(Dimension):
         return {(1.0, 0.0): "horizontal", (0.0, 1.0): "vertical"}.get(self.along, "aligned")
 
 
-@dataclass(frozen=True)
+@record()
 class Roundness(Dimension):
     """The diameter of a circle, or the radius of an arc."""
 
@@ -264,7 +265,7 @@ class Roundness(Dimension):
         return "diameter" if isinstance(self.curve, Circle) else "radius"
 
 
-@dataclass(frozen=True)
+@record()
 class Opening(Dimension):
     """An angle at `corner`, counter-clockwise from the direction `first` by `value` degrees. The arms are
     there from and to these distances from the corner.
@@ -279,7 +280,7 @@ class Opening(Dimension):
         return "angle"
 
 
-@dataclass(frozen=True)
+@record()
 class SolvedModel:
     status: str
     root: SolvedStructure

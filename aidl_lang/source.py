@@ -6,13 +6,13 @@ Offsets count Unicode code points from 0; lines and columns count from 1, as peo
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 from aidl_lang.records import record
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class SourceFile:
     """One text with the name it is known by (a path, or `<stdin>`)."""
 

@@ -5,7 +5,7 @@ how the bodies lie to each other. Lengths in mm, volumes in mm³, masses in g, c
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
 
 from aidl_lang.cancelling import checkpoint
@@ -22,6 +22,7 @@ from aidl_lang.geometry.walls import widths
 from aidl_lang.materials import density, similar
 from aidl_lang.names import find, nearest
 from aidl_lang.outcome import region_alone
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedModel
 
 ALL_PAIRS = 100
@@ -30,7 +31,7 @@ _NAMED = 6
 """Paths that a list names."""
 
 
-@dataclass(frozen=True)
+@record()
 class Width:
     """A wall or a gap: its length, its two ends, and the part that it is in."""
 
@@ -44,7 +45,7 @@ class Width:
         return {"length": self.length, "from": self.a, "to": self.b, "part": self.part}
 
 
-@dataclass(frozen=True)
+@record()
 class Part:
     """What one thing measures.
 
@@ -108,7 +109,7 @@ class Part:
         }
 
 
-@dataclass(frozen=True)
+@record()
 class Survey:
     """The whole, the parts asked for or else all bodies, and the pairs of bodies, overlaps first, then by
     gap. `alone` are the bodies that touch no other; `is_partial` says that far pairs are not listed.

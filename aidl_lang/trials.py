@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
 
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, apply_fixes, has_errors
 from aidl_lang.lower import Lowered
+from aidl_lang.records import record
 from aidl_lang.solver import Settings, Solution, solve
 from aidl_lang.solver.lacking import lack, residual, settled
 from aidl_lang.solver.newton import Clock
@@ -34,7 +35,7 @@ _MOVED = 1e-6
 """What moved by less, in mm or degrees, did not give way."""
 
 
-@dataclass
+@record(frozen=False)
 class Trials:
     """
     source   the program as it is

@@ -8,7 +8,6 @@ expressions.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from aidl_lang import ast
 from aidl_lang.checking.conditions import check_condition, check_empty, check_item, check_operation
@@ -24,6 +23,7 @@ from aidl_lang.checking.violations import Violation
 from aidl_lang.checking.wording import a, shown
 from aidl_lang.diagnostics import Diagnostic, ordered
 from aidl_lang.library import Library
+from aidl_lang.records import record
 from aidl_lang.resolving.resolution import Resolution
 from aidl_lang.types import (
     ANY,
@@ -42,7 +42,7 @@ from aidl_lang.units import ANGLE, LENGTH
 from aidl_lang.variants import Variant
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Program:
     """A checked program, ready to be built.
 

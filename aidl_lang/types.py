@@ -6,7 +6,6 @@ One choice serves the checker, which knows types only, and the interpreter, whic
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TypeAlias
 
@@ -237,7 +236,7 @@ class Given:
     type: Type
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Signature:
     """A callable: `node` is its definition and `kind` what sort of one, both None for what is built in;
     `standard` is what every program has. One that `takes_any` takes every named argument.

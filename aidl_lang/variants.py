@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
+
+from aidl_lang.records import record
 
 
 class Variant(StrEnum):
@@ -34,7 +35,7 @@ class Construct(StrEnum):
     SMOOTH = "smooth step"
 
 
-@dataclass(frozen=True)
+@record()
 class Rule:
     """What to say of a construct; `{name}` is what it is called."""
 

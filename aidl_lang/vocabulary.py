@@ -8,11 +8,12 @@ that no class has.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import cache
 
 from aidl_lang import builtins, library
 from aidl_lang.kinds import KIND_OF_WORD, KINDS
+from aidl_lang.records import record
 from aidl_lang.reference.collect import reference
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.types import PARAMETER_TYPES, PRIMITIVES
@@ -47,7 +48,7 @@ _SORTS = {"shape": "shapes", "function": "functions", "template": "templates", "
 _SORTS |= {"constraint": "constraints", "relation": "relations"}
 
 
-@dataclass(frozen=True)
+@record()
 class Vocabulary:
     """The words by class. No keyword and no sign is in two classes, nor is a name of the library; a name may
     well be a kind, a parameter's type and a bare word besides.

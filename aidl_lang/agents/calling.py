@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Literal, get_args, get_origin
 
 from aidl_lang.agents.results import Result, data, findings
@@ -13,6 +12,7 @@ from aidl_lang.agents.schema import Parameter, Tool, tools
 from aidl_lang.agents.tools import Tools
 from aidl_lang.agents.workspace import RefusalError, refusal
 from aidl_lang.names import nearest
+from aidl_lang.records import record
 from aidl_lang.render import compact
 
 _SHOWN = 60
@@ -20,7 +20,7 @@ _SHOWN = 60
 _PAIR = {"name", "value"}
 
 
-@dataclass(frozen=True)
+@record()
 class Answer:
     """What goes back to the model: a text, the same as data, and pictures (PNG). `is_error` where the call
     was refused; a program that is wrong is no error.

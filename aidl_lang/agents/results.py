@@ -5,11 +5,12 @@ from __future__ import annotations
 import dataclasses
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Literal, TypeAlias
 
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.export.numbers import rounded
+from aidl_lang.records import record
 from aidl_lang.source import Span
 
 MOST_FINDINGS = 50
@@ -18,7 +19,7 @@ _LONGEST = 2_000
 """Characters of a message: names in a program may be of any length."""
 
 
-@dataclass(frozen=True)
+@record()
 class Place:
     """A range of a file; lines and columns count from 1, the end is exclusive."""
 
@@ -29,7 +30,7 @@ class Place:
     end_column: int
 
 
-@dataclass(frozen=True)
+@record()
 class Replacement:
     """Replace the text `old` at a place by `new`; where `old` is empty, insert."""
 
@@ -38,7 +39,7 @@ class Replacement:
     new: str
 
 
-@dataclass(frozen=True)
+@record()
 class Repair:
     """Replacements that together mend a mistake and keep what the author meant."""
 
@@ -46,7 +47,7 @@ class Repair:
     replacements: list[Replacement]
 
 
-@dataclass(frozen=True)
+@record()
 class Related:
     """Another place that takes part, with a few words about it."""
 
@@ -54,7 +55,7 @@ class Related:
     label: str
 
 
-@dataclass(frozen=True)
+@record()
 class Finding:
     """A diagnostic: what is wrong, where and why. `explain` tells more about its code."""
 
@@ -68,7 +69,7 @@ class Finding:
     fix: Repair | None
 
 
-@dataclass(frozen=True)
+@record()
 class Findings:
     """The diagnostics of a program, `left_out` of which are not listed."""
 
@@ -90,7 +91,7 @@ class Result(ABC):
         """The whole for a reader."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Reported(Result):
     """A result whose text was written as it was made."""
 
@@ -173,7 +174,7 @@ def joined(blocks: Iterable[str]) -> str:
 # --- Programs --------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
+@record()
 class Checked(Reported):
     """What can be said of a program without solving it. `fixed_program` is the program with all fixes
     applied, whose titles are in `fixes`; null where there were none. `findings_after_fixes` is what is left
@@ -187,7 +188,7 @@ class Checked(Reported):
     findings_after_fixes: Findings | None
 
 
-@dataclass(frozen=True)
+@record()
 class Knob:
     """A `param` of the program, and which values it may take."""
 
@@ -201,7 +202,7 @@ class Knob:
     doc: str | None
 
 
-@dataclass(frozen=True)
+@record()
 class Body:
     """A separate piece of material with its box in the frame of the root, in mm, and its area in mm²."""
 
@@ -213,7 +214,7 @@ class Body:
     area: float
 
 
-@dataclass(frozen=True)
+@record()
 class Contact:
     """How two bodies lie to each other: with the `gap` in mm where they are apart, the shared `area` in mm²
     where they overlap.
@@ -226,7 +227,7 @@ class Contact:
     area: float | None
 
 
-@dataclass(frozen=True)
+@record()
 class Export:
     """A file: its text, or its bytes in base64."""
 
@@ -235,7 +236,7 @@ class Export:
     content: str
 
 
-@dataclass(frozen=True)
+@record()
 class Drawn(Reported):
     """What came of a program. `status` is `solved`, `partial`, `failed`, or `wrong` for a program that could
     not be built. `motions` says what can still move. `model` is the solved model as JSON where it was asked
@@ -261,7 +262,7 @@ class Drawn(Reported):
         return () if self.png is None else (self.png,)
 
 
-@dataclass(frozen=True)
+@record()
 class Measured(Reported):
     """Areas, walls, gaps and masses, as `aidl measure --json` tells them: mm, mm², mm³, g, mm⁴."""
 
@@ -273,7 +274,7 @@ class Measured(Reported):
     findings: Findings
 
 
-@dataclass(frozen=True)
+@record()
 class Edited(Reported):
     """A program whose `param` has another default, and what that changes in the drawing, as sentences
     (`changes`).
@@ -287,7 +288,7 @@ class Edited(Reported):
     findings: Findings
 
 
-@dataclass(frozen=True)
+@record()
 class Party:
     """A constraint in a conflict, as its author wrote it. `off` is by how much it does not hold where the
     solver came nearest; `would_fit` says what in it would let the others hold; `remedy` writes that, and
@@ -303,7 +304,7 @@ class Party:
     solves: bool | None
 
 
-@dataclass(frozen=True)
+@record()
 class Given:
     """An exact number behind a conflict: the value of a param that has a `name`, or one that is `fixed`."""
 
@@ -314,7 +315,7 @@ class Given:
     solves: bool | None
 
 
-@dataclass(frozen=True)
+@record()
 class Conflict:
     """Constraints that do not hold together. With `is_minimal` the others hold without any one of them."""
 
@@ -324,7 +325,7 @@ class Conflict:
     givens: list[Given]
 
 
-@dataclass(frozen=True)
+@record()
 class Conflicts(Reported):
     """Why a program does not solve, or for one that does, what is redundant in it (`findings`) and what can
     move.
@@ -340,7 +341,7 @@ class Conflicts(Reported):
 # --- Reading ---------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
+@record()
 class Page(Result):
     """A text in Markdown. `sections` can be asked for one by one."""
 
@@ -353,7 +354,7 @@ class Page(Result):
         return self.content
 
 
-@dataclass(frozen=True)
+@record()
 class Hit:
     """A name of the library, or the code of a diagnostic, that fits a query. `forms` is how it is written."""
 
@@ -364,7 +365,7 @@ class Hit:
     example: str
 
 
-@dataclass(frozen=True)
+@record()
 class Hits(Result):
     """What fits a query, best first. `explain` tells all about one."""
 

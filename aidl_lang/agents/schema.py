@@ -10,13 +10,13 @@ from __future__ import annotations
 import dataclasses
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from aidl_lang.agents.results import shown_fields
 from aidl_lang.agents.tools import Tools
+from aidl_lang.records import record
 
 Json = dict[str, Any]
 _PRIMITIVES: Mapping[object, str] = {
@@ -28,7 +28,7 @@ _PRIMITIVES: Mapping[object, str] = {
 }
 
 
-@dataclass(frozen=True)
+@record()
 class Parameter:
     """`kind` is its type without None, which stands for the default."""
 
@@ -42,7 +42,7 @@ class Parameter:
         return self.default is inspect.Parameter.empty
 
 
-@dataclass(frozen=True)
+@record()
 class Tool:
     function: Callable[..., Any]
 

@@ -11,11 +11,11 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cache
 
 from aidl_lang import explain
 from aidl_lang.agents.results import Hit
+from aidl_lang.records import record
 from aidl_lang.reference.collect import Entry, reference
 from aidl_lang.reference.pages import forms
 
@@ -36,7 +36,7 @@ _STOP = frozenset(
 )
 
 
-@dataclass(frozen=True)
+@record()
 class _Document:
     """What is searched, and how much each of its words counts."""
 

@@ -8,7 +8,7 @@ imports. They raise RefusalError for a call that cannot be answered; a program t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from aidl_lang import explain as pages
@@ -36,6 +36,7 @@ from aidl_lang.drawing_time import TooLongError
 from aidl_lang.export import OFFERED
 from aidl_lang.mending import Mended, mend
 from aidl_lang.pipeline import Compiled
+from aidl_lang.records import record
 from aidl_lang.render import compact
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.variants import Variant
@@ -67,7 +68,7 @@ _WITHOUT_CONFLICT = {
 }
 
 
-@dataclass(frozen=True)
+@record()
 class Tools:
     workspace: Workspace = field(default_factory=Workspace)
 

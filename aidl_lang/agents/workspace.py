@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.discretion import Programs, Reader
 from aidl_lang.parser import Limits as TextLimits
 from aidl_lang.pipeline import Settings
+from aidl_lang.records import record
 from aidl_lang.solver.problem import Settings as SolverSettings
 from aidl_lang.source import SourceFile
 from aidl_lang.world import DiskWorld, FileError, MemoryWorld, Reason, World
@@ -32,7 +33,7 @@ def refusal(code: str, message: str, *hints: str) -> RefusalError:
     return RefusalError(Diagnostic(code, message, hints=hints))
 
 
-@dataclass(frozen=True)
+@record()
 class Limits:
     """For programs that nobody has read.
 
@@ -66,7 +67,7 @@ class Limits:
         )
 
 
-@dataclass(frozen=True)
+@record()
 class Surroundings:
     """What a program sees: the files given with it, and where there is none of a name, the programs below a
     folder.
@@ -88,7 +89,7 @@ class Surroundings:
         return Reader({**self.given.files, source.name: source.text})
 
 
-@dataclass(frozen=True)
+@record()
 class Workspace:
     """`root` is the folder whose files may be imported; without one, only files that are given can be."""
 

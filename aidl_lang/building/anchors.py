@@ -9,13 +9,14 @@ this way moves later, and not never: it is what the solver tries first.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from zlib import crc32
 
 from aidl_lang import expression as ex
 from aidl_lang.building.conditions import holds
 from aidl_lang.expression import Unknown
 from aidl_lang.model import Comparison, Constraint, Structure
+from aidl_lang.records import record
 
 _NUDGE = 1e-4
 """By how much a position is moved to see whether a comparison feels it: too little to pass another."""
@@ -44,7 +45,7 @@ def anchored(constraints: Sequence[Constraint]) -> list[Constraint]:
     return [_with_moved(c, moved) for c in constraints]
 
 
-@dataclass
+@record(frozen=False)
 class _Party:
     """One of the equals, in some comparisons: all that places it, and what of it they would move first."""
 
@@ -52,7 +53,7 @@ class _Party:
     near: Unknowns
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class _Tie:
     """The comparisons of one constraint that concern the same coordinates of its parties (the x of all in a
     row, the y of two mirror images), and what of them moves first.
@@ -79,7 +80,7 @@ class _Tie:
         return frozenset().union(*(p.near for p in others)) - kept
 
 
-@dataclass
+@record(frozen=False)
 class _Standing:
     """What the constraints of one structure say of what they mention, calls over equals aside."""
 

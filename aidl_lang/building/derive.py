@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from aidl_lang import expression as ex
@@ -13,6 +13,7 @@ from aidl_lang.building.state import Interpreter
 from aidl_lang.builtins import EVERYWHERE
 from aidl_lang.model import Frame, Geometry, Structure
 from aidl_lang.primitives import DIRECTIONS, clockwise, translate
+from aidl_lang.records import record
 from aidl_lang.source import Span
 from aidl_lang.values import Array, ListVal, Num, Pattern, PointVal, RecordVal
 
@@ -23,7 +24,7 @@ _OPPOSITE = {"left": "right", "right": "left", "top": "bottom", "bottom": "top"}
 _SIDES = frozenset(_OPPOSITE)
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class Copier:
     """Makes the copies that belong together: what they share in the source they share here.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from aidl_lang import ast
 from aidl_lang import expression as ex
@@ -15,6 +15,7 @@ from aidl_lang.building.motion import STILL, Motion, turned
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.model import Geometry
 from aidl_lang.primitives import DIRECTIONS, xy
+from aidl_lang.records import record
 from aidl_lang.types import Binding, PointType
 from aidl_lang.units import ANGLE, LENGTH, UNITS
 from aidl_lang.values import (
@@ -30,7 +31,7 @@ _CLOSE = 1e-9
 """How far two numbers may differ, relative to the size of the shape, and count as one."""
 
 
-@dataclass(frozen=True)
+@record()
 class Placed:
     """Where `at` and `rotated` put a geometry, and how exactly."""
 
@@ -96,7 +97,7 @@ def _edited_point(
     return placed.point(moved) if placed is not None else moved
 
 
-@dataclass
+@record(frozen=False)
 class _Editing:
     """The making of one geometry that is placed or edited: `first` is what the program makes without that,
     `cause` what asks for it.

@@ -7,7 +7,7 @@ first guesses and sizes as written change, and how exact they are does not.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import TypeVar
 
@@ -28,6 +28,7 @@ from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.builtins import EDITS
 from aidl_lang.model import Geometry, Structure
 from aidl_lang.names import fold
+from aidl_lang.records import record
 from aidl_lang.types import Given
 from aidl_lang.units import ANGLE
 from aidl_lang.values import (
@@ -49,7 +50,7 @@ from aidl_lang.values import (
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
+@record()
 class Edit:
     """One edit, the names it sees, and the indices of what it is about."""
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from aidl_lang import expression as ex
 from aidl_lang.expression import Expression
 from aidl_lang.model import Frame
 from aidl_lang.primitives import direction, xy
+from aidl_lang.records import record
 from aidl_lang.units import MaybeDimension
 from aidl_lang.values import Num, PointVal
 
@@ -17,7 +16,7 @@ NOWHERE: Place = (ex.ZERO, ex.ZERO)
 _HALF_TURN = ex.constant(180.0)
 
 
-@dataclass(frozen=True)
+@record()
 class Motion:
     """p ↦ to + scale · turned(p - about), where a mirrored motion reflects x before it turns.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from aidl_lang import ast
 from aidl_lang.boxes import spelled_out
@@ -14,6 +14,7 @@ from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.builtins import FINISHES, OUTLINES
 from aidl_lang.model import SIZES, Finish, Geometry, Recipe, Structure, convert_point, reach_of
 from aidl_lang.names import find, fold
+from aidl_lang.records import record
 from aidl_lang.units import LENGTH
 from aidl_lang.values import NOTHING, ListVal, Num, PointVal, Status, Text, Value, kind_of, length, members
 
@@ -165,7 +166,7 @@ def remember(result: Value, name: str, arguments: Arguments) -> None:
 # --- Fillets and chamfers ----------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
+@record()
 class _Target:
     """A corner or (without `at`) a whole outline of a structure.
 

@@ -7,7 +7,6 @@ instantiated once; the other members are copies over the same unknowns.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from itertools import product
 
 from aidl_lang import ast
@@ -20,6 +19,7 @@ from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.expression import Expression
 from aidl_lang.model import Geometry, Structure
 from aidl_lang.primitives import defining, xy
+from aidl_lang.records import record
 from aidl_lang.units import ANGLE, LENGTH
 from aidl_lang.values import (
     NOTHING,
@@ -41,7 +41,7 @@ Index = tuple[int, ...]
 _ORIGIN = PointVal(number(0.0, LENGTH), number(0.0, LENGTH))
 
 
-@dataclass(frozen=True)
+@record()
 class _Call:
     """One call of a pattern; `settings` holds what the pattern is made with, and is known by its name."""
 

@@ -7,7 +7,7 @@ evaluated when it is asked for.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang import ast
@@ -26,7 +26,7 @@ def indexed(name: str, indices: Sequence[int]) -> str:
     return name + "".join([f"[{i}]" for i in indices]) if indices else name
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class LetBinding:
     """A name for an expression, evaluated where it is used.
 
@@ -41,7 +41,7 @@ class LetBinding:
     running: bool = False
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class ParamBinding:
     """A knob, evaluated once with what was set from outside."""
 
@@ -52,7 +52,7 @@ class ParamBinding:
     running: bool = False
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class VarBinding:
     """An unknown declared with `var`."""
 
@@ -60,7 +60,7 @@ class VarBinding:
     unknown: Unknown
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class PassedBinding:
     """An argument of a template: a number with its status, or a reference that each structure using it gets
     as an unknown of its own, tied by an equality in `holder`.
@@ -74,7 +74,7 @@ class PassedBinding:
     tied: dict[Structure, Value] = field(default_factory=dict)
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class CopiedBinding:
     """A name in a copied shape: what it stands for in the source, as `carry` moves it."""
 
@@ -95,7 +95,7 @@ class Candidate:
     scope: Scope | None
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class Scope:
     """
     container  what declarations in it become members of: a structure, a compound shape, or None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from aidl_lang import ast
 from aidl_lang import expression as ex
@@ -14,6 +14,7 @@ from aidl_lang.building.scopes import Scope, indexed
 from aidl_lang.building.state import Interpreter
 from aidl_lang.building.structures import instantiate
 from aidl_lang.model import Frame, Geometry, Structure
+from aidl_lang.records import record
 from aidl_lang.values import (
     NOTHING,
     Instantiation,
@@ -27,7 +28,7 @@ from aidl_lang.values import (
 _WAITING = Instantiation | StructureCopy | Pattern | ListVal
 
 
-@dataclass
+@record(frozen=False)
 class Settling:
     """The making of what one assignment names.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import TYPE_CHECKING, NoReturn
 
@@ -49,7 +49,7 @@ class Env:
     reach: Reach
 
 
-@dataclass(frozen=True)
+@record()
 class Limits:
     """Bounds on what a program may build; exceeding one is a diagnostic."""
 
@@ -72,7 +72,7 @@ Executor = Callable[..., None]
 """Does what a statement says: (interpreter, statement, scope, structure)."""
 
 
-@dataclass
+@record(frozen=False)
 class Ahead:
     """A body that is being run; `next` is the statement after the one that is run now."""
 
@@ -82,7 +82,7 @@ class Ahead:
     next: int = 0
 
 
-@dataclass
+@record(frozen=False)
 class Interpreter:
     """The state of one run."""
 

@@ -7,13 +7,14 @@ by the definitions themselves, those of a user as well as those of the library.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import TypeVar
 
 from aidl_lang import ast
 from aidl_lang.building.state import Env, Interpreter, Stop
 from aidl_lang.cancelling import limited_to
 from aidl_lang.model import Comparison, Condition, Geometry, Structure
+from aidl_lang.records import record
 from aidl_lang.values import Num, PointVal, Value, members
 
 _Tree = TypeVar("_Tree", bound=ast.Node)
@@ -22,7 +23,7 @@ Read = Callable[[Interpreter, ast.Expression, Env], Value]
 """Evaluates a statement in an environment."""
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Wording:
     """`node` is the statement as written; `read` evaluates one in its stead."""
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from aidl_lang import ast
 from aidl_lang.checking.facts import NOTHING_READ
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.named import of_symbol
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind
 from aidl_lang.source import Span
 
@@ -20,7 +20,7 @@ def member_path(name: ast.Identifier, indices: Sequence[ast.Expression]) -> str:
     return name.text + "".join(f"[{index.span.text}]" for index in indices)
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Site:
     """A place among the statements of a file.
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from aidl_lang import ast
 from aidl_lang.checking.conditions import operation
@@ -13,12 +12,13 @@ from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.relocate import Move, Site, insertion_after
 from aidl_lang.checking.wording import shown
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.source import Span
 from aidl_lang.types import GeometryType, NumberType, StructureType
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Target:
     """
     node       the expression (or, of rule 2, the statement) that reads too far
@@ -33,7 +33,7 @@ class Target:
     is_size: bool = False
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Violation:
     """
     rule    1 for geometry, 2 for a constraint

@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.cli import files
 from aidl_lang.cli.report import UseError, exit_code
+from aidl_lang.records import record
 
 if TYPE_CHECKING:
     from aidl_lang.diagnostics import Diagnostic
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _DEFAULT_FORMAT = ".svg"
 
 
-@dataclass(frozen=True)
+@record()
 class Target:
     """A file to write and the format of its content."""
 
@@ -29,7 +29,7 @@ class Target:
     suffix: str
 
 
-@dataclass(frozen=True)
+@record()
 class Outcome:
     """What came of one run."""
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from aidl_lang.cli import ends, files
 from aidl_lang.cli.options import add_variant
 from aidl_lang.cli.report import UseError, exit_code, say, show
 from aidl_lang.diagnostics import Diagnostic, has_errors
+from aidl_lang.records import record
 
 if TYPE_CHECKING:
     from aidl_lang.ends import Sweep
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from aidl_lang.world import World
 
 
-@dataclass(frozen=True)
+@record()
 class _Checked:
     """What was found in a file, the titles of the fixes made, and what came of solving: `solved`, `partial`,
     `failed`; nothing where it was not tried.

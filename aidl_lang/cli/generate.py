@@ -8,13 +8,14 @@ import os
 import re
 import sys
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.cli import files
 from aidl_lang.cli.options import add_provider, count_to, provider, sampling
 from aidl_lang.cli.report import UseError, say, show
+from aidl_lang.records import record
 
 if TYPE_CHECKING:
     from aidl_lang.llm.generation import Generation, Task
@@ -72,7 +73,7 @@ def _weight(generation: Generation) -> tuple[int, ...]:
     return generation.verdict.weight if generation.verdict is not None else (2,)
 
 
-@dataclass(frozen=True)
+@record()
 class _Places:
     """Where the program goes (None: standard output), where drawings go, and where the transcript."""
 

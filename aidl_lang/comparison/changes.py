@@ -6,13 +6,14 @@ Of two values the first is from before, the second from after; None stands for n
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal, TypeAlias
 
 from aidl_lang.comparison.move import Move
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.records import record
 from aidl_lang.solved import Scalar, SolvedModel
 
 Value: TypeAlias = Scalar | Vec | tuple[Scalar, ...] | None
@@ -20,7 +21,7 @@ Fields: TypeAlias = Mapping[str, tuple[Value, Value]]
 Sort: TypeAlias = Literal["changed", "appeared", "vanished"]
 
 
-@dataclass(frozen=True)
+@record()
 class Version:
     """One side of a comparison."""
 
@@ -28,7 +29,7 @@ class Version:
     drawing: Drawing
 
 
-@dataclass(frozen=True)
+@record()
 class GeometryChange:
     """A named geometry. `is_outline_changed` if it did not move as a whole; `fields` then differ."""
 
@@ -41,7 +42,7 @@ class GeometryChange:
     is_outline_changed: bool = False
 
 
-@dataclass(frozen=True)
+@record()
 class StructureChange:
     """A structure.
 
@@ -71,7 +72,7 @@ class StructureChange:
         return self.sort != "changed" or any(told)
 
 
-@dataclass(frozen=True)
+@record()
 class ContactChange:
     """Two bodies of both versions, by their paths after. A contact that is None is not listed: far apart."""
 
@@ -81,7 +82,7 @@ class ContactChange:
     after: Contact | None
 
 
-@dataclass(frozen=True)
+@record()
 class Comparison:
     """What differs between two versions, in order of writing.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from aidl_lang.comparison.matching import GeometryPair, StructurePair, match
 from aidl_lang.comparison.move import STILL, Move
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.curves import Vec
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedStructure
 
 TOLERANCE = 1e-6
@@ -87,7 +88,7 @@ def _is_same(a: Contact | None, b: Contact | None, tolerance: float) -> bool:
     return a.relation == b.relation and fields.is_same(a.area, b.area)
 
 
-@dataclass(frozen=True)
+@record()
 class _Walk:
     before: Version
     after: Version

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from pathlib import PurePath
 from typing import TypeVar
@@ -14,6 +14,7 @@ import numpy as np
 
 from aidl_lang.cancelling import checkpoint
 from aidl_lang.comparison.move import STILL, Move, Pose, pose_of
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedGeometry, SolvedStructure
 
 _T = TypeVar("_T", SolvedGeometry, SolvedStructure)
@@ -21,7 +22,7 @@ _MOST = 8
 """Structures of one form that are tried for a new name."""
 
 
-@dataclass
+@record(frozen=False)
 class GeometryPair:
     """One geometry in both versions."""
 
@@ -37,7 +38,7 @@ class GeometryPair:
         return self.before.name if self.before.name != self.after.name else None
 
 
-@dataclass
+@record(frozen=False)
 class StructurePair:
     """One structure in both versions, and what of it is in one of them only.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Vec
 from aidl_lang.geometry.evaluate import point
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedGeometry
 
 Points = NDArray[np.float64]
@@ -19,7 +20,7 @@ _SAME_ANGLE = 1e-4
 """Degrees by which the axes of an ellipse may differ."""
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Move:
     """x is reflected if `mirrored`, then all is turned about the origin by `turn` degrees, then shifted by
     (dx, dy) mm.
@@ -58,7 +59,7 @@ class Move:
 STILL = Move()
 
 
-@dataclass(frozen=True)
+@record()
 class Pose:
     """Places that belong to each other, before and after.
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from aidl_lang import ast
 from aidl_lang.boxes import Box, spelled_out
@@ -28,6 +28,7 @@ from aidl_lang.dimensions.fields import Sized, level_angle, round_dimension
 from aidl_lang.expression import ZERO, Evaluator, Expression, constant
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.model import Constraint, Geometry, Model, Structure, convert, convert_angle
+from aidl_lang.records import record
 from aidl_lang.solved import Dimension, Length, Roundness, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.values import Array, ListVal, Num, PointVal, Value, members
 
@@ -94,7 +95,7 @@ def _outlines(structure: SolvedStructure) -> Iterator[Piece]:
             yield from _outlines(child)
 
 
-@dataclass(frozen=True)
+@record()
 class _Statement:
     scene: Scene
     constraint: Constraint

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from aidl_lang import expression as ex
 from aidl_lang.building.scopes import Scope
@@ -18,6 +18,7 @@ from aidl_lang.expression import Evaluator, Expression
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece
 from aidl_lang.geometry.evaluate import point
 from aidl_lang.model import Geometry, Model, Structure, convert_angle
+from aidl_lang.records import record
 from aidl_lang.solved import Dimension, Length, Roundness, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.units import ANGLE, LENGTH
 from aidl_lang.values import ListVal, Num
@@ -64,7 +65,7 @@ def origin_of(value: Num, holder: Geometry | None = None) -> str | None:
     return "size" if kept else None
 
 
-@dataclass(frozen=True)
+@record()
 class Sized:
     """A geometry as it was built (or what it is a copy of) and as it came out.
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from aidl_lang.ends.values import Value
 from aidl_lang.model import Knob
+from aidl_lang.records import record
 
 
-@dataclass(frozen=True)
+@record()
 class Fault:
     """Something that a compile found: a diagnostic without its sources.
 
@@ -33,7 +32,7 @@ class Fault:
         return self.code, self.file, self.line
 
 
-@dataclass(frozen=True)
+@record()
 class Tried:
     """What came of one value. `faults` has errors, or else the warnings that there are."""
 
@@ -43,7 +42,7 @@ class Tried:
     was_given_up: bool = False
 
 
-@dataclass(frozen=True)
+@record()
 class Turned:
     """A param at one end of its range, or with another choice.
 
@@ -62,7 +61,7 @@ class Turned:
         return self.tried.ok
 
 
-@dataclass(frozen=True)
+@record()
 class Sweep:
     """
     turned     in the order of the params, the lower end before the upper

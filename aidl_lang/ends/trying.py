@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from aidl_lang import pipeline
 from aidl_lang.diagnostics import Diagnostic, Severity
 from aidl_lang.ends.told import Fault, Tried
 from aidl_lang.ends.values import Value
 from aidl_lang.pipeline import Front, Settings
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile
 from aidl_lang.world import World
 
@@ -17,7 +18,7 @@ _SPARE = 10.0
 """Seconds that a process gets beyond what the limits allow: starting, checking, reasons."""
 
 
-@dataclass(frozen=True)
+@record()
 class Job:
     """A program as it can be handed to another process."""
 

@@ -13,13 +13,13 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from aidl_lang.evaluation.store import Store, digest, picture_path
+from aidl_lang.records import record
 
 MODEL = "ViT-B-32-quickgelu"
 PRETRAINED = "openai"
@@ -29,7 +29,7 @@ Scorer = Callable[[bytes, str], float]
 """From a PNG and a text to a score."""
 
 
-@dataclass(frozen=True)
+@record()
 class Scores:
     """By the key of the job; `reason` says why there are none."""
 
@@ -101,12 +101,12 @@ def score_all(
     name = f"{model}, {Path(weights).name if weights else PRETRAINED}"
     kept = _kept(store.folder / "clip.json", name)
     found, now = dict[str, float](), dict[str, float]()
-    for record in records:
-        key = f"{record['prompt']}/{record['variant']}/{record['run']}"
+    for each in records:
+        key = f"{each['prompt']}/{each['variant']}/{each['run']}"
         picture = store.folder / picture_path(key)
-        if not record.get("ok") or not picture.is_file():
+        if not each.get("ok") or not picture.is_file():
             continue
-        png, text = picture.read_bytes(), words(record["text"])
+        png, text = picture.read_bytes(), words(each["text"])
         content = digest(f"{text}\n{png.hex()}")
         now[content] = found[key] = kept[content] if content in kept else score(png, text)
     store.write("clip.json", (json.dumps({"model": name, "scores": now}, indent=1) + "\n").encode())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 
 from aidl_lang import pipeline
@@ -11,6 +10,7 @@ from aidl_lang.ends.values import Value, allowed, rounded
 from aidl_lang.evaluation import openscad
 from aidl_lang.model import Knob
 from aidl_lang.pipeline import Compiled
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile
 
 SHARES = (-0.3, -0.1, 0.1, 0.3)
@@ -30,14 +30,14 @@ class Outcome(StrEnum):
     EMPTY = "empty"  # nothing is drawn any more
 
 
-@dataclass(frozen=True)
+@record()
 class Edit:
     knob: str
     value: Value
     outcome: Outcome
 
 
-@dataclass(frozen=True)
+@record()
 class Edits:
     """`narrowed` counts edits cut short by a range or a step, `skipped` the knobs without an edit."""
 

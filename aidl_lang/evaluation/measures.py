@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from aidl_lang import pipeline
 from aidl_lang.evaluation import editability, openscad, shapes
@@ -14,12 +14,13 @@ from aidl_lang.export import Options
 from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.region import Region
 from aidl_lang.llm.aidl import counted
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile
 
 OPENSCAD = "openscad"
 
 
-@dataclass(frozen=True)
+@record()
 class Drawn:
     """`numbers` holds only what the language has; `requirements` is empty where nothing is examined."""
 

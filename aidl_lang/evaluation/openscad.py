@@ -8,13 +8,14 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.llm.language import Verdict
+from aidl_lang.records import record
 
 Polygon = NDArray[np.float64]
 """Corners in order, shape (n, 2), mm, y up."""
@@ -50,7 +51,7 @@ _MODULE = re.compile(r"\bmodule\s+\w+")
 _KNOB = re.compile(r"^\s*([A-Za-z_]\w*)\s*=\s*(-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*\Z")
 
 
-@dataclass(frozen=True)
+@record()
 class Rendered:
     """What came of a program: closed outlines, holes among them, and what was said, errors first."""
 
@@ -63,7 +64,7 @@ class Rendered:
         return not self.errors
 
 
-@dataclass(frozen=True)
+@record()
 class OpenScad:
     """The language. `is_installed` tells whether its programs can be judged here."""
 
@@ -85,7 +86,7 @@ class OpenScad:
         return OpenScadConversation()
 
 
-@dataclass
+@record(frozen=False)
 class OpenScadConversation:
     """Judges each program by itself; a remark is made once."""
 

@@ -10,6 +10,7 @@ from aidl_lang.evaluation.requirements import Prompt
 from aidl_lang.llm.aidl import Aidl
 from aidl_lang.llm.generation import Settings
 from aidl_lang.llm.language import Language
+from aidl_lang.records import record
 from aidl_lang.variants import Variant
 
 VARIANTS: dict[str, Language] = {
@@ -31,7 +32,7 @@ class Job:
         return f"{self.prompt}/{self.variant}/{self.run}"
 
 
-@dataclass(frozen=True)
+@record()
 class Plan:
     """`settings.sampling.seed` is that of the first run; each further one counts up from it."""
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
@@ -29,6 +28,7 @@ from aidl_lang.interp import interpret
 from aidl_lang.model import Assertion, Condition, Measurement, Model, Structure
 from aidl_lang.outcome import assertion_note, measured
 from aidl_lang.pipeline import Compiled, front
+from aidl_lang.records import record
 from aidl_lang.resources import resource
 from aidl_lang.solved import Box, SolvedModel
 from aidl_lang.source import SourceFile
@@ -47,7 +47,7 @@ class Status(StrEnum):
     UNMEASURABLE = "unmeasurable"  # counts as failed
 
 
-@dataclass(frozen=True)
+@record()
 class Requirement:
     """`text` says it in words, `condition` as it is checked; `roles` are those it speaks of."""
 
@@ -58,7 +58,7 @@ class Requirement:
     """where the condition stands in the prompt"""
 
 
-@dataclass(frozen=True)
+@record()
 class Prompt:
     """`text` is what the model is asked."""
 
@@ -71,7 +71,7 @@ class Prompt:
     source: SourceFile
 
 
-@dataclass(frozen=True)
+@record()
 class Result:
     text: str
     status: Status
@@ -174,7 +174,7 @@ def _all(prompt: Prompt, why: str) -> tuple[Result, ...]:
     return tuple(Result(r.text, Status.UNMEASURABLE, why) for r in prompt.requirements)
 
 
-@dataclass(frozen=True)
+@record()
 class _MissingError(Exception):
     """Something asked of a part that it does not have."""
 

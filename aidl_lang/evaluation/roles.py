@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from itertools import chain
 from typing import TypeAlias
@@ -18,6 +18,7 @@ from aidl_lang.evaluation.things import Group, Origins, Part, Thing, drawn, name
 from aidl_lang.evaluation.whole import NEAR
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.nearness import near_pairs
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedModel, SolvedStructure
 
 Words: TypeAlias = tuple[str, ...]
@@ -49,7 +50,7 @@ _MANY = 200
 """How many of a name are looked at."""
 
 
-@dataclass(frozen=True)
+@record()
 class Role:
     """`words` are what it may be called, in the singular: groups of words that count alike, the best first;
     `others` what is called so and is not meant (`steering wheel`); `of` what it is made of where nothing is
@@ -163,7 +164,7 @@ class _Program:
         return thing.buried(self.drawing.regions.get(structure.path), self.drawing)
 
 
-@dataclass(frozen=True)
+@record()
 class _Search:
     """The parts that are called by the words of a role."""
 

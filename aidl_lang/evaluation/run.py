@@ -6,7 +6,7 @@ import queue
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, field
 
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.evaluation import measures, store
@@ -15,12 +15,13 @@ from aidl_lang.evaluation.store import Record, Store
 from aidl_lang.evaluation.worker import SECONDS, Broken, Remote, Worker
 from aidl_lang.llm.generation import Task, generate
 from aidl_lang.llm.messages import Provider
+from aidl_lang.records import record
 
 PATIENCE = 5
 """Failures to reach the model, one after another, after which nothing more is asked."""
 
 
-@dataclass(frozen=True)
+@record()
 class Done:
     """A job that came to an end, and how many of how many that makes."""
 
@@ -31,7 +32,7 @@ class Done:
     failure: Diagnostic | None = None
 
 
-@dataclass(frozen=True)
+@record()
 class Outcome:
     """`left` jobs were not begun, or failed to reach the model."""
 
@@ -41,7 +42,7 @@ class Outcome:
     failure: Diagnostic | None
 
 
-@dataclass(frozen=True)
+@record()
 class _Result:
     job: Job
     record: Record
@@ -50,7 +51,7 @@ class _Result:
     bug: BaseException | None = None
 
 
-@dataclass
+@record(frozen=False)
 class _Crew:
     """What the threads share."""
 

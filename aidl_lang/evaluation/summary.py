@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from statistics import fmean, pvariance
 from typing import Any
 
@@ -12,13 +11,14 @@ from aidl_lang.evaluation.clip import Scores
 from aidl_lang.evaluation.editability import Outcome
 from aidl_lang.evaluation.plan import VARIANTS
 from aidl_lang.evaluation.requirements import Status
+from aidl_lang.records import record
 
 Record = Mapping[str, Any]
 _Z = 1.959963984540054
 """Of the normal distribution: 95 % lie within."""
 
 
-@dataclass(frozen=True)
+@record()
 class Share:
     """So many of so many."""
 
@@ -40,7 +40,7 @@ class Share:
         return max(0.0, middle - half), min(1.0, middle + half)
 
 
-@dataclass(frozen=True)
+@record()
 class Mean:
     """Of numbers; without any, it is not measured, for a reason if one is known."""
 
@@ -55,7 +55,7 @@ class Mean:
         return cls(len(known), fmean(known), pvariance(known)) if known else cls(0, reason=reason)
 
 
-@dataclass(frozen=True)
+@record()
 class Total:
     """A sum over so many, of which it is known for `count`."""
 
@@ -66,7 +66,7 @@ class Total:
 Figure = Share | Mean | Total
 
 
-@dataclass(frozen=True)
+@record()
 class Row:
     """The figures of some records; `prompt` is None for all of a variant."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Set
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import chain
 from typing import TypeAlias
 
@@ -17,6 +17,7 @@ from aidl_lang.geometry.measures import perimeter, region_bounds
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.outlines import complete
 from aidl_lang.geometry.region import Region
+from aidl_lang.records import record
 from aidl_lang.solved import Box, Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.source import Span
 
@@ -30,7 +31,7 @@ _SAME = 1e-6
 """Relative difference up to which lengths are one."""
 
 
-@dataclass(frozen=True)
+@record()
 class Thing:
     """Parts in groups: what is in one group is drawn as one, and groups only lie together.
 
@@ -187,7 +188,7 @@ def drawn(structure: SolvedStructure) -> tuple[SolvedGeometry, ...]:
     return tuple(g for g in structure.drawn if not g.construction and g.type != "point")
 
 
-@dataclass(frozen=True)
+@record()
 class Outline:
     """Geometry that is drawn, or that such an outline is made of: it still is that part or opening of it.
 

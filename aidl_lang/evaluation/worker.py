@@ -6,13 +6,14 @@ import multiprocessing
 import resource
 import signal
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import count
 from typing import TypeVar
 
 from pebble import ProcessExpired, ProcessPool
 
 from aidl_lang.llm.language import Conversation, Language, Verdict
+from aidl_lang.records import record
 
 T = TypeVar("T")
 
@@ -65,7 +66,7 @@ def _reason(error: BaseException, seconds: float) -> str:
     return f"it ended in {type(error).__name__}: {str(error)[:200]}"
 
 
-@dataclass(frozen=True)
+@record()
 class Remote:
     """A language whose programs are judged by a worker."""
 
@@ -100,7 +101,7 @@ class Remote:
 _numbers = count()
 
 
-@dataclass
+@record(frozen=False)
 class RemoteConversation:
     """A conversation that lives in a worker; when that breaks, a new one judges again what went well."""
 
@@ -141,7 +142,7 @@ def _unjudged(program: str, reason: str) -> Verdict:
     return Verdict(False, "broken", feedback, program, codes=("broken",), weight=(_LAST,))
 
 
-@dataclass
+@record(frozen=False)
 class _Open:
     number: int
     conversation: Conversation

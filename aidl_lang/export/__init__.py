@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedModel
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 SHOW = ("names", "points", "bbox", "constraints", "dof", "plan")
 
 
-@dataclass(frozen=True)
+@record()
 class Options:
     """How to write. A format takes what concerns it.
 
@@ -52,7 +53,7 @@ class Options:
         return self.cut or self.sheet is not None or self.kerf > 0
 
 
-@dataclass(frozen=True)
+@record()
 class Job:
     """What a writer may draw on."""
 
@@ -62,7 +63,7 @@ class Job:
     options: Options = field(default_factory=Options)
 
 
-@dataclass(frozen=True)
+@record()
 class Exported:
     """The content of a file, that of further ones beside it, and what there is to say of them."""
 
@@ -79,7 +80,7 @@ class ExportError(ValueError):
         self.diagnostic = Diagnostic(code, message, hints=hints)
 
 
-@dataclass(frozen=True)
+@record()
 class Format:
     """A writer. `extra` names the optional extra of the package that brings the module it needs.
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
@@ -21,12 +20,13 @@ from aidl_lang.geometry.evaluate import bounds, ends, locate, point, reverse
 from aidl_lang.geometry.measures import loop_area
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Loop
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedModel
 
 HOLE, OPEN = "hole", "open"
 
 
-@dataclass(frozen=True)
+@record()
 class Outline:
     """Pieces end to end, and what is said of them.
 

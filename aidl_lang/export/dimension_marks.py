@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from typing import TypeAlias
@@ -18,6 +18,7 @@ from aidl_lang.geometry.curves import Arc, Circle, Line, Vec
 from aidl_lang.geometry.evaluate import Bounds, point
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Face, Loop
+from aidl_lang.records import record
 from aidl_lang.solved import Dimension, Length, Opening, Roundness
 
 Segment: TypeAlias = tuple[Vec, Vec]
@@ -30,7 +31,7 @@ DIGIT = 0.64
 """Width of a digit relative to the size of the font."""
 
 
-@dataclass(frozen=True)
+@record()
 class Placed:
     """A dimension at its place: lines with arrowheads (tip and direction), what leads to them, the value,
     crosses (centre and length of arms) at places that are not on an outline, a circle through centres.
@@ -45,7 +46,7 @@ class Placed:
     ring: Circle | None = None
 
 
-@dataclass(frozen=True)
+@record()
 class Block:
     """A rectangle that is turned by `angle` degrees about `at`; `sides` as seen from there."""
 
@@ -87,7 +88,7 @@ def _range(points: tuple[Vec, ...], axis: Vec) -> tuple[float, float]:
     return min(along), max(along)
 
 
-@dataclass(frozen=True)
+@record()
 class Pen:
     """`mm`: what a millimetre on paper is in the drawing."""
 

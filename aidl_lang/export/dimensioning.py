@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from aidl_lang.dimensions import dimensions
 from aidl_lang.dimensions.features import X_AXIS, Y_AXIS
@@ -20,6 +20,7 @@ from aidl_lang.geometry.curves import Arc, Circle, Vec
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import Bounds, point
 from aidl_lang.geometry.network import union_bounds
+from aidl_lang.records import record
 from aidl_lang.solved import Dimension, Length, Opening, Roundness, SolvedModel
 
 MOST = 40
@@ -71,7 +72,7 @@ def _visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tupl
     ]
 
 
-@dataclass
+@record(frozen=False)
 class _Row:
     """A dimension line outside the drawing: on which side, from where to where, in which row."""
 
@@ -81,7 +82,7 @@ class _Row:
     row: int
 
 
-@dataclass
+@record(frozen=False)
 class _Layout:
     drawing: Drawing
     pen: Pen

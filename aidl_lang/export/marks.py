@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TypeAlias
 
 from aidl_lang.geometry.curves import Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.region import Face
+from aidl_lang.records import record
 
 CHARACTER = 0.6
 """Mean width of a character of the font, relative to its size."""
 
 
-@dataclass(frozen=True)
+@record()
 class Ink:
     """How a line looks: a CSS colour, width in mm, dash and gap in mm, opacity, round ends."""
 
@@ -25,7 +26,7 @@ class Ink:
     is_round: bool = False
 
 
-@dataclass(frozen=True)
+@record()
 class Area:
     """A face with its holes cut out, filled, outlined, or both. `role` is told to readers of the SVG."""
 
@@ -35,7 +36,7 @@ class Area:
     role: str = ""
 
 
-@dataclass(frozen=True)
+@record()
 class Curves:
     """Curves drawn as lines."""
 
@@ -44,7 +45,7 @@ class Curves:
     role: str = ""
 
 
-@dataclass(frozen=True)
+@record()
 class Text:
     """A line of text; `anchor` is start, middle or end, `at` lies on its baseline, which rises by `angle`
     degrees.
@@ -73,7 +74,7 @@ class Text:
         return min(xs), min(ys), max(xs), max(ys)
 
 
-@dataclass(frozen=True)
+@record()
 class Dot:
     """A filled circle with a white rim."""
 
@@ -82,7 +83,7 @@ class Dot:
     color: str
 
 
-@dataclass(frozen=True)
+@record()
 class Frame:
     """A thin rectangle without a fill, dashed if a dash length is given."""
 
@@ -95,7 +96,7 @@ class Frame:
 Mark: TypeAlias = Area | Curves | Text | Dot | Frame
 
 
-@dataclass(frozen=True)
+@record()
 class Group:
     """Marks that belong together, seen only within `clip`. `name` is unique in a picture; `attributes` tell
     programs what it is.
@@ -107,7 +108,7 @@ class Group:
     clip: Bounds | None = None
 
 
-@dataclass(frozen=True)
+@record()
 class Picture:
     """All that is to be drawn, from back to front, and what of the plane is in sight."""
 

@@ -7,7 +7,6 @@ by `FINEST` if that is more. Manifold extrudes, so a mesh is closed and does not
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import manifold3d
 import numpy as np
@@ -19,6 +18,7 @@ from aidl_lang.export.solids import Placed, thick_bodies
 from aidl_lang.geometry.drawing import Body
 from aidl_lang.geometry.placement import placement_notes
 from aidl_lang.geometry.tessellate import face_polygons
+from aidl_lang.records import record
 
 FINENESS = 1e-4
 FINEST = 0.001
@@ -29,7 +29,7 @@ _FEW = 20
 """Holes in a triangle then."""
 
 
-@dataclass(frozen=True)
+@record()
 class Mesh:
     """A closed surface: points in mm, shape (n, 3), and triangles of them, counter-clockwise from outside."""
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TypeGuard
 
 import numpy as np
@@ -20,6 +20,7 @@ from aidl_lang.geometry.curves import Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import Bounds, bounds
 from aidl_lang.geometry.network import union_bounds
+from aidl_lang.records import record
 from aidl_lang.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
 
 FONT_SIZE = 0.022
@@ -29,7 +30,7 @@ LINE_LENGTH = 58
 """Characters in a line of a list."""
 
 
-@dataclass
+@record(frozen=False)
 class Overlay:
     """Marks by layer, and the box that holds the drawing with all of them."""
 
@@ -57,7 +58,7 @@ class Taken:
         return sum(_overlap(box, (a, b, c, d)) for a, b, c, d in self._boxes[: self._count][met].tolist())
 
 
-@dataclass
+@record(frozen=False)
 class Explainer:
     """The state of one overlay: what is taken already, and the font size and line width that fit."""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from aidl_lang.export import ExportError, Job
 from aidl_lang.geometry.drawing import Body, Stroke
 from aidl_lang.geometry.evaluate import LARGEST
 from aidl_lang.geometry.placement import Plane, planes, thickness_of
+from aidl_lang.records import record
 
 THINNEST = 1e-6
 """mm. A thickness below this is lost among the tolerances of those who read the file."""
@@ -20,7 +20,7 @@ _REMEDIES = ("say how thick: `@thickness(3mm)` before it or what is around it", 
 _NAMED = 5
 
 
-@dataclass(frozen=True)
+@record()
 class Placed:
     """A body, its plane, and its thickness in mm; None if it stays flat."""
 

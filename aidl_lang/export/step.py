@@ -10,7 +10,6 @@ import io
 import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from itertools import count
 
 import OCP.Standard
@@ -45,6 +44,7 @@ from aidl_lang.geometry.drawing import Style
 from aidl_lang.geometry.joints import jointed
 from aidl_lang.geometry.placement import placement_notes
 from aidl_lang.geometry.region import Face
+from aidl_lang.records import record
 from aidl_lang.version import __version__
 
 _NO_TIME = "1970-01-01T00:00:00"
@@ -68,7 +68,7 @@ _REFUSALS = (
 """What Open CASCADE raises; the classes have no base of their own."""
 
 
-@dataclass(frozen=True)
+@record()
 class _Part:
     """A product: its name, its solids, faces or edges, and how it looks."""
 

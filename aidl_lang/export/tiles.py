@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.sections import in_polygon
 from aidl_lang.geometry.tessellate import Polygon, face_polygons, piece_points
+from aidl_lang.records import record
 
 MARGIN = 10.0
 """Millimetres along each edge of a page: printers leave about 5 blank, labels stand in the rest."""
@@ -39,7 +40,7 @@ DEVIATION = 0.05
 Size = tuple[float, float]
 
 
-@dataclass(frozen=True)
+@record()
 class _Row:
     """How windows of one size lie along an axis: their number, their first edge and the step between them."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TypeAlias
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.expression import DEGREE
 from aidl_lang.freedom.scene import GEOMETRY, NUMBER, POINT, ROOT, WHOLE, Floats, Ints, Scene, Thing, X, Y
+from aidl_lang.records import record
 from aidl_lang.solver.mobility import Part
 
 Flags: TypeAlias = NDArray[np.bool_]
@@ -21,7 +22,7 @@ POSSIBLE = 1e-6
 """Relative error of a velocity that counts as none."""
 
 
-@dataclass
+@record(frozen=False)
 class Reach:
     """The velocities that are possible for a part; `taken` are those that were told or are known, in the
     space of all.

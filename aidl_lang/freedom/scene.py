@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -13,6 +12,7 @@ from aidl_lang.freedom.bending import Bending
 from aidl_lang.lower import Lowered, seen
 from aidl_lang.model import Geometry, Model, Structure
 from aidl_lang.primitives import DIRECTIONS
+from aidl_lang.records import record
 from aidl_lang.solver.mobility import Motions
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -22,7 +22,7 @@ X, Y, NUMBER = 0, 1, 2
 ROOT, POINT, GEOMETRY, WHOLE = 0, 1, 2, 3
 
 
-@dataclass(frozen=True)
+@record()
 class Thing:
     """A point, geometry or structure: the observables from `start` to `stop` that are seen from `anchor`."""
 

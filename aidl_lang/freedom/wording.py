@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 
 from aidl_lang.expression import quoted
 from aidl_lang.freedom.relations import pattern
+from aidl_lang.records import record
 from aidl_lang.solved import Motion, SolvedModel
 
 _NAMED = 3
@@ -16,7 +16,7 @@ _RUN = 3
 """Members of an array from which on the first and the last stand for all."""
 
 
-@dataclass(frozen=True)
+@record()
 class _Line:
     """What things can do, each of them (`groups` of one thing or more) by itself."""
 

@@ -12,7 +12,7 @@ draws itself is one more, and its holes cut them all. Where this leaves a choice
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
 from aidl_lang.geometry.nearness import near_pairs
@@ -28,13 +28,14 @@ from aidl_lang.geometry.sections import (
     is_nothing,
     union,
 )
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedGeometry, SolvedStructure
 
 _FEW_HOLES, _FEW_VERTICES = 8, 200
 """Below which a hole is compared with the whole material."""
 
 
-@dataclass(frozen=True)
+@record()
 class Void:
     """What a hole removed."""
 
@@ -42,7 +43,7 @@ class Void:
     section: Section
 
 
-@dataclass(frozen=True)
+@record()
 class Mass:
     """A connected or scattered piece of material that belongs to one structure.
 
@@ -55,7 +56,7 @@ class Mass:
     inner: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
+@record()
 class Cut:
     """What a hole takes away: the holes it consists of, and the islands that stay."""
 
@@ -67,7 +68,7 @@ class Cut:
         return union([hole.section for hole in self.holes])
 
 
-@dataclass(frozen=True)
+@record()
 class InnerLoop:
     """A face that adds nothing, because other faces of its structure cover it."""
 
@@ -76,7 +77,7 @@ class InnerLoop:
     around: tuple[SolvedGeometry, ...]
 
 
-@dataclass(frozen=True)
+@record()
 class LooseCurves:
     """Curves of a structure that bound no face, with their numbers in the network.
 
@@ -88,7 +89,7 @@ class LooseCurves:
     numbers: tuple[int, ...]
 
 
-@dataclass(frozen=True)
+@record()
 class IdleHole:
     """A hole that removes nothing from the structure that holds it."""
 
@@ -96,7 +97,7 @@ class IdleHole:
     holder: SolvedStructure | None
 
 
-@dataclass(frozen=True)
+@record()
 class FilledHole:
     """A hole whose void is material again in the structure above."""
 
@@ -105,7 +106,7 @@ class FilledHole:
     filler: SolvedStructure | None
 
 
-@dataclass(frozen=True)
+@record()
 class CoveredHoles:
     """Holes of a face that other faces of its structure cover."""
 
@@ -118,7 +119,7 @@ class CoveredHoles:
 Finding = InnerLoop | LooseCurves | IdleHole | FilledHole | CoveredHoles
 
 
-@dataclass
+@record(frozen=False)
 class Bodies:
     """The state of the walk and its result; `sections` has each structure that has material or cuts, `faces`
     what each draws itself.

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.cancelling import checkpoint
 from aidl_lang.geometry.skeleton import Floats, Ints, Skeleton, within
+from aidl_lang.records import record
 
 ANGLE = 1e-6
 """Radians by which a right angle may be missed."""
@@ -22,7 +22,7 @@ _CHUNK = 400_000
 """Pairs that are worked on at a time."""
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Chords:
     """By row: a length, its ends, the elements they lie on, how far along these (0..1), and the kind."""
 

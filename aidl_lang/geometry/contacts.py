@@ -8,7 +8,6 @@ apart.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Literal
 
 from aidl_lang.geometry.distance import region_distance
@@ -19,6 +18,7 @@ from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import Section, intersection, is_nothing
 from aidl_lang.geometry.trace import trace
+from aidl_lang.records import record
 
 ALL_PAIRS = 24
 NEAR = 0.05
@@ -26,7 +26,7 @@ NEAR = 0.05
 Relation = Literal["touching", "apart", "overlapping"]
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Contact:
     """Two bodies by their paths; `gap` (mm) where they are apart, `area` (mm²) where they overlap."""
 
@@ -37,7 +37,7 @@ class Contact:
     area: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Solid:
     """What is compared: a body's region and the same as polygons of the network."""
 

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TypeAlias
+
+from aidl_lang.records import record
 
 Vec: TypeAlias = tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Line:
     start: Vec
     end: Vec
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Arc:
     """From `start` about `center` through `sweep` radians, positive counter-clockwise, 0 < |sweep| <= 2 pi.
 
@@ -33,13 +34,13 @@ class Arc:
         return math.atan2(self.start[1] - self.center[1], self.start[0] - self.center[0])
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Circle:
     center: Vec
     radius: float
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Ellipse:
     """`rx` along `angle` (radians from the x axis), `ry` across it."""
 
@@ -49,7 +50,7 @@ class Ellipse:
     angle: float
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Bezier:
     """A cubic by its four control points."""
 
@@ -59,7 +60,7 @@ class Bezier:
     p3: Vec
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class EllipseArc:
     """A piece of an ellipse, as booleans leave it, through `sweep` radians of the eccentric anomaly.
 

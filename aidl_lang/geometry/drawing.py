@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, partial
 
 from aidl_lang.diagnostics import Diagnostic, ordered
@@ -25,10 +25,11 @@ from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.seams import visible_seams
 from aidl_lang.geometry.trace import Traced, trace_all
+from aidl_lang.records import record
 from aidl_lang.solved import Scalar, SolvedGeometry, SolvedModel, SolvedStructure
 
 
-@dataclass(frozen=True)
+@record()
 class Style:
     """What the attributes of a structure, or of the nearest one around it that has them, say of its looks."""
 
@@ -38,7 +39,7 @@ class Style:
     thickness: float | None = None
 
 
-@dataclass(frozen=True)
+@record()
 class Body:
     """A piece of material: a solid that no other solid holds, or what an assembly draws itself."""
 
@@ -48,7 +49,7 @@ class Body:
     box: Bounds
 
 
-@dataclass(frozen=True)
+@record()
 class Seam:
     """The edges of a structure that was united with the body around it, where they run inside that body."""
 
@@ -57,7 +58,7 @@ class Seam:
     pieces: tuple[Piece, ...]
 
 
-@dataclass(frozen=True)
+@record()
 class Stroke:
     """Curves drawn as lines.
 
@@ -74,7 +75,7 @@ class Stroke:
     over: str | None = None
 
 
-@dataclass(frozen=True)
+@record()
 class PlanBox:
     """The box of a structure whose parts are not drawn yet."""
 
@@ -83,7 +84,7 @@ class PlanBox:
     box: Bounds
 
 
-@dataclass(frozen=True)
+@record()
 class Drawing:
     """All that is to be seen, in order of writing. Coordinates in mm in the root frame.
 

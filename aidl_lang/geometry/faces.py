@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +19,11 @@ from numpy.typing import NDArray
 from aidl_lang.geometry.network import Network, Use
 from aidl_lang.geometry.sections import Section, difference, fill, inside_mask, is_nothing, union
 from aidl_lang.geometry.trace import trace
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedGeometry
 
 
-@dataclass(frozen=True)
+@record()
 class Shape:
     """A named geometry of a structure: its primitives that have curves, with the numbers of these in the
     network.
@@ -32,7 +33,7 @@ class Shape:
     leaves: tuple[tuple[SolvedGeometry, int], ...]
 
 
-@dataclass(frozen=True)
+@record()
 class OwnFace:
     """What one named geometry, or some free curves together, enclose."""
 
@@ -40,7 +41,7 @@ class OwnFace:
     section: Section
 
 
-@dataclass
+@record(frozen=False)
 class OwnFaces:
     """The faces of a structure and the primitives that bound none."""
 

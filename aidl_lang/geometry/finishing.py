@@ -10,12 +10,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import derivative, ends, is_closed, part, point, reverse
 from aidl_lang.geometry.intersect import circle_circle, line_circle
 from aidl_lang.geometry.measures import length
+from aidl_lang.records import record
 
 SMOOTH = 1e-7
 """Curves whose directions differ by less, in radians, run on smoothly: there is no corner."""
@@ -24,7 +25,7 @@ _STEPS = 16
 _HALVINGS = 60
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Arm:
     """A curve from the corner on; `number` is that of the curve, `first` whether it starts at the corner."""
 
@@ -38,7 +39,7 @@ class Arm:
         return direction(self.curve, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Corner:
     """Where two curves end."""
 
@@ -60,7 +61,7 @@ class Corner:
         return abs(self.turn) < SMOOTH
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Work:
     """A corner to be finished; `sizes` are the radius, or the distances on the two arms."""
 
@@ -69,7 +70,7 @@ class Work:
     sizes: tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Finished:
     """How much each arm loses, and the curve that takes the place of the corner."""
 
@@ -78,7 +79,7 @@ class Finished:
     piece: Piece
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class TooLarge:
     """A finish that does not fit: its corner has room for `largest`, or it runs into `other` on the curve of
     that `number`.
@@ -90,7 +91,7 @@ class TooLarge:
     number: int = -1
 
 
-@dataclass
+@record(frozen=False)
 class Result:
     """Curves by their old numbers (None where nothing is left), and those that are new."""
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from aidl_lang.geometry.bodies import Finding, LooseCurves
 from aidl_lang.geometry.curves import Arc, Bezier, Line, Piece, Vec
@@ -19,6 +19,7 @@ from aidl_lang.geometry.evaluate import TAU, bounds, ends, is_closed
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Network
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedGeometry, SolvedStructure
 
 WIDEST = 5e-4
@@ -28,7 +29,7 @@ ROUNDING = 1e-8
 """Distance of two ends, relative to the size, that is rounding and no gap."""
 
 
-@dataclass(frozen=True)
+@record()
 class End:
     """The start or the end of a curve, by its number in the network."""
 
@@ -38,7 +39,7 @@ class End:
     is_last: bool
 
 
-@dataclass(frozen=True)
+@record()
 class Gap:
     """Two ends that count as one: `moved` was brought to where `kept` is."""
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,13 +15,14 @@ from numpy.typing import NDArray
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import derivative, ends, is_closed, nearest, part, point, points
 from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.records import record
 
 _SAMPLES = 720
 _NEAR = 1e-9
 """Points closer than this, relative to the size, are one."""
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class _Contact:
     """A curve that the hull runs along, about from `t0` to `t1` (which may pass 1 on a closed curve), or
     only its end there.

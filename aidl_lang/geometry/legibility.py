@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from aidl_lang.geometry.sections import (
     is_nothing,
     union,
 )
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedGeometry, SolvedStructure
 
 COVERED = 0.01
@@ -30,7 +30,7 @@ COVERED = 0.01
 _WHOLE = 0.995
 
 
-@dataclass(frozen=True)
+@record()
 class Lying:
     """A body: its path, its place in the order of drawing, and its colour, if it has one."""
 
@@ -41,7 +41,7 @@ class Lying:
     box: Bounds
 
 
-@dataclass(frozen=True)
+@record()
 class Ground:
     """What strokes lie on, or under: the bodies from back to front."""
 

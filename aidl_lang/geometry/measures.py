@@ -9,19 +9,19 @@ them.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds, bounds, derivative, ends, point, round_range
 from aidl_lang.geometry.region import Loop, Region
+from aidl_lang.records import record
 
 Moments = tuple[float, float, float]
 """Area and its first moments about the origin, as contributions to the integral along an outline."""
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Measures:
     """Square millimetres and millimetres. `box` is left, bottom, right, top."""
 

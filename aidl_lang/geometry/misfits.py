@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.finishing import Result, TooLarge, Work, finish, largest, sized
 from aidl_lang.geometry.notes import at, listed, local, short
+from aidl_lang.records import record
 from aidl_lang.solved import Finish, SolvedGeometry, SolvedStructure
 from aidl_lang.source import Span
 from aidl_lang.units import UNITS
@@ -20,7 +20,7 @@ from aidl_lang.units import UNITS
 Leaves = Sequence[tuple[SolvedGeometry, Piece]]
 
 
-@dataclass(frozen=True)
+@record()
 class Misfit:
     """A fault of one or several statements, and the largest size that fits in all of them."""
 

@@ -9,12 +9,12 @@ arc would lose all digits where the arc is shallow and its radius large.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import derivative, point, round_range
 from aidl_lang.geometry.measures import gauss, moments_about_start
 from aidl_lang.geometry.region import Loop, Region
+from aidl_lang.records import record
 
 _NODES = gauss(12)
 _ISOTROPIC = 1e-9
@@ -26,7 +26,7 @@ Squares = tuple[float, float, float]
 """Integrals of x², y² and xy over an area."""
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Inertia:
     """Second moments of area about the centroid, mm⁴: xx = ∫y² dA, yy = ∫x² dA, xy = ∫xy dA."""
 

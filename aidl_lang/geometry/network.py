@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import TypeVar
 
@@ -35,6 +35,7 @@ from aidl_lang.geometry.evaluate import (
 from aidl_lang.geometry.intersect import intersections, self_crossing, sorted_cuts
 from aidl_lang.geometry.nearness import Sides, near_pairs
 from aidl_lang.geometry.separation import Separation
+from aidl_lang.records import record
 
 RELATIVE_TOLERANCE = 1e-6
 CHORD = 1e-4
@@ -53,7 +54,7 @@ Use = tuple[int, bool]
 """An edge and whether it is run through forwards."""
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Edge:
     """The part `t0..t1` of a curve between two nodes, with the grid points strictly between them."""
 

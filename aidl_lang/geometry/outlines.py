@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.geometry import outline_notes as notes
@@ -26,6 +26,7 @@ from aidl_lang.geometry.network import Network, exactly, union_bounds
 from aidl_lang.geometry.offsets import NEAR, offset, thick
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.trace import trace
+from aidl_lang.records import record
 from aidl_lang.solved import Box, Finish, Recipe, SolvedGeometry, SolvedModel, SolvedStructure
 
 Leaves = Sequence[tuple[SolvedGeometry, Piece]]
@@ -58,7 +59,7 @@ def _shown(g: SolvedGeometry) -> SolvedGeometry:
     return replace(g, construction=False)
 
 
-@dataclass
+@record(frozen=False)
 class _Outliner:
     """
     finishes     of all structures; index: all geometry by path, as it was read out

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.geometry.bodies import Bodies, Mass
@@ -32,6 +31,7 @@ from aidl_lang.geometry.sections import (
     union,
 )
 from aidl_lang.geometry.trace import trace_all
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedStructure
 
 _RING = 3
@@ -44,7 +44,7 @@ LETTERING = "text"
 """The type of letters."""
 
 
-@dataclass(frozen=True)
+@record()
 class _Piece:
     section: Section
     region: Region

@@ -6,12 +6,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.geometry.evaluate import LARGEST, bounds
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.notes import unusable_note
+from aidl_lang.records import record
 from aidl_lang.solved import Box, Frame, SolvedGeometry, SolvedModel, SolvedStructure
 
 
@@ -55,7 +56,7 @@ def _is_within(value: object) -> bool:
     return isinstance(value, str | int) or (isinstance(value, Iterable) and all(map(_is_within, value)))
 
 
-@dataclass
+@record(frozen=False)
 class _Cleaner:
     notes: list[Diagnostic] = field(default_factory=list)
 

@@ -7,7 +7,7 @@ World axes: x to the right, y to the back, z up, mm. `top` is drawn in x and y a
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from aidl_lang.diagnostics import Diagnostic, ordered
 from aidl_lang.expression import exact_turn
 from aidl_lang.geometry.drawing import Body, Drawing
+from aidl_lang.records import record
 from aidl_lang.solved import Frame, SolvedStructure
 
 Matrix = NDArray[np.float64]
@@ -26,7 +27,7 @@ _AXES = {"top": (_RIGHT, _BACK, _UP), "front": (_RIGHT, _UP, _BACK), "side": (_B
 """By orientation: where the x and the y of the sketch point, and where its material grows."""
 
 
-@dataclass(frozen=True)
+@record()
 class Plane:
     """A plane in space for coordinates of the root frame: (x, y) lies at origin + x u + y v.
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from aidl_lang.geometry.curves import Circle, Ellipse, Piece
+from aidl_lang.records import record
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Loop:
     """A closed outline; each piece starts where the one before it ends, to the last digit.
 
@@ -24,7 +25,7 @@ class Loop:
         return len(self.pieces) == 1 and isinstance(self.pieces[0], Circle | Ellipse)
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Face:
     """A connected area: `outer` counter-clockwise, `holes` clockwise."""
 
@@ -36,7 +37,7 @@ class Face:
         return (self.outer, *self.holes)
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Region:
     """Any number of faces that do not overlap."""
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from aidl_lang.geometry.curves import Piece
@@ -19,6 +19,7 @@ from aidl_lang.geometry.evaluate import Bounds, bounds, inward
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.records import record
 
 SPACING = 3.0
 """Millimetres between parts, and between them and the edge of the sheet."""
@@ -35,7 +36,7 @@ Cell = tuple[int, int]
 """Width and height in micrometres."""
 
 
-@dataclass(frozen=True)
+@record()
 class Layout:
     """Sheets with their lower left corner in the origin, or none if parts are too large.
 
@@ -48,7 +49,7 @@ class Layout:
     oversize: tuple[tuple[str, Size], ...] = ()
 
 
-@dataclass(frozen=True)
+@record()
 class _Part:
     """A body with what is engraved on it, and the regions of the structures it was made of."""
 
@@ -66,7 +67,7 @@ class _Part:
         return max(1, _ceil(self.size[0])) + gap, max(1, _ceil(self.size[1])) + gap
 
 
-@dataclass(frozen=True)
+@record()
 class _Place:
     """The lower left corner of a part on its sheet, mm, and whether it was turned by a quarter."""
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -18,6 +17,7 @@ from numpy.typing import NDArray
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, derivative, ends, is_closed, point, points, reverse, round_range
 from aidl_lang.geometry.region import Loop, Region
+from aidl_lang.records import record
 
 _CHORDS = {"Bezier": 32, "EllipseArc": 32, "Ellipse": 64}
 _CUSP = 1e-6
@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Bit:
     """An element: the part `first..last` of a piece (one parameter twice for a corner).
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import accumulate
 from typing import TypeVar
 
@@ -24,13 +24,14 @@ from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import NODE, UNKNOWN, Edge, Network, union_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import Section
+from aidl_lang.records import record
 
 T = TypeVar("T")
 STRAIGHT = -3
 """Stands for the edge of a result that no curve owns: the straight way between its two vertices."""
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Traced:
     """A region and the edges of the network that bound it."""
 
@@ -38,7 +39,7 @@ class Traced:
     edges: frozenset[int]
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Run:
     """The part `t0..t1` of a curve (None: straight) between two points."""
 
@@ -49,7 +50,7 @@ class Run:
     end: Vec
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Sides:
     """The sides of many polygons in one table: where each vertex belongs, and the edge each side follows.
 

@@ -20,7 +20,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +33,7 @@ from aidl_lang.geometry.evaluate import derivative, ends, is_closed, point, seco
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.skeleton import Floats, Skeleton, direction, within
+from aidl_lang.records import record
 
 _LEAN = math.radians(15)
 """How far each side of a narrowing end may lean towards the other."""
@@ -45,7 +45,7 @@ _NEAR_END = 1e-4
 """Part of a chord at each end where it may touch the outline."""
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Chord:
     """A length in mm and the two places of the outline that it joins."""
 

@@ -3,45 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+
+from aidl_lang.records import record
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Text:
     """A fixed text."""
 
     text: str
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Chars:
     r"""One character: the inside of a class such as `A-Za-z_`; `\n`, `\t`, `\r`, `\\` are escaped."""
 
     members: str
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Name:
     """A rule or a terminal, by its name."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Seq:
     """One after the other; without items, the empty text."""
 
     items: tuple[Node, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Alt:
     """One of several."""
 
     items: tuple[Node, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Repeat:
     """From `low` to `high` times; `high` is None where there is no end."""
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import cache
 
 from aidl_lang.grammars.notation import EMPTY, Name, Node, Repeat, Text, alt, optional, seq
+from aidl_lang.records import record
 from aidl_lang.resources import resource
 
 _TOKEN = re.compile(
@@ -23,7 +23,7 @@ _TOKEN = re.compile(
 _COUNTS: dict[str, tuple[int, int | None]] = {"?": (0, 1), "*": (0, None), "+": (1, None)}
 
 
-@dataclass(frozen=True)
+@record()
 class Source:
     """What `grammar/aidl.lark` says: rules as trees, and the names of its terminals."""
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from aidl_lang.grammars.notation import Alt, Chars, Name, Node, Repeat, Rules, Seq, Text
+from aidl_lang.records import record
 
 _SHORT = 80  # alternatives up to this length share a line
 _SIGNS = {(0, 1): "?", (0, None): "*", (1, None): "+"}
 
 
-@dataclass(frozen=True)
+@record()
 class Notation:
     """How one format writes the parts of a grammar. `counted` writes the bounds of a repetition."""
 

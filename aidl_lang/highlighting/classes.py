@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache, cached_property
 from typing import NamedTuple
 
 from aidl_lang.kinds import kind_of
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile
 from aidl_lang.syntax.tokens import END, UNKNOWN, Token, tokenize
 from aidl_lang.vocabulary import vocabulary
@@ -104,7 +105,7 @@ def _plain_names() -> dict[str, str]:
     return {**found, **dict.fromkeys(words.constants, "name.constant")}
 
 
-@dataclass
+@record(frozen=False)
 class _Inside:
     """An open bracket. `role` is `parameters` of a definition, `arguments` of a call, `block`, `constraints`
     (a block of them) or `group`; `header` is `names` where the variables of a `for`, or imported names,
@@ -115,7 +116,7 @@ class _Inside:
     header: str = ""
 
 
-@dataclass
+@record(frozen=False)
 class _Reader:
     """Walks over the tokens once, and knows what is open."""
 

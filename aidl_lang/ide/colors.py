@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from aidl_lang import ast
 from aidl_lang.builtins import ATTRIBUTES
 from aidl_lang.geometry.colors import COLOR_NAMES, css_color, rgb
 from aidl_lang.ide.view import View
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import word_meant
 from aidl_lang.source import Span
 
 
-@dataclass(frozen=True)
+@record()
 class Color:
     """The place of a colour in the text, and its red, green and blue from 0 to 255."""
 

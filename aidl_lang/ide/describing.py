@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from aidl_lang import ast
+from aidl_lang.records import record
 from aidl_lang.reference.collect import Doc, Entry, doc, reference
 from aidl_lang.reference.pages import facts, forms
 from aidl_lang.reference.signatures import split_items, written
@@ -122,7 +122,7 @@ def doc_of(signature: Signature) -> Doc:
     return entry.doc if entry is not None else doc("")
 
 
-@dataclass(frozen=True)
+@record()
 class Label:
     """An overload in a line; `parameters` are where each stands in it."""
 

@@ -6,15 +6,15 @@ Brackets are paired in the text itself, so a program that does not parse folds t
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from aidl_lang.ide.view import View
+from aidl_lang.records import record
 from aidl_lang.syntax.tokens import Token
 
 _CLOSES = {"}": "{", "]": "[", ")": "("}
 
 
-@dataclass(frozen=True)
+@record()
 class Fold:
     """Lines from `start`, which stays in sight, to `end`, both from 1. `kind` is `region`, `comment` or
     `imports`.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from aidl_lang import ast
 from aidl_lang import expression as ex
@@ -13,6 +13,7 @@ from aidl_lang.expression import Evaluator, Expression, Unknown
 from aidl_lang.ide.meaning import chosen
 from aidl_lang.ide.view import View
 from aidl_lang.model import Literal
+from aidl_lang.records import record
 from aidl_lang.source import Span
 from aidl_lang.units import ANGLE, LENGTH, PLAIN, UNITS
 
@@ -25,7 +26,7 @@ _MEASURES = {LENGTH: "mm", ANGLE: "deg"}
 Value = Callable[[Expression], float]
 
 
-@dataclass(frozen=True)
+@record()
 class Guess:
     """A number of the text that is a first guess or a kept size.
 

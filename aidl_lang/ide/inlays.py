@@ -5,7 +5,6 @@ ambiguous call was taken, and values of `param`s that were set from outside.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 
 from aidl_lang import ast
@@ -15,6 +14,7 @@ from aidl_lang.ide.guesses import Guess, guesses
 from aidl_lang.ide.view import View
 from aidl_lang.ide.writing_back import number_for
 from aidl_lang.names import fold
+from aidl_lang.records import record
 from aidl_lang.solved import Scalar
 from aidl_lang.source import Span
 from aidl_lang.units import UNITS
@@ -29,7 +29,7 @@ class InlayKind(StrEnum):
     PARAM = "what a param was set to from outside"
 
 
-@dataclass(frozen=True)
+@record()
 class Inlay:
     """A hint behind what stands before an offset; `edits` write it into the text, where that can be done."""
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from aidl_lang import ast
 from aidl_lang.ide.view import View
 from aidl_lang.pipeline import Compiled
+from aidl_lang.records import record
 from aidl_lang.solved import ConstraintReport, Motion, SolvedModel, SolvedStructure
 from aidl_lang.source import Span
 
@@ -16,7 +16,7 @@ _NAMED = 3
 _HELD = "fully constrained"
 
 
-@dataclass(frozen=True)
+@record()
 class Lens:
     """A line above the name of a structure, about the structures at `paths`."""
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from aidl_lang import ast
 from aidl_lang.ide.view import View
+from aidl_lang.records import record
 from aidl_lang.source import Span
 
 
-@dataclass(frozen=True)
+@record()
 class Link:
     """The place of a file's name, without its quotes, and the file."""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
@@ -12,6 +11,7 @@ from aidl_lang.checking.calls import arguments
 from aidl_lang.ide.nodes import around, scope_at
 from aidl_lang.ide.view import View
 from aidl_lang.names import find, fold
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.source import Span
 from aidl_lang.types import Signature
@@ -20,7 +20,7 @@ Place: TypeAlias = tuple[Path, int]
 """The file and the offset of the first declaration of a symbol: the same in every view of a project."""
 
 
-@dataclass(frozen=True)
+@record()
 class Mention:
     """A name where it is written. `node` is what it names there: a Name, Member, Call, Identifier, …"""
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from aidl_lang import ast
 from aidl_lang.checking.calls import arguments
 from aidl_lang.names import fold
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import Scope
 from aidl_lang.synonyms import PAIRS, PARAMETERS
 from aidl_lang.typecheck import Program
@@ -18,7 +18,7 @@ _WRONG = 100
 _GATHERED = 1
 
 
-@dataclass(frozen=True)
+@record()
 class Reading:
     """
     taken  for each argument, the receiver first, the parameter that gets it; None where there is none

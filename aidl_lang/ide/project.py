@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from aidl_lang import ast
 from aidl_lang.ide.view import View, look
 from aidl_lang.ide.workspace import Workspace
 from aidl_lang.names import fold
+from aidl_lang.records import record
 from aidl_lang.world import FileError
 
 
-@dataclass
+@record(frozen=False)
 class Project:
     workspace: Workspace
     _views: dict[Path, View] = field(default_factory=dict)

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from aidl_lang.ide.meaning import Place, mention_at, mentions, place_of
 from aidl_lang.ide.project import Project
 from aidl_lang.ide.view import View
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import Symbol
 from aidl_lang.source import Span
 
 
-@dataclass(frozen=True)
+@record()
 class Occurrence:
     """A place in a file where a thing is named, or declared."""
 

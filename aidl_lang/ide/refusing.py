@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from aidl_lang.records import record
 
 
 class CannotError(Exception):
     """Why what was asked for cannot be done, for people."""
 
 
-@dataclass(frozen=True)
+@record()
 class Refusal:
     """The same as a value, where it is asked at every move of a mouse: most places cannot be dragged to."""
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from aidl_lang.diagnostics import Edit
@@ -15,6 +14,7 @@ from aidl_lang.ide.references import Occurrence, references
 from aidl_lang.ide.refusing import CannotError
 from aidl_lang.ide.view import View, look
 from aidl_lang.ide.workspace import Workspace
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import Symbol
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.tables import load_tables
@@ -22,7 +22,7 @@ from aidl_lang.syntax.tokens import tokenize
 from aidl_lang.world import FileError
 
 
-@dataclass(frozen=True)
+@record()
 class Renaming:
     """Edits by file, each to the text that the file has now."""
 

@@ -6,12 +6,12 @@ Types and modifiers are those of editors at large; a theme knows them without be
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from aidl_lang import ast
 from aidl_lang.builtins import PATTERNS
 from aidl_lang.ide.meaning import Mention, mentions
 from aidl_lang.ide.view import View
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.source import Span
 from aidl_lang.types import PRIMITIVES
@@ -44,7 +44,7 @@ _READONLY = frozenset({SymbolKind.PARAM, SymbolKind.LET, SymbolKind.LOOP, Symbol
 _WORD_SIGNS = frozenset({"and", "or", "not"})
 
 
-@dataclass(frozen=True)
+@record()
 class Colored:
     """A piece of one line of the text, its type (one of TYPES) and its modifiers (of MODIFIERS)."""
 

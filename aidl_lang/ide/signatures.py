@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from aidl_lang import ast
 from aidl_lang.checking.calls import arguments
 from aidl_lang.ide.describing import doc_of, is_public, label_of, of_doc, of_parameter
@@ -12,11 +10,12 @@ from aidl_lang.ide.overloads import Reading, readings
 from aidl_lang.ide.site import Where, site_at, spot_at
 from aidl_lang.ide.view import View
 from aidl_lang.parser import standing_before
+from aidl_lang.records import record
 from aidl_lang.syntax.automaton import Automaton
 from aidl_lang.syntax.tokens import Token
 
 
-@dataclass(frozen=True)
+@record()
 class ParameterHelp:
     """`place` is where it stands in the label of its overload, in code points; `about` is Markdown."""
 
@@ -25,7 +24,7 @@ class ParameterHelp:
     about: str
 
 
-@dataclass(frozen=True)
+@record()
 class OverloadHelp:
     """`active` is the number of the parameter that is being given; None where there is none for it."""
 
@@ -36,7 +35,7 @@ class OverloadHelp:
     fits: bool
 
 
-@dataclass(frozen=True)
+@record()
 class SignatureHelp:
     """All overloads of a call, as they are defined; `active` is the number of the one that is meant."""
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
@@ -16,6 +15,7 @@ from aidl_lang import ast
 from aidl_lang.ide.nodes import around, scope_at
 from aidl_lang.ide.view import View, look
 from aidl_lang.parser import parse, standing_before
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import Scope
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.automaton import Automaton
@@ -36,7 +36,7 @@ class Where(Enum):
     NUMBER = "number"
 
 
-@dataclass(frozen=True)
+@record()
 class Spot:
     """What an offset lies in or at the end of: a comment, string or number, or code.
 
@@ -117,7 +117,7 @@ def _number(token: Token, before: Token | None, offset: int) -> Spot:
 # --- Code ------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Site:
     """
     original   the text as it is

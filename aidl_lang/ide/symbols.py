@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from aidl_lang import ast
 from aidl_lang.ide.project import Project
 from aidl_lang.ide.view import View
 from aidl_lang.names import fold, is_spelled_in
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.source import Span
 
 MOST_FOUND = 200
 
 
-@dataclass(frozen=True)
+@record()
 class Entry:
     """Something that is declared: `detail` is what it is, `span` all of it, `name_span` its name."""
 
@@ -28,7 +28,7 @@ class Entry:
     children: tuple[Entry, ...] = ()
 
 
-@dataclass(frozen=True)
+@record()
 class Found:
     """An entry of the file `path`; `container` is the dotted path of what it lies in."""
 

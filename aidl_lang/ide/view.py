@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from aidl_lang import ast, pipeline, resources
 from aidl_lang.diagnostics import Diagnostic, Edit
 from aidl_lang.ide.edits import applied
 from aidl_lang.pipeline import Compiled, Memory, Settings
+from aidl_lang.records import record
 from aidl_lang.resolving.resolution import Resolution
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.tokens import Tokens, tokenize
@@ -20,7 +21,7 @@ from aidl_lang.world import World
 SETTINGS = Settings()
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class View:
     """
     path      of the file, absolute

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
+from aidl_lang.records import record
 from aidl_lang.resolving.imports import SUFFIX
 from aidl_lang.world import DiskWorld, FileError, Reason, normalize
 
@@ -14,7 +15,7 @@ MOST_FILES = 2_000
 _PASSED_OVER = frozenset({"node_modules", "build", "dist", "__pycache__"})
 
 
-@dataclass
+@record(frozen=False)
 class Workspace:
     """`roots` are the folders that are looked through for programs; `open` maps the absolute path of an open
     program to its text.
@@ -59,7 +60,7 @@ def _below(folder: Path) -> Iterator[Path]:
             yield entry
 
 
-@dataclass(frozen=True)
+@record()
 class OpenWorld:
     """The files below a folder, those that are open as they stand in the editor."""
 

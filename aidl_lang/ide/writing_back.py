@@ -6,7 +6,6 @@ Nothing is proposed that was not tried: the edited text is solved again, and has
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from aidl_lang.diagnostics import Edit
 from aidl_lang.export.numbers import shortest
@@ -15,6 +14,7 @@ from aidl_lang.ide.guesses import VISIBLE, Guess, as_kept, guesses
 from aidl_lang.ide.refusing import CannotError
 from aidl_lang.ide.view import View, edited
 from aidl_lang.pipeline import Compiled
+from aidl_lang.records import record
 from aidl_lang.source import Span
 
 _PRECISIONS = (VISIBLE / 2, 1e-9, 0.0)
@@ -24,7 +24,7 @@ too coarse. With none, all digits are written.
 _MOST_TRIES = 8
 
 
-@dataclass(frozen=True)
+@record()
 class Rewriting:
     """Edits that write solved values into the text, tried: `view` is what comes of them."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from aidl_lang import ast, parser, pipeline
 from aidl_lang.diagnostics import has_errors
@@ -15,6 +15,7 @@ from aidl_lang.llm.language import Verdict
 from aidl_lang.llm.messages import Image
 from aidl_lang.mending import mend
 from aidl_lang.pipeline import Compiled
+from aidl_lang.records import record
 from aidl_lang.reference.guide import guide
 from aidl_lang.solved import SolvedModel
 from aidl_lang.source import SourceFile
@@ -40,7 +41,7 @@ _PLANNED = (
 )
 
 
-@dataclass(frozen=True)
+@record()
 class Aidl:
     """AIDL or a subset of it. `world` is where programs may import from, None for nowhere, and `file` what a
     program is called there.
@@ -72,7 +73,7 @@ class Aidl:
         return conversation
 
 
-@dataclass
+@record(frozen=False)
 class AidlConversation:
     """Programs one after another, with what they meant and what was said of them."""
 

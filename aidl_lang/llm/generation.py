@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.llm.language import Conversation, Language, Verdict
@@ -18,9 +18,10 @@ from aidl_lang.llm.messages import (
     Usage,
 )
 from aidl_lang.llm.replies import find_program
+from aidl_lang.records import record
 
 
-@dataclass(frozen=True)
+@record()
 class Task:
     """What is asked for. With a `program` it is a change to that."""
 
@@ -29,7 +30,7 @@ class Task:
     program: str | None = None
 
 
-@dataclass(frozen=True)
+@record()
 class Settings:
     """`attempts` bounds the replies, and as many again that only fill in what an earlier one planned."""
 
@@ -37,7 +38,7 @@ class Settings:
     sampling: Sampling = field(default_factory=Sampling)
 
 
-@dataclass(frozen=True)
+@record()
 class Attempt:
     """One reply and what came of it. Without a verdict it held no program, or not the whole of one."""
 
@@ -49,7 +50,7 @@ class Attempt:
     """What the model was told; empty after the last one."""
 
 
-@dataclass(frozen=True)
+@record()
 class Generation:
     """What came of a task: the attempts, and the verdict on the program kept (None without any program)."""
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Protocol
 
 from aidl_lang.llm.messages import Image
+from aidl_lang.records import record
 
 if TYPE_CHECKING:
     from aidl_lang.pipeline import Compiled
 
 
-@dataclass(frozen=True)
+@record()
 class Verdict:
     """What there is to say of one program."""
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from aidl_lang import ast
 from aidl_lang.diagnostics import has_errors
 from aidl_lang.parser import parse
 from aidl_lang.printer import format_statement
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile
 
 
@@ -39,7 +39,7 @@ def _key(statement: ast.Statement) -> str:
     return re.sub(r"\n\n+", "\n", format_statement(statement))
 
 
-@dataclass(frozen=True)
+@record()
 class _Item:
     """A statement in its text: `lead` is what stands before it from the end of the line above on, and `tail`
     what follows it on its line.
@@ -69,7 +69,7 @@ class _Item:
                 return (type(self.node),)
 
 
-@dataclass(frozen=True)
+@record()
 class _Body:
     """The statements of a file or a block, and what stands after the last of them."""
 

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from typing import Literal, Protocol
 
 from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.records import record
 
 Role = Literal["system", "user", "assistant"]
 
 
-@dataclass(frozen=True)
+@record()
 class Image:
     """A picture as part of a message, with its media type (`image/png`)."""
 
@@ -30,14 +31,14 @@ class Image:
         return f"data:{self.media_type};base64,{self.base64}"
 
 
-@dataclass(frozen=True)
+@record()
 class Message:
     role: Role
     text: str
     images: tuple[Image, ...] = ()
 
 
-@dataclass(frozen=True)
+@record()
 class Sampling:
     """How a reply is drawn. What is None is left to the server."""
 
@@ -48,7 +49,7 @@ class Sampling:
     """Further members of the request, as a grammar for servers that constrain decoding."""
 
 
-@dataclass(frozen=True)
+@record()
 class Usage:
     """Tokens, and dollars where they are known; None is unknown, and stays so in a sum."""
 
@@ -77,7 +78,7 @@ class Finish(StrEnum):
     REFUSED = "refused"
 
 
-@dataclass(frozen=True)
+@record()
 class Reply:
     text: str
     usage: Usage

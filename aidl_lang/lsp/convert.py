@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from lsprotocol import types
@@ -12,12 +12,13 @@ from aidl_lang.diagnostics import Edit
 from aidl_lang.ide.positions import Positions, Unit
 from aidl_lang.ide.view import View
 from aidl_lang.lsp.documents import Documents
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile, Span
 
 START = types.Range(types.Position(0, 0), types.Position(0, 0))
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Converter:
     """Converts for the view of the document `own`; `versions` are those of the open files at that time."""
 

@@ -6,7 +6,7 @@ import asyncio
 import os
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from urllib.parse import quote, unquote, urlsplit
 
@@ -37,7 +37,7 @@ class Known:
     serial: int
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class Document:
     """
     uri       as the client writes it

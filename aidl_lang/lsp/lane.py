@@ -7,11 +7,11 @@ import threading
 from collections.abc import Callable, Hashable
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, Generic, TypeVar
 
 from aidl_lang.cancelling import Cancelled, cancelled_when
+from aidl_lang.records import record
 
 T = TypeVar("T")
 
@@ -29,7 +29,7 @@ def give_room() -> None:
     threading.stack_size(_STACK)
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class Job(Generic[T]):
     """A piece of work: `work` runs in the lane's thread, `done` then on the loop with what came of it."""
 

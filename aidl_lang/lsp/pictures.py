@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeAlias, TypeVar
 
@@ -14,6 +13,7 @@ from aidl_lang.ide.preview import Preview, Writer, preview, with_handles
 from aidl_lang.ide.view import View
 from aidl_lang.lsp.documents import Document
 from aidl_lang.lsp.server import Asked, Server
+from aidl_lang.records import record
 
 _PAUSE = 0.25
 """Seconds without a change after which it is looked into what can be dragged: that takes as long as a run."""
@@ -22,7 +22,7 @@ Json: TypeAlias = dict[str, Any]
 T = TypeVar("T")
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class _Shown:
     """The layers that are wanted, and what could be dragged when that was looked into last."""
 

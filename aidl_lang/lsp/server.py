@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable, Coroutine
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -26,6 +25,7 @@ from aidl_lang.lsp.protocol import Protocol, converter
 from aidl_lang.lsp.publishing import Publisher, converted
 from aidl_lang.lsp.running import Runner
 from aidl_lang.lsp.settings import Settings
+from aidl_lang.records import record
 from aidl_lang.version import __version__
 
 T = TypeVar("T")
@@ -37,7 +37,7 @@ FAILED = -32803
 log = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True)
+@record()
 class Asked:
     """What a question is answered from, away from the loop: nothing here changes any more."""
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
+
+from aidl_lang.records import record
 
 LONGEST_DELAY = 5_000
 
 
-@dataclass(frozen=True)
+@record()
 class Settings:
     """
     solved_values  inlay hints for what first guesses were solved to

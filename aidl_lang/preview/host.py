@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from typing import TypeAlias
 
@@ -19,12 +18,13 @@ from aidl_lang.preview import messages
 from aidl_lang.preview.messages import ApplyFix, Cancel, Drag, Export, Ready, SetKnob, Show
 from aidl_lang.preview.program import Program
 from aidl_lang.preview.worker import Job, Worker
+from aidl_lang.records import record
 
 Then: TypeAlias = Callable[[], None]
 """What is left to do in the event loop."""
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Picture:
     """A preview of a version of the text, and the message that says it."""
 

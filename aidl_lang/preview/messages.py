@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from aidl_lang.geometry.curves import Vec
+from aidl_lang.records import record
 
 LONGEST = 65_536
 """Bytes of a message."""
 _LONGEST_NAME = 1_000
 
 
-@dataclass(frozen=True)
+@record()
 class Ready:
     """The page is there and shows nothing yet."""
 
 
-@dataclass(frozen=True)
+@record()
 class SetKnob:
     """`final`: it is to be written, else only tried."""
 
@@ -28,7 +28,7 @@ class SetKnob:
     final: bool
 
 
-@dataclass(frozen=True)
+@record()
 class Drag:
     """Of a handle to a place in mm."""
 
@@ -37,12 +37,12 @@ class Drag:
     final: bool
 
 
-@dataclass(frozen=True)
+@record()
 class Cancel:
     """What was tried is over."""
 
 
-@dataclass(frozen=True)
+@record()
 class ApplyFix:
     """By its number of a problem, by its number in the picture that is shown."""
 
@@ -50,12 +50,12 @@ class ApplyFix:
     fix: int
 
 
-@dataclass(frozen=True)
+@record()
 class Export:
     format: str
 
 
-@dataclass(frozen=True)
+@record()
 class Show:
     layers: frozenset[str]
 

@@ -11,9 +11,10 @@ import asyncio
 from collections import deque
 from collections.abc import Callable, Hashable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from aidl_lang.cancelling import Cancelled, cancelled_when
+from aidl_lang.records import record
 
 BUSY_AFTER = 0.15
 """Seconds after which whoever waits is told."""
@@ -21,7 +22,7 @@ MOST_ORDERS = 8
 """Of one page, that wait."""
 
 
-@dataclass(frozen=True)
+@record()
 class Job:
     """`do` runs in the thread; what it gives, or else `failed`, then runs in the event loop.
 
@@ -36,7 +37,7 @@ class Job:
     lasts: bool = False
 
 
-@dataclass
+@record(frozen=False)
 class _Lane:
     """What waits for one page."""
 

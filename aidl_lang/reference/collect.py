@@ -11,10 +11,11 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from difflib import get_close_matches
 
 from aidl_lang import ast, builtins, library, names
+from aidl_lang.records import record
 from aidl_lang.reference.signatures import is_refusal, made_shape, relates_boxes, written
 from aidl_lang.resources import resource
 from aidl_lang.source import SourceFile
@@ -26,7 +27,7 @@ _ALL_BUT = 0.85
 """Likeness from which a name is taken for a misspelling of another: one letter in six or so."""
 
 
-@dataclass(frozen=True)
+@record()
 class Doc:
     """A comment taken apart: its first sentence, what else it says, and its program ("" for none)."""
 
@@ -35,7 +36,7 @@ class Doc:
     example: str
 
 
-@dataclass(frozen=True)
+@record()
 class Overload:
     """One form of a name: how it is written, what is said of this form, where it is defined, and its
     definition in the library if it has one.
@@ -47,7 +48,7 @@ class Overload:
     node: ast.Callable | ast.Let | None = None
 
 
-@dataclass(frozen=True)
+@record()
 class Entry:
     """A public name. `sort` is `shape`, `relation` (of boxes), `constraint`, `function`, `template`,
     `constant`, `builtin` or `word` (of the language); `topic` the name of the file it stands in.
@@ -70,7 +71,7 @@ class Entry:
         return tuple(o.node for o in self.overloads if o.node is not None and not isinstance(o.node, ast.Let))
 
 
-@dataclass(frozen=True)
+@record()
 class Topic:
     """A file of the library or of `stdlib/docs`: its stem, and what is said at its head."""
 
@@ -79,7 +80,7 @@ class Topic:
     text: str
 
 
-@dataclass(frozen=True)
+@record()
 class Reference:
     """`entries` by name, in the order of the topics and, within one, in that of writing."""
 
@@ -255,7 +256,7 @@ def _topic(name: str, source: str) -> Topic:
 # --- What is built in, and the words of the language ---------------------------------------------
 
 
-@dataclass(frozen=True)
+@record()
 class _Section:
     topic: Topic
     entries: tuple[Entry, ...]

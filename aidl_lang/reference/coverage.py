@@ -11,11 +11,11 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import product
 
 from aidl_lang import pipeline
 from aidl_lang.diagnostics import MOST_ERRORS
+from aidl_lang.records import record
 from aidl_lang.reference import collect
 from aidl_lang.solved import ConstraintReport
 from aidl_lang.source import SourceFile
@@ -87,7 +87,7 @@ _OF_ONE_SHAPE = ("meshes",)
 """What relates things of one shape alone (gears) has no table."""
 
 
-@dataclass(frozen=True)
+@record()
 class Cell:
     """What a constraint does with things of two kinds; `second` is "" where it takes one.
 

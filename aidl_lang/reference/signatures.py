@@ -6,10 +6,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from aidl_lang import ast, library
 from aidl_lang.names import fold
+from aidl_lang.records import record
 from aidl_lang.types import (
     PARAMETER_TYPES,
     PEERS,
@@ -39,7 +39,7 @@ def written(node: ast.Callable | ast.Let) -> str:
 # --- Parts ---------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
+@record()
 class Part:
     """A named part of a shape or a template: `edges[i]` for an array; `type` is "" where the tree does not
     tell.
@@ -310,7 +310,7 @@ def short_forms(forms: Sequence[str], nodes: Sequence[ast.Callable]) -> list[str
     return list(dict.fromkeys([*others, *_merged_forms(constraints), *_merged_calls(functions)]))
 
 
-@dataclass
+@record(frozen=False)
 class _Row:
     """Forms that differ in the name of one argument: the names at that `place` are joined by `/`."""
 

@@ -8,10 +8,10 @@ its last.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from itertools import groupby
 
 from aidl_lang.diagnostics import Label, Severity
+from aidl_lang.records import record
 from aidl_lang.render.style import Style
 from aidl_lang.render.text import Window, escape, lay_out, window
 from aidl_lang.source import SourceFile
@@ -20,7 +20,7 @@ _WHOLE = 5
 """A label over at most so many lines is shown entirely, a longer one by its ends."""
 
 
-@dataclass(frozen=True)
+@record()
 class Mark:
     """A label laid on lines: from character `start` of line `first` to before character `end` of `last`."""
 
@@ -70,7 +70,7 @@ def _paint(text: str, kind: str, style: Style, severity: Severity) -> str:
     return style.gutter(text) if kind == "secondary" else text
 
 
-@dataclass(frozen=True)
+@record()
 class Excerpt:
     """The labels of one source, ready to be drawn."""
 
@@ -128,7 +128,7 @@ class Excerpt:
         return row.painted(self.style, self.severity)
 
 
-@dataclass(frozen=True)
+@record()
 class Bars:
     """The bars of labels that run over several lines, each in two columns of its own."""
 

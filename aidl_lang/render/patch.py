@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from aidl_lang.diagnostics import Edit, Fix
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile
 
 _LONGEST = 12
 """Rows of one hunk that are shown."""
 
 
-@dataclass(frozen=True)
+@record()
 class Change:
     """One row: its line, `-`, `+` or a space for a line that stays, its text and what differs in it."""
 
@@ -22,7 +22,7 @@ class Change:
     focus: tuple[int, int] = (0, 0)
 
 
-@dataclass(frozen=True)
+@record()
 class Hunk:
     source: SourceFile
     changes: tuple[Change, ...]

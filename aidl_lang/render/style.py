@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TextIO
 
 from aidl_lang.diagnostics import Severity
+from aidl_lang.records import record
 
 _RESET = "\x1b[0m"
 _SEVERITY = {Severity.ERROR: "\x1b[1;31m", Severity.WARNING: "\x1b[1;33m", Severity.NOTE: "\x1b[1;36m"}
 
 
-@dataclass(frozen=True)
+@record()
 class Style:
     """Wraps text in terminal colours, or leaves it as it is."""
 

@@ -8,7 +8,8 @@ known width, so that carets stand under what they mean.
 from __future__ import annotations
 
 import unicodedata
-from dataclasses import dataclass
+
+from aidl_lang.records import record
 
 TAB = 4
 _BREAKING = {"Cc", "Cf", "Cs", "Zl", "Zp"}
@@ -25,7 +26,7 @@ def width_of(text: str) -> int:
     return sum(_width(char) for char in text)
 
 
-@dataclass(frozen=True)
+@record()
 class Line:
     """One line as cells. `columns[i]` is where character i begins; the last entry is the end of the line."""
 
@@ -52,7 +53,7 @@ def lay_out(text: str) -> Line:
     return Line(tuple(cells), tuple(columns))
 
 
-@dataclass(frozen=True)
+@record()
 class Window:
     """The part of a long line that is shown: characters `start:end`, with `…` where something is left out."""
 

@@ -7,11 +7,12 @@ follows from where it stands; what a hole is given as its centre is where it is 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from aidl_lang import ast
 from aidl_lang.builtins import COPYING, CUTS, OUTLINES, PATTERNS
 from aidl_lang.names import fold
+from aidl_lang.records import record
 from aidl_lang.synonyms import PARAMETERS
 from aidl_lang.types import Signature
 
@@ -52,7 +53,7 @@ def _cuts_in(module: ast.Module) -> frozenset[str]:
     return frozenset(found)
 
 
-@dataclass(frozen=True)
+@record()
 class _Reader:
     """Goes through the bodies of a file. `kind` is that of the structure around, `outlines` are the names of
     which other outlines are made in it.

@@ -8,11 +8,12 @@ wrong inside an imported file is reported at its place there.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import PurePosixPath
 
 from aidl_lang import ast
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.records import record
 from aidl_lang.resolving.cuts import with_placed_cuts
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.world import FileError, Reason, World, relative_to
@@ -23,7 +24,7 @@ MAX_CHARACTERS = 2_000_000
 """Of all imported files together."""
 
 
-@dataclass
+@record(frozen=False)
 class ImportedModules:
     """
     modules  every file once, those that are imported before those that import them; the program is the last

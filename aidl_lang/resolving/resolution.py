@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 
 from aidl_lang import ast
 from aidl_lang.builtins import EVERYWHERE, MATH, SIGNATURES
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.library import Library
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.types import Signature
@@ -19,7 +20,7 @@ _NOWHERE = ast.Module(SourceFile("built in", ""), (), (), span=Span(SourceFile("
 BUILTIN_NAMES = (*EVERYWHERE, "pi")
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class Resolution:
     """What the names of a program mean.
 

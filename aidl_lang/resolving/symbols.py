@@ -7,12 +7,13 @@ callables live apart: `slot(` is looked up among callables only, `slot` among va
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from typing import Literal
 
 from aidl_lang import ast
 from aidl_lang.names import Spellings, find, nearest
+from aidl_lang.records import record
 from aidl_lang.types import Signature
 
 
@@ -47,7 +48,7 @@ UNKNOWNS = frozenset({SymbolKind.VAR, SymbolKind.GEOMETRY, SymbolKind.STRUCTURE}
 """What exists only from its line on, and what only its own structure may build on."""
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class Symbol:
     """
     node          the definition, of several the first; None for what is built in
@@ -66,7 +67,7 @@ class Symbol:
     scope: Scope | None = None
 
 
-@dataclass(eq=False)
+@record(frozen=False, eq=False)
 class Scope:
     """
     owner      the node that opens it

@@ -9,11 +9,11 @@ inequality takes no freedom away. What no constraint names rides along, and adds
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver.dependence import dependent_rows
 from aidl_lang.solver.gradients import Sparse, linearise
 from aidl_lang.solver.mobility import SEEN, Mobility, Motions, Watch, mobility
@@ -41,7 +41,7 @@ class State(StrEnum):
     """It could not be told."""
 
 
-@dataclass(frozen=True)
+@record()
 class Freedom:
     """
     degrees       degrees of freedom left in the whole model (kept sizes held); None if not countable

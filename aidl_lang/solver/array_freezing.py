@@ -6,12 +6,12 @@ The counterpart of `freezing` for large systems.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.records import record
 from aidl_lang.solver.array_program import IDENTITY, ArrayProgram, Step
 from aidl_lang.solver.newton import GOLDEN
 from aidl_lang.solver.operations import BRANCHING, LINEAR, Bools, Floats, Ints, Op
@@ -27,7 +27,7 @@ FIRST = np.ones(1, dtype=np.bool_)
 """Whether the first of some numbers differs from the one before."""
 
 
-@dataclass(frozen=True)
+@record()
 class _Layout:
     """steps; rows and nodes of the pairs above the unknowns; row and unknown of each entry"""
 

@@ -8,11 +8,11 @@ it; which pairs there are, and in which order they are visited, is laid out once
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver import arrays
 from aidl_lang.solver.linear import Matrix
 from aidl_lang.solver.operations import Bools, Floats, Ints
@@ -26,7 +26,7 @@ IDENTITY = 40
 """What a branching node becomes once its branch is chosen; beyond the codes of `Op`."""
 
 
-@dataclass(frozen=True)
+@record()
 class Step:
     """The pairs `low … high` of one level, from those above them.
 
@@ -41,7 +41,7 @@ class Step:
     starts: Ints | None
 
 
-@dataclass
+@record(frozen=False)
 class ArrayProgram:
     """Some rows as functions of their free unknowns, with branches fixed.
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from operator import mul
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver.forms import Affine
 from aidl_lang.solver.operations import PARTIALS
 from aidl_lang.solver.program import Program, Sweep
@@ -21,7 +21,7 @@ UNUSED = 0
 """Weight that is written for operands without a free unknown and never read."""
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Recipe:
     """How the value of a slot comes from those of others: an operation, or a sum with these slopes.
 

@@ -10,10 +10,11 @@ result counts only if their multipliers say that they push.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver.array_program import ArrayProgram
 from aidl_lang.solver.dense import CONSISTENT, INDEPENDENT, NOISE, RANK
 from aidl_lang.solver.newton import GAIN, POLISHED, Clock
@@ -25,7 +26,7 @@ PULLING = 1e-9
 """How far a multiplier may be on the wrong side by rounding, relative to the greatest."""
 
 
-@dataclass(frozen=True)
+@record()
 class Scaling:
     """Of the program's columns: origin, scale (k,), longest (k,) or None; of its rows: row_scale (r,)."""
 
@@ -35,7 +36,7 @@ class Scaling:
     longest: Floats | None
 
 
-@dataclass(frozen=True)
+@record()
 class Systems:
     """To which system each row (r,) and each column (k,) of a program belongs, which are to be solved, and
     whether each has as many rows as columns.
@@ -122,7 +123,7 @@ def _ranks(of: Ints, counts: Ints) -> tuple[Ints, Ints]:
     return order, rank
 
 
-@dataclass
+@record(frozen=False)
 class _Stack:
     """b systems of m rows and k columns.
 

@@ -12,11 +12,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver import newton
 from aidl_lang.solver.array_freezing import ZERO
 from aidl_lang.solver.array_program import ArrayProgram
@@ -42,7 +43,7 @@ SHARE = 1e-7
 """Part of the greatest factor below which a row has no part in a contradiction."""
 
 
-@dataclass(frozen=True)
+@record()
 class Task:
     """
     rows     the rows to satisfy
@@ -59,7 +60,7 @@ class Task:
     turning: bool = True
 
 
-@dataclass(frozen=True)
+@record()
 class Verdict:
     """How an attempt ended.
 
@@ -89,7 +90,7 @@ def holds(row: Row, values: Valuation, tolerance: float) -> bool:
     return violation_of(row, values) <= tolerance * row.scale
 
 
-@dataclass(frozen=True)
+@record()
 class Metric:
     """How changes are measured, each (n,).
 

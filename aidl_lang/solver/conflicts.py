@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver.branches import violation_of
 from aidl_lang.solver.gradients import FLAT, gradients
 from aidl_lang.solver.newton import Clock, End, perturbation
@@ -54,7 +55,7 @@ SPREADS = (0.3, 1.0, 3.0)
 SEED = 1
 
 
-@dataclass(frozen=True)
+@record()
 class _Trial:
     """How an attempt ended, the values of the free unknowns there, and the greatest violation."""
 
@@ -101,7 +102,7 @@ def conflict(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) -> tu
     return found, not search._spent
 
 
-@dataclass
+@record(frozen=False)
 class _Search:
     hierarchy: Hierarchy
     scope: Scope

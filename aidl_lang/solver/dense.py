@@ -6,10 +6,9 @@ where rank is in doubt are singular values worth their price, which is about ten
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver.operations import Floats
 
 RANK = 1e-10
@@ -30,7 +29,7 @@ SMALL = 300
 """Number of entries below which singular values cost no more than the alternative."""
 
 
-@dataclass(frozen=True)
+@record()
 class LeastNorm:
     """The shortest z with J z = y for J (m, n), y (m,); in the sense of least squares if there is none.
 

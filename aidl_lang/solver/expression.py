@@ -8,19 +8,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.records import record
 from aidl_lang.solver.operations import ARITY, VALUE, Floats, Op
 
 DENSE = 8
 """Nodes to a root up to which the whole tape is looked through for those below."""
 
 
-@dataclass(frozen=True)
+@record()
 class Tape:
     """m nodes, each of them after its operands.
 

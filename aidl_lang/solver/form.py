@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import reduce
 from typing import NoReturn, TypeVar
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver.expression import Tape, TapeBuilder
 from aidl_lang.solver.members import (
     Members,
@@ -48,7 +49,7 @@ CONSTRAINT = ("is", "let", "tag", "group", "placed", "weight", "scale", "whole",
 OBSERVABLE = ("is", "let", "group")
 
 
-@dataclass(frozen=True)
+@record()
 class Expected:
     """What a file says about the solution; None where it says nothing.
 
@@ -67,7 +68,7 @@ class Expected:
     redundant: frozenset[str] | None = None
 
 
-@dataclass(frozen=True)
+@record()
 class Case:
     """A problem, and what only its file knows.
 
@@ -114,7 +115,7 @@ def _distinct(pairs: list[tuple[str, object]]) -> dict[str, object]:
     return members
 
 
-@dataclass(frozen=True)
+@record()
 class _Unknown:
     """One unknown; the fields are those of `Problem`."""
 

@@ -9,15 +9,15 @@ common cancels, so that a frame which moves both moves nothing in their differen
 from __future__ import annotations
 
 from collections.abc import Container, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TypeAlias
 
+from aidl_lang.records import record
 from aidl_lang.solver.array_program import CANCELLED
 from aidl_lang.solver.expression import Tape
 from aidl_lang.solver.operations import BRANCHING, VALUE, Op
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Affine:
     """A combination of slots: the sum of `slope * value`, and a number."""
 
@@ -29,7 +29,7 @@ Form: TypeAlias = "float | Affine"
 """What a node became: its value if it depends on nothing, else a combination of slots."""
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Knot:
     """An operation that is not affine in what it is made of.
 

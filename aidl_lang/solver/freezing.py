@@ -11,11 +11,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TypeAlias
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver.array_freezing import TIE, ZERO, ArrayFreezing
 from aidl_lang.solver.array_program import ArrayProgram
 from aidl_lang.solver.assembly import NUMBER, SUM, Assembly, Recipe
@@ -35,7 +36,7 @@ Branch: TypeAlias = tuple[int, int]
 """A branching node and which of its branches is meant."""
 
 
-@dataclass
+@record(frozen=False)
 class Frozen:
     """What freezing makes: programs without common unknowns, and what does not depend on free unknowns.
 
@@ -134,7 +135,7 @@ def _freeze_to_arrays(
     return Frozen(programs, np.flatnonzero(~varying).tolist(), branches, steady)
 
 
-@dataclass
+@record(frozen=False)
 class Choice:
     """One choice of branches, at the values at which it was made."""
 

@@ -8,13 +8,14 @@ same rows again and again, does not use this.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.records import record
 from aidl_lang.solver import arrays
 from aidl_lang.solver.expression import Tape, below
 from aidl_lang.solver.operations import PARTIALS, VALUE, Bools, Floats, Ints, Op
@@ -44,7 +45,7 @@ FLAT = 1e-9
 """A slope below this is none: coordinates that cancel, as in the width of a box."""
 
 
-@dataclass(frozen=True)
+@record()
 class Sparse:
     """A matrix by its entries, row by row.
 

@@ -27,11 +27,11 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver import conflicts
 from aidl_lang.solver.forms import Affine
 from aidl_lang.solver.freezing import Freezer
@@ -86,7 +86,7 @@ def stage_name(tier: Tier) -> str:
     return f"{NAMES[kind]} {level}"
 
 
-@dataclass(frozen=True)
+@record()
 class Scope:
     """What takes part in one stage: the free unknowns and the indices of the hard constraints."""
 

@@ -10,10 +10,10 @@ more moved than its rows ask for, unless it is so large that the nearest point h
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver import batch, newton
 from aidl_lang.solver.array_freezing import ArrayFreezing
 from aidl_lang.solver.array_program import ArrayProgram
@@ -39,7 +39,7 @@ STANDING = KINDS["own"] * DEPTHS + 1
 """The first tier whose members give way only if they have to, and are told of then."""
 
 
-@dataclass(frozen=True)
+@record()
 class Stage:
     """What came of one stage, for each part (p,) for which it is clear: the group it belongs to, whether the
     stage solved it, how many unknowns were free and rows were considered.

@@ -8,17 +8,18 @@ first time. The answer is the one that a first solve gives, because no step of i
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver.naming import rides
 from aidl_lang.solver.operations import Bools, Floats, Ints, Op
 from aidl_lang.solver.problem import Problem, Settings, depths
 from aidl_lang.solver.solution import StageReport
 
 
-@dataclass
+@record(frozen=False)
 class Memory:
     """What one solve leaves for the next; a new one remembers nothing.
 

@@ -8,11 +8,12 @@ taken to the null space of J, lie in the same space, and span it when there are 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver.components import connected
 from aidl_lang.solver.gradients import Sparse
 from aidl_lang.solver.operations import Bools, Floats, Ints
@@ -27,7 +28,7 @@ SPARE = 8
 """Samples beyond the rank that make it clear."""
 
 
-@dataclass(frozen=True)
+@record()
 class Part:
     """Unknowns that hang together and can move, in `d` independent ways.
 
@@ -43,7 +44,7 @@ class Part:
     velocities: Floats
 
 
-@dataclass(frozen=True)
+@record()
 class Motions:
     """The parts that can move, without large ones that have too many motions to list; made when asked for.
 
@@ -76,7 +77,7 @@ class Motions:
         return Part(columns, rates, observables[order], velocities[order])
 
 
-@dataclass
+@record(frozen=False)
 class Mobility:
     """
     degrees    (g,) of each group by what it draws; -1 where it could not be counted
@@ -108,7 +109,7 @@ class Mobility:
         self.total = None
 
 
-@dataclass(frozen=True)
+@record()
 class Watch:
     """Who sees what: groups (p,) and rows (p,) of the observables' Jacobian, each pair once."""
 

@@ -6,16 +6,15 @@ name all groups around it, up to the one that holds the constraint.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver import expression
 from aidl_lang.solver.operations import Bools, Ints
 from aidl_lang.solver.problem import Problem
 
 
-@dataclass(frozen=True)
+@record()
 class Naming:
     """
     frames  (g,) whether a constraint around each group names it or something in it, so that its frame may

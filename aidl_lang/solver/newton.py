@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import Protocol
 
@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.cancelling import checkpoint
+from aidl_lang.records import record
 from aidl_lang.solver.linear import Matrix, damped_steps, with_slacks
 from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.quadratic import nearest
@@ -71,7 +72,7 @@ class End(Enum):
     """The iteration limit or the time limit came first."""
 
 
-@dataclass(frozen=True)
+@record()
 class Outcome:
     """`z` (k,) is the solution, or the best point reached; `violation` its greatest scaled violation.
 
@@ -89,7 +90,7 @@ class Outcome:
         return self.end is End.CONVERGED
 
 
-@dataclass
+@record(frozen=False)
 class Clock:
     """The time of one solve: that of the processor in this thread, so that the answer does not depend on what
     else the machine is doing.

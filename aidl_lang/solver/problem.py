@@ -7,7 +7,7 @@ constraints, and has a parent. A constraint held by a group mentions only unknow
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import StrEnum
 from functools import cached_property
 from typing import TypedDict
@@ -15,6 +15,7 @@ from typing import TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.records import record
 from aidl_lang.solver.expression import Tape
 
 Floats = NDArray[np.float64]
@@ -27,7 +28,7 @@ class Relation(StrEnum):
     """`expression <= 0`"""
 
 
-@dataclass(frozen=True)
+@record()
 class Row:
     """One scalar equation or inequality over the tape.
 
@@ -40,7 +41,7 @@ class Row:
     scale: float = 1.0
 
 
-@dataclass(frozen=True)
+@record()
 class Constraint:
     """One constraint as the author sees it; a coincidence of points is two rows.
 
@@ -58,7 +59,7 @@ class Constraint:
     inside: frozenset[int] = frozenset()
 
 
-@dataclass(frozen=True)
+@record()
 class Rows:
     """The rows of all constraints as arrays, those of one constraint side by side and in order.
 
@@ -74,7 +75,7 @@ class Rows:
     constraint: NDArray[np.int64]
 
 
-@dataclass(frozen=True)
+@record()
 class Problem:
     """n unknowns, g groups, c constraints with r rows.
 
@@ -217,7 +218,7 @@ def constraint_arrays(constraints: Sequence[Constraint]) -> ConstraintArrays:
     }
 
 
-@dataclass(frozen=True)
+@record()
 class Settings:
     """Limits that keep any problem from running away.
 

@@ -8,12 +8,13 @@ accumulated in reverse, row by row, along a schedule made once.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.records import record
 from aidl_lang.solver.array_program import CANCELLED
 from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.valuation import Compiled, run
@@ -22,7 +23,7 @@ Partial: TypeAlias = "tuple[Callable[..., tuple[float, ...]], tuple[int, ...], i
 """Function, slots of its operands, slot of the value, edges that take the slopes."""
 
 
-@dataclass(frozen=True)
+@record()
 class Sweep:
     """Reverse accumulation of one row: from its root to the unknowns in it. `merging` tells whether some slot
     is reached in several ways, whose slopes may cancel.
@@ -35,7 +36,7 @@ class Sweep:
     merging: bool
 
 
-@dataclass(frozen=True)
+@record()
 class AffineProgram:
     """Some rows that are affine functions of their free unknowns, with branches fixed.
 
@@ -64,7 +65,7 @@ class AffineProgram:
         return matrix
 
 
-@dataclass
+@record(frozen=False)
 class Program:
     """Some rows as functions of their free unknowns, with branches fixed.
 

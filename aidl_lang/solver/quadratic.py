@@ -11,11 +11,10 @@ leave when their multiplier would change sign. Rows that depend on each other ar
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.records import record
 from aidl_lang.solver.linear import Matrix, least_norm
 from aidl_lang.solver.operations import Floats
 
@@ -23,7 +22,7 @@ MANY = 20
 """Inequalities from which on they enter together."""
 
 
-@dataclass(frozen=True)
+@record()
 class Nearest:
     """
     point       (n,) the nearest point; in the sense of least squares if there is none

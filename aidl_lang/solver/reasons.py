@@ -8,8 +8,8 @@ it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from aidl_lang.records import record
 from aidl_lang.solver.conflicts import conflict
 from aidl_lang.solver.group import Scope
 from aidl_lang.solver.hierarchy import Hierarchy
@@ -18,7 +18,7 @@ from aidl_lang.solver.problem import Problem, Settings
 from aidl_lang.solver.solution import Giving
 
 
-@dataclass(frozen=True)
+@record()
 class Reason:
     """The unknowns that gave way, and the constraints, by index, that ask for it; without any one of
     them the others would have, if they are `minimal`. None are given where what gave way need not have.

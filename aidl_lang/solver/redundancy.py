@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver.dependence import Relation
 from aidl_lang.solver.expression import mentioned
 from aidl_lang.solver.gradients import Sparse, linearise
@@ -32,7 +32,7 @@ WIDER = 40
 """Rows beyond the combination that are tried one by one."""
 
 
-@dataclass(frozen=True)
+@record()
 class Equations:
     """Equations that hold, in order of preference; those without slope are left out.
 
@@ -46,7 +46,7 @@ class Equations:
     matrix: Sparse
 
 
-@dataclass(frozen=True)
+@record()
 class Redundancy:
     """A constraint that follows from others; without any one of them it would not."""
 

@@ -10,10 +10,10 @@ to an impossibility prove it (Farkas' lemma). The reverse is not true, unless th
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver.forms import Affine, Form, add_terms, applied, branched, combined, scaled
 from aidl_lang.solver.operations import BRANCHING, Bools, Floats, Op
 from aidl_lang.solver.problem import Relation, Row
@@ -34,7 +34,7 @@ MANY = 3000
 """Bounds and rows beyond which no proof is sought."""
 
 
-@dataclass(frozen=True)
+@record()
 class _Refutation:
     """Factors of rows, by number, what the rows add up to with them, and whether all of these are
     equations.

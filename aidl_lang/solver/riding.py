@@ -8,10 +8,9 @@ where it rides along, so that nothing is free to slide in a part of which nobody
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from aidl_lang.records import record
 from aidl_lang.solver.gradients import Sparse
 from aidl_lang.solver.naming import Naming, mentioned, naming
 from aidl_lang.solver.operations import Bools, Ints
@@ -21,7 +20,7 @@ UNMOVED = 1e-9
 """Slopes of unit rows along a shift that count as none."""
 
 
-@dataclass(frozen=True)
+@record()
 class Riding:
     """
     carried (g,) whether a group rides along: its frame does not move in the group around it

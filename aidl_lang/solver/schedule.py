@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.records import record
 from aidl_lang.solver import arrays
 from aidl_lang.solver.expression import Tape
 from aidl_lang.solver.operations import Floats, Ints, Op
 
 
-@dataclass(frozen=True)
+@record()
 class Batch:
     """Nodes (k,) of one operation on one level, and the nodes (k,) of each of their operands."""
 
@@ -23,7 +23,7 @@ class Batch:
     operands: tuple[Ints, ...]
 
 
-@dataclass(frozen=True)
+@record()
 class Graph:
     """A tape whose branching nodes may have become others: ops (m,), operands (m, 4), levels (m,)."""
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 
+from aidl_lang.records import record
 from aidl_lang.solver.problem import Floats
 
 
@@ -28,7 +29,7 @@ class Failure(StrEnum):
     TIMED_OUT = "timed out"
 
 
-@dataclass(frozen=True)
+@record()
 class Member:
     """A constraint in a conflict. `off` is its greatest violation where the search came nearest, in the units
     of its row.
@@ -38,7 +39,7 @@ class Member:
     off: float
 
 
-@dataclass(frozen=True)
+@record()
 class GroupFailure:
     """A group whose constraints could not be met.
 
@@ -76,7 +77,7 @@ class GroupFailure:
         return tuple(member.index for member in self.members)
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Giving:
     """What moved at a stage though it is dear: kept sizes, frames that stood where their content is exact,
     what rides along. The values (n,) were those before the stage; `reasons.reasons` finds who left no other
@@ -93,7 +94,7 @@ class Giving:
     values: Floats
 
 
-@dataclass(frozen=True)
+@record()
 class StageReport:
     """One stage tried while solving one group; for tracing and for tests of the order of stages."""
 
@@ -107,7 +108,7 @@ class StageReport:
     """The constraints that no search from the first guesses satisfied, where one from elsewhere did."""
 
 
-@dataclass(frozen=True)
+@record()
 class Solution:
     """
     values         (n,) solved unknowns

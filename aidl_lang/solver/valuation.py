@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
+from aidl_lang.records import record
 from aidl_lang.solver.expression import Tape, below
 from aidl_lang.solver.forms import Forms
 from aidl_lang.solver.operations import VALUE, Op
@@ -91,7 +91,7 @@ class Valuation:
         self._fresh.update(cone.roots)
 
 
-@dataclass(frozen=True)
+@record()
 class Cone:
     """What some roots are made of.
 

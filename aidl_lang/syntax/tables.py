@@ -8,16 +8,17 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 from pathlib import Path
 
+from aidl_lang.records import record
 from aidl_lang.resources import derived, resource
 
 DERIVED = "tables.json"
 
 
-@dataclass(frozen=True, slots=True)
+@record(slots=True)
 class Rule:
     """A production: `size` symbols become one `origin`.
 
@@ -33,7 +34,7 @@ class Rule:
     kept: tuple[int, ...]
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Tables:
     """An LALR(1) automaton. Terminals go by their text where it is fixed (`==`, `param`), else by their name;
     the symbols of the grammar's rules stand in angle brackets (`<param>`).

@@ -7,11 +7,12 @@ cannot accept and so reports.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 from typing import NamedTuple
 
 from aidl_lang.ast import Comment
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.tables import load_tables
 
@@ -28,7 +29,7 @@ class Token(NamedTuple):
     end: int
 
 
-@dataclass
+@record(frozen=False)
 class Tokens:
     """What a text consists of.
 

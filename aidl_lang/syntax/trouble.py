@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.automaton import Automaton
 from aidl_lang.syntax.tokens import END, Token
 from aidl_lang.syntax.words import STATEMENT_WORDS
 
 
-@dataclass(frozen=True)
+@record()
 class Repair:
     """Read on with the tokens `start:stop` exchanged for others."""
 
@@ -22,7 +22,7 @@ class Repair:
     tokens: tuple[Token, ...] = ()
 
 
-@dataclass(frozen=True)
+@record()
 class Problem:
     """`with_block`: where there is no repair, the block of the statement is left out as well."""
 
@@ -31,7 +31,7 @@ class Problem:
     with_block: bool = False
 
 
-@dataclass(frozen=True)
+@record()
 class Trouble:
     """Token number `position` cannot stand where the automaton is; `begin` is the first of its statement."""
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
+
+from aidl_lang.records import record
 
 Colour: TypeAlias = tuple[int, int, int]
 """Red, green and blue, from 0 to 255."""
@@ -27,7 +28,7 @@ class Cell(NamedTuple):
 Grid: TypeAlias = list[list[Cell]]
 
 
-@dataclass(frozen=True)
+@record()
 class Label:
     """A line of text in a grid, about `column` and `row`; `anchor` is start, middle or end."""
 

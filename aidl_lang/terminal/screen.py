@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import sys
-from dataclasses import dataclass
+
+from aidl_lang.records import record
 
 CELL = (8, 16)
 """Pixels of a cell where the terminal does not tell: rather few, so that nothing outgrows the screen."""
@@ -12,7 +13,7 @@ _PLAUSIBLE = (1.4, 3.0)
 """Height of a cell relative to its width; terminals that do not know tell anything."""
 
 
-@dataclass(frozen=True)
+@record()
 class Screen:
     """Columns and rows that a picture may take, and the pixels of a cell, across and down."""
 
@@ -21,7 +22,7 @@ class Screen:
     cell: tuple[int, int] = CELL
 
 
-@dataclass(frozen=True)
+@record()
 class Extent:
     """Columns and rows that a picture takes, and the pixels of a cell."""
 

@@ -6,7 +6,6 @@ import asyncio
 import os
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import pytest
 
@@ -14,9 +13,10 @@ from aidl_lang.agents.results import Page
 from aidl_lang.agents.tools import Tools
 from aidl_lang.agents.workers import Workers
 from aidl_lang.processes import MEMORY
+from aidl_lang.records import record
 
 
-@dataclass(frozen=True)
+@record()
 class Broken(Tools):
     """Fails in the ways that a program might."""
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 from aidl_lang.diagnostics import Diagnostic, Edit
 from aidl_lang.export import ExportError
 from aidl_lang.ide.refusing import CannotError
 from aidl_lang.ide.view import View
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile
 
 
-@dataclass(frozen=True)
+@record()
 class Action:
     """
     kind    `quickfix`, `refactor.extract`, `refactor.rewrite` or `source.fixAll`, as editors sort them

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import partial
 
 from aidl_lang import ast
@@ -22,6 +21,7 @@ from aidl_lang.ide.edits import indent_at, insert
 from aidl_lang.ide.nodes import structures_around
 from aidl_lang.ide.refusing import CannotError
 from aidl_lang.ide.view import View, edited
+from aidl_lang.records import record
 from aidl_lang.solved import Box, Motion, SolvedGeometry, SolvedModel, SolvedStructure
 
 _ALIGNED = 1e-6
@@ -33,7 +33,7 @@ _MOST = 4
 _WRITABLE = re.compile(r"[^\W\d]\w*(\[-?\d+\])*(\.[^\W\d]\w*(\[-?\d+\])*)*")
 
 
-@dataclass(frozen=True)
+@record()
 class _Thing:
     """Something that has a place: its path in the structure, and its box, which of a point is the point."""
 

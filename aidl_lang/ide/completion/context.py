@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
@@ -15,6 +14,7 @@ from aidl_lang.ide.completion.wanted import Around, Wanted
 from aidl_lang.ide.overloads import Reading, readings
 from aidl_lang.ide.site import PLACEHOLDER, Site
 from aidl_lang.ide.view import View
+from aidl_lang.records import record
 from aidl_lang.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind
 from aidl_lang.types import ANY, ListType, NumberType, TextType, Type
 from aidl_lang.units import LENGTH
@@ -33,7 +33,7 @@ class Use(Enum):
     CONSTANT = "constants"
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Known:
     """A name that may be used, and what is known of it."""
 
@@ -46,7 +46,7 @@ class Known:
         return bool(self.fact.reads)
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Context:
     """`call` is the call that the place is an argument of, with the number of the argument, the receiver
     counted.

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from aidl_lang.diagnostics import Edit
 from aidl_lang.ide.completion.item import MOST, Completion, nothing
 from aidl_lang.names import is_spelled_in
+from aidl_lang.records import record
 from aidl_lang.snippets import Snippet
 from aidl_lang.source import Span
 
 
-@dataclass(frozen=True)
+@record()
 class Draft:
     """`tier` is how likely it is, 0 the likeliest; of those that are alike the first drafted comes first."""
 

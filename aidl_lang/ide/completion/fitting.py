@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 
 from aidl_lang.checking.facts import Fact
+from aidl_lang.records import record
 from aidl_lang.reference.coverage import KINDS
 from aidl_lang.resources import resource
 from aidl_lang.types import GeometryType, ListType, NumberType, PointType, StructureType, Type
@@ -21,7 +21,7 @@ _ROW = re.compile(r"^\| \*\*(\w+)\*\* \|(.*)\|$")
 _MARK = "●"
 
 
-@dataclass(frozen=True)
+@record()
 class Form:
     """A way to state a constraint of `a`, or of `a` and `b`, and the kinds of things that it takes, `second`
     being "" where it takes one.

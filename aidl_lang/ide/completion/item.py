@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from aidl_lang.diagnostics import Edit
+from aidl_lang.records import record
 from aidl_lang.snippets import expanded
 from aidl_lang.source import Span
 
@@ -19,7 +20,7 @@ def nothing() -> str:
     return ""
 
 
-@dataclass(frozen=True)
+@record()
 class Completion:
     """
     label    what is shown, and what is compared with what has been typed

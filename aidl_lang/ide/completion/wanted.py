@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 from aidl_lang import ast
 from aidl_lang.checking.infer import Inference
+from aidl_lang.records import record
 from aidl_lang.types import (
     ANY,
     AnyType,
@@ -29,7 +29,7 @@ _PERHAPS = 3
 """How far what is not known is from what is wanted."""
 
 
-@dataclass(frozen=True)
+@record()
 class Wanted:
     """Types of which one is wanted, the likelier first; none where anything may stand. `name` is the
     parameter that it is for.
@@ -50,7 +50,7 @@ CONDITION = Wanted((TruthType(),))
 """What begins with a value as often as not: `a.radius >= 3`."""
 
 
-@dataclass(frozen=True)
+@record()
 class Around:
     """`argument` tells what is wanted of an argument of the call around."""
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property, lru_cache
 
 from aidl_lang.diagnostics import Edit
@@ -26,6 +26,7 @@ from aidl_lang.ide.guesses import Guess, guesses
 from aidl_lang.ide.refusing import Refusal
 from aidl_lang.ide.view import View, edited
 from aidl_lang.pipeline import Compiled
+from aidl_lang.records import record
 
 STEP = 0.1
 """Millimetres to which numbers are rounded that dragging writes."""
@@ -39,7 +40,7 @@ _NAMED = 2
 """Params that a hint names."""
 
 
-@dataclass(frozen=True)
+@record()
 class Handle:
     """A point that can be dragged.
 
@@ -54,7 +55,7 @@ class Handle:
     hint: str
 
 
-@dataclass(frozen=True)
+@record()
 class Dragged:
     """What comes of dragging a point: `view` is the program as it is shown meanwhile, `at` where the point
     came to. `edits` are tried, which takes longer than the rest.

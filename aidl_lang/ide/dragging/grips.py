@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from aidl_lang import expression as ex
 from aidl_lang.boxes import box_of, spelled_out
@@ -13,6 +13,7 @@ from aidl_lang.expression import Evaluator, Expression, Unknown
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.model import Geometry, Model, Structure, convert, own_geometry
 from aidl_lang.primitives import xy
+from aidl_lang.records import record
 from aidl_lang.values import PointVal, Value
 
 _FIELDS = {
@@ -28,7 +29,7 @@ MOST_PARTS = 16
 """Points of one shape; of a shape with more, only those that it is made by."""
 
 
-@dataclass(frozen=True)
+@record()
 class Grip:
     """A point of a model.
 

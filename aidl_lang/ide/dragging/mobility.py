@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from aidl_lang.geometry.curves import Vec
 from aidl_lang.ide.dragging.grips import Grip
 from aidl_lang.lower import Lowered, lower
 from aidl_lang.model import Comparison, Constraint, Geometry, Model, Structure
+from aidl_lang.records import record
 from aidl_lang.solver.components import components
 from aidl_lang.solver.gradients import linearise
 from aidl_lang.solver.problem import violations
@@ -42,7 +43,7 @@ AXES: tuple[Vec, Vec] = ((1.0, 0.0), (0.0, 1.0))
 _NOWHERE = Span(SourceFile("dragging", ""), 0, 0)
 
 
-@dataclass(frozen=True)
+@record()
 class Way:
     """How a point can be moved: along any of some directions (unit vectors, one or two), while another point,
     by its id, is to stay where it is, for else everything would be drawn along.
@@ -52,7 +53,7 @@ class Way:
     pin: str | None = None
 
 
-@dataclass(frozen=True)
+@record()
 class Ways:
     """
     own    points that a first guess moves against others

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from aidl_lang.ide.dragging.mobility import AXES, Way, pull, values_at
 from aidl_lang.lower import Lowered, lower
 from aidl_lang.model import Model
 from aidl_lang.pipeline import Compiled
+from aidl_lang.records import record
 from aidl_lang.solver import Settings, Solution, Status, solve
 
 _WEIGHT = 1e4
@@ -27,7 +28,7 @@ _THERE = 1e-6
 _SETTINGS = Settings(tolerance=1e-10, seconds=1.0, explain=False)
 
 
-@dataclass(frozen=True)
+@record()
 class Pull:
     """
     way      how the point can go, and `pin` the point that stays meanwhile

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from aidl_lang import ast
 from aidl_lang.checking.facts import Fact
@@ -25,6 +25,7 @@ from aidl_lang.ide.meaning import Mention, chosen, mention_at, parameter_node
 from aidl_lang.ide.nodes import around, token_at
 from aidl_lang.ide.site import Where, spot_at
 from aidl_lang.ide.view import View
+from aidl_lang.records import record
 from aidl_lang.reference.collect import reference
 from aidl_lang.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.source import Span
@@ -45,7 +46,7 @@ _VALUES = frozenset(
 )
 
 
-@dataclass(frozen=True)
+@record()
 class Hover:
     """`text` is Markdown, about what stands at `span`."""
 

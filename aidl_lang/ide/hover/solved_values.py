@@ -7,7 +7,6 @@ again in the scope that each of these had, and evaluated at the solved values of
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
 
@@ -24,6 +23,7 @@ from aidl_lang.expression import Evaluator, Unknown
 from aidl_lang.ide.view import View
 from aidl_lang.model import Geometry, Model, Structure, own_geometry
 from aidl_lang.pipeline import Compiled
+from aidl_lang.records import record
 from aidl_lang.values import Array, ListVal, Nothing, Num, PointVal, Value, members
 
 MOST = 4
@@ -37,7 +37,7 @@ _STEP = 1e-4
 _UNMOVED = 1e-3
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Found:
     """A value where it was built: `label` is which instance or turn, "" where there is but one."""
 
@@ -46,7 +46,7 @@ class Found:
     env: Env
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Solved:
     """The outcome of a view's own text."""
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds, bounds
@@ -13,6 +12,7 @@ from aidl_lang.geometry.network import union_bounds
 from aidl_lang.ide.preview.places import Places
 from aidl_lang.ide.preview.values import Element
 from aidl_lang.ide.view import View
+from aidl_lang.records import record
 from aidl_lang.remedies import short
 from aidl_lang.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.source import SourceFile, Span
@@ -21,7 +21,7 @@ MOST_PARTS = 40
 """Parts beyond this are not told apart: a gear has hundreds, and a text a curve for each stroke."""
 
 
-@dataclass(frozen=True)
+@record()
 class Drawn:
     """An element, what it is in the model, and the structure that it is in."""
 

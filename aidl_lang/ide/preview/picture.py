@@ -8,7 +8,7 @@ top is what is pointed at; within a body the large come before the small.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from aidl_lang.cancelling import checkpoint
 from aidl_lang.export import Job, Options
@@ -22,6 +22,7 @@ from aidl_lang.geometry.evaluate import bounds, is_finite
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.ide.preview.elements import Drawn, Elements, curves_of, point_of
 from aidl_lang.pipeline import Compiled
+from aidl_lang.records import record
 from aidl_lang.solved import SolvedGeometry, SolvedStructure
 
 POINT = 0.006
@@ -52,7 +53,7 @@ def _numbered(group: Group, elements: Elements) -> Group:
     return replace(group, attributes={**group.attributes, "data-element": str(number)})
 
 
-@dataclass(frozen=True)
+@record()
 class Hit:
     """A shape that an element is pointed at by: `path` is SVG path data, `extent` the larger side."""
 

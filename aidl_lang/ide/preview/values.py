@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from aidl_lang.diagnostics import Fix
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.ide.dragging import Handle
+from aidl_lang.records import record
 from aidl_lang.source import Span
 
 FREEDOM = "freedom"
@@ -16,7 +15,7 @@ LAYERS = ("names", "points", "bbox", "constraints", "dof", "plan", "dimensions")
 """What may be drawn over the picture."""
 
 
-@dataclass(frozen=True)
+@record()
 class Element:
     """Something that is drawn, by the number that it has in the picture.
 
@@ -33,7 +32,7 @@ class Element:
     hint: str
 
 
-@dataclass(frozen=True)
+@record()
 class Slider:
     """A `param`: `span` is the place of its value; `editable` says whether that can be written."""
 
@@ -52,7 +51,7 @@ class Slider:
     editable: bool
 
 
-@dataclass(frozen=True)
+@record()
 class Problem:
     """A diagnostic with the numbers of the elements that it is about, and points of the drawing."""
 
@@ -66,7 +65,7 @@ class Problem:
     fixes: tuple[Fix, ...]
 
 
-@dataclass(frozen=True)
+@record()
 class Party:
     """A constraint of a conflict; `off` by how much it is missed, None where that has no value."""
 
@@ -76,19 +75,19 @@ class Party:
     off: float | None
 
 
-@dataclass(frozen=True)
+@record()
 class Conflict:
     headline: str
     parties: tuple[Party, ...]
 
 
-@dataclass(frozen=True)
+@record()
 class Arrow:
     start: Vec
     end: Vec
 
 
-@dataclass(frozen=True)
+@record()
 class Turn:
     """An arc about `center`; angles in degrees, counter-clockwise."""
 
@@ -98,7 +97,7 @@ class Turn:
     sweep: float
 
 
-@dataclass(frozen=True)
+@record()
 class Way:
     """How some elements can still move: in words, and drawn."""
 
@@ -108,7 +107,7 @@ class Way:
     turns: tuple[Turn, ...]
 
 
-@dataclass(frozen=True)
+@record()
 class Preview:
     """
     status  `solved`, `partial`, `failed` or `wrong`: of the text as it is now, as are knobs and problems

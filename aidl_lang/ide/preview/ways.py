@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from aidl_lang.expression import Evaluator, Expression, Unknown, add, sub
 from aidl_lang.geometry.curves import Vec
@@ -20,6 +19,7 @@ from aidl_lang.ide.preview.values import Arrow, Turn, Way
 from aidl_lang.lower import seen
 from aidl_lang.model import Model, Structure, convert
 from aidl_lang.pipeline import Compiled
+from aidl_lang.records import record
 from aidl_lang.solved import Motion
 
 MOST = 40
@@ -127,7 +127,7 @@ def _points(structure: Structure) -> Iterator[tuple[str, Expression, Expression]
             yield path, sub(x, numbers[0]), y
 
 
-@dataclass(frozen=True)
+@record()
 class _Thing:
     """Some points that move, of one thing with a box. `velocity` is their mean; `spin` radians, about the
     `middle`, in the same time.

@@ -7,9 +7,10 @@ to calls and units to millimetres and degrees; operands stand in a fixed order w
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from aidl_lang import ast
+from aidl_lang.records import record
 from aidl_lang.units import UNITS
 
 Path = tuple[str, ...]
@@ -37,7 +38,7 @@ def own_path(name: ast.Identifier, indices: Collection[ast.Expression]) -> Path:
     return (name.text, *(i for i in written if i is not None)) if all(written) else (name.text,)
 
 
-@dataclass(frozen=True)
+@record()
 class Reader:
     """Makes keys of the expressions of one structure.
 

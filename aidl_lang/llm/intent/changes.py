@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 
 from aidl_lang import ast
 from aidl_lang.llm.intent.canonical import Key, Path, names_in, shape, translated
 from aidl_lang.llm.intent.inventory import STATED, Inventory, Item, Kind, unnumbered
 from aidl_lang.llm.intent.matching import match_things
+from aidl_lang.records import record
 
 
 class Fate(StrEnum):
@@ -23,7 +23,7 @@ class Fate(StrEnum):
     GONE = "gone"
 
 
-@dataclass(frozen=True)
+@record()
 class Changes:
     """
     paths  things of the earlier program → where they are in the later one
@@ -106,7 +106,7 @@ def _of_param(item: Item, after: Inventory, paths: Mapping[Path, Path]) -> tuple
     return Fate.GONE, None
 
 
-@dataclass(frozen=True)
+@record()
 class _Read:
     """An item as it would read in the later program."""
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
 from aidl_lang import ast
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.llm.intent.canonical import Key, Path, Reader, shape, things_in
+from aidl_lang.records import record
 from aidl_lang.resolving.resolution import Resolution
 from aidl_lang.source import SourceFile, Span
 
@@ -29,7 +29,7 @@ STATED = frozenset({Kind.CONSTRAINT, Kind.ROTATION, Kind.OPERATION, Kind.ASSERT}
 """What says something of things; the others are things, and parameters."""
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Step:
     """A block between a structure's body and a statement in it: a loop, a branch, `constrain { }`.
 
@@ -43,7 +43,7 @@ class Step:
     key: Key
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Item:
     """Something a program means to have. Items compare by identity.
 
@@ -95,7 +95,7 @@ class Item:
 CONSTRAIN: Key = ("constrain",)
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Inventory:
     """
     diagnostics  what was said of places in the program

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from aidl_lang.llm.intent.canonical import Path, names_in
 from aidl_lang.llm.intent.changes import Changes, Fate, compare, strength
@@ -13,6 +13,7 @@ from aidl_lang.llm.intent.probing import Prober, State, new_errors, stands
 from aidl_lang.llm.intent.taking import inventory
 from aidl_lang.llm.intent.wording import named
 from aidl_lang.pipeline import Compiled, Settings, front
+from aidl_lang.records import record
 from aidl_lang.source import SourceFile
 from aidl_lang.world import World
 
@@ -27,7 +28,7 @@ _ORDER = tuple(Kind)
 """In which losses are put back: what is spoken of before what speaks of it."""
 
 
-@dataclass(frozen=True)
+@record()
 class Restored:
     """A program with what fits back into it, and the phrases of what was put back."""
 
@@ -35,7 +36,7 @@ class Restored:
     items: tuple[str, ...]
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class _Noted:
     """A program of the conversation, and the items for which it is the last that had them; for each, what
     stood in its place in the next program, if anything did.

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from aidl_lang.llm.intent.changes import Fate
 from aidl_lang.llm.intent.inventory import Inventory, Item, Kind
 from aidl_lang.llm.intent.placing import dotted
 from aidl_lang.llm.intent.probing import UNTRIED, Finding
+from aidl_lang.records import record
 
 
-@dataclass(frozen=True, eq=False)
+@record(eq=False)
 class Loss:
     """Something that an earlier program meant to have and the present one lacks.
 

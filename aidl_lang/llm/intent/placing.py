@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from aidl_lang import ast
 from aidl_lang.expression_printer import format_expression
 from aidl_lang.llm.intent.canonical import Key, Path
 from aidl_lang.llm.intent.changes import Changes, Fate
 from aidl_lang.llm.intent.inventory import CONSTRAIN, Item, Kind, Step
+from aidl_lang.records import record
 from aidl_lang.source import Span
 
 _INDENT = "    "
 
 
-@dataclass(frozen=True)
+@record()
 class PutBack:
     """The text with something in it again, which stands at `start:end`."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 
 from aidl_lang.diagnostics import Diagnostic
@@ -14,6 +14,7 @@ from aidl_lang.llm.intent.changes import Changes, Fate
 from aidl_lang.llm.intent.inventory import Inventory, Item, Kind
 from aidl_lang.llm.intent.placing import put_back
 from aidl_lang.pipeline import Compiled, Settings, compile
+from aidl_lang.records import record
 from aidl_lang.solved import ConstraintReport
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.world import World
@@ -39,7 +40,7 @@ class State(StrEnum):
     MENDED = "mended"  # it was in a conflict, and what is in its place was changed to hold
 
 
-@dataclass(frozen=True)
+@record()
 class Finding:
     """
     parties  the statements that something lost conflicts with, as they are written
@@ -54,7 +55,7 @@ class Finding:
 UNTRIED = Finding(State.UNTRIED)
 
 
-@dataclass(frozen=True)
+@record()
 class Trial:
     """A program with something put back, compiled."""
 

@@ -9,13 +9,14 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from aidl_lang import ast
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.expression_printer import ExpressionPrinter, format_expression
 from aidl_lang.llm.intent.canonical import Key, Path, Reader, names_in, own_path
 from aidl_lang.llm.intent.inventory import CONSTRAIN, Inventory, Item, Kind, Step
+from aidl_lang.records import record
 from aidl_lang.resolving.resolution import Resolution
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.solved import SolvedModel
@@ -73,7 +74,7 @@ def _marked(item: Item, diagnostics: Sequence[Diagnostic], clashing: Sequence[Sp
     return replace(item, wrong=wrong, may_go=may_go, may_bend=may_bend, clashes=clashes)
 
 
-@dataclass(frozen=True)
+@record()
 class _Place:
     """Where a statement stands; `loops` are the variables around it, and how deep each is."""
 

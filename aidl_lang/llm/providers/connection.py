@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from urllib.parse import urlsplit
 
 from aidl_lang.llm.messages import ProviderError, Usage
+from aidl_lang.records import record
 
 OPENAI, ANTHROPIC, EXEC = "openai", "anthropic", "exec:"
 DEFAULT_URL = {OPENAI: "https://api.openai.com/v1", ANTHROPIC: "https://api.anthropic.com"}
@@ -20,7 +21,7 @@ _WAYS = (
 )
 
 
-@dataclass(frozen=True)
+@record()
 class Price:
     """Dollars per million tokens."""
 
@@ -41,7 +42,7 @@ class Price:
         return (usage.input * self.input + usage.output * self.output) / 1e6
 
 
-@dataclass(frozen=True)
+@record()
 class Connection:
     """What was said about the model to ask; what is empty is left to the environment."""
 

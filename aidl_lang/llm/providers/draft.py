@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from aidl_lang.llm.messages import Finish, ProviderError, Reply, Usage
 from aidl_lang.llm.providers.connection import Price
+from aidl_lang.records import record
 
 MAX_TEXT = 1_000_000
 """Characters; a program has thousands. A model that has lost itself would go on for ever."""
@@ -16,7 +17,7 @@ _LINE = 300
 UNKNOWN = Usage(None, None, None)
 
 
-@dataclass
+@record(frozen=False)
 class Draft:
     """What has come so far; `finish` stays None until the reply has said how it ended."""
 
