@@ -1,6 +1,7 @@
 """The command `aidl`: one module per verb, and here what they share at the door.
 
-Whatever costs time to import is imported inside the verb that needs it, so that `aidl --help` is quick.
+Only the verb that is asked for is loaded, and what costs time to import is imported inside it where it is
+needed, so that `aidl --help` is quick.
 Exit codes: 0 done, 1 the program is wrong or does not solve, 2 wrong use, 130 interrupted.
 """
 
@@ -10,57 +11,38 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from io import TextIOWrapper
 
-from aidl_lang.cli import (
-    check,
-    compile,
-    diff,
-    doc,
-    eval,
-    explain,
-    fmt,
-    generate,
-    grammar,
-    guide,
-    lsp,
-    mcp,
-    measure,
-    new,
-    params,
-    preview,
-    report,
-    show,
-    tool_schema,
-    watch,
-)
+from aidl_lang.cli import report
 from aidl_lang.drawing_time import TooLongError
 from aidl_lang.version import __version__
 
 INTERRUPTED = 130
 BROKEN_PIPE = 141
 
-_VERBS = (
-    compile,
-    check,
-    show,
-    measure,
-    diff,
-    fmt,
-    params,
-    doc,
-    guide,
-    grammar,
-    explain,
-    watch,
-    preview,
-    new,
-    generate,
-    lsp,
-    mcp,
-    tool_schema,
-    eval,
-)
+_VERBS = {
+    "compile": "draw a program",
+    "check": "find mistakes, write nothing",
+    "show": "show the drawing in the terminal",
+    "measure": "tell areas, walls, gaps and masses",
+    "diff": "tell what differs between two versions",
+    "fmt": "format programs",
+    "params": "list what -D can set",
+    "doc": "tell what a name is, with an example",
+    "guide": "print the language on a few pages",
+    "grammar": "write the grammar for constrained decoding",
+    "explain": "tell what a code means",
+    "watch": "draw again on every save",
+    "preview": "show a program in the browser, and change it there",
+    "new": "write a starter program",
+    "generate": "have a model write a program",
+    "lsp": "serve editors",
+    "mcp": "serve the tools to agents",
+    "tool-schema": "print the tools for agents as JSON",
+    "eval": "measure how models do, over prompts and runs",
+}
+"""In the order of the help; the options of a verb are in the module of its name."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -69,7 +51,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     _keep_writing()
     try:
-        arguments = _parser().parse_args(argv)
+        words = sys.argv[1:] if argv is None else argv
+        arguments = _parser(words).parse_args(words)
         code: int = arguments.run(arguments)
         sys.stdout.flush()
     except report.UseError as reason:
@@ -86,7 +69,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     return code
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
+    """The parser for a command line; it has the options of the verb that is in it."""
     parser = argparse.ArgumentParser(
         prog="aidl",
         description="AIDL: a text language for 2D CAD. Say relationships, get a constraint-solved drawing.",
@@ -95,8 +79,12 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"aidl {__version__}")
     verbs = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
-    for verb in _VERBS:
-        verb.register(verbs)
+    for verb in words[:1] if words and words[0] in _VERBS else _VERBS:
+        own = verbs.add_parser(verb, help=_VERBS[verb])
+        if verb in words:
+            module = import_module(f"aidl_lang.cli.{verb.replace('-', '_')}")
+            own.description = module.__doc__
+            module.register(own)
     return parser
 
 

@@ -31,8 +31,7 @@ class _Checked:
     sweep: Sweep | None = None
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("check", help="find mistakes, write nothing", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - reads standard input")
     parser.add_argument(
         "--fix", action="store_true", help="write the program with the fixes applied that are sure"

@@ -17,8 +17,7 @@ _MOST_MOTIONS = 6
 """Lines about what can still move."""
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("compile", help="draw a program", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     add_drawing(parser)
     add_variant(parser)

@@ -21,8 +21,7 @@ LONGEST = 20.0
 """Seconds of the processor's time for the picture of two versions."""
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("diff", help="tell what differs between two versions", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("before", metavar="BEFORE", help="a program; - reads standard input")
     parser.add_argument(
         "after", nargs="?", metavar="AFTER", help="another; without it BEFORE with the params of --to"

@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from aidl_lang.render import Style
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("doc", help="tell what a name is, with an example", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", nargs="?", metavar="NAME", help="as rectangle; without it, all are listed")
     parser.add_argument("--json", action="store_true", help="print as JSON")
     parser.add_argument("--picture", metavar="OUT.svg", help="draw the example of NAME; - is standard output")

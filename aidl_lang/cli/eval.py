@@ -19,10 +19,7 @@ _VARIANTS = ("full", "no-hierarchy", "no-constraints", "openscad")
 _OPENSCAD = "openscad"
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser(
-        "eval", help="measure how models do, over prompts and runs", description=__doc__
-    )
+def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", default="evaluation", metavar="DIR", help="folder of the results (default: evaluation)"
     )

@@ -7,8 +7,7 @@ import argparse
 from aidl_lang.cli.report import UseError
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("explain", help="tell what a code means", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("code", nargs="?", metavar="CODE", help="as E0301; without it, all are listed")
     parser.set_defaults(run=run)
 

@@ -9,8 +9,7 @@ from aidl_lang.cli.report import UseError, exit_code, say, show
 from aidl_lang.source import SourceFile
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("fmt", help="format programs", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - is standard input and output")
     parser.add_argument(
         "--check", action="store_true", help="write nothing; exit with 1 if a file would change"

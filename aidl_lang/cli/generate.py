@@ -27,8 +27,7 @@ _CODES = 4
 """Codes of errors that the line of an attempt names."""
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("generate", help="have a model write a program", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("request", metavar="REQUEST", help="what to draw, or with --edit what to change")
     parser.add_argument(
         "-o",

@@ -9,10 +9,7 @@ from aidl_lang.cli.report import UseError, say
 from aidl_lang.grammars import FENCED_FORMATS, FORMATS
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser(
-        "grammar", help="write the grammar for constrained decoding", description=__doc__
-    )
+def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--format", default="lark", metavar="FORMAT", help=f"{', '.join(FORMATS)} (default: lark)"
     )

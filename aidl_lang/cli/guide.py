@@ -7,8 +7,7 @@ import argparse
 from aidl_lang.cli.options import add_variant
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("guide", help="print the language on a few pages", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument("--full", action="store_true", help="with the whole reference after it")
     add_variant(kind)

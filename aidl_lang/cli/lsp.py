@@ -11,8 +11,7 @@ from aidl_lang.cli.report import UseError, say
 _CODE = "E0954"
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("lsp", help="serve editors", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--tcp",
         type=_address,

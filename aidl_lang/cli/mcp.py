@@ -10,8 +10,7 @@ from aidl_lang.cli import listening
 from aidl_lang.cli.report import UseError, say
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("mcp", help="serve the tools to agents", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--root", metavar="DIR", help="let programs import files below this folder (default: no files at all)"
     )

@@ -20,8 +20,7 @@ _MOST_PAIRS = 20
 _NOTHING = "–"
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("measure", help="tell areas, walls, gaps and masses", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     parser.add_argument(
         "paths", nargs="*", metavar="PATH", help="a structure or a geometry (default: each body)"

@@ -32,8 +32,7 @@ solid {name} {{
 """
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("new", help="write a starter program", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", metavar="NAME", help="what to make: NAME.aidl, never over an existing file")
     parser.set_defaults(run=run)
 

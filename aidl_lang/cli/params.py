@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from aidl_lang.model import Knob
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("params", help="list what -D can set", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     parser.add_argument("--json", action="store_true", help="print the list as JSON")
     parser.set_defaults(run=run)

@@ -13,13 +13,10 @@ from aidl_lang.cli.report import UseError, say
 _NEEDED = ("starlette", "uvicorn", "websockets")
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser(
-        "preview",
-        help="show a program in the browser, and change it there",
-        description=__doc__,
-        epilog="Sliders and points that are dragged change the text of the file. Only this machine, and who "
-        "has the address that is printed, can see it.",
+def register(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = (
+        "Sliders and points that are dragged change the text of the file. Only this machine, and who has the "
+        "address that is printed, can see it."
     )
     add_program(parser)
     parser.add_argument(

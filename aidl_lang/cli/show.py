@@ -25,8 +25,7 @@ _SAMPLES = 4
 """Pixels drawn for each that is shown, across and down."""
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("show", help="show the drawing in the terminal", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     add_params(parser)
     add_look(parser)

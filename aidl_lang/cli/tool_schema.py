@@ -7,8 +7,7 @@ import argparse
 _STYLES = ("openai", "anthropic", "mcp")
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser("tool-schema", help="print the tools for agents as JSON", description=__doc__)
+def register(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--style",
         choices=_STYLES,

@@ -16,12 +16,9 @@ if TYPE_CHECKING:
     from aidl_lang.pipeline import Memory
 
 
-def register(verbs: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    parser = verbs.add_parser(
-        "watch",
-        help="draw again on every save",
-        description=__doc__,
-        epilog="All programs in its folder and below are watched, so that a change to an import counts too.",
+def register(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = (
+        "All programs in its folder and below are watched, so that a change to an import counts too."
     )
     add_program(parser)
     add_drawing(parser)
