@@ -61,6 +61,18 @@ def lower(model: Model) -> Lowered:
     return _Lowering(model).run()
 
 
+def preference(lowered: Lowered) -> list[int]:
+    """The constraints in the order in which they are taken for granted: unwritten ones, then as written."""
+
+    def place(index: int) -> tuple[bool, str, int, int]:
+        stated = lowered.stated[index]
+        if stated is None:
+            return (False, "", 0, index)
+        return (stated.wording is not None, stated.span.source.name, stated.span.start, index)
+
+    return sorted(range(len(lowered.stated)), key=place)
+
+
 class _Lowering:
     def __init__(self, model: Model) -> None:
         self.model = model

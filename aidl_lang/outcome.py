@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from aidl_lang.boxes import SIDES
 from aidl_lang.building.arithmetic import differences, givens
@@ -12,22 +13,21 @@ from aidl_lang.building.conditions import RELATIONS, holds
 from aidl_lang.building.wording import Wording
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.expression import Evaluator, nodes
-from aidl_lang.failures import Explanation, measured_in
-from aidl_lang.geometry.boolean import clearance, overlap_area
 from aidl_lang.geometry.drawing import Drawing, draw
 from aidl_lang.geometry.evaluate import bounds, inward
 from aidl_lang.geometry.measures import area, perimeter
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Region
-from aidl_lang.giving import GaveWay, giving_notes
 from aidl_lang.lower import Lowered
 from aidl_lang.model import Assertion, Comparison, Condition, Geometry, Measurement, Model, Structure
-from aidl_lang.remedies import short
-from aidl_lang.repetitions import repetition_notes
 from aidl_lang.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.solver.analysis import Freedom
 from aidl_lang.solver.solution import Solution, Status
 from aidl_lang.source import Span
+
+if TYPE_CHECKING:
+    from aidl_lang.failures import Explanation
+    from aidl_lang.giving import GaveWay
 
 _TOLERANCE = 1e-6
 """How far an assertion may be off, relative to what it compares (and never less than this in mm)."""
@@ -46,9 +46,16 @@ def solution_notes(
     found = [failure.diagnostic for failure in failures]
     if solution.status is not Status.SOLVED:
         return found
-    found += giving_notes(given, model)
+    if given:
+        from aidl_lang.giving import giving_notes
+
+        found += giving_notes(given, model)
     found += _wishes(lowered, solution)
-    return found + repetition_notes(lowered, solution, freedom)
+    if freedom.redundant or freedom.undecided or freedom.unclear:
+        from aidl_lang.repetitions import repetition_notes
+
+        found += repetition_notes(lowered, solution, freedom)
+    return found
 
 
 def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
@@ -56,6 +63,8 @@ def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
     for stated, off, is_met in zip(lowered.stated, solution.residuals, solution.satisfied, strict=True):
         if stated is None or stated.weight is None or is_met:
             continue
+        from aidl_lang.failures import measured_in
+
         where = f" [{stated.label}]" if stated.label else ""
         yield Diagnostic(
             "N0605",
@@ -160,12 +169,16 @@ def _false_parts(
 
 
 def _compared(comparison: Comparison, evaluate: Callable[..., float]) -> str:
+    from aidl_lang.remedies import short
+
     left, right = evaluate(comparison.left), evaluate(comparison.right)
     return f"{short(left)} is not {comparison.relation} {short(right)}"
 
 
 def measured(kind: str, regions: Sequence[Region], size: float) -> float:
     """A measurement of what is drawn; `size` is that of the drawing."""
+    from aidl_lang.geometry.boolean import clearance, overlap_area
+
     match kind:
         case "area":
             return area(regions[0])

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang import ast, parser
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.giving import GaveWay
     from aidl_lang.lower import Lowered
+    from aidl_lang.otherwise import Otherwise
     from aidl_lang.solved import Dimension, SolvedModel
     from aidl_lang.solver.analysis import Freedom
     from aidl_lang.solver.solution import Solution
@@ -338,6 +339,51 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
     )
 
 
+@record()
+class _Troubles:
+    """What gave way in a solution, why it failed, and what holds elsewhere than the first guesses have it."""
+
+    given: tuple[GaveWay, ...] = ()
+    failures: Sequence[Explanation] = ()
+    elsewhere: Sequence[Diagnostic] = ()
+
+
+def _is_troubled(solution: Solution) -> bool:
+    """Whether something failed, gave way, or was found in another place only."""
+    return bool(solution.failures) or any(s.gave is not None or s.despite for s in solution.stages)
+
+
+def _explained(
+    built: Interpretation,
+    lowered: Lowered,
+    solution: Solution,
+    other: Otherwise | None,
+    settings: Settings,
+    tried: Trials,
+    watch: Stopwatch,
+) -> _Troubles:
+    from aidl_lang.failures import explained
+    from aidl_lang.giving import gave_way
+    from aidl_lang.otherwise import elsewhere_notes
+
+    with watch("reasons"):
+        given = gave_way(lowered, solution, settings.solving)
+    failures = explained(lowered, solution, tried)
+    elsewhere = list(elsewhere_notes(built.model, lowered, solution, other, tried))
+    return _Troubles(given, failures, elsewhere)
+
+
+def _follows(lowered: Lowered, solution: Solution) -> Callable[[Span], bool]:
+    """What tells whether what is stated in a place follows from the rest, loaded when it is asked."""
+
+    def is_told(span: Span) -> bool:
+        from aidl_lang.repetitions import follows
+
+        return follows(lowered, solution, span)
+
+    return is_told
+
+
 def _finish(
     built: Interpretation,
     diagnostics: list[Diagnostic],
@@ -348,44 +394,48 @@ def _finish(
     memory: Memory | None,
     tries: _Tries,
 ) -> Compiled:
-    from aidl_lang.failures import explained
-    from aidl_lang.giving import gave_way, refused
-    from aidl_lang.lower import lower
-    from aidl_lang.otherwise import elsewhere_notes, otherwise
-    from aidl_lang.repetitions import follows, preference
+    from aidl_lang.lower import lower, preference
     from aidl_lang.solver import Status, solve
     from aidl_lang.solver.analysis import analyse
-    from aidl_lang.verifying import verified
 
+    other: Otherwise | None = None
     with watch("lower"):
         lowered = lower(built.model)
     with watch("solve"):
         solution = solve(lowered.problem, settings.solving, memory)
-        other, solution = otherwise(built, lowered, solution, tries.built, settings.solving)
+        if _is_troubled(solution):
+            from aidl_lang.otherwise import otherwise
+
+            other, solution = otherwise(built, lowered, solution, tries.built, settings.solving)
     if other is not None:
         built, lowered, solution = other.built, other.lowered, other.solution
     with watch("freedom"):
         freedom = analyse(lowered.problem, solution, preference(lowered))
-    with watch("reasons"):
-        given = gave_way(lowered, solution, settings.solving)
-    tried = tries.trials(lowered, solution)
-    failures = explained(lowered, solution, tried)
-    elsewhere = list(elsewhere_notes(built.model, lowered, solution, other, tried))
+    tried = cache(partial(tries.trials, lowered, solution))
+    troubles = _Troubles()
+    if other is not None or _is_troubled(solution):
+        troubles = _explained(built, lowered, solution, other, settings, tried(), watch)
     try:
         with within(settings.drawing, "drawing"):
             model, evaluator, drawing, found, notes = _drawn(
-                built, lowered, solution, freedom, given, failures, watch
+                built, lowered, solution, freedom, troubles, watch
             )
     except TooLongError as reason:
         return Compiled("wrong", ordered([*diagnostics, reason.diagnostic]), watch.seconds, known)
-    found = list(map(refused, found)) if settings.strict else found
+    if settings.strict and troubles.given:
+        from aidl_lang.giving import refused
+
+        found = list(map(refused, found))
     if solution.status is not Status.SOLVED:
         notes = []  # the parts are not where they belong
-    notes = list(_beside([*elsewhere, *notes], found))
+    notes = list(_beside([*troubles.elsewhere, *notes], found))
     told = adapted([*found, *notes], settings.variant)
     if settings.solving.explain:
         with watch("fixes"):
-            told = verified(told, [*diagnostics, *told], tried)
+            if any(d.fix is not None for d in told):
+                from aidl_lang.verifying import verified
+
+                told = verified(told, [*diagnostics, *told], tried())
             told = tries.answered(told, [*diagnostics, *told], built.model)
     everything = ordered([*diagnostics, *told])
     stages = tuple((lowered.groups[stage.group], stage) for stage in solution.stages)
@@ -398,8 +448,8 @@ def _finish(
         drawing,
         show,
         stages,
-        _conflicts(failures),
-        partial(follows, lowered, solution),
+        _conflicts(troubles.failures),
+        _follows(lowered, solution),
         built.model,
         evaluator,
         settings.drawing,
@@ -411,18 +461,19 @@ def _drawn(
     lowered: Lowered,
     solution: Solution,
     freedom: Freedom,
-    given: tuple[GaveWay, ...],
-    failures: Sequence[Explanation],
+    troubles: _Troubles,
     watch: Stopwatch,
 ) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic], list[Diagnostic]]:
     """The solved model and its drawing; what there is to say of the solution, and of what is drawn."""
-    from aidl_lang.giving import explained
     from aidl_lang.outcome import assertion_notes, solution_notes
 
     model, evaluator, drawing, notes = _pictured(built.model, lowered, solution, freedom, watch)
     with watch("asserts"):
-        model = explained(model, given)
-        found = solution_notes(lowered, solution, freedom, model, given, failures)
+        if troubles.given:
+            from aidl_lang.giving import explained
+
+            model = explained(model, troubles.given)
+        found = solution_notes(lowered, solution, freedom, model, troubles.given, troubles.failures)
         is_solved = solution.status.value == "solved"
         found += assertion_notes(built.model, model, drawing, evaluator, solved_fully=is_solved)
     return model, evaluator, drawing, found, notes

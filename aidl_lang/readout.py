@@ -14,7 +14,6 @@ from aidl_lang.building.scopes import ParamBinding, PassedBinding, Scope, VarBin
 from aidl_lang.cancelling import checkpoint
 from aidl_lang.drawing_time import blaming
 from aidl_lang.expression import DEGREE, Evaluator, Unknown
-from aidl_lang.freedom import motions
 from aidl_lang.geometry import curves
 from aidl_lang.geometry.curves import Curve, Vec
 from aidl_lang.geometry.evaluate import bounds
@@ -37,6 +36,7 @@ from aidl_lang.solved import (
     Change,
     ConstraintReport,
     Frame,
+    Motion,
     Reading,
     Scalar,
     SolvedGeometry,
@@ -69,7 +69,7 @@ def read_out(
     reports = tuple(_reports(model, lowered, solution))
     root = reader.structure(model.root)
     readings = tuple(dict.fromkeys(Reading(span, text) for span, text in model.readings))
-    describe = partial(motions, model, lowered, solution, freedom)
+    describe = partial(_motions, model, lowered, solution, freedom)
     floating = tuple(_floating(lowered, freedom))
     solved = SolvedModel(
         solution.status.value, root, reports, freedom.degrees, free, changed, readings, floating, describe
@@ -85,6 +85,13 @@ def _literal(model: Model, finish: Finish) -> ast.Number | None:
         return None
     node = next((each.node for each in model.literals if each.became is size.expression), None)
     return node if isinstance(node, ast.Number) and finish.span.overlaps(node.span) else None
+
+
+def _motions(model: Model, lowered: Lowered, solution: Solution, freedom: Freedom) -> tuple[Motion, ...]:
+    """What can still move, by code that is loaded when it is asked for."""
+    from aidl_lang.freedom import motions
+
+    return motions(model, lowered, solution, freedom)
 
 
 def _floating(lowered: Lowered, freedom: Freedom) -> Iterator[str]:

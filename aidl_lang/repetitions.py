@@ -38,18 +38,6 @@ _SECONDS = 1.0
 """For each of them."""
 
 
-def preference(lowered: Lowered) -> list[int]:
-    """The constraints in the order in which they are taken for granted: unwritten ones, then as written."""
-
-    def place(index: int) -> tuple[bool, str, int, int]:
-        stated = lowered.stated[index]
-        if stated is None:
-            return (False, "", 0, index)
-        return (stated.wording is not None, stated.span.source.name, stated.span.start, index)
-
-    return sorted(range(len(lowered.stated)), key=place)
-
-
 def repetition_notes(lowered: Lowered, solution: Solution, freedom: Freedom) -> list[Diagnostic]:
     """A note for each stated constraint that follows from others, and for each part that is undecided."""
     redundant = [found for found in freedom.redundant if _stated(lowered, found.constraint)]
