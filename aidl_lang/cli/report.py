@@ -26,15 +26,17 @@ class UseError(Exception):
 
 def show(diagnostics: Iterable[Diagnostic], quiet: bool = False) -> None:
     """Print diagnostics for a reader, errors only if `quiet`."""
+    said = [d for d in diagnostics if not quiet or d.severity is Severity.ERROR]
+    if not said:
+        return
     import shutil
 
     from aidl_lang.render import Style, render, wants_colour
 
     style = Style(wants_colour(sys.stderr, os.environ))
     width = shutil.get_terminal_size((110, 24)).columns
-    for diagnostic in diagnostics:
-        if not quiet or diagnostic.severity is Severity.ERROR:
-            say(render(diagnostic, style, width), end="\n\n" if diagnostic.span else "\n")
+    for diagnostic in said:
+        say(render(diagnostic, style, width), end="\n\n" if diagnostic.span else "\n")
 
 
 def say(line: str, end: str = "\n") -> None:

@@ -11,20 +11,20 @@ from aidl_lang.cancelling import checkpoint
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.numbers import fixed
 from aidl_lang.export.paths import face_path, open_path
+from aidl_lang.export.svg_package import svgwrite
 from aidl_lang.geometry.evaluate import Bounds
 
 FONT = "DejaVu Sans, Verdana, Arial, sans-serif"
 
-_NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 def to_svg(picture: Picture, pixels: tuple[int, int] | None = None) -> str:
     """The picture as an SVG document in its true size, or so many pixels wide and high."""
-    import svgwrite  # takes longer to import than most drawings to draw
-
+    svg = svgwrite()
     left, _, _, top = picture.box
     width, height = fixed(picture.width), fixed(picture.height)
-    document = svgwrite.Drawing(
+    document = svg.Drawing(
         size=pixels or (f"{width}mm", f"{height}mm"),
         viewBox=f"{fixed(left)} {fixed(-top)} {width} {height}",
         debug=False,
@@ -32,11 +32,11 @@ def to_svg(picture: Picture, pixels: tuple[int, int] | None = None) -> str:
     boxes = dict.fromkeys(group.clip for group in picture.groups if group.clip is not None)
     clips = {box: f"clip-{k}" for k, box in enumerate(boxes, 1)}
     for clip, name in clips.items():
-        path = svgwrite.masking.ClipPath(id=name, debug=False)
-        path.add(_rectangle(clip, svgwrite))
+        path = svg.masking.ClipPath(id=name, debug=False)
+        path.add(_rectangle(clip, svg))
         document.defs.add(path)
     for group in picture.groups:
-        element = _group(svgwrite, group)
+        element = _group(svg, group)
         if group.clip is not None:
             element["clip-path"] = f"url(#{clips[group.clip]})"
         document.add(element)

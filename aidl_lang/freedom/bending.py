@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.arrays import each_once, scattered
 from aidl_lang.solver.gradients import Sparse, linearise
 from aidl_lang.solver.mobility import Part
 from aidl_lang.solver.problem import Problem
@@ -49,7 +50,7 @@ class Bending:
     @cached_property
     def slopes_beside(self) -> Sparse:
         """The same a little away, where slopes are no zeros by chance."""
-        away = STEP * np.random.default_rng(1).uniform(0.5, 1.0, len(self.at))
+        away = STEP * (0.75 + 0.25 * scattered(len(self.at), 1))
         return self._slopes(self.at + self.problem.scale * away)
 
     @cached_property
@@ -60,7 +61,7 @@ class Bending:
     @cached_property
     def is_bent(self) -> NDArray[np.bool_]:
         """(r,) whether the slopes of a row are others a little away."""
-        weights = np.random.default_rng(2).standard_normal(len(self.at))
+        weights = scattered(len(self.at), 2)
         here, beside = (
             np.bincount(m.rows, m.entries * weights[m.columns], len(m))
             for m in (self.slopes, self.slopes_beside)
@@ -82,7 +83,7 @@ class Bending:
         inside = has_part[self.slopes.columns]
         beside = self.slopes_beside
         touched = has_part[beside.columns] & (beside.entries != 0.0)
-        rows = np.unique(np.concatenate((self.slopes.rows[inside], beside.rows[touched])))
+        rows = each_once(np.concatenate((self.slopes.rows[inside], beside.rows[touched])))
         if not (self.is_bent[rows].any() or wanted.any()) or len(rows) * len(columns) > WORK:
             return True
         step = STEP / float(np.abs(rates / self.problem.scale[columns]).max())

@@ -9,6 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.arrays import scattered
 from aidl_lang.expression import DEGREE
 from aidl_lang.freedom.scene import GEOMETRY, NUMBER, POINT, ROOT, WHOLE, Floats, Ints, Scene, Thing, X, Y
 from aidl_lang.records import record
@@ -127,7 +128,7 @@ class Reach:
         if not len(at):
             return
         # Equal rows have equal products with numbers at random, and no others do.
-        weights = np.random.default_rng(1).standard_normal(self.reach.shape[1])
+        weights = scattered(self.reach.shape[1], 1)
         products = self.reach[at] @ weights
         order = np.argsort(products, kind="stable")
         gaps = np.flatnonzero(np.diff(products[order]) > POSSIBLE * float(np.abs(products).max()))

@@ -9,6 +9,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from aidl_lang.arrays import each_once
 from aidl_lang.expression import DEGREE
 from aidl_lang.freedom.bending import Bending
 from aidl_lang.freedom.reach import POSSIBLE, Flags, Reach
@@ -146,7 +147,7 @@ class _Telling(Reach):
         for thing in self._near():
             own = self.scene.own(thing)
             _try(tried, thing, self._whole(own, X), self._whole(own, Y))
-        for anchor in np.unique(self.anchor).tolist():
+        for anchor in each_once(self.anchor).tolist():
             for axis in (X, Y):
                 for together in self._clusters(anchor, axis):
                     _try(tried, None, self._whole(together, X), self._whole(together, Y))

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.arrays import each_once
 from aidl_lang.cancelling import checkpoint, give_up
 from aidl_lang.geometry.evaluate import Bounds
 
@@ -79,7 +80,7 @@ class Sides:
         left, width = np.minimum(sides[:, 0], sides[:, 2]), np.abs(self._way[:, 0])
         size = np.frexp(np.maximum(width, 1e-9))[1]
         self._classes: list[tuple[Ints, Floats, float]] = []
-        for k in np.unique(size):
+        for k in each_once(size):
             of_size = np.flatnonzero(size == k)
             of_size = of_size[np.argsort(left[of_size], kind="stable")]
             self._classes.append((of_size, left[of_size], float(2.0**k)))

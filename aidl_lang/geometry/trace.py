@@ -16,6 +16,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.arrays import each_once
 from aidl_lang.cancelling import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, bounds, ends, is_closed, locate, nearest, part, point, points
@@ -144,7 +145,7 @@ def _sides(network: Network, polygons: list[NDArray[np.float64]]) -> Sides:
     changed = (owner >= 0) & (owner_after >= 0) & (owner != owner_after)
     unsure = np.flatnonzero((owner == UNKNOWN) | (owner_after == UNKNOWN) | changed)
     if len(unsure):
-        network.blur(vertices[np.union1d(unsure, after[unsure])])
+        network.blur(vertices[each_once(np.concatenate((unsure, after[unsure])))])
         edges[unsure] = network.nearest_edges((vertices[unsure] + vertices[after[unsure]]) / 2)
     for k in np.flatnonzero(owner == UNKNOWN):
         node = _touched_node(network, int(edges[before[k]]), int(edges[k]), network.position(vertices[k]))

@@ -13,6 +13,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from aidl_lang.arrays import each_once, others
 from aidl_lang.records import record
 from aidl_lang.solver.dependence import dependent_rows
 from aidl_lang.solver.gradients import Sparse, linearise
@@ -82,7 +83,7 @@ def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = 
         places, seen = linearise(problem.tape, solution.values, nodes, riding.movable)
         equations, plain = _equations(problem, equal, slopes)
         relations, unclear = dependent_rows(equations.matrix, len(problem.initial))
-        new = np.setdiff1d(np.arange(len(equations.row)), list(relations))
+        new = others(len(equations.row), relations)
         rows, clear = equations.matrix.take(new), ~np.isin(new, unclear)
         found = _mobility(problem, riding, rows, clear, seen.take(node_of), places[node_of])
         redundant = redundancies(problem, solution.values, equations, relations, plain) if relations else []
@@ -94,7 +95,7 @@ def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = 
         motions=found.motions,
         redundant=tuple(redundant),
         undecided=tuple(tuple(np.sort(unknowns).tolist()) for unknowns in found.undecided),
-        unclear=tuple(np.unique(equations.owner[unclear]).tolist()),
+        unclear=tuple(each_once(equations.owner[unclear]).tolist()),
         loose=tuple(np.flatnonzero(riding.loose).tolist()),
     )
 
@@ -140,7 +141,7 @@ def _mobility(
     is_seen = (anchor == 0) | (anchor == riding.anchor[problem.group[matrix.columns]])
     matrix = matrix.only(movable[matrix.columns] & (np.abs(matrix.entries) > SEEN) & is_seen)
     distinct, row = _distinct(matrix)
-    group, row_seen = np.divmod(np.unique(groups[row >= 0] * (len(row) + 1) + row[row >= 0]), len(row) + 1)
+    group, row_seen = np.divmod(each_once(groups[row >= 0] * (len(row) + 1) + row[row >= 0]), len(row) + 1)
     jacobian = rows.only(movable[rows.columns])
     known = clear & (np.diff(jacobian.starts) == np.diff(rows.starts))
     pins = riding.pins(problem, jacobian)

@@ -13,6 +13,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from aidl_lang.arrays import each_once, others, scattered
 from aidl_lang.solver.components import connected
 from aidl_lang.solver.gradients import Sparse
 from aidl_lang.solver.operations import Floats, Ints
@@ -34,7 +35,7 @@ Relation: TypeAlias = dict[int, float]
 def dependent_rows(rows: Sparse, width: int) -> tuple[dict[int, Relation], list[int]]:
     """The relation of each dependent row among unit rows, and rows of which it could not be told."""
     relations = _copies(rows, width)
-    originals = np.setdiff1d(np.arange(len(rows)), list(relations))
+    originals = others(len(rows), relations)
     matrix = rows.take(originals)
     rest = _entangled(matrix, width)
     undecided: list[int] = []
@@ -56,7 +57,7 @@ def dependent_rows(rows: Sparse, width: int) -> tuple[dict[int, Relation], list[
 
 def _copies(matrix: Sparse, width: int) -> dict[int, Relation]:
     """Which earlier row a row is, or is the opposite of, by a random combination of the columns at first."""
-    weights = np.random.default_rng(0).standard_normal(width)
+    weights = scattered(width)
     sums = np.abs(np.bincount(matrix.rows, matrix.entries * weights[matrix.columns], len(matrix)))
     order = np.argsort(sums, kind="stable")
     alike = np.flatnonzero(np.diff(sums[order]) > SAME) + 1
@@ -136,7 +137,7 @@ def _doubtful_parts(matrix: Sparse, width: int) -> Iterable[Ints]:
 
 def _relations(matrix: Sparse) -> dict[int, Relation] | None:
     """The dependent rows of one part; None if the rank cannot be told."""
-    columns = np.unique(matrix.columns)
+    columns = each_once(matrix.columns)
     if max(len(columns), len(matrix)) > LARGE:
         return _sparse_relations(matrix, columns)
     u, sigma, _ = np.linalg.svd(matrix.dense(columns))
@@ -151,7 +152,7 @@ def _sparse_relations(matrix: Sparse, columns: Ints) -> dict[int, Relation] | No
     local = Sparse(matrix.starts, np.searchsorted(columns, matrix.columns), matrix.entries)
     try:
         independent = independent_rows(local, len(columns))
-        dependent = np.setdiff1d(np.arange(len(matrix)), independent)
+        dependent = others(len(matrix), independent)
         if not len(dependent):
             return {}
         if len(dependent) > MOST:

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from aidl_lang.arrays import each_once
 from aidl_lang.records import record
 from aidl_lang.solver.components import connected
 from aidl_lang.solver.gradients import Sparse
@@ -149,7 +150,7 @@ class _Parts:
         self.equations, self.known, self.observables, self.watch = equations, known, observables, watch
         links = [np.concatenate(ends) for ends in zip(equations.links, observables.links, strict=True)]
         label = connected(links[0], links[1], unknowns)
-        seen = np.unique(label[observables.columns])
+        seen = each_once(label[observables.columns])
         number = np.full(unknowns, -1)
         number[seen] = np.arange(len(seen))
         self.part = number[label]
@@ -166,7 +167,7 @@ class _Parts:
         return Sparse(matrix.starts, self.columns.place[matrix.columns], matrix.entries)
 
     def groups(self, part: int) -> Ints:
-        return np.unique(self.watch.groups[self.pairs.members(part)])
+        return each_once(self.watch.groups[self.pairs.members(part)])
 
 
 def _part_of_rows(matrix: Sparse, part: Ints) -> Ints:

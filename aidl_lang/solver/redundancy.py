@@ -14,6 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
+from aidl_lang.arrays import each_once, scattered
 from aidl_lang.records import record
 from aidl_lang.solver.dependence import Relation
 from aidl_lang.solver.expression import mentioned
@@ -136,7 +137,7 @@ class _Trial:
         away = AWAY * self.problem.scale[columns] * float((self.scales[rows] / lengths).max())
         for seed in range(2):
             place = self.values.copy()
-            place[columns] += away * np.random.default_rng(seed).standard_normal(len(columns))
+            place[columns] += away * scattered(len(columns), seed)
             parts = shares * linearise(self.problem.tape, place, self.expressions[rows])[0] / lengths
             if not abs(float(parts.sum())) <= HOLDS * float(np.abs(parts).max()):
                 return False
@@ -145,7 +146,7 @@ class _Trial:
     def _unknowns(self, rows: Sequence[int] | Ints) -> Ints:
         """What rows mention, whether or not it has a slope here."""
         found = mentioned(self.problem.tape, self.expressions[rows].tolist())
-        return np.unique(np.array(found, dtype=np.int64))
+        return each_once(np.array(found, dtype=np.int64))
 
     def _follows(self, row: int, others: Sequence[int]) -> bool:
         rows = np.array([*others, row], dtype=np.int64)
@@ -155,7 +156,7 @@ class _Trial:
         gradient = self._rows(self.values, rows, columns)[1]
         inverse = np.linalg.pinv(gradient[:-1], rcond=RANK)
         for seed in range(2):
-            move = np.random.default_rng(seed).standard_normal(len(columns))
+            move = scattered(len(columns), seed)
             move -= inverse @ (gradient[:-1] @ move)
             length = float(np.linalg.norm(move))
             if length < RANK:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from aidl_lang.arrays import each_once
 from aidl_lang.records import record
 from aidl_lang.solver.gradients import Sparse
 from aidl_lang.solver.naming import Naming, mentioned, naming
@@ -57,7 +58,7 @@ def _pinned(home: Ints, jacobian: Sparse, groups: int) -> list[int]:
     key = jacobian.rows[entries] * groups + home[jacobian.columns[entries]]
     pairs, place = np.unique(key, return_inverse=True)
     slope = np.asarray(np.bincount(place, jacobian.entries[entries], len(pairs)), dtype=np.float64)
-    held = np.unique(pairs[np.abs(slope) > UNMOVED] % groups)
+    held = each_once(pairs[np.abs(slope) > UNMOVED] % groups)
     own, first = np.unique(home, return_index=True)
     return [int(u) for g, u in zip(own.tolist(), first.tolist(), strict=True) if g >= 0 and g not in held]
 
