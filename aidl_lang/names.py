@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
 from itertools import accumulate
 from typing import TypeVar
 
@@ -160,6 +159,8 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
     likeness = 0.6 if len(name) < 5 else 0.7  # one wrong letter weighs more in a short name
     wanted = fold(name)
     most = _MOST_LETTERS // max(len(wanted), 1)
+    from difflib import get_close_matches  # most programs are spelled right
+
     found = get_close_matches(wanted, _within(folded, len(wanted), most), n=count + _WIDER, cutoff=likeness)
     matches = [match for match in found if _may_be_meant(name, folded[match])]
     matches.sort(key=lambda match: _distance(wanted, match))

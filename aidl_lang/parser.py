@@ -17,7 +17,6 @@ from aidl_lang.records import record
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.automaton import Automaton, Checkpoint
 from aidl_lang.syntax.brackets import lists_as_statements
-from aidl_lang.syntax.errors import explain, spaced_call
 from aidl_lang.syntax.functions import understood
 from aidl_lang.syntax.lines import begins_with_sign
 from aidl_lang.syntax.tables import load_tables
@@ -82,6 +81,14 @@ def _read(source: SourceFile, limits: Limits) -> tuple[Parsed, list[Token]]:
     return Parsed(module, ordered(diagnostics)), tokens.tokens
 
 
+def _spaced_calls(source: SourceFile, tokens: Tokens) -> list[Diagnostic]:
+    if not tokens.spaced_calls:
+        return []
+    from aidl_lang.syntax.errors import spaced_call
+
+    return [spaced_call(source, token) for token in tokens.spaced_calls]
+
+
 class _Reader:
     """Reads one file: feeds the automaton, and mends or skips where a token cannot stand."""
 
@@ -92,7 +99,7 @@ class _Reader:
         self.tokens = tokens.tokens
         self.limits = limits
         self.automaton = Automaton(load_tables(), builder)
-        self.diagnostics = [spaced_call(source, token) for token in tokens.spaced_calls]
+        self.diagnostics = _spaced_calls(source, tokens)
         self.diagnostics += understood(source, self.tokens)
         self.diagnostics += lists_as_statements(source, self.tokens)
         self.automaton.enter_block()
@@ -172,6 +179,8 @@ class _Reader:
             automaton.enter_block()
             if self._ends_statement(position):
                 automaton.feed(Token(";", "", automaton.end, automaton.end))
+        from aidl_lang.syntax.errors import explain  # most programs have no errors of syntax
+
         problem = explain(
             Trouble(self.source, self.tokens, position, self._statement_begin(position), automaton)
         )

@@ -25,8 +25,7 @@ from aidl_lang.records import record
 from aidl_lang.resolve import resolve
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.running import Stopwatch, working
-from aidl_lang.solver.memory import Memory
-from aidl_lang.solver.problem import Settings as SolverSettings
+from aidl_lang.solver.settings import Settings as SolverSettings
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
@@ -42,6 +41,7 @@ if TYPE_CHECKING:
     from aidl_lang.otherwise import Otherwise
     from aidl_lang.solved import Dimension, SolvedModel
     from aidl_lang.solver.analysis import Freedom
+    from aidl_lang.solver.memory import Memory
     from aidl_lang.solver.solution import Solution
     from aidl_lang.trials import Trials
 
@@ -510,7 +510,6 @@ __all__ = [
     "Compiled",
     "Front",
     "Knob",
-    "Memory",
     "Settings",
     "check",
     "compile",

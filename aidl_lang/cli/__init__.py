@@ -8,6 +8,8 @@ Exit codes: 0 done, 1 the program is wrong or does not solve, 2 wrong use, 130 i
 from __future__ import annotations
 
 import argparse
+import atexit
+import gc
 import os
 import sys
 from collections.abc import Sequence
@@ -20,6 +22,8 @@ from aidl_lang.version import __version__
 
 INTERRUPTED = 130
 BROKEN_PIPE = 141
+_BETWEEN_SEARCHES = 100_000
+"""Objects made before cycles among them are sought."""
 
 _VERBS = {
     "compile": "draw a program",
@@ -50,6 +54,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     # Threads cost more than they bring for matrices of the size of a part; numpy asks when it is loaded.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     _keep_writing()
+    _seldom_search()
     try:
         words = sys.argv[1:] if argv is None else argv
         arguments = _parser(words).parse_args(words)
@@ -86,6 +91,15 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
             own.description = module.__doc__
             module.register(own)
     return parser
+
+
+def _seldom_search() -> None:
+    """What is loaded and made is mostly needed until the command ends: it is seldom searched for cycles that
+    nothing refers to, which bounds what they take in a verb that goes on, and not once more at the end.
+    """
+    gc.set_threshold(_BETWEEN_SEARCHES)
+    atexit.unregister(gc.freeze)
+    atexit.register(gc.freeze)
 
 
 def _keep_writing() -> None:

@@ -15,7 +15,8 @@ from aidl_lang.records import record
 if TYPE_CHECKING:
     from aidl_lang.diagnostics import Diagnostic
     from aidl_lang.export import Options
-    from aidl_lang.pipeline import Compiled, Memory
+    from aidl_lang.pipeline import Compiled
+    from aidl_lang.solver.memory import Memory
 
 
 _DEFAULT_FORMAT = ".svg"

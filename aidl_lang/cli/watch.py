@@ -13,7 +13,7 @@ from aidl_lang.cli.options import add_drawing, add_program, add_strict, add_vari
 from aidl_lang.cli.report import UseError, say
 
 if TYPE_CHECKING:
-    from aidl_lang.pipeline import Memory
+    from aidl_lang.solver.memory import Memory
 
 
 def register(parser: argparse.ArgumentParser) -> None:
@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UseError("E0902", "standard input cannot be watched", "name a file")
     files.read(arguments.file)
     targets(arguments)
-    from aidl_lang.pipeline import Memory
+    from aidl_lang.solver.memory import Memory
 
     folder, memory = Path(arguments.file).resolve().parent, Memory()
     _once(arguments, memory)

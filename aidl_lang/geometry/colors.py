@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Sequence
 from functools import lru_cache
@@ -50,7 +49,9 @@ def css_color(values: Sequence[object]) -> str | None:
 
 def similar_colors(name: str) -> list[str]:
     """Known names that a misspelt one may have meant, the likeliest first."""
-    return difflib.get_close_matches(name.strip().lower(), sorted(COLOR_NAMES), n=3)
+    from difflib import get_close_matches
+
+    return get_close_matches(name.strip().lower(), sorted(COLOR_NAMES), n=3)
 
 
 def rgb(color: str) -> tuple[int, int, int]:

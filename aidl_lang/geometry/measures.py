@@ -9,6 +9,7 @@ them.
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -32,13 +33,11 @@ class Measures:
     loops: int
 
 
+@cache
 def gauss(count: int) -> tuple[tuple[float, float], ...]:
     """Nodes and weights of Gauss-Legendre quadrature over 0..1."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return tuple((float(x + 1) / 2, float(w) / 2) for x, w in zip(nodes, weights, strict=True))
-
-
-_GAUSS_5, _GAUSS_16 = gauss(5), gauss(16)
 
 
 def measure(region: Region) -> Measures:
@@ -132,7 +131,7 @@ def _triangle(p: Vec, q: Vec) -> Moments:
 def _bezier_moments(piece: Bezier, origin: Vec) -> Moments:
     """Integrals of (p x p')/2 and p (p x p')/3, polynomials of degree 5 and 8."""
     a = mx = my = 0.0
-    for t, weight in _GAUSS_5:
+    for t, weight in gauss(5):
         x, y = point(piece, t)
         x, y = x - origin[0], y - origin[1]
         dx, dy = derivative(piece, t)
@@ -151,5 +150,5 @@ def length(piece: Piece) -> float:
     return sum(
         weight / spans * math.hypot(*derivative(piece, (k + t) / spans))
         for k in range(spans)
-        for t, weight in _GAUSS_16
+        for t, weight in gauss(16)
     )

@@ -16,7 +16,6 @@ from aidl_lang.geometry.measures import gauss, moments_about_start
 from aidl_lang.geometry.region import Loop, Region
 from aidl_lang.records import record
 
-_NODES = gauss(12)
 _ISOTROPIC = 1e-9
 """Difference of the principal moments, relative to them, below which every axis is a principal one."""
 _ROUNDING = 1e-12
@@ -121,7 +120,7 @@ def _curved(piece: Piece, origin: Vec) -> Squares:
         spans = max(1, math.ceil(abs(round_range(piece)[1]) / (math.pi / 2) - 1e-9))
     xx = yy = xy = 0.0
     for k in range(spans):
-        for node, weight in _NODES:
+        for node, weight in gauss(12):
             t = (k + node) / spans
             x, y = point(piece, t)
             x, y = x - origin[0], y - origin[1]

@@ -10,9 +10,10 @@ from pathlib import Path
 from aidl_lang import ast, pipeline, resources
 from aidl_lang.diagnostics import Diagnostic, Edit
 from aidl_lang.ide.edits import applied
-from aidl_lang.pipeline import Compiled, Memory, Settings
+from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.records import record
 from aidl_lang.resolving.resolution import Resolution
+from aidl_lang.solver.memory import Memory
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.syntax.tokens import Tokens, tokenize
 from aidl_lang.typecheck import Program

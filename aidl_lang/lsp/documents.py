@@ -15,8 +15,8 @@ from pygls import uris
 
 from aidl_lang.ide.positions import Positions, Unit
 from aidl_lang.ide.view import View
-from aidl_lang.pipeline import Memory
 from aidl_lang.records import record
+from aidl_lang.solver.memory import Memory
 
 _HALVES = re.compile("[\ud800-\udfff]")
 """Halves of characters, which JSON can hold and no text may."""

@@ -23,7 +23,7 @@ from aidl_lang.ide.refusing import CannotError, Refusal
 from aidl_lang.ide.semantic_tokens import semantic_tokens
 from aidl_lang.ide.view import View, look, run
 from aidl_lang.ide.workspace import Workspace
-from aidl_lang.pipeline import Memory
+from aidl_lang.solver.memory import Memory
 from aidl_lang.source import SourceFile
 from aidl_lang.world import MAX_BYTES
 

@@ -4,56 +4,42 @@ In the order of reading: `operations`, `expression` (the tape), `problem`; `valu
 `program` (some rows, on numbers); `schedule`, `arrays`, `array_freezing`, `array_program` (many rows, on
 arrays); `dense`, `sparse`, `linear`, `quadratic`; `newton` (one smooth system), `batch` (many small ones),
 `branches` (one attempt); `group` (the stages), `levels` (the same for all groups of a depth), `hierarchy`,
-`memory`; `preferences`, `suspects`, `conflicts`, `solution`. What is said of a solution afterwards is in
-`analysis`; `form` reads problem files.
+`memory`, `solving`; `preferences`, `suspects`, `conflicts`, `solution`. What is said of a solution afterwards
+is in `analysis`; `form` reads problem files.
+
+What stands at this door is loaded when it is asked for: who only checks a program needs the limits of the
+solver (`settings`) and neither the solver nor numpy.
 """
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-from aidl_lang.solver.hierarchy import Hierarchy
-from aidl_lang.solver.memory import Memory, Recollection
-from aidl_lang.solver.newton import Clock
-from aidl_lang.solver.problem import Constraint, Problem, Relation, Row, Settings
-from aidl_lang.solver.solution import Solution, Status
+if TYPE_CHECKING:
+    from aidl_lang.solver.memory import Memory
+    from aidl_lang.solver.problem import Constraint, Problem, Relation, Row
+    from aidl_lang.solver.settings import Settings
+    from aidl_lang.solver.solution import Solution, Status
+    from aidl_lang.solver.solving import solve
 
 __all__ = ["Constraint", "Memory", "Problem", "Relation", "Row", "Settings", "Solution", "Status", "solve"]
 
-
-def solve(problem: Problem, settings: Settings = Settings(), memory: Memory | None = None) -> Solution:
-    """Solves `problem` as far as it can be solved. Same input, same output, to the last digit.
-
-    With a `memory`, which is brought up to date, only what has changed since its last solve is solved.
-    """
-    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
-    recollection = None if memory is None else Recollection(memory, problem, settings)
-    with np.errstate(all="ignore"):  # what overflows is found not to hold
-        hierarchy.run(recollection)
-    violation, rows = hierarchy.violations(), problem.rows
-    residuals = np.zeros(len(problem.holder))
-    np.maximum.at(residuals, rows.constraint, violation)
-    satisfied = np.ones(len(problem.holder), dtype=np.bool_)
-    satisfied[rows.constraint[~(violation <= settings.tolerance * rows.scale)]] = False
-    status = _status(satisfied[np.isnan(problem.weight)], hierarchy.timed_out)
-    if recollection is not None:
-        recollection.close(hierarchy.stages, status is Status.SOLVED and not hierarchy.failures)
-    return Solution(
-        status=status,
-        values=hierarchy.reached,
-        residuals=tuple(residuals.tolist()),
-        satisfied=tuple(satisfied.tolist()),
-        changed=tuple(hierarchy.changed()),
-        failures=tuple(hierarchy.failures),
-        stages=tuple(hierarchy.stages),
-    )
+_HOME = {
+    "Constraint": "problem",
+    "Memory": "memory",
+    "Problem": "problem",
+    "Relation": "problem",
+    "Row": "problem",
+    "Settings": "settings",
+    "Solution": "solution",
+    "Status": "solution",
+    "solve": "solving",
+}
 
 
-def _status(satisfied: NDArray[np.bool_], timed_out: bool) -> Status:
-    """From which of the hard constraints hold."""
-    if satisfied.all():
-        return Status.SOLVED
-    if timed_out or not satisfied.any():
-        return Status.FAILED
-    return Status.PARTIAL
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    found = globals()[name] = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    return found

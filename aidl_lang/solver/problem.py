@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.records import record
 from aidl_lang.solver.expression import Tape
+from aidl_lang.solver.settings import Settings as Settings
 
 Floats = NDArray[np.float64]
 
@@ -216,23 +217,6 @@ def constraint_arrays(constraints: Sequence[Constraint]) -> ConstraintArrays:
         "whole": _pairs(c.whole for c in constraints),
         "inside": _pairs(c.inside for c in constraints),
     }
-
-
-@record()
-class Settings:
-    """Limits that keep any problem from running away.
-
-    tolerance   residual at which a row counts as satisfied, relative to its scale
-    iterations  Newton steps per attempt
-    branches    re-choices of `min`/`max` branches per stage
-    seconds     wall clock for the whole solve; reaching it ends with status `failed` and `timed_out`
-    """
-
-    tolerance: float = 1e-9
-    iterations: int = 60
-    branches: int = 12
-    seconds: float = 20.0
-    explain: bool = True
 
 
 def depths(parent: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -15,6 +15,7 @@ from pathlib import Path
 from statistics import median
 
 from aidl_lang import pipeline
+from aidl_lang.solver.memory import Memory
 from aidl_lang.source import SourceFile
 from aidl_lang.world import DiskWorld
 
@@ -39,7 +40,7 @@ def measure(file: Path, param: str, values: Sequence[str], runs: int) -> tuple[l
     """Seconds of each recompile, and of the solving in it. Raises ValueError if one does not solve."""
     source, world = SourceFile(file.name, file.read_text(encoding="utf-8")), DiskWorld(file.resolve().parent)
     whole, solving = [], []
-    memory = pipeline.Memory()
+    memory = Memory()
     _recompile(source, world, {}, memory)
     for run in range(runs):
         value = values[run % len(values)]
@@ -53,7 +54,7 @@ def measure(file: Path, param: str, values: Sequence[str], runs: int) -> tuple[l
 
 
 def _recompile(
-    source: SourceFile, world: DiskWorld, params: Mapping[str, str | float | bool], memory: pipeline.Memory
+    source: SourceFile, world: DiskWorld, params: Mapping[str, str | float | bool], memory: Memory
 ) -> pipeline.Compiled:
     return pipeline.compile(source, world, params, memory=memory)
 

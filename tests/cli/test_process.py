@@ -33,15 +33,49 @@ def test_installed_command_compiles(folder: Path) -> None:
     assert (folder / "good.svg").exists()
 
 
-def test_start_is_quick_because_it_loads_little() -> None:
+def loaded_by(*arguments: str) -> set[str]:
+    """The modules that are loaded when a command ends."""
     code = (
-        "import sys; from aidl_lang.cli import main; main(['explain']); print(*sys.modules, file=sys.stderr)"
+        "import atexit, sys; atexit.register(lambda: print(*sys.modules, file=sys.stderr));"
+        "from aidl_lang.cli import main; sys.exit(main(sys.argv[1:]))"
     )
-    loaded = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True
+    done = subprocess.run(
+        [sys.executable, "-c", code, *arguments], capture_output=True, text=True, timeout=60, check=True
     )
-    heavy = {"numpy", "scipy", "lark", "manifold3d", "svgwrite", "watchfiles", "rich"}
-    assert heavy & set(loaded.stderr.split()) == set()
+    return set(done.stderr.splitlines()[-1].split())
+
+
+PACKAGES = {"lark", "manifold3d", "numpy", "rich", "scipy", "svgwrite", "watchfiles"}
+STAGES = {
+    f"aidl_lang.{name}" for name in ("ast", "export", "geometry", "library", "parser", "pipeline", "solver")
+}
+WEB = {"email", "http", "socket", "ssl", "urllib.request"}
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["--version"], ["compile", "--help"], ["explain"]])
+def test_what_draws_nothing_loads_no_stage(arguments: list[str]) -> None:
+    assert (PACKAGES | STAGES | WEB) & loaded_by(*arguments) == set()
+
+
+@pytest.mark.parametrize("arguments", [["params"], ["fmt", "--check"]])
+def test_what_solves_nothing_loads_no_solver(folder: Path, arguments: list[str]) -> None:
+    (folder / "plain.aidl").write_text("solid plate {\n    edge = circle(radius: 5)\n}\n")
+    solving = {"aidl_lang.solver.solving", "aidl_lang.geometry", "aidl_lang.export"}
+    assert (PACKAGES | WEB | solving) & loaded_by(*arguments, "plain.aidl") == set()
+
+
+def test_a_program_that_is_right_loads_nothing_that_explains(folder: Path) -> None:
+    """What is said where something is wrong, moves or gives way is loaded there; of the packages, what the
+    drawing takes.
+    """
+    example = Path(__file__).parents[2] / "examples" / "telephone.aidl"
+    loaded = loaded_by("compile", str(example), "-o", "telephone.svg", "--quiet")
+    assert {"numpy", "manifold3d", "svgwrite"} <= loaded
+    explaining = {"decided", "dimensions", "failures", "freedom", "givens", "giving", "otherwise", "remedies"}
+    explaining |= {"render", "repetitions", "survey", "syntax.errors", "trials", "verifying"}
+    assert {f"aidl_lang.{name}" for name in explaining} & loaded == set()
+    parts = {"numpy.ma", "numpy.random", "svgwrite.data.svgparser"}
+    assert (WEB | parts | {"difflib", "lark", "scipy"}) & loaded == set()
 
 
 def test_reader_that_goes_away(folder: Path) -> None:

@@ -15,7 +15,8 @@ from aidl_lang.ide.preview.sliders import sliders
 from aidl_lang.ide.preview.values import FREEDOM, LAYERS, Preview, Way
 from aidl_lang.ide.preview.ways import ways
 from aidl_lang.ide.view import SETTINGS, View, run
-from aidl_lang.pipeline import Compiled, Memory, Settings
+from aidl_lang.pipeline import Compiled, Settings
+from aidl_lang.solver.memory import Memory
 
 _NOWHERE = (0.0, 0.0, 0.0, 0.0)
 
