@@ -160,7 +160,7 @@ class Bodies:
             return None
         own: OwnFaces = own_faces(self.network, shapes)
         if own.loose:
-            numbers = tuple(number for shape in shapes for _, number in shape.leaves)
+            numbers = tuple(number for shape in shapes for number in shape.numbers)
             self.findings.append(LooseCurves(structure, tuple(own.loose), numbers))
         if not own.faces:
             return None

@@ -17,5 +17,5 @@ def clipped(curves: Sequence[Piece], region: Region) -> list[Piece]:
     network = Network([*pieces, *curves])
     section = section_of(network, region, 0)
     uses = [use for of_curve in network.uses[len(pieces) :] for use in of_curve]
-    within = inside_mask(section, [network.midpoint(edge) for edge, _ in uses])
+    within = inside_mask(section, network.midpoints([edge for edge, _ in uses]))
     return [network.piece(use) for use, is_inside in zip(uses, within, strict=True) if is_inside]

@@ -3,44 +3,41 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
 from aidl_lang.cancelling import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
-from aidl_lang.geometry.evaluate import bounds, ends, is_closed, nearest, point, points
+from aidl_lang.geometry.evaluate import derivative, ends, is_closed, nearest, point, points, second_derivative
 from aidl_lang.geometry.region import Region
 
+_SAMPLES = np.linspace(0, 1, 49)
 Closest = tuple[float, Vec, Vec]
 """A distance and the points on either side where it is found."""
 
 
 def region_distance(a: Region, b: Region) -> Closest | None:
     """Between the outlines of two regions that do not overlap; None if one is empty."""
-    ours = [piece for loop in a.loops for piece in loop.pieces]
-    theirs = [piece for loop in b.loops for piece in loop.pieces]
-    best: Closest | None = None
-    for bound, i, j in _by_box_distance(ours, theirs):
-        if best is not None and bound >= best[0]:
+    if not (a and b):
+        return None
+    apart = np.maximum(a.boxes[:, None, :2] - b.boxes[:, 2:], b.boxes[:, :2] - a.boxes[:, None, 2:])
+    away = np.hypot(*np.maximum(apart, 0.0).reshape(-1, 2).T)
+    # Pairs of pieces, those first whose boxes are nearest; few are nearer than the first two pieces.
+    first = int(np.argmin(away))
+    best = _between(a, b, first)
+    near = np.flatnonzero(away < best[0])
+    for k in near[np.argsort(away[near], kind="stable")].tolist():
+        if away[k] >= best[0]:
             break
         checkpoint()
-        found = piece_distance(ours[i], theirs[j])
-        if best is None or found[0] < best[0]:
+        if k != first and (found := _between(a, b, k))[0] < best[0]:
             best = found
     return best
 
 
-def _by_box_distance(ours: list[Piece], theirs: list[Piece]) -> Iterator[tuple[float, int, int]]:
-    """Pairs of pieces, those first whose boxes are nearest."""
-    if not ours or not theirs:
-        return
-    a, b = np.array([bounds(p) for p in ours])[:, None, :], np.array([bounds(p) for p in theirs])[None]
-    dx = np.maximum(0, np.maximum(a[..., 0] - b[..., 2], b[..., 0] - a[..., 2]))
-    dy = np.maximum(0, np.maximum(a[..., 1] - b[..., 3], b[..., 1] - a[..., 3]))
-    away = np.hypot(dx, dy).ravel()
-    for k in np.argsort(away, kind="stable"):
-        yield float(away[k]), int(k) // len(theirs), int(k) % len(theirs)
+def _between(a: Region, b: Region, pair: int) -> Closest:
+    i, j = divmod(pair, len(b.pieces))
+    return piece_distance(a.pieces[i], b.pieces[j])
 
 
 def piece_distance(a: Piece, b: Piece) -> Closest:
@@ -74,13 +71,40 @@ def _candidates(a: Piece, b: Piece) -> list[Vec]:
 
 
 def _sampled_candidates(a: Piece, b: Piece) -> list[Vec]:
-    """The ends of a, and the nearest of a sampling polished by projecting to and fro."""
-    ts = np.linspace(0, 1, 49)
-    away = points(a, ts)[:, None, :] - points(b, ts)[None, :, :]
-    t = float(ts[int(np.argmin((away**2).sum(axis=2).min(axis=1)))])
-    p = point(a, t)
-    for _ in range(50):
+    """The ends of a, and the nearest of a sampling, polished."""
+    away = ((points(a, _SAMPLES)[:, None, :] - points(b, _SAMPLES)[None, :, :]) ** 2).sum(axis=2)
+    i, j = divmod(int(np.argmin(away)), len(_SAMPLES))
+    t = _facing(a, b, float(_SAMPLES[i]), float(_SAMPLES[j]))
+    if t is not None:
+        return [*ends(a), point(a, t)]
+    p = point(a, float(_SAMPLES[i]))
+    for _ in range(50):  # by projecting to and fro
         before, p = p, point(a, nearest(a, point(b, nearest(b, p))))
         if p == before:
             break
     return [*ends(a), p]
+
+
+def _facing(a: Piece, b: Piece, t: float, s: float) -> float | None:
+    """Where on a the way to b is at right angles to both, from parameters nearby: Newton on e·a' = 0 and
+    e·b' = 0 with e = b - a. None where that leads off the curves, or to no minimum.
+    """
+    for _ in range(30):
+        (x, y), (u, v) = point(a, t), point(b, s)
+        (ax, ay), (bx, by) = derivative(a, t), derivative(b, s)
+        (cx, cy), (dx, dy) = second_derivative(a, t), second_derivative(b, s)
+        ex, ey = u - x, v - y
+        f, g = -(ex * ax + ey * ay), ex * bx + ey * by
+        ftt = ax * ax + ay * ay - ex * cx - ey * cy
+        fss = bx * bx + by * by + ex * dx + ey * dy
+        fts = -(ax * bx + ay * by)
+        determinant = ftt * fss - fts * fts
+        if not (ftt > 0 and determinant > 0):
+            return None
+        dt, ds = (fts * g - fss * f) / determinant, (fts * f - ftt * g) / determinant
+        t, s = t + dt, s + ds
+        if not (0 <= t <= 1 and 0 <= s <= 1):
+            return None
+        if abs(dt) + abs(ds) < 1e-14:
+            return t
+    return None

@@ -140,7 +140,9 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
         Lying(b.path, order[b.path], b.style.color, m.section, b.box)
         for b, m in zip(bodies, masses, strict=True)
     ]
-    ground = Ground(network, sorted(lying, key=lambda body: body.place))
+    drawings = [s.path for s in model.root.walk() if s.kind == "drawing"]
+    inked = [number for path in drawings for shape in shapes[path] for number in shape.numbers]
+    ground = Ground(network, sorted(lying, key=lambda body: body.place), inked)
     strokes = tuple(_strokes(model.root, shapes, walk, styles, regions, ground, notes))
     notes += _covered_letters(model.root, walk, masses, ground, order)
     notes += fallen_piece_notes(model.root, walk, masses, solids, pairs)
@@ -336,7 +338,7 @@ def _inked(
     for shape in shapes:
         look = _styled(style, shape.geometry, notes)
         is_asked = is_own or look is not style
-        numbers = [number for _, number in shape.leaves]
+        numbers = shape.numbers
         hidden = ground.hides(look.color, numbers, place)
         if (by := ground.covering(numbers, place)) is not None:
             covered.setdefault(by, []).append(shape.geometry.name)

@@ -71,7 +71,7 @@ def divided(curves: Sequence[Piece], region: Region) -> tuple[tuple[Piece, ...],
     network = Network([*outline, *curves])
     own, others = network.uses[: len(outline)], network.uses[len(outline) :]
     edges = sorted({edge for uses in others for edge, _ in uses})
-    mask = inside_mask(section_of(network, region, 0), [network.midpoint(edge) for edge in edges])
+    mask = inside_mask(section_of(network, region, 0), network.midpoints(edges))
     within = {edge for uses in own for edge, _ in uses} | {edges[k] for k in np.flatnonzero(mask)}
     inside: list[Piece] = []
     outside: list[Piece] = []

@@ -81,6 +81,16 @@ def _bezier_point(curve: Bezier, t: float) -> Vec:
     )
 
 
+def _weights(t: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The shares of the control points of a cubic in its points at these parameters."""
+    s = 1 - t
+    return np.stack((s**3, 3 * s * s * t, 3 * s * t * t, t**3), axis=1)
+
+
+_SAMPLED = np.linspace(0, 1, _SAMPLES + 1)
+_WEIGHTS = _weights(_SAMPLED)
+
+
 def points(curve: Piece, t: NDArray[np.float64]) -> NDArray[np.float64]:
     """Points at many parameters, shape (n, 2)."""
     if isinstance(curve, Line):
@@ -88,8 +98,7 @@ def points(curve: Piece, t: NDArray[np.float64]) -> NDArray[np.float64]:
         straight: NDArray[np.float64] = start + np.multiply.outer(t, end - start)
         return straight
     if isinstance(curve, Bezier):
-        s = 1 - t
-        weights = np.stack((s**3, 3 * s * s * t, 3 * s * t * t, t**3), axis=1)
+        weights = _WEIGHTS if t is _SAMPLED else _weights(t)
         curved: NDArray[np.float64] = weights @ np.array((curve.p0, curve.p1, curve.p2, curve.p3))
         return curved
     first, sweep = round_range(curve)
@@ -260,9 +269,8 @@ def nearest(curve: Piece, p: Vec) -> float:
         return _nearest_on_line(curve, p)
     if isinstance(curve, Arc | Circle):
         return _nearest_on_round(curve, p)
-    samples = np.linspace(0, 1, _SAMPLES + 1)
-    deltas = points(curve, samples) - np.array(p)
-    t = float(samples[int(np.argmin(deltas[:, 0] ** 2 + deltas[:, 1] ** 2))])
+    away = points(curve, _SAMPLED) - p
+    t = float(_SAMPLED[int((away * away).sum(axis=1).argmin())])
     return _polish_nearest(curve, p, t)
 
 

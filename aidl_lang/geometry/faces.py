@@ -32,6 +32,10 @@ class Shape:
     geometry: SolvedGeometry
     leaves: tuple[tuple[SolvedGeometry, int], ...]
 
+    @property
+    def numbers(self) -> list[int]:
+        return [number for _, number in self.leaves]
+
 
 @record()
 class OwnFace:
@@ -55,7 +59,7 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
     free: list[tuple[SolvedGeometry, int]] = []
     outlines: list[Use] = []
     for shape in shapes:
-        uses = [use for _, number in shape.leaves for use in network.uses[number]]
+        uses = [use for number in shape.numbers for use in network.uses[number]]
         closed = _is_closed(network, shape, uses)
         kept = _without_dangling(network, uses) if closed else []
         if kept:
@@ -229,7 +233,7 @@ def _close_with_outlines(
         return set()
     boundary = trace(network, added).edges
     edges = [e for e in dict.fromkeys(e for e, _ in uses) if e in bounding]
-    within = inside_mask(added, [network.midpoint(e) for e in edges])
+    within = inside_mask(added, network.midpoints(edges))
     used = {e for e, is_inside in zip(edges, within, strict=True) if is_inside or e in boundary}
     names = tuple(g for g, number in rest if _touches(network, number, used))
     if names:

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.geometry.colors import look_alike
-from aidl_lang.geometry.evaluate import Bounds, bounds
+from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.measures import length
 from aidl_lang.geometry.network import Network, union_bounds
 from aidl_lang.geometry.notes import listed
 from aidl_lang.geometry.sections import (
-    Polygon,
     Section,
     boxes_meet,
     covers,
@@ -43,46 +44,47 @@ class Lying:
 
 @record()
 class Ground:
-    """What strokes lie on, or under: the bodies from back to front."""
+    """What strokes lie on, or under: the bodies from back to front. `inked` are the curves of all strokes."""
 
     network: Network
     bodies: Sequence[Lying]
+    inked: Sequence[int]
 
     def hides(self, color: str | None, curves: Sequence[int], place: int) -> list[bool]:
         """For each edge of some curves drawn at a place whether what is below has nearly their colour."""
-        below = [b for b in self.bodies if b.place < place]
-        if color is None:
+        if color is None or not any(look_alike(known, color) for known in self._colors):
             return []
-        alike = [b.color is not None and look_alike(b.color, color) for b in below]
-        if not any(alike):
-            return []
-        spots = self._spots(curves)
-        hidden = np.zeros(len(spots), dtype=np.bool_)
-        for is_alike, body in zip(alike, below, strict=True):
-            hidden[inside_mask(body.section, spots)] = is_alike
-        return hidden.tolist()
+        count = bisect_left(self._places, place)
+        below = [[k for k in self._within[edge] if k < count] for edge in self._edges(curves)]
+        return [bool(under) and self._is_alike(under[-1], color) for under in below]
+
+    def _is_alike(self, body: int, color: str) -> bool:
+        own = self.bodies[body].color
+        return own is not None and look_alike(own, color)
 
     def covering(self, curves: Sequence[int], place: int) -> str | None:
         """The path of a body that is drawn over some curves, all of them; None where there is none."""
-        if not curves or (self.bodies[-1:] and self.bodies[-1].place < place):
+        first = bisect_right(self._places, place)
+        if not curves or first == len(self.bodies):
             return None
-        box = union_bounds([bounds(self.network.curves[curve]) for curve in curves])
-        above = [b for b in self.bodies if b.place > place and _lies_within(box, b.box)]
-        spots = self._spots(curves) if above else []
-        return next((b.path for b in above if inside_mask(b.section, spots).all()), None)
+        box = union_bounds([self.network.boxes[curve] for curve in curves])
+        over = set(range(first, len(self.bodies)))
+        for edge in self._edges(curves):
+            over.intersection_update(self._within[edge])
+        return next(
+            (b.path for b in map(self.bodies.__getitem__, sorted(over)) if _lies_within(box, b.box)), None
+        )
 
     def covered_part(self, curves: Sequence[int], place: int) -> tuple[float, list[str]]:
         """How much of some curves drawn at a place, of their length, later bodies lie over, and which."""
-        above = [b for b in self.bodies if b.place > place]
-        edges = [edge for curve in curves for edge, _ in self.network.uses[curve]]
-        if not above or not edges:
+        first, edges = bisect_right(self._places, place), self._edges(curves)
+        above = [[k for k in self._within[edge] if k >= first] for edge in edges]
+        if not any(above):
             return 0.0, []
-        spots = [self.network.midpoint(edge) for edge in edges]
-        lengths = np.array([length(self.network.piece((edge, True))) for edge in edges])
-        inside = np.array([inside_mask(b.section, spots) for b in above])
-        by = [b.path for b, mask in zip(above, inside, strict=True) if lengths[mask].sum() > 0]
-        whole = float(lengths.sum())
-        return (float(lengths[inside.any(axis=0)].sum()) / whole if whole else 0.0), by
+        lengths = [length(self.network.piece((edge, True))) for edge in edges]
+        by = sorted({k for over, long in zip(above, lengths, strict=True) for k in over if long > 0})
+        covered = sum(long for over, long in zip(above, lengths, strict=True) if over)
+        return covered / (sum(lengths) or 1.0), [self.bodies[k].path for k in by]
 
     def hidden_part(self, faces: Section, place: int) -> tuple[float, list[str]]:
         """The same of faces, by their area. A body that lies within them is an inlay and shows them."""
@@ -92,8 +94,31 @@ class Ground:
         hidden = intersection(union([b.section for b in above]), faces) if by else None
         return (hidden.area() / faces.area() if hidden is not None else 0.0), by
 
-    def _spots(self, curves: Sequence[int]) -> list[Polygon]:
-        return [self.network.midpoint(edge) for curve in curves for edge, _ in self.network.uses[curve]]
+    def _edges(self, curves: Sequence[int]) -> list[int]:
+        return [edge for curve in curves for edge, _ in self.network.uses[curve]]
+
+    @cached_property
+    def _places(self) -> list[int]:
+        return [body.place for body in self.bodies]
+
+    @cached_property
+    def _colors(self) -> set[str]:
+        return {body.color for body in self.bodies if body.color is not None}
+
+    @cached_property
+    def _within(self) -> dict[int, list[int]]:
+        """For each edge of a stroke the bodies that its middle lies in, by number."""
+        edges = sorted(set(self._edges(self.inked)))
+        found: dict[int, list[int]] = {edge: [] for edge in edges}
+        spots = self.network.midpoints(edges)
+        order = np.argsort(spots[:, 0], kind="stable")
+        along = spots[order, 0]
+        for number, body in enumerate(self.bodies):
+            left, _, right, _ = body.section.bounds()
+            beside = order[np.searchsorted(along, left) : np.searchsorted(along, right, side="right")]
+            for k in beside[inside_mask(body.section, spots[beside])].tolist():
+                found[edges[k]].append(number)
+        return found
 
 
 def _lies_within(inner: Bounds, outer: Bounds) -> bool:

@@ -250,7 +250,8 @@ class Network:
         self.node_grid = self.to_grid(np.array(self.nodes, dtype=float).reshape(-1, 2))
         inner = [e.inner for e in self.edges if len(e.inner)]
         sizes = np.array([len(self.node_grid), *(len(e.inner) for e in self.edges)])
-        keys = pack(np.concatenate([self.node_grid, *inner]))
+        self._grid, self._sizes = np.concatenate([self.node_grid, *inner]), sizes[1:]
+        keys = pack(self._grid)
         owner = np.repeat(np.arange(-1, len(self.edges)), sizes)
         order = np.lexsort((owner, keys))
         self._keys, self._owner, self._number = keys[order], owner[order], order
@@ -278,14 +279,14 @@ class Network:
         t0, t1, start, end = ways[0] if use[1] else ways[1]
         return part(self.curves[edge.curve], t0, t1, self.nodes[start], self.nodes[end])
 
-    def midpoint(self, number: int) -> NDArray[np.float64]:
-        """A point about halfway along an edge, in grid units."""
-        edge = self.edges[number]
-        if len(edge.inner):
-            middle: NDArray[np.float64] = edge.inner[len(edge.inner) // 2].astype(np.float64) * GRID
-            return middle
-        both = (self.node_grid[edge.start] + self.node_grid[edge.end]).astype(np.float64)
-        halfway: NDArray[np.float64] = both * (GRID / 2)
+    def midpoints(self, numbers: Sequence[int]) -> NDArray[np.float64]:
+        """A point about halfway along each of some edges, in grid units."""
+        edges = np.array(numbers, dtype=np.int64)
+        count = self._sizes[edges]
+        nodes = [(self.edges[k].start, self.edges[k].end) for k in numbers]
+        straight = self.node_grid[np.array(nodes, dtype=np.int64).reshape(-1, 2)].sum(axis=1) * (GRID / 2)
+        inner = self._grid[np.where(count, self._offset[edges] + count // 2, 0)] * GRID
+        halfway: NDArray[np.float64] = np.where(count[:, None] > 0, inner, straight)
         return halfway
 
     def look_up(self, polygon: NDArray[np.float64]) -> tuple[Ints, Ints]:

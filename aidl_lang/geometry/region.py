@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 
-from aidl_lang.geometry.curves import Circle, Ellipse, Piece
-from aidl_lang.records import record
-
-
+@record()
 @record(slots=True)
 class Loop:
     """A closed outline; each piece starts where the one before it ends, to the last digit.
@@ -37,7 +33,7 @@ class Face:
         return (self.outer, *self.holes)
 
 
-@record(slots=True)
+@record()
 class Region:
     """Any number of faces that do not overlap."""
 
@@ -46,6 +42,16 @@ class Region:
     @property
     def loops(self) -> tuple[Loop, ...]:
         return tuple(loop for face in self.faces for loop in face.loops)
+
+    @cached_property
+    def pieces(self) -> tuple[Piece, ...]:
+        """All that it is bounded by, loop by loop."""
+        return tuple(piece for loop in self.loops for piece in loop.pieces)
+
+    @cached_property
+    def boxes(self) -> NDArray[np.float64]:
+        """The box of each piece, a row each."""
+        return np.array([bounds(piece) for piece in self.pieces]).reshape(-1, 4)
 
     def __bool__(self) -> bool:
         return bool(self.faces)

@@ -20,7 +20,7 @@ def visible_seams(
     """By path of the united structure, its edges inside the body, each drawn once."""
     outline = traced[mass.structure.path].edges
     candidates = sorted({edge for path in mass.inner for edge in traced[path].edges} - outline)
-    mask = inside_mask(mass.section, [network.midpoint(edge) for edge in candidates])
+    mask = inside_mask(mass.section, network.midpoints(candidates))
     left = {edge for edge, within in zip(candidates, mask, strict=True) if within}
     for path in mass.inner:
         edges = sorted(traced[path].edges & left)

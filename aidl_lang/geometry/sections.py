@@ -112,9 +112,15 @@ def _turns_left(polygon: Polygon) -> bool:
     return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) > 0.0
 
 
-def inside_mask(section: Section, spots: Sequence[Polygon]) -> NDArray[np.bool_]:
+def inside_mask(section: Section, spots: Polygon) -> NDArray[np.bool_]:
     """Which points in grid units lie inside."""
-    return inside(section.to_polygons(), np.array(spots, dtype=np.float64).reshape(-1, 2))
+    within = np.zeros(len(spots), dtype=np.bool_)
+    if not section.is_empty():
+        left, bottom, right, top = section.bounds()
+        near = np.flatnonzero(((spots >= (left, bottom)) & (spots <= (right, top))).all(axis=1))
+        if len(near):
+            within[near] = inside(section.to_polygons(), spots[near])
+    return within
 
 
 def in_polygon(polygon: Polygon, spots: Polygon) -> NDArray[np.bool_]:
