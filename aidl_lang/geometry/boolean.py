@@ -5,13 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from itertools import accumulate
 
+import numpy as np
+
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.distance import region_distance
 from aidl_lang.geometry.evaluate import is_closed
+from aidl_lang.geometry.intersect import meet
 from aidl_lang.geometry.measures import area
-from aidl_lang.geometry.network import Network, exactly
+from aidl_lang.geometry.nearness import near_rows
+from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Network, exactly
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import Section, difference, fill, intersection, union
+from aidl_lang.geometry.separation import meeting
 from aidl_lang.geometry.trace import trace
 
 
@@ -37,16 +42,42 @@ def overlap_area(a: Region, b: Region) -> float:
 
 def clearance(a: Region, b: Region) -> float:
     """The least distance between two regions, mm; 0 where they touch or overlap, infinite if one is empty."""
-    if overlap_area(a, b) > 0:
+    if not _lie_apart(a, b) and overlap_area(a, b) > 0:
         return 0.0
     closest = region_distance(a, b)
     return closest[0] if closest else float("inf")
 
 
+def _lie_apart(a: Region, b: Region) -> bool:
+    """Whether no outlines of two regions meet, and none lies in the box of the other."""
+    curves, count = [*a.pieces, *b.pieces], len(a.pieces)
+    boxes = np.concatenate((a.boxes, b.boxes))
+    tolerance = RELATIVE_TOLERANCE * float(np.ptp(boxes.reshape(-1, 2), axis=0).max(initial=0.0))
+    near = near_rows(boxes, tolerance)
+    near = near[(near[:, 0] < count) & (near[:, 1] >= count)]
+    own_ends = np.arange(2 * len(curves)).reshape(-1, 2)  # they share none
+    open_pairs = meeting(curves, near, tolerance, own_ends, np.zeros((0, 2)))
+    if any(meet(curves[i], curves[j], tolerance) for i, j in open_pairs.tolist()):
+        return False
+    return not (_may_hold(a, b) or _may_hold(b, a))
+
+
+def _may_hold(region: Region, other: Region) -> bool:
+    """Whether an outline of the other lies in the box of a region."""
+    if not (region and other):
+        return False
+    begins = list(accumulate([0, *(len(loop.pieces) for loop in other.loops[:-1])]))
+    low, high = np.minimum.reduceat(other.boxes, begins), np.maximum.reduceat(other.boxes, begins)
+    inside = (low[:, :2] >= region.boxes[:, :2].min(axis=0)) & (
+        high[:, 2:] <= region.boxes[:, 2:].max(axis=0)
+    )
+    return bool(inside.all(axis=1).any())
+
+
 def _combined(regions: Sequence[Region], operation: Callable[..., Section]) -> Region:
-    pieces: list[Piece] = [p for region in regions for loop in region.loops for p in loop.pieces]
+    pieces: list[Piece] = [piece for region in regions for piece in region.pieces]
     network = Network(pieces)
-    counts = [sum(len(loop.pieces) for loop in region.loops) for region in regions]
+    counts = [len(region.pieces) for region in regions]
     firsts = accumulate([0, *counts][:-1])
 
     def traced(placed: Sequence[tuple[Region, int]] = tuple(zip(regions, firsts, strict=True))) -> Region:

@@ -77,6 +77,8 @@ def _sampled_candidates(a: Piece, b: Piece) -> list[Vec]:
     t = _facing(a, b, float(_SAMPLES[i]), float(_SAMPLES[j]))
     if t is not None:
         return [*ends(a), point(a, t)]
+    if {i, j} & {0, len(_SAMPLES) - 1} and not is_closed(a) and not is_closed(b):
+        return list(ends(a))  # an end is nearest, of one or of the other
     p = point(a, float(_SAMPLES[i]))
     for _ in range(50):  # by projecting to and fro
         before, p = p, point(a, nearest(a, point(b, nearest(b, p))))

@@ -37,6 +37,15 @@ def intersections(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
     return _sampled(a, b, tolerance)
 
 
+def meet(a: Piece, b: Piece, tolerance: float) -> bool:
+    """Whether two curves have a point in common: a crossing, a touch, an end of one on the other."""
+    return (
+        any(locate(a, p, tolerance) is not None for p in ends(b))
+        or any(locate(b, p, tolerance) is not None for p in ends(a))
+        or bool(intersections(a, b, tolerance))
+    )
+
+
 def _on_both(a: Piece, b: Piece, candidates: list[Vec], tolerance: float) -> list[Crossing]:
     found = []
     for p in candidates:

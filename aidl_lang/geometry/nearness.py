@@ -22,13 +22,18 @@ Floats = NDArray[np.float64]
 
 
 def near_pairs(boxes: Sequence[Bounds], margin: float) -> Iterator[tuple[int, int]]:
-    """Pairs i < j whose boxes come closer than the margin, in the order of a sweep from left to right.
+    """Pairs i < j whose boxes come closer than the margin, in the order of a sweep from left to right."""
+    yield from ((i, j) for i, j in near_rows(boxes, margin).tolist())
+
+
+def near_rows(boxes: Sequence[Bounds] | Floats, margin: float) -> Ints:
+    """The same pairs as a table of two columns.
 
     The sweep itself runs along the axis on which fewer boxes meet, so that a long row costs no more than a
     long column.
     """
     if len(boxes) < 2:
-        return
+        return np.zeros((0, 2), dtype=np.int64)
     b = np.array(boxes, dtype=np.float64)
     order = np.argsort(b[:, 0], kind="stable")
     b = b[order]
@@ -46,7 +51,7 @@ def near_pairs(boxes: Sequence[Bounds], margin: float) -> Iterator[tuple[int, in
     firsts, seconds = (np.concatenate([pair[k] for pair in found]) for k in (0, 1))
     kept = np.lexsort((firsts, seconds))
     one, other = order[firsts[kept]], order[seconds[kept]]
-    yield from zip(np.minimum(one, other).tolist(), np.maximum(one, other).tolist(), strict=True)
+    return np.stack((np.minimum(one, other), np.maximum(one, other)), axis=1)
 
 
 def _sweep(b: Floats, axis: int, margin: float) -> tuple[Ints, Ints]:

@@ -33,8 +33,8 @@ from aidl_lang.geometry.evaluate import (
     round_range,
 )
 from aidl_lang.geometry.intersect import intersections, self_crossing, sorted_cuts
-from aidl_lang.geometry.nearness import Sides, near_pairs
-from aidl_lang.geometry.separation import Separation
+from aidl_lang.geometry.nearness import Sides, near_rows
+from aidl_lang.geometry.separation import meeting
 from aidl_lang.records import record
 
 RELATIVE_TOLERANCE = 1e-6
@@ -139,17 +139,12 @@ class Network:
             if isinstance(curve, Bezier) and (loop := self_crossing(curve)) is not None:
                 node, middle = self.node(point(curve, loop[0])), sum(loop) / 2
                 own += [(loop[0], node), (middle, self.node(point(curve, middle))), (loop[1], node)]
-        for i, j in self._meeting(own_ends):
+        own_nodes = np.array(own_ends, dtype=np.int64)
+        near = near_rows(self.boxes, self.tolerance)
+        for i, j in meeting(self.curves, near, self.tolerance, own_nodes, np.array(self.nodes)).tolist():
             checkpoint()
             self._cut_pair(i, j, cuts, own_ends)
         return [self._split(i, sorted_cuts(c)) for i, c in enumerate(cuts)]
-
-    def _meeting(self, own_ends: list[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-        """The pairs of curves that may meet in more than an end they share."""
-        pairs = np.array(list(near_pairs(self.boxes, self.tolerance)), dtype=np.int64).reshape(-1, 2)
-        hulls = Separation(self.curves, self.tolerance)
-        kept = hulls.may_meet(pairs[:, 0], pairs[:, 1], np.array(own_ends), np.array(self.nodes))
-        yield from ((i, j) for i, j in pairs[kept].tolist())
 
     def _cut_pair(
         self, i: int, j: int, cuts: list[list[tuple[float, int]]], own_ends: list[tuple[int, int]]

@@ -2,8 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import field
+from functools import cached_property
 
-@record()
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.geometry.curves import Circle, Ellipse, Piece
+from aidl_lang.geometry.evaluate import bounds
+from aidl_lang.records import record
+
+
 @record(slots=True)
 class Loop:
     """A closed outline; each piece starts where the one before it ends, to the last digit.

@@ -53,7 +53,22 @@ def _blossom(r: float, s: float, t: float) -> list[float]:
 _CUTTING = _cutting()
 
 
-class Separation:
+def meeting(curves: Sequence[Piece], pairs: Ints, tolerance: float, nodes: Ints, places: Floats) -> Ints:
+    """Those of some pairs of curves that may meet in more than an end they share.
+
+    nodes   by curve, which points its two ends are
+    places  where these points are
+    """
+    hulls, kept = _Hulls(curves, tolerance), np.zeros(len(pairs), dtype=np.bool_)
+    for begin in range(0, len(pairs), _AT_ONCE):
+        checkpoint()
+        rows = slice(begin, begin + _AT_ONCE)
+        kept[rows] = hulls.may_meet(pairs[rows, 0], pairs[rows, 1], nodes, places)
+    found: Ints = pairs[kept]
+    return found
+
+
+class _Hulls:
     """The hulls of all parts of some curves, and the boxes of these."""
 
     def __init__(self, curves: Sequence[Piece], tolerance: float) -> None:
@@ -64,19 +79,6 @@ class Separation:
         self._high = self._hulls.max(axis=2) + margin
 
     def may_meet(self, one: Ints, other: Ints, nodes: Ints, places: Floats) -> Mask:
-        """For each pair of curves whether they may meet in more than an end they share.
-
-        nodes   by curve, which points its two ends are
-        places  where these points are
-        """
-        found = [np.zeros(0, dtype=np.bool_)]
-        for begin in range(0, len(one), _AT_ONCE):
-            checkpoint()
-            rows = slice(begin, begin + _AT_ONCE)
-            found.append(self._may_meet(one[rows], other[rows], nodes, places))
-        return np.concatenate(found)
-
-    def _may_meet(self, one: Ints, other: Ints, nodes: Ints, places: Floats) -> Mask:
         low, high = self._low, self._high
         meets = (low[one][:, :, None] <= high[other][:, None]).all(axis=3)
         meets &= (low[other][:, None] <= high[one][:, :, None]).all(axis=3)

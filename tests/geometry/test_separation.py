@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import ends, locate
 from aidl_lang.geometry.intersect import intersections
-from aidl_lang.geometry.separation import Separation
+from aidl_lang.geometry.separation import meeting
 
 TOLERANCE = 1e-5
 
@@ -56,22 +56,22 @@ def drawings(draw: st.DrawFn) -> list[Piece]:
     return chain + draw(st.lists(closed, max_size=2))
 
 
-def meeting(curves: list[Piece]) -> dict[tuple[int, int], bool]:
+def may_meet(curves: list[Piece]) -> dict[tuple[int, int], bool]:
     """Whether each pair may meet in more than a shared end."""
     places = sorted({p for curve in curves for p in ends(curve)})
     nodes = np.array([[places.index(p) for p in ends(curve)] for curve in curves])
     pairs = list(combinations(range(len(curves)), 2))
-    one, other = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
-    found = Separation(curves, TOLERANCE).may_meet(one, other, nodes, np.array(places))
-    return dict(zip(pairs, found.tolist(), strict=True))
+    rows = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+    found = {(i, j) for i, j in meeting(curves, rows, TOLERANCE, nodes, np.array(places)).tolist()}
+    return {pair: pair in found for pair in pairs}
 
 
 @given(drawings())
 def test_curves_told_apart_have_only_shared_ends_in_common(curves: list[Piece]):
-    for (i, j), may_meet in meeting(curves).items():
+    for (i, j), is_open in may_meet(curves).items():
         a, b = curves[i], curves[j]
         shared = set(ends(a)) & set(ends(b))
-        if not may_meet:
+        if not is_open:
             spots = [p for _, _, p in intersections(a, b, TOLERANCE)]
             spots += [p for p in ends(a) if locate(b, p, TOLERANCE) is not None]
             spots += [p for p in ends(b) if locate(a, p, TOLERANCE) is not None]
@@ -81,7 +81,7 @@ def test_curves_told_apart_have_only_shared_ends_in_common(curves: list[Piece]):
 def test_neighbours_in_a_smooth_outline_are_told_apart():
     arc = arc_between((0.0, 0.0), (4.0, 4.0), math.pi / 2)
     smooth = Bezier((4.0, 4.0), (4.0, 6.0), (2.0, 8.0), (0.0, 8.0))
-    assert meeting([arc, smooth, Line((0.0, 8.0), (-4.0, 8.0))]) == {
+    assert may_meet([arc, smooth, Line((0.0, 8.0), (-4.0, 8.0))]) == {
         (0, 1): False,
         (0, 2): False,
         (1, 2): False,
@@ -90,9 +90,9 @@ def test_neighbours_in_a_smooth_outline_are_told_apart():
 
 def test_neighbours_that_meet_again_are_not_told_apart():
     there, back = Line((0.0, 0.0), (4.0, 0.0)), Bezier((4.0, 0.0), (4.0, 3.0), (2.0, 3.0), (2.0, -1.0))
-    assert meeting([there, back]) == {(0, 1): True}
+    assert may_meet([there, back]) == {(0, 1): True}
 
 
 def test_curves_that_lie_on_each_other_are_not_told_apart():
     whole, half = Line((0.0, 0.0), (4.0, 0.0)), Line((0.0, 0.0), (2.0, 0.0))
-    assert meeting([whole, half, Circle((0.0, 3.0), 3.0)]) == {(0, 1): True, (0, 2): True, (1, 2): True}
+    assert may_meet([whole, half, Circle((0.0, 3.0), 3.0)]) == {(0, 1): True, (0, 2): True, (1, 2): True}
