@@ -1,13 +1,15 @@
 """How the bodies of a drawing lie to each other: touching, apart or overlapping.
 
-Up to `ALL_PAIRS` bodies every pair is compared. In larger drawings only pairs whose boxes are closer than
-`NEAR` times the size of the drawing are, so that hundreds of bodies stay cheap; a pair that is not listed is
-apart.
+Pairs that may touch are compared at once; how far others are apart is worked out when it is asked for. Up to
+`ALL_PAIRS` bodies every pair is listed. In larger drawings only pairs whose boxes are closer than `NEAR`
+times the size of the drawing are, so that hundreds of bodies stay cheap; a pair that is not listed is apart.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from functools import cached_property
+from itertools import combinations
 from typing import Literal
 
 from aidl_lang.geometry.distance import region_distance
@@ -22,6 +24,8 @@ from aidl_lang.records import record
 
 ALL_PAIRS = 24
 NEAR = 0.05
+UNNOTICED = 1e-3
+"""A gap in mm that nobody who makes the parts will see: flanks of gears are a little less than touching."""
 
 Relation = Literal["touching", "apart", "overlapping"]
 
@@ -36,6 +40,11 @@ class Contact:
     gap: float | None = None
     area: float | None = None
 
+    @property
+    def is_close(self) -> bool:
+        """Whether the bodies touch or overlap, as far as anybody will see."""
+        return self.relation != "apart" or (self.gap or 0.0) <= UNNOTICED
+
 
 @record(slots=True)
 class Solid:
@@ -47,14 +56,37 @@ class Solid:
     box: Bounds
 
 
-def contacts(network: Network, solids: Sequence[Solid]) -> list[Contact]:
-    """All pairs (see above), in the order of the bodies."""
-    count = len(solids)
-    if count <= ALL_PAIRS:
-        pairs = [(i, j) for i in range(count) for j in range(i + 1, count)]
-    else:
-        pairs = sorted(near_pairs([s.box for s in solids], NEAR * network.size))
-    return [_compare(network, solids[i], solids[j]) for i, j in pairs]
+@record()
+class Contacts:
+    """The pairs of some bodies. `near` has those that touch, overlap or are `UNNOTICED` apart at most;
+    `tolerance` and `size` are those of the drawing.
+    """
+
+    bodies: Sequence[tuple[str, Region, Bounds]] = ()
+    near: tuple[Contact, ...] = ()
+    tolerance: float = 0.0
+    size: float = 0.0
+
+    @cached_property
+    def all(self) -> tuple[Contact, ...]:
+        """All pairs (see above), in the order of the bodies."""
+        known = {(contact.a, contact.b): contact for contact in self.near}
+        pairs: Iterable[tuple[int, int]] = combinations(range(len(self.bodies)), 2)
+        if len(self.bodies) > ALL_PAIRS:
+            pairs = sorted(near_pairs([box for _, _, box in self.bodies], NEAR * self.size))
+        return tuple(self._pair(i, j, known) for i, j in pairs)
+
+    def _pair(self, i: int, j: int, known: dict[tuple[str, str], Contact]) -> Contact:
+        (a, ours, _), (b, theirs, _) = self.bodies[i], self.bodies[j]
+        return known.get((a, b)) or _apart(a, ours, b, theirs, self.tolerance)
+
+
+def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
+    """How some bodies lie to each other."""
+    margin = max(UNNOTICED, 2 * network.tolerance)
+    pairs = sorted(near_pairs([s.box for s in solids], margin))
+    near = tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
+    return Contacts(tuple((s.path, s.region, s.box) for s in solids), near, network.tolerance, network.size)
 
 
 def _compare(network: Network, a: Solid, b: Solid) -> Contact:
@@ -63,8 +95,11 @@ def _compare(network: Network, a: Solid, b: Solid) -> Contact:
         shared = area(trace(network, common).region)
         if shared > 0:
             return Contact(a.path, b.path, "overlapping", area=shared)
-    closest = region_distance(a.region, b.region)
+    return _apart(a.path, a.region, b.path, b.region, network.tolerance)
+
+
+def _apart(a: str, ours: Region, b: str, theirs: Region, tolerance: float) -> Contact:
+    """Of two bodies that do not overlap."""
+    closest = region_distance(ours, theirs)
     gap = closest[0] if closest else 0.0
-    if gap <= network.tolerance:
-        return Contact(a.path, b.path, "touching")
-    return Contact(a.path, b.path, "apart", gap=gap)
+    return Contact(a, b, "apart", gap=gap) if gap > tolerance else Contact(a, b, "touching")

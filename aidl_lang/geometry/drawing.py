@@ -12,7 +12,7 @@ from functools import cached_property, partial
 from aidl_lang.diagnostics import Diagnostic, ordered
 from aidl_lang.geometry.bodies import Bodies, IdleHole, LooseCurves, Mass
 from aidl_lang.geometry.colors import css_color
-from aidl_lang.geometry.contacts import Contact, Solid, contacts
+from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
 from aidl_lang.geometry.faces import Shape
@@ -89,7 +89,7 @@ class Drawing:
     """All that is to be seen, in order of writing. Coordinates in mm in the root frame.
 
     `regions` has every solid and every hole, each as it stands before the structures around it change it, and
-    the bodies as they are in the end. `pairs` lists bodies as `contacts` describes. `box` bounds bodies and
+    the bodies as they are in the end. `box` bounds bodies and
     strokes, not the plans.
     """
 
@@ -98,7 +98,7 @@ class Drawing:
     seams: tuple[Seam, ...]
     strokes: tuple[Stroke, ...]
     plans: tuple[PlanBox, ...]
-    pairs: tuple[Contact, ...]
+    contacts: Contacts
     styles: dict[str, Style]
     box: Bounds
 
@@ -106,6 +106,11 @@ class Drawing:
     def measures(self) -> dict[str, Measures]:
         """Area, perimeter, centroid and box of each region."""
         return {path: measure(region) for path, region in self.regions.items()}
+
+    @property
+    def pairs(self) -> tuple[Contact, ...]:
+        """How the bodies lie to each other."""
+        return self.contacts.all
 
     @property
     def size(self) -> float:
@@ -126,10 +131,10 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
         for path in (m.structure.path for m in masses)
     )
     solids = [Solid(b.path, b.region, m.section, b.box) for b, m in zip(bodies, masses, strict=True)]
-    pairs = tuple(contacts(network, solids))
+    touching = contacts(network, solids)
     notes += [note for f in walk.findings if (note := finding_note(f, network)) is not None]
-    notes += detached_notes(model.root, [b.path for b in bodies], pairs)
-    notes += loose_piece_notes(model.root, walk, masses, solids, pairs)
+    notes += detached_notes(model.root, [b.path for b in bodies], touching)
+    notes += loose_piece_notes(model.root, walk, masses, solids, touching.near)
     seams = tuple(
         Seam(path, m.structure.path, pieces)
         for m in masses
@@ -145,11 +150,13 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     ground = Ground(network, sorted(lying, key=lambda body: body.place), inked)
     strokes = tuple(_strokes(model.root, shapes, walk, styles, regions, ground, notes))
     notes += _covered_letters(model.root, walk, masses, ground, order)
-    notes += fallen_piece_notes(model.root, walk, masses, solids, pairs)
+    notes += fallen_piece_notes(model.root, walk, masses, solids, touching.near)
     plans = tuple(_plans(model.root))
     boxes = [b.box for b in bodies]
     boxes += [bounds(piece) for s in strokes for piece in s.pieces]
-    return Drawing(bodies, regions, seams, strokes, plans, pairs, styles, union_bounds(boxes)), ordered(notes)
+    return Drawing(bodies, regions, seams, strokes, plans, touching, styles, union_bounds(boxes)), ordered(
+        notes
+    )
 
 
 def _closed(

@@ -5,22 +5,19 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 
 from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.geometry.bodies import CoveredHoles, FilledHole, Finding, IdleHole, InnerLoop, LooseCurves
 from aidl_lang.geometry.colors import similar_colors
-from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.contacts import Contacts
 from aidl_lang.geometry.curves import Bezier, Piece, Vec
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, bounds, ends, is_finite
 from aidl_lang.geometry.gaps import Gap
 from aidl_lang.geometry.network import Network
 from aidl_lang.solved import Scalar, SolvedGeometry, SolvedStructure
 from aidl_lang.source import Span
-
-UNNOTICED = 1e-3
-"""A gap in mm that nobody who makes the parts will see: flanks of gears are a little less than touching."""
 
 GUIDE = "to guide other geometry only, write `construction` before it"
 
@@ -320,21 +317,20 @@ def _covered_holes(finding: CoveredHoles) -> Diagnostic:
     )
 
 
-def detached_notes(root: SolvedStructure, paths: Sequence[str], pairs: Iterable[Contact]) -> list[Diagnostic]:
+def detached_notes(root: SolvedStructure, paths: Sequence[str], contacts: Contacts) -> list[Diagnostic]:
     """A warning for each body that touches and overlaps none of the others."""
-    held: set[str] = set()
-    nearest: dict[str, tuple[float, str]] = {}
-    for pair in pairs:
-        if pair.relation != "apart" or (pair.gap or 0.0) <= UNNOTICED:
-            held |= {pair.a, pair.b}
-            continue
-        for one, other in ((pair.a, pair.b), (pair.b, pair.a)):
-            candidate = (pair.gap or 0.0, other)
-            nearest[one] = min(nearest.get(one, candidate), candidate, key=lambda c: c[0])
     free = marked_detached(root)
     if sum(path not in free for path in paths) < 2:
         return []  # there is nothing that a part could touch
+    held = {path for pair in contacts.near if pair.is_close for path in (pair.a, pair.b)}
     lonely = [p for p in paths if p not in held and p not in free]
+    if not lonely:
+        return []
+    nearest: dict[str, tuple[float, str]] = {}
+    for pair in contacts.all:
+        for one, other in ((pair.a, pair.b), (pair.b, pair.a)):
+            candidate = (pair.gap or 0.0, other)
+            nearest[one] = min(nearest.get(one, candidate), candidate, key=lambda c: c[0])
     structures = {s.path: s for s in root.walk()}
     return [_detached(structures[p], nearest.get(p)) for p in lonely]
 

@@ -12,13 +12,13 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from aidl_lang.diagnostics import Diagnostic
 from aidl_lang.geometry.bodies import Bodies, Mass
-from aidl_lang.geometry.contacts import Contact, Solid
+from aidl_lang.geometry.contacts import UNNOTICED, Contact, Solid
 from aidl_lang.geometry.distance import region_distance
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.faces import OwnFace
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.nearness import near_pairs
-from aidl_lang.geometry.notes import UNNOTICED, listed, marked_detached, short
+from aidl_lang.geometry.notes import listed, marked_detached, short
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import (
     Section,
@@ -121,7 +121,7 @@ def _groups(
     """Pieces that hold together, directly or by other bodies; the largest group first."""
     joined = _Joined()
     for contact in pairs:
-        if _meet(contact):
+        if contact.is_close:
             if own.path not in (contact.a, contact.b):
                 joined.join(contact.a, contact.b)
                 continue
@@ -140,10 +140,6 @@ def _groups(
     for number, piece in enumerate(pieces):
         groups.setdefault(joined.root(number), []).append(piece)
     return sorted(groups.values(), key=lambda group: -sum(p.section.area() for p in group))
-
-
-def _meet(contact: Contact) -> bool:
-    return contact.relation != "apart" or (contact.gap or 0.0) <= UNNOTICED
 
 
 class _Joined:
@@ -262,7 +258,7 @@ def _held_by_others(solids: Sequence[Solid], pairs: Sequence[Contact]) -> dict[s
     known = {solid.path: solid for solid in solids}
     held: dict[str, list[Solid]] = {}
     for pair in pairs:
-        if _meet(pair):
+        if pair.is_close:
             held.setdefault(pair.a, []).append(known[pair.b])
             held.setdefault(pair.b, []).append(known[pair.a])
     return held

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+from aidl_lang.geometry.contacts import Contacts
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.engraving import boxes_meet, engraved, owner
@@ -181,7 +182,7 @@ def _drawn(drawing: Drawing, sheet: Size, places: Sequence[_Place]) -> Drawing:
             faces = regions.get(path, Region()).faces
             regions[path] = Region(faces + _moved_region(below, place).faces)
     box = (0.0, 0.0, *sheet)
-    return Drawing(tuple(bodies), regions, (), tuple(strokes), (), (), drawing.styles, box)
+    return Drawing(tuple(bodies), regions, (), tuple(strokes), (), Contacts(), drawing.styles, box)
 
 
 def _moved_region(region: Region, place: _Place) -> Region:

@@ -53,6 +53,23 @@ def test_a_pin_in_its_bore_touches_the_plate():
         assert pair.relation == relation
 
 
+def test_only_pairs_that_come_near_are_compared_before_they_are_asked_for():
+    shapes = [circle("c", x, 0, 1) for x in (0, 2, 5, 7.0005)]
+    solids = [structure("solid", f"p{i}", shape) for i, shape in enumerate(shapes)]
+    found = draw(model(structure("assembly", "a", *solids)))[0].contacts
+    assert [(pair.a, pair.b, pair.is_close) for pair in found.near] == [
+        ("a.p0", "a.p1", True),
+        ("a.p2", "a.p3", True),
+    ]
+    apart = [(p.a, p.b, pytest.approx(p.gap)) for p in found.all if not p.is_close]
+    assert apart == [
+        ("a.p0", "a.p2", 3),
+        ("a.p0", "a.p3", 5.0005),
+        ("a.p1", "a.p2", 1),
+        ("a.p1", "a.p3", 3.0005),
+    ]
+
+
 def test_large_drawings_list_near_pairs_only():
     count = ALL_PAIRS + 6
     found = pairs(*(circle("c", 10 * i, 0, 5) for i in range(count)))
