@@ -9,6 +9,7 @@ ink: a line of text begins where its first letter has its leftmost point.
 from __future__ import annotations
 
 import unicodedata
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from functools import cache, lru_cache
 from io import BytesIO
@@ -55,10 +56,10 @@ def silhouette(glyphs: Sequence[Glyph]) -> tuple[Curve, ...]:
     whatever direction one of these reaches furthest; all that is left out lies between them.
     """
     curves = [curve for glyph in glyphs for curve in glyph.curves]
-    hull = _hull([p for curve in curves for p in _samples(curve)])
-    bent = [c for c in curves if len(c) > 2 and not all(_is_inside(p, hull) for p in c)]
+    hull = _Hull([p for curve in curves for p in _samples(curve)])
+    bent = [c for c in curves if len(c) > 2 and not all(p in hull for p in c)]
     ends = {p for c in curves for p in (c[0], c[-1])}
-    return (*((p,) for p in hull if p in ends), *bent)
+    return (*((p,) for p in hull.corners if p in ends), *bent)
 
 
 def _point(curve: Curve, t: float) -> Vec:
@@ -81,28 +82,41 @@ def _samples(curve: Curve) -> Sequence[Vec]:
     return [curve[0], *between, curve[-1]]
 
 
-def _hull(points: Sequence[Vec]) -> list[Vec]:
-    """The corners of the convex hull, counter-clockwise (Andrew's monotone chain, 1979)."""
-    ordered = sorted(set(points))
-    chains: list[list[Vec]] = []
-    for run in (ordered, ordered[::-1]):
-        chain: list[Vec] = []
-        for p in run:
-            while len(chain) > 1 and _turn(chain[-2], chain[-1], p) <= 0.0:
-                chain.pop()
-            chain.append(p)
-        chains.append(chain[:-1])
-    return chains[0] + chains[1]
+class _Hull:
+    """The convex hull of points (Andrew, 1979): its corners counter-clockwise, and its chains
+    from left to right, by which it is quickly told what lies in it.
+    """
+
+    def __init__(self, points: Sequence[Vec]) -> None:
+        ordered = sorted(set(points))
+        lower, upper = _chain(ordered), _chain(ordered[::-1])
+        self.corners = [*lower[:-1], *upper[:-1]]
+        self._chains = [(chain, [x for x, _ in chain]) for chain in (lower, upper[::-1])]
+
+    def __contains__(self, p: Vec) -> bool:
+        """Whether a point lies in it or on its outline."""
+        for sense, (chain, lefts) in zip((1.0, -1.0), self._chains, strict=True):
+            if not lefts[0] <= p[0] <= lefts[-1]:
+                return False
+            k = min(bisect_right(lefts, p[0]), len(chain) - 1)
+            if k > 0 and sense * _turn(chain[k - 1], chain[k], p) < 0.0:
+                return False
+        return True
+
+
+def _chain(ordered: Sequence[Vec]) -> list[Vec]:
+    """Those of sorted points that have all others to their left, as one goes along them."""
+    chain: list[Vec] = []
+    for p in ordered:
+        while len(chain) > 1 and _turn(chain[-2], chain[-1], p) <= 0.0:
+            chain.pop()
+        chain.append(p)
+    return chain
 
 
 def _turn(a: Vec, b: Vec, c: Vec) -> float:
     """Twice the signed area of a triangle: positive where c lies left of the way from a to b."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def _is_inside(p: Vec, hull: Sequence[Vec]) -> bool:
-    """Whether a point lies in a convex polygon or on its outline."""
-    return all(_turn(a, b, p) >= 0.0 for a, b in zip(hull, [*hull[1:], hull[0]], strict=True))
 
 
 def unknown_characters(text: str) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from itertools import accumulate
 from typing import TypeVar
 
@@ -20,6 +21,7 @@ _MOST_LETTERS = 200_000
 """Pairs of letters that are compared in search of a name: some hundred names of ordinary length and more."""
 
 
+@lru_cache(maxsize=4096)
 def fold(name: str) -> str:
     """The form in which `CenterInside`, `centerInside` and `center_inside` are one name."""
     return name.replace("_", "").casefold()

@@ -56,9 +56,14 @@ _UNBOUNDED = frozenset({ListVal, RecordVal, Text})
 
 
 def _number(it: Interpreter, node: ast.Number, env: Env) -> Value:
+    if (known := it.numbers.get(node)) is not None:
+        return known
     factor, dimension = UNITS[node.unit] if node.unit is not None else (1.0, None)
     value = node.value * factor
-    return Num(ex.literal(value, node), dimension) if ex.is_number(value) else _out_of_range(it, node)
+    if not ex.is_number(value):
+        return _out_of_range(it, node)
+    made = it.numbers[node] = Num(ex.literal(value, node), dimension)
+    return made
 
 
 def _point(it: Interpreter, node: ast.Point, env: Env) -> Value:
@@ -147,8 +152,13 @@ def truth(it: Interpreter, value: Value, node: ast.Node) -> bool:
 
 
 def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
-    found = env.scope.find(node.text)
-    if found is not None:
+    name = node.text
+    scope: Scope | None = env.scope
+    while scope is not None:
+        if name in scope.values:
+            return read(it, scope.values[name], node, env)
+        scope = scope.parent
+    if (found := env.scope.alike(name)) is not None:
         name, scope = found
         return read(it, scope.values[name], node, env)
     for scope in env.scope.chain():
@@ -228,10 +238,10 @@ def _binary(it: Interpreter, node: ast.Binary, env: Env) -> Value:
             return left
         return conjunction(it, node.operator, left, evaluate(it, node.right, env), node)
     right = evaluate(it, node.right, env)
+    if type(left) is Num and type(right) is Num:
+        return arithmetic(it, node.operator, left, right, node)
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
-    if isinstance(left, Num) and isinstance(right, Num):
-        return arithmetic(it, node.operator, left, right, node)
     if node.operator == "+" and (together := lists.joined(left, right)) is not None:
         return together
     a, b = (as_point(it, v, n, env) for v, n in ((left, node.left), (right, node.right)))
@@ -282,9 +292,11 @@ _OPERATION: dict[str, Callable[[ex.Expression, ex.Expression], ex.Expression]] =
 
 def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num | Nothing:
     """Arithmetic on numbers, dimensions included; of two statuses the stronger counts."""
-    status = max(a.status, b.status)
+    status = a.status if a.status >= b.status else b.status
     try:
-        if op == "^":
+        if op in "+-" and a.dimension is b.dimension:
+            dimension = a.dimension
+        elif op == "^":
             exponent = constant(it, b, node, "an exponent")
             if exponent is None:
                 return NOTHING

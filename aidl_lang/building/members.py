@@ -250,10 +250,13 @@ def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: E
     return value
 
 
+_BOX_FIELDS = dict.fromkeys(boxes.FIELDS)
+
+
 def _box_field(it: Interpreter, box: Box, name: str, node: ast.Node, env: Env) -> Value | None:
     if name.casefold() in ("bb", "box", "boundingbox", "bounding_box"):
         return box
-    key = find(name, dict.fromkeys(boxes.FIELDS))
+    key = find(name, _BOX_FIELDS)
     if key is None:
         return None
     value = box.field(key)

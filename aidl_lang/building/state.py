@@ -128,6 +128,8 @@ class Interpreter:
     """the overloads of the names of calls, when they were last met, and what is known of the calls from these
     and their text
     """
+    numbers: dict[ast.Number, Num] = field(default_factory=dict)
+    """of the text, which are the same each time they are met"""
     frames_turn: bool = False
     """whether the program speaks of the rotation of structures, which a constraint on it frees"""
     root: Structure | None = None
