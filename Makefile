@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test fuzz fuzz-mends test-model lint format reference colours editors vscode test-vscode bench bench-editor bench-check bench-regions bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test fuzz fuzz-mends test-model lint format reference colours editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -60,6 +60,9 @@ test-vscode: $(READY) vscode ## try the extension in VS Code itself; installs th
 
 bench: $(READY) ## measure the command and the stages
 	$(BIN)/python benchmarks/run.py
+
+bench-commands: $(READY) ## measure whole commands beside OpenSCAD, on the pairs of programs in FOLDER
+	$(BIN)/python benchmarks/commands.py $(FOLDER)
 
 bench-editor: $(READY) ## measure what an editor waits for
 	$(BIN)/python benchmarks/editor.py
