@@ -3,7 +3,7 @@
     python benchmarks/commands.py [--runs N] [FOLDER]
 
 FOLDER holds pairs, `NAME.aidl` and `NAME.scad`; without one it is this folder. Prints Markdown: seconds of
-the processor's time from start to exit, medians of runs in turn, and of `aidl` also a compile in a warm process.
+the processor's time from start to exit, medians of runs in turn, and of a compile in a warm process.
 """
 
 from __future__ import annotations
