@@ -5,8 +5,11 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
+# Tests start hundreds of processes: each would compile all modules anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DEFAULT_GOAL := help
-.PHONY: help demo test fuzz fuzz-mends test-model lint format reference colours editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-solver bench-peers accept examples lock clean
+.PHONY: help demo test test-all fuzz fuzz-mends test-model lint format reference colours editors vscode test-vscode bench bench-commands bench-editor bench-check bench-regions bench-solver bench-peers accept examples lock clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -16,8 +19,11 @@ demo: $(READY) ## set up, then draw examples/telephone.aidl
 	@$(BIN)/aidl compile examples/telephone.aidl -o build/telephone.svg --quiet
 	@echo "The drawing is in $(CURDIR)/build/telephone.svg; open it in a browser."
 
-test: $(READY) ## run all tests
-	$(BIN)/python -m pytest -n auto
+test: $(READY) ## run the tests: all but the slow ones, with a share of the examples of each property
+	$(BIN)/python -m pytest -n auto --dist worksteal -m "not slow"
+
+test-all: $(READY) ## run all tests, with TIMES (2) as many examples as are written, others each time
+	AIDL_EXAMPLES=$(or $(TIMES),2) $(BIN)/python -m pytest -n auto --dist worksteal
 
 fuzz: $(READY) ## try programs that ask for trouble, for MINUTES (2), from a SEED if one is given
 	$(BIN)/python -m tests.fuzz --minutes $(or $(MINUTES),2) $(if $(SEED),--seed $(SEED))
@@ -39,7 +45,7 @@ format: $(READY) ## put all Python code into its canonical form
 	$(BIN)/ruff check --fix-only --quiet .
 	$(BIN)/ruff format .
 
-reference: $(READY) ## write docs/reference, docs/guide.md and llms.txt anew from the library
+reference: $(READY) colours ## write all that is generated from the library: docs/reference, docs/guide.md, llms.txt, what editors read
 	$(BIN)/python -m aidl_lang.reference .
 
 colours: $(READY) ## write the grammars, words and snippets for editors anew

@@ -7,6 +7,7 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from aidl_lang import trials
+from tests import amount as amount  # how many examples are tried
 
 # What a message says hangs on the program here, and not on how busy the machine is.
 trials.SECONDS, trials.LONGEST = 10.0, 20.0

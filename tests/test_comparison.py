@@ -17,6 +17,7 @@ from aidl_lang.comparison.move import Move
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.solved import SolvedStructure
+from tests import compiled
 from tests.documents import ROOT
 from tests.geometry.models import circle, model, polygon, structure
 
@@ -409,13 +410,12 @@ def test_rounding_is_no_difference() -> None:
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_every_example_equals_itself(path: Path) -> None:
-    assert aidl_lang.diff(aidl_lang.compile(path), aidl_lang.compile(path)).is_equal
+    assert aidl_lang.diff(compiled.example(path.stem), aidl_lang.compile(path)).is_equal
 
 
 @pytest.mark.parametrize("name", PARAMS)
 def test_the_other_way_round(name: str) -> None:
-    path = ROOT / "examples" / f"{name}.aidl"
-    a, b = aidl_lang.compile(path), aidl_lang.compile(path, PARAMS[name])
+    a, b = compiled.example(name), aidl_lang.compile(ROOT / "examples" / f"{name}.aidl", PARAMS[name])
     assert a.ok
     assert b.ok
     there, back = aidl_lang.diff(a, b), aidl_lang.diff(b, a)

@@ -13,6 +13,7 @@ from aidl_lang.parser import parse
 from aidl_lang.render import render
 from aidl_lang.source import SourceFile
 from aidl_lang.world import MemoryWorld
+from tests.compiled import EXAMPLES, example
 from tests.documents import ROOT, Block, programs
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -36,25 +37,19 @@ def test_fragment_in_documentation_is_read(block: Block) -> None:
     assert not errors, "\n".join(map(render, errors))
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "examples").rglob("*.aidl")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
 def test_example(path: Path) -> None:
-    from aidl_lang.world import DiskWorld
-
-    compiled = pipeline.compile(
-        SourceFile(path.name, path.read_text(encoding="utf-8")), DiskWorld(path.parent)
-    )
-    assert compiled.ok, f"{compiled.status}\n" + "\n".join(map(render, compiled.diagnostics))
-    assert [d.message for d in compiled.diagnostics if d.severity is not Severity.NOTE] == []
+    made = example(path.stem)
+    assert made.ok, f"{made.status}\n" + "\n".join(map(render, made.diagnostics))
+    assert [d.message for d in made.diagnostics if d.severity is not Severity.NOTE] == []
 
 
 @pytest.mark.parametrize(
     ("name", "options"), [("telephone", Options()), ("motor_bracket", Options(dimension=True))]
 )
 def test_the_pictures_of_the_readme_are_the_examples(name: str, options: Options) -> None:
-    path = ROOT / "examples" / f"{name}.aidl"
-    compiled = pipeline.compile(SourceFile(path.name, path.read_text(encoding="utf-8")))
     committed = ROOT / "docs" / "images" / f"{name}.svg"
-    assert compiled.export(".svg", options) == committed.read_bytes(), "run `make accept`"
+    assert example(name).export(".svg", options) == committed.read_bytes(), "run `make accept`"
 
 
 def test_blocks_have_known_notes() -> None:

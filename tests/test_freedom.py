@@ -9,7 +9,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
@@ -25,6 +25,7 @@ from aidl_lang.solver import Relation, Solution, Status, solve
 from aidl_lang.solver.analysis import Freedom, analyse
 from aidl_lang.solver.gradients import linearise
 from aidl_lang.source import SourceFile
+from tests.amount import tries
 from tests.solver.check import evaluate
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.aidl"))
@@ -189,7 +190,7 @@ def assemblies(draw: st.DrawFn) -> str:
     return "assembly top {\n" + "\n".join(parts) + "\nconstrain {\n" + "\n".join(stated) + "\n}\n}"
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(assemblies())
 def test_what_is_told_of_random_assemblies_is_true(text: str) -> None:
     analysed = Analysed("top.aidl", text)
@@ -243,7 +244,7 @@ def linkages(draw: st.DrawFn) -> str:
     return "@detached assembly top {\n" + "\n".join(parts) + "\nconstrain {\n" + "\n".join(stated) + "\n}\n}"
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(linkages())
 def test_what_is_told_goes_on_as_it_is_told(text: str) -> None:
     """Things gone on by a twentieth of their size as the words say leave every constraint as it was; those of
@@ -263,7 +264,7 @@ def test_what_is_told_goes_on_as_it_is_told(text: str) -> None:
         assert (missed > 1e-5) == leaves, (motion, missed)
 
 
-@settings(max_examples=20, deadline=None)
+@tries(20)
 @given(assemblies(), st.randoms(use_true_random=False))
 def test_the_order_of_constraints_does_not_change_what_is_counted(text: str, chance: Random) -> None:
     head, stated = text.split("constrain {\n", 1)

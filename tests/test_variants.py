@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang import builtins, pipeline
@@ -23,6 +23,7 @@ from aidl_lang.render import render
 from aidl_lang.source import SourceFile
 from aidl_lang.variants import FORBIDDEN, Variant
 from aidl_lang.world import DiskWorld, MemoryWorld
+from tests.amount import tries
 from tests.documents import ROOT
 from tests.property.programs import Part, Sketch, part, sketches
 
@@ -299,7 +300,7 @@ def test_programs_are_taken_or_told_what_the_variant_lacks(variant: Variant) -> 
     assert 10 < taken < len(corpus())
 
 
-@settings(max_examples=25, deadline=None)
+@tries(25)
 @given(sketches())
 def test_without_constraints_everything_is_as_written(sketch: Sketch) -> None:
     bare = sketch.text([p.text(constraints=()) for p in sketch.parts], relations=())
@@ -312,7 +313,7 @@ def test_without_constraints_everything_is_as_written(sketch: Sketch) -> None:
     assert [d.code for d in checked(sketch.text(), WRITTEN) if d.is_error] == ["E0406"] * stated
 
 
-@settings(max_examples=25, deadline=None)
+@tries(25)
 @given(part("alone"), st.integers(1, 9))
 def test_one_structure_is_the_same_with_and_without_hierarchy(single: Part, unit: int) -> None:
     text = f"param unit = {unit}\n{single.text()}"

@@ -1,7 +1,5 @@
 """What each constraint does with each pair of things: a table made by compiling a program for every cell.
 
-    python -m aidl_lang.reference.coverage
-
 A cell works if the program solves and the constraint holds and relates both things; it is refused if the
 compiler says so; anything else is a fault, and the tests allow none.
 """
@@ -9,7 +7,6 @@ compiler says so; anything else is a fault, and the tests allow none.
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
 
@@ -209,8 +206,28 @@ for all compound shapes, *structure* is a drawing with a curve in it, *list* two
 
 
 def page() -> str:
-    return "\n".join([HEAD, *(table(name, cells(name)) + "\n" for name in constraints())])
+    """All tables, made by as many processes as there are cores: they take minutes of a processor."""
+    from concurrent.futures import ProcessPoolExecutor
+
+    with ProcessPoolExecutor() as pool:
+        return "\n".join([HEAD, *pool.map(_section, constraints())])
 
 
-if __name__ == "__main__":
-    sys.stdout.write(page())
+def _section(name: str) -> str:
+    return table(name, cells(name)) + "\n"
+
+
+def headings(text: str) -> list[str]:
+    """Returns the constraints that a page has tables of."""
+    return [name for name, _ in _sections(text)]
+
+
+def unshown(text: str) -> list[str]:
+    """Returns the constraints of which a page shows nothing that they take."""
+    shows = re.compile(r"●|^`[^`]+`: (?!nothing)", re.MULTILINE)
+    return [name for name, section in _sections(text) if not shows.search(section)]
+
+
+def _sections(text: str) -> list[tuple[str, str]]:
+    parts = (part.partition("\n") for part in re.split(r"^## ", text, flags=re.MULTILINE)[1:])
+    return [(name, section) for name, _, section in parts]

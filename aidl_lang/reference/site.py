@@ -1,19 +1,21 @@
-"""What is generated in a checkout: the pages below `docs/reference`, the pictures, the guide, `llms.txt`."""
+"""What is generated in a checkout: the pages of `docs/reference`, their pictures, the guide, `llms.txt`."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from aidl_lang.reference import coverage
 from aidl_lang.reference.collect import reference
 from aidl_lang.reference.guide import guide
 from aidl_lang.reference.llms import llms
 from aidl_lang.reference.pages import MARK, pages, pictures
 
 _FOLDER = "docs/reference"
+COVERAGE = f"{_FOLDER}/coverage.md"
 
 
 def texts(root: Path) -> dict[str, str]:
-    """Every generated text by its path below the root of a checkout."""
+    """Every generated text by its path below the root of a checkout, but `COVERAGE`, which takes minutes."""
     found = {f"{_FOLDER}/{path}": text for path, text in pages(reference()).items()}
     return {**found, "docs/guide.md": guide(), "llms.txt": llms(root)}
 
@@ -34,6 +36,7 @@ def strays(root: Path, known: set[str]) -> list[str]:
 def write(root: Path) -> None:
     """Bring the generated files up to date. A file that is right already is not touched."""
     current = {path: text.encode() for path, text in texts(root).items()} | drawn()
+    current[COVERAGE] = coverage.page().encode()
     for path, data in current.items():
         file = root / path
         file.parent.mkdir(parents=True, exist_ok=True)

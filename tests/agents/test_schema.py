@@ -15,17 +15,13 @@ import pytest
 from aidl_lang.agents.calling import answer
 from aidl_lang.agents.schema import for_anthropic, for_mcp, for_openai
 from aidl_lang.agents.tools import Tools
+from aidl_lang.cli import main
 from tests.agents.test_tools import CONFLICT, PLATE, TELEPHONE
 from tests.documents import ROOT
 
 NAMES = ["check", "compile", "guide", "search", "explain", "measure", "edit_param", "explain_conflict"]
 VALIDATOR = jsonschema.Draft202012Validator
 WRONG = "solid a { b = circle(raduis: w) }"
-
-
-def printed(style: str) -> Any:
-    command = [sys.executable, "-m", "aidl_lang", "tool-schema", "--style", style]
-    return json.loads(subprocess.run(command, capture_output=True, check=True, timeout=60, cwd=ROOT).stdout)
 
 
 def objects(schema: Any) -> Iterator[dict[str, Any]]:
@@ -43,8 +39,9 @@ def objects(schema: Any) -> Iterator[dict[str, Any]]:
 @pytest.mark.parametrize(
     ("style", "made"), [("openai", for_openai), ("anthropic", for_anthropic), ("mcp", for_mcp)]
 )
-def test_command_prints_the_tools(style: str, made: Any) -> None:
-    assert printed(style) == made()
+def test_command_prints_the_tools(style: str, made: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["tool-schema", "--style", style]) == 0
+    assert json.loads(capsys.readouterr().out) == made()
 
 
 def test_schemas_are_valid_and_describe_every_parameter() -> None:

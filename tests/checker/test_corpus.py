@@ -15,12 +15,12 @@ import aidl_lang
 from aidl_lang import ast
 from aidl_lang.parser import parse
 from aidl_lang.source import SourceFile
+from tests import compiled
 from tests.checker import library
 from tests.checker.checking import TOLERANCE, check
 
 ROOT = Path(__file__).resolve().parents[2]
 CORPUS = sorted((Path(__file__).parent / "corpus").glob("*.aidl"))
-EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
 _CHANGES = re.compile(r"^// changes: *(.*)$", re.MULTILINE)
 
 
@@ -31,14 +31,14 @@ def _name(path: Path) -> str:
 @cache
 def _solved(path: Path) -> tuple[str, dict[str, Any]]:
     text = path.read_text("utf-8")
-    model = aidl_lang.compile(text)
+    model = compiled.model(text)
     errors = [f"line {d.span.line if d.span else 0}: {d.message}" for d in model.diagnostics if d.is_error]
     assert errors == []
     assert model.status == "solved"
     return text, json.loads(model.to_json())
 
 
-@pytest.mark.parametrize("path", EXAMPLES + CORPUS, ids=_name)
+@pytest.mark.parametrize("path", compiled.EXAMPLES + CORPUS, ids=_name)
 def test_every_constraint_holds_on_the_coordinates(path: Path) -> None:
     text, document = _solved(path)
     findings = check(text, document)
@@ -46,7 +46,7 @@ def test_every_constraint_holds_on_the_coordinates(path: Path) -> None:
     assert [str(f) for f in findings if not f.holds] == [], f"residuals of {TOLERANCE} or more, or unchecked"
 
 
-@pytest.mark.parametrize("path", EXAMPLES + CORPUS, ids=_name)
+@pytest.mark.parametrize("path", compiled.EXAMPLES + CORPUS, ids=_name)
 def test_the_checker_and_the_document_speak_of_the_same_constraints(path: Path) -> None:
     """Those that the program writes; the document has hidden equations too (arguments of templates)."""
     text, document = _solved(path)
@@ -77,25 +77,34 @@ def _corpus() -> list[ast.Node]:
     return [node for module in modules for node in ast.walk(module)]
 
 
-def test_every_public_constraint_is_in_the_corpus() -> None:
+def unused() -> set[str]:
+    """Returns the public constraints that no program of the corpus states, and the measures and places that
+    none names.
+    """
     blocks = [node.items for node in _corpus() if isinstance(node, ast.Constrain)]
     items = [n.value for b in blocks for n in ast.walk(b) if isinstance(n, ast.ExpressionStatement)]
-    assert library.public(ast.ConstraintDefinition) - _called(items) == set()
-
-
-def test_every_measure_and_place_is_in_the_corpus() -> None:
-    wanted = library.public(ast.FunctionDefinition, "measures", "clearance", "placement")
-    assert {"gap", "clearance", "between"} <= wanted
-    assert wanted - _called(_corpus()) == set()
+    measures = library.public(ast.FunctionDefinition, "measures", "clearance", "placement")
+    assert {"gap", "clearance", "between"} <= measures
+    return (library.public(ast.ConstraintDefinition) - _called(items)) | (measures - _called(_corpus()))
 
 
 def _ends(path: Path) -> list[dict[str, float]]:
     """Each numeric knob of a program at the ends of its range, one at a time."""
-    knobs = aidl_lang.compile(path.read_text("utf-8")).params
+    knobs = compiled.model(path.read_text("utf-8")).params
     return [{k.path: end} for k in knobs for end in (k.low, k.high) if end is not None]
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=_name)
+DEAR = {"finger_box", "gear_pair", "ruler"}
+"""Examples so large that to try the ends of all their knobs takes most of a minute. Their constraints are
+checked as they are written, and what they are made of (gears, joints, text) at other values in the specs.
+"""
+KNOBS = [
+    pytest.param(path, id=_name(path), marks=[pytest.mark.slow] if path.stem in DEAR else [])
+    for path in compiled.EXAMPLES
+]
+
+
+@pytest.mark.parametrize("path", KNOBS)
 def test_examples_hold_at_the_ends_of_their_knobs(path: Path) -> None:
     """An assertion of the program may refuse a value; the constraints hold all the same."""
     text = path.read_text("utf-8")

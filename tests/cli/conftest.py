@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import io
-import sys
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
-from aidl_lang.cli import main
+from tests.commands import aidl as aidl
 
 GOOD = """\
 /// How wide the plate is.
@@ -30,13 +26,6 @@ solid plate {
 """
 
 
-@dataclass(frozen=True)
-class Result:
-    code: int
-    out: str
-    err: str
-
-
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty working directory with three programs in it."""
@@ -45,21 +34,3 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name, text in (("good", GOOD), ("wrong", WRONG), ("unsolvable", UNSOLVABLE)):
         (tmp_path / f"{name}.aidl").write_text(text)
     return tmp_path
-
-
-@pytest.fixture
-def aidl(
-    folder: Path, capsysbinary: pytest.CaptureFixture[bytes], monkeypatch: pytest.MonkeyPatch
-) -> Callable[..., Result]:
-    """`aidl("check", "good.aidl")` runs the command; `stdin` is what it may read."""
-
-    def run(*arguments: str, stdin: str = "") -> Result:
-        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(stdin.encode())))
-        try:
-            code = main(arguments)
-        except SystemExit as stop:
-            code = int(stop.code or 0)
-        out, err = capsysbinary.readouterr()
-        return Result(code, out.decode(), err.decode())
-
-    return run

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import GOOD, Result
+from tests.cli.conftest import GOOD
+from tests.commands import Result
 
 Aidl = Callable[..., Result]
 

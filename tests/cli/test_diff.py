@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tests.cli.conftest import Result
+from tests.commands import Result
 
 Aidl = Callable[..., Result]
 OLD = """\

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import Result
+from tests.commands import Result
 
 Aidl = Callable[..., Result]
 RANGED = """\

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from aidl_lang.grammars import FORMATS, export
-from tests.cli.conftest import Result
+from tests.commands import Result
 
 Aidl = Callable[..., Result]
 

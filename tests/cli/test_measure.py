@@ -11,7 +11,7 @@ import pytest
 
 import aidl_lang
 from aidl_lang.materials import densities, density, similar
-from tests.cli.conftest import Result
+from tests.commands import Result
 
 Aidl = Callable[..., Result]
 

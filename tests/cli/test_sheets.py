@@ -13,7 +13,7 @@ from svgelements import SVG
 from svgelements import Path as SvgPath
 
 from aidl_lang.export import FORMATS
-from tests.cli.conftest import Result
+from tests.commands import Result
 
 Aidl = Callable[..., Result]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import Result
+from tests.commands import Result
 from tests.documents import ROOT
 
 Aidl = Callable[..., Result]

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from aidl_lang.cli.new import structure_name
-from tests.cli.conftest import GOOD, WRONG, Result
+from tests.cli.conftest import GOOD, WRONG
+from tests.commands import Result
 
 Aidl = Callable[..., Result]
 OUT_OF_REACH = """\

@@ -24,11 +24,6 @@ from tests.documents import ROOT
 PROGRAMS = [*sorted((ROOT / "examples").glob("*.aidl")), ROOT / "tests/editors/classes.aidl"]
 
 
-def test_what_is_committed_is_up_to_date() -> None:
-    for path, text in texts(ROOT).items():
-        assert (ROOT / path).read_text("utf-8") == text, f"{path}: run `make colours`"
-
-
 def test_what_is_right_is_not_written_again(tmp_path) -> None:
     (tmp_path / "tests/editors").mkdir(parents=True)
     (tmp_path / "tests/editors/classes.aidl").write_text("x = 5mm\n", "utf-8")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import shlex
-import subprocess
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -14,6 +13,8 @@ from typing import Any
 
 import pytest
 
+from tests.commands import Result
+from tests.commands import aidl as aidl
 from tests.documents import ROOT
 
 REPLAY = ROOT / "tests" / "evaluation" / "replay.py"
@@ -24,6 +25,7 @@ class Evaluation:
     """A working directory with `recordings`, where results go to `out`."""
 
     folder: Path
+    called: Callable[..., Result]
 
     @property
     def out(self) -> Path:
@@ -52,26 +54,9 @@ class Evaluation:
             *arguments,
         ]
 
-    @property
-    def environment(self) -> dict[str, str]:
-        kept = {
-            name: value
-            for name, value in os.environ.items()
-            if not name.startswith(("AIDL_", "OPENAI", "ANTHROPIC"))
-        }
-        return {**kept, "NO_COLOR": "1", "PYTHONPATH": str(ROOT)}
-
-    def __call__(self, *arguments: str) -> subprocess.CompletedProcess[str]:
-        done = subprocess.run(
-            self.command(*arguments),
-            cwd=self.folder,
-            env=self.environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        print(done.stdout, done.stderr)
-        return done
+    def __call__(self, *arguments: str) -> Result:
+        """What comes of `aidl eval`, run in this process."""
+        return self.called(*self.command(*arguments)[3:])
 
     def record(self, prompt: str, variant: str, run: int) -> dict[str, Any]:
         found: dict[str, Any] = json.loads(
@@ -89,5 +74,16 @@ class Evaluation:
 
 
 @pytest.fixture
-def evaluation(tmp_path: Path) -> Callable[..., Any]:
-    return Evaluation(tmp_path)
+def evaluation(aidl: Callable[..., Result], folder: Path) -> Evaluation:
+    """In a folder of the test's own, and nothing of whoever runs it in the environment."""
+    return Evaluation(folder, aidl)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    for name in [n for n in os.environ if n.startswith(("AIDL_", "OPENAI", "ANTHROPIC"))]:
+        monkeypatch.delenv(name)
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    return tmp_path

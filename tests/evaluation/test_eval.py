@@ -40,8 +40,8 @@ def test_runs_are_measured(evaluation: Evaluation) -> None:
     done = evaluation(
         "--prompts", "telephone", "--variants", "full", "no-hierarchy", "--runs", "2", "--attempts", "2"
     )
-    assert done.returncode == 0
-    assert "4/4 telephone, " in done.stderr
+    assert done.code == 0
+    assert "4/4 telephone, " in done.err
 
     record = evaluation.record("telephone", "full", 1)
     assert [a["verdict"]["ok"] for a in record["attempts"]] == [False, True]
@@ -60,7 +60,7 @@ def test_runs_are_measured(evaluation: Evaluation) -> None:
     assert flat["structures"]["value"] == 1
     assert flat["editability"]["value"] == 1
     assert flat["CLIP"]["count"] == 0
-    assert done.stdout == (evaluation.out / "evaluation.md").read_text(encoding="utf-8")
+    assert done.out == (evaluation.out / "evaluation.md").read_text(encoding="utf-8")
 
     page = (evaluation.out / "index.html").read_text(encoding="utf-8")
     assert "<img src=x" not in page
@@ -76,35 +76,35 @@ def test_a_second_call_asks_only_for_what_is_missing(evaluation: Evaluation) -> 
     evaluation.say("telephone", "full", 1, fenced(TELEPHONE))
     chosen = ("--prompts", "telephone", "--variants", "full", "--runs")
     broken = evaluation(*chosen, "2")
-    assert broken.returncode == 1
-    assert "there is no recording of telephone, full, run 2" in broken.stderr
-    assert "1 conversations are left to be had: the same command goes on with them" in broken.stderr
+    assert broken.code == 1
+    assert "there is no recording of telephone, full, run 2" in broken.err
+    assert "1 conversations are left to be had: the same command goes on with them" in broken.err
     assert evaluation.record("telephone", "full", 2)["failure"]["code"].startswith("E09")
     first = evaluation.contents()
 
     evaluation.say("telephone", "full", 2, fenced(FLAT))
     shutil.rmtree(evaluation.folder / "recordings" / "telephone" / "full" / "1")  # it must not be asked for
     again = evaluation(*chosen, "2")
-    assert again.returncode == 0
-    assert "1/1 telephone, full, run 2: valid after" in again.stderr
+    assert again.code == 0
+    assert "1/1 telephone, full, run 2: valid after" in again.err
     second = evaluation.contents()
     assert second["records/telephone/full/1.json"] == first["records/telephone/full/1.json"]
 
     third = evaluation(*chosen, "2")
-    assert (third.returncode, "telephone, full" in third.stderr) == (0, False)
+    assert (third.code, "telephone, full" in third.err) == (0, False)
     reported = evaluation("--report", *chosen, "2")
-    assert reported.returncode == 0
+    assert reported.code == 0
     assert evaluation.contents() == second
 
 
 def test_other_settings_are_refused(evaluation: Evaluation) -> None:
     evaluation.say("telephone", "full", 1, fenced(TELEPHONE))
     chosen = ("--prompts", "telephone", "--variants", "full", "--runs", "1")
-    assert evaluation(*chosen).returncode == 0
+    assert evaluation(*chosen).code == 0
     before = evaluation.contents()
     refused = evaluation(*chosen, "--attempts", "3")
-    assert refused.returncode == 2
-    assert refused.stderr == (
+    assert refused.code == 2
+    assert refused.err == (
         f"error[E0946]: `{evaluation.out}` holds runs with other settings\n"
         "  = hint: attempts: `5` then, `3` now\n"
         "  = hint: give these runs a folder of their own with --out, or use the settings of those there\n"
@@ -123,20 +123,18 @@ def test_a_damaged_record_is_refused(evaluation: Evaluation) -> None:
     ):
         place.write_text(content)
         refused = evaluation("--report", "--prompts", "gear", "--variants", "full")
-        assert refused.returncode == 2
-        assert refused.stderr == (
+        assert refused.code == 2
+        assert refused.err == (
             f"error[E0948]: `{place}` is no record of a run\n  = hint: remove it: the run is made again\n"
         )
 
 
 def test_unknown_prompts_are_refused(evaluation: Evaluation) -> None:
     refused = evaluation("--prompts", "telefone")
-    assert refused.returncode == 2
-    assert (
-        refused.stderr == "error[E0947]: there is no prompt `telefone`\n  = hint: did you mean `telephone`?\n"
-    )
+    assert refused.code == 2
+    assert refused.err == "error[E0947]: there is no prompt `telefone`\n  = hint: did you mean `telephone`?\n"
     empty = evaluation("--prompt-folder", str(evaluation.folder))
-    assert empty.stderr == (
+    assert empty.err == (
         f"error[E0947]: there are no prompts in `{evaluation.folder}`\n"
         "  = hint: a prompt is a file `NAME.aidl`\n"
     )
@@ -147,19 +145,19 @@ def test_without_openscad_its_variant_is_left_out(
 ) -> None:
     monkeypatch.setenv("PATH", str(evaluation.folder))
     refused = evaluation("--variants", "openscad", "--runs", "1")
-    assert refused.stderr == (
+    assert refused.err == (
         "error[E0949]: `openscad` is not installed\n  = hint: leave out `--variants openscad`\n"
     )
     skipped = evaluation("--report", "--runs", "1")
-    assert "openscad is left out: it is not installed\n" in skipped.stderr
-    assert skipped.returncode == 0
+    assert "openscad is left out: it is not installed\n" in skipped.err
+    assert skipped.code == 0
 
 
 def test_a_model_that_cannot_be_reached_is_not_asked_for_ever(evaluation: Evaluation) -> None:
     given_up = evaluation("--variants", "full", "--runs", "1", "--provider", "exec:false", "--jobs", "1")
-    assert given_up.returncode == 1
-    assert given_up.stderr.count("broke off: ") == 5
-    assert "conversations are left to be had" in given_up.stderr
+    assert given_up.code == 1
+    assert given_up.err.count("broke off: ") == 5
+    assert "conversations are left to be had" in given_up.err
 
 
 def test_an_interrupt_leaves_what_is_done(evaluation: Evaluation) -> None:
@@ -184,8 +182,6 @@ def test_an_interrupt_leaves_what_is_done(evaluation: Evaluation) -> None:
     )
     running = subprocess.Popen(
         command,
-        cwd=evaluation.folder,
-        env=evaluation.environment,
         stderr=subprocess.PIPE,
         stdout=subprocess.PIPE,
     )
@@ -205,7 +201,7 @@ def test_an_interrupt_leaves_what_is_done(evaluation: Evaluation) -> None:
 def test_openscad_runs_beside(evaluation: Evaluation) -> None:
     program = "width = 80;\nmodule base() { square([width, 40]); }\nbase();\ntranslate([0, 60]) circle(10);\n"
     evaluation.say("telephone", "openscad", 1, fenced("cube(3);", "openscad"), fenced(program, "openscad"))
-    assert evaluation("--prompts", "telephone", "--variants", "openscad", "--runs", "1").returncode == 0
+    assert evaluation("--prompts", "telephone", "--variants", "openscad", "--runs", "1").code == 0
     record = evaluation.record("telephone", "openscad", 1)
     assert record["numbers"] == {"structures": 1, "detached": 1}
     assert record["requirements"] == []

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
@@ -17,9 +17,10 @@ from aidl_lang.export.marks import Area, Curves, Group, Picture, Text
 from aidl_lang.export.picture import picture
 from aidl_lang.geometry.curves import Arc, Line
 from aidl_lang.source import SourceFile
+from tests.amount import tries
+from tests.compiled import EXAMPLES, compiled
 
 ROOT = Path(__file__).parents[2]
-EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
 CAPITAL, DIGIT = 0.73, 0.64
 """Height and width of the digits of DejaVu Sans, relative to the size of the font."""
 
@@ -65,11 +66,11 @@ PROGRAMS |= {"plate": PLATE, "turned": TURNED, "narrow": NARROW}
 def drawn(text: str, **options: object) -> Picture:
     from aidl_lang.export import Job
 
-    compiled = pipeline.compile(SourceFile("test.aidl", text))
-    assert compiled.model is not None
-    assert compiled.drawing is not None
+    part = compiled(text)
+    assert part.model is not None
+    assert part.drawing is not None
     chosen = Options(dimension=True, **options)  # type: ignore[arg-type]
-    return picture(Job(compiled.model, compiled.drawing, options=chosen))
+    return picture(Job(part.model, part.drawing, options=chosen))
 
 
 def dimensions(p: Picture) -> list[Group]:
@@ -204,7 +205,7 @@ holes = st.lists(
 )
 
 
-@settings(max_examples=25, deadline=None)
+@tries(25)
 @given(st.integers(60, 300), st.integers(60, 300), holes)
 def test_plates_with_holes(width: int, height: int, at: list[tuple[int, int, float]]):
     text = f"solid p {{ body = rectangle(center: origin, width: {width}, height: {height})\n"

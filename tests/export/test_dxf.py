@@ -26,11 +26,12 @@ from aidl_lang.geometry.curves import Bezier, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.solved import SolvedModel, SolvedStructure
 from aidl_lang.source import SourceFile
+from tests.amount import tried
+from tests.compiled import EXAMPLES, compiled
 from tests.export.readers import read_dxf
 from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
 
 ROOT = Path(__file__).parents[2]
-EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
 
 
 def written(m: SolvedModel) -> tuple[Document, tuple[Diagnostic, ...]]:
@@ -46,7 +47,7 @@ def document_of(root: SolvedStructure) -> Document:
     return written(model(root))[0]
 
 
-def compiled(program: str) -> Document:
+def document_from(program: str) -> Document:
     return ezdxf.read(io.StringIO(aidl_lang.compile(program).export(".dxf").decode()))
 
 
@@ -97,7 +98,7 @@ def test_a_circle_and_a_hole():
 
 
 def test_half_circles_have_the_bulge_1():
-    document = compiled("solid s { body = slot(center: origin, length: 60, width: 20) }")
+    document = document_from("solid s { body = slot(center: origin, length: 60, width: 20) }")
     entity = only(document, "LWPOLYLINE")
     assert sorted(b for *_, b in entity.get_points("xyb")) == pytest.approx([0, 0, 1, 1], abs=1e-15)
 
@@ -163,7 +164,7 @@ LEAF = """solid leaf {
 @pytest.mark.parametrize(("wide", "high"), [("12", "6"), ("6", "12")])
 def test_ends_of_a_mixed_outline_agree(wide: str, high: str):
     program = LEAF.replace("WIDE", wide).replace("HIGH", high)
-    document = compiled(program)
+    document = document_from(program)
     assert set(kinds(document)) == {(k, "solid") for k in ("LINE", "ARC", "ELLIPSE", "SPLINE")}
     (loop,) = read_dxf(aidl_lang.compile(program).export(".dxf"))["leaf"].loops
     assert loop.gap() < 1e-12 * 40
@@ -195,10 +196,10 @@ def test_lines_of_a_drawing_are_joined_in_any_order_and_direction():
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
 def test_examples(path: Path):
     """Bodies by name, their areas from the entities read back, holes without seams."""
-    result = aidl_lang.compile(path)
-    document = json.loads(result.to_json())
+    result = compiled(path.read_text("utf-8"))
+    document = json.loads(result.export(".json"))
     bodies = read_dxf(result.export(".dxf"))
-    drawing = pipeline.compile(SourceFile(path.name, path.read_text("utf-8"))).drawing
+    drawing = result.drawing
     assert drawing is not None
     assert {b.path for b in drawing.bodies} == bodies.keys() & document["regions"].keys()
     for name in (b.path for b in drawing.bodies):
@@ -252,7 +253,7 @@ LAYERED = """assembly a {
 
 
 def test_layers_and_colours_as_written():
-    document = compiled(LAYERED)
+    document = document_from(LAYERED)
     assert kinds(document) == {
         ("LWPOLYLINE", "cut"): 1,
         ("CIRCLE", "cut"): 1,
@@ -270,7 +271,7 @@ def test_layers_and_colours_as_written():
 def test_each_entity_tells_its_body_and_its_hole():
     found = Counter(
         (named(e), named(e, "AIDL_HOLE") if e.has_xdata("AIDL_HOLE") else None)
-        for e in compiled(LAYERED).modelspace()
+        for e in document_from(LAYERED).modelspace()
     )
     holes = ("plain", "bolt[0]", "slit")
     expected = {("a.plate", f"a.plate.{h}") for h in holes} | {("a.plate", None), ("a.plate.mark", None)}
@@ -400,22 +401,23 @@ def test_the_same_bytes_in_every_process():
     run = [sys.executable, "-c", script, str(ROOT / "examples" / "key.aidl")]
     one, *others = (
         subprocess.run(run, check=True, capture_output=True, env=os.environ | {"PYTHONHASHSEED": seed}).stdout
-        for seed in "12345"
+        for seed in "12345"[: tried(5)]
     )
-    assert [other == one for other in others] == [True] * 4
+    assert [other == one for other in others] == [True] * (tried(5) - 1)
     assert len(one) > 10_000
     assert not ezdxf.options.write_fixed_meta_data_for_testing
 
 
 def test_thousands_of_circles():
+    count = tried(3_000)
     holes = [
-        structure("hole", f"h[{k}]", circle("c", 10 * (k % 100), 10 * (k // 100), 3)) for k in range(3_000)
+        structure("hole", f"h[{k}]", circle("c", 10 * (k % 100), 10 * (k // 100), 3)) for k in range(count)
     ]
     m = model(structure("solid", "p", rectangle("r", -10, -10, 1010, 1010), *holes))
     drawing, _ = draw(m)
     made = export(Job(m, drawing), ".dxf")
     document = ezdxf.read(io.StringIO(made.data.decode()))
-    assert kinds(document) == {("CIRCLE", "hole"): 3_000, ("LWPOLYLINE", "solid"): 1}
+    assert kinds(document) == {("CIRCLE", "hole"): count, ("LWPOLYLINE", "solid"): 1}
     assert {named(e, "AIDL_HOLE") for e in document.modelspace().query("CIRCLE")} == {
-        f"p.h[{k}]" for k in range(3_000)
+        f"p.h[{k}]" for k in range(count)
     }

@@ -23,10 +23,11 @@ from aidl_lang.geometry.curves import Bezier, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.solved import Box, Change, ConstraintReport, SolvedModel
 from aidl_lang.source import SourceFile, Span
+from tests.compiled import EXAMPLES
+from tests.compiled import model as model_of
 from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
 
 SCHEMA = json.loads((Path(__file__).parents[2] / "docs" / "model.schema.json").read_text(encoding="utf-8"))
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.aidl"))
 SOURCE = SourceFile("x.aidl", "assembly a {\n    b.above(c)\n}\n")
 SPAN = Span(SOURCE, 17, 27)
 
@@ -168,7 +169,7 @@ def test_readings_of_ambiguous_calls_are_told():
 
 
 def regions(program: str) -> tuple[dict[str, Any], float]:
-    document = json.loads(aidl_lang.compile(program).to_json())
+    document = json.loads(model_of(program).to_json())
     jsonschema.validate(document, SCHEMA)
     return document["regions"], document["tolerance"]
 

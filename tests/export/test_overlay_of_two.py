@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from svgelements import Close, Line, Move, Path
 
@@ -16,6 +16,7 @@ from aidl_lang.comparison import Comparison
 from aidl_lang.comparison.picture import overlay
 from aidl_lang.export.marks import Area, Curves, Frame, Text
 from aidl_lang.export.svg import to_svg
+from tests.amount import tries
 from tests.documents import ROOT
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -77,7 +78,7 @@ def material(x: float, y: float, r: float) -> shapely.Geometry:
     return plate.union(disc(18, 0, 9))
 
 
-@settings(max_examples=15, deadline=None)
+@tries(15)
 @given(st.integers(-60, 60), st.integers(-25, 25), st.integers(2, 9))
 def test_areas_agree_with_shapely(x: int, y: int, r: int) -> None:
     found = groups(comparison(TEXT.format(x=0, y=0, r=5), TEXT.format(x=x, y=y, r=r)))

@@ -6,7 +6,6 @@ import io
 import json
 import math
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,17 +15,17 @@ from PIL import Image
 from shapely.geometry import shape
 from shapely.ops import unary_union
 
-from aidl_lang import Model, compile
+from aidl_lang import Model
 from aidl_lang.export import Options
-from tests.documents import ROOT
+from tests import compiled
 from tests.export import readers
 
-EXAMPLES = sorted(p.stem for p in (ROOT / "examples").glob("*.aidl"))
+EXAMPLES = [path.stem for path in compiled.EXAMPLES]
 
 
 @cache
 def example(name: str) -> Model:
-    model = compile(Path(ROOT, "examples", f"{name}.aidl"))
+    model = compiled.example(name)
     assert model.ok
     return model
 

@@ -9,7 +9,7 @@ from itertools import pairwise
 from xml.etree import ElementTree
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from svgelements import SVG, Path
 
@@ -20,6 +20,7 @@ from aidl_lang.geometry.curves import Circle, Line, Vec
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.evaluate import bounds, point
 from aidl_lang.geometry.region import Face, Loop
+from tests.amount import tries
 from tests.geometry.models import circle, model, polygon, rectangle, structure
 
 INK = Ink("#000000", 0.1)
@@ -48,7 +49,7 @@ def one(*marks, box) -> Picture:
     return Picture(box, (Group("g", marks),))
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(
     st.floats(-1e3, 1e3),
     st.floats(-1e3, 1e3),

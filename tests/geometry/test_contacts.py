@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang.geometry.contacts import ALL_PAIRS, Contact
@@ -15,6 +15,7 @@ from aidl_lang.geometry.distance import piece_distance
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.evaluate import points
 from aidl_lang.solved import SolvedGeometry
+from tests.amount import tries
 from tests.geometry.models import arc, circle, model, rectangle, structure
 
 
@@ -101,7 +102,7 @@ def test_distances_agree_with_a_fine_sampling(i: int, j: int):
     assert math.dist(a, b) == found
 
 
-@settings(max_examples=80, deadline=None)
+@tries(80)
 @given(st.floats(-9, 9), st.floats(-9, 9), st.floats(0.1, 3), st.floats(0, 360), st.floats(10, 350))
 def test_line_to_arc(x: float, y: float, r: float, first: float, sweep: float):
     line, bow = Line((-2.0, -1.0), (3.0, 2.0)), arc((x, y), r, first, first + sweep)

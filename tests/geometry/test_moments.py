@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -15,6 +15,7 @@ from aidl_lang.geometry.evaluate import inward, point, points
 from aidl_lang.geometry.measures import measure
 from aidl_lang.geometry.moments import Inertia, inertia
 from aidl_lang.geometry.region import Face, Loop, Region
+from tests.amount import tries
 from tests.geometry.models import arc
 
 
@@ -166,7 +167,7 @@ def by_polygons(region: Region, count: int = 3000) -> NDArray[np.float64]:
     return total
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(outlines())
 def test_random_outlines_as_fine_polygons(region: Region):
     area, mx, my, xx, yy, xy = by_polygons(region)
@@ -175,7 +176,7 @@ def test_random_outlines_as_fine_polygons(region: Region):
     assert numbers(found) == pytest.approx(expected, rel=1e-5, abs=1e-5 * found.polar)
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(outlines(), angles, st.floats(-1e3, 1e3), st.booleans())
 def test_a_moved_and_mirrored_outline_has_the_same_moments(
     region: Region, turn: float, away: float, mirrored: bool

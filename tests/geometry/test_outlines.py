@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import HealthCheck, assume, given
 from hypothesis import strategies as st
 
 from aidl_lang.geometry.clipping import clipped
@@ -20,6 +20,7 @@ from aidl_lang.geometry.hulls import hull
 from aidl_lang.geometry.measures import area, length, perimeter
 from aidl_lang.geometry.offsets import offset, thick
 from aidl_lang.geometry.region import Face, Loop, Region
+from tests.amount import tries
 from tests.geometry.models import arc
 from tests.geometry.test_regions import assert_closed, pieces
 
@@ -116,7 +117,7 @@ def test_fillets_of_free_curves_are_tangent() -> None:
             assert ax * by - ay * bx == pytest.approx(0, abs=1e-9)
 
 
-@settings(deadline=None, max_examples=40)
+@tries(40)
 @given(stars(), st.floats(0.2, 0.9))
 def test_polygons_round_off_at_both_kinds_of_corners(corners: list[Vec], share: float) -> None:
     """Each corner of angle α changes the area by r² (cot(α/2) - (π - α)/2), towards the material or away."""
@@ -147,7 +148,7 @@ def test_largest_radius_is_told() -> None:
 # --- Offsets -----------------------------------------------------------------------------------------
 
 
-@settings(deadline=None, max_examples=60)
+@tries(60)
 @given(stars(), st.floats(0.2, 25), st.booleans())
 def test_offset_of_polygons_against_shapely(corners: list[Vec], distance: float, inwards: bool) -> None:
     d = -distance if inwards else distance
@@ -164,7 +165,6 @@ def test_offset_of_polygons_against_shapely(corners: list[Vec], distance: float,
     assert all(isinstance(p, Line | Arc | Circle) for loop in ours.loops for p in loop.pieces)
 
 
-@settings(deadline=None)
 @given(st.floats(10, 30), st.floats(10, 30), st.floats(0.1, 20))
 def test_offset_of_a_convex_polygon_has_its_closed_form(a: float, b: float, d: float) -> None:
     """A + P d + π d² with round corners; of a right triangle with sharp ones it is similar."""
@@ -208,7 +208,7 @@ def test_offset_of_an_ellipse_keeps_its_distance(d: float) -> None:
 # --- Strokes -------------------------------------------------------------------------------------------
 
 
-@settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.filter_too_much])
+@tries(40, suppress_health_check=[HealthCheck.filter_too_much])
 @given(
     st.lists(st.tuples(st.floats(-40, 40), st.floats(-40, 40)), min_size=2, max_size=6, unique=True),
     st.floats(0.5, 20),
@@ -249,7 +249,7 @@ curves = st.one_of(
 )
 
 
-@settings(deadline=None, max_examples=60)
+@tries(60)
 @given(st.lists(curves, min_size=2, max_size=6))
 def test_hulls_against_shapely(drawn: list[Piece]) -> None:
     # Of a line its ends, and no two points that all but coincide: among such GEOS loses corners.

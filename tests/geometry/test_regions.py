@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from shapely.geometry import Polygon
 
@@ -19,6 +19,7 @@ from aidl_lang.geometry.evaluate import ends, points
 from aidl_lang.geometry.measures import area, measure
 from aidl_lang.geometry.region import Loop, Region
 from aidl_lang.solved import SolvedGeometry, SolvedStructure
+from tests.amount import tries
 from tests.geometry.models import arc, circle, compound, model, polygon, primitive, rectangle, structure
 
 
@@ -303,7 +304,7 @@ def outline(shape: SolvedGeometry) -> Polygon:
     return flattened(Loop(tuple(shape.curves())), FINE)
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(
     st.lists(rectangles | circles | caps, min_size=1, max_size=5),
     st.lists(rectangles | circles | caps, max_size=3),
@@ -321,7 +322,7 @@ def test_booleans_agree_with_shapely(adds: list[SolvedGeometry], cuts: list[Solv
     assert_closed(region)
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(ellipses, ellipses | circles | rectangles)
 def test_ellipses_agree_with_shapely(one: SolvedGeometry, other: SolvedGeometry):
     region = region_of(one, structure("hole", "h", other))
@@ -330,7 +331,7 @@ def test_ellipses_agree_with_shapely(one: SolvedGeometry, other: SolvedGeometry)
     assert_closed(region)
 
 
-@settings(max_examples=30, deadline=None)
+@tries(30)
 @given(st.permutations(range(4)), coordinate, coordinate, st.floats(0, 6))
 def test_measures_do_not_depend_on_order_or_place(order: list[int], x: float, y: float, turn: float):
     corners = [(0.0, 0.0), (20.0, 0.0), (20.0, 8.0), (0.0, 8.0)]
@@ -375,7 +376,7 @@ def test_far_from_the_origin_and_very_small():
     assert measure(tiny).area == pytest.approx(6e-8 - math.pi * 25e-10, rel=1e-8)
 
 
-@settings(max_examples=30, deadline=None)
+@tries(30)
 @given(rectangles | circles | caps | ellipses, rectangles | circles | caps | ellipses)
 def test_booleans_of_finished_regions_add_up(one: SolvedGeometry, other: SolvedGeometry):
     a, b = region_of(one), region_of(other)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import combinations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from shapely.geometry import Polygon, box
 
@@ -18,6 +18,7 @@ from aidl_lang.geometry.measures import area
 from aidl_lang.geometry.sheets import Layout, laid_out
 from aidl_lang.geometry.tessellate import face_polygons
 from aidl_lang.solved import SolvedStructure
+from tests.amount import tries
 from tests.geometry.models import arc, circle, compound, model, polygon, primitive, rectangle, structure
 
 
@@ -112,7 +113,7 @@ def parts(draw: st.DrawFn) -> SolvedStructure:
     return structure("solid", "s", geometry, **looks)
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(st.lists(parts(), min_size=1, max_size=12), st.floats(0, 8), st.booleans())
 def test_any_parts_lie_apart_and_inside(members, spacing, tall):
     drawing = drawing_of(*(replace(m, name=f"s{k}") for k, m in enumerate(members)))

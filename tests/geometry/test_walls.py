@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 import shapely
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import HealthCheck, assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from shapely.geometry import LineString, Point, Polygon
@@ -19,6 +19,7 @@ from aidl_lang.geometry.evaluate import nearest, point
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.walls import Widths, widths
 from aidl_lang.solved import SolvedGeometry, SolvedStructure
+from tests.amount import tries
 from tests.geometry.models import arc, circle, compound, polygon, primitive, rectangle, structure
 from tests.geometry.test_regions import region_of, shapely_of
 
@@ -239,7 +240,7 @@ def plates(draw: st.DrawFn) -> list[SolvedGeometry | SolvedStructure]:
     return [rectangle("r", 0, 0, 80, 60), *holes]
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(plates())
 def test_walls_of_plates_are_the_distances_between_their_rings(
     members: list[SolvedGeometry | SolvedStructure],
@@ -306,7 +307,7 @@ def _is_plump(shape: Polygon) -> bool:
     return bool((ends | (apart > 0.01)).all())
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+@tries(150, suppress_health_check=[HealthCheck.filter_too_much])
 @given(polygons(), st.booleans())
 def test_polygons_by_trying_all_chords(corners: list[Vec], as_hole: bool):
     """A polygon, or the same as a hole in a frame that is far away: then its walls are gaps."""

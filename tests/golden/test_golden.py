@@ -25,10 +25,10 @@ from aidl_lang.interp import interpret
 from aidl_lang.lower import lower
 from aidl_lang.model import Structure
 from aidl_lang.source import SourceFile
+from tests.compiled import EXAMPLES, model
 
 ROOT = Path(__file__).resolve().parents[2]
 EXPECTED = Path(__file__).parent / "expected"
-EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
 ACCEPT = bool(os.environ.get("AIDL_ACCEPT"))
 _NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?")
 _MOST_LINES = 60
@@ -76,14 +76,14 @@ def _line(d: Diagnostic) -> str:
 def problem(text: str) -> str:
     """The structure tree with its geometry, and what the solver is asked."""
     program, _ = pipeline.front(SourceFile("<text>", text))
-    model = interpret(program).model
-    asked = lower(model).problem
+    built = interpret(program).model
+    asked = lower(built).problem
     free = Counter(asked.group[~asked.kept].tolist())
     kept = Counter(asked.group[asked.kept].tolist())
     rows = Counter(c.group for c in asked.constraints for _ in c.rows if c.weight is None)
     lines = [
         f"{indent}{s.kind} {s.name}: {free[i]} free, {kept[i]} kept, {rows[i]} rows; {_geometry(s)}"
-        for i, (s, indent) in enumerate(_tree(model.root, ""))
+        for i, (s, indent) in enumerate(_tree(built.root, ""))
     ]
     total = f"{len(asked.parent)} groups, {len(asked.initial)} unknowns, {rows.total()} rows"
     return "\n".join([*lines, total]) + "\n"
@@ -101,7 +101,7 @@ def _geometry(s: Structure) -> str:
 
 
 def solved(text: str) -> str:
-    document = rounded_document(json.loads(aidl_lang.compile(text).to_json()))
+    document = rounded_document(json.loads(model(text).to_json()))
     return _compact(json.dumps(document, indent=1, ensure_ascii=False)) + "\n"
 
 
@@ -111,7 +111,7 @@ def _compact(text: str) -> str:
 
 
 def drawn(text: str) -> str:
-    return rounded_text(aidl_lang.compile(text).to_svg())
+    return rounded_text(model(text).to_svg())
 
 
 STAGES: dict[str, Callable[[str], str]] = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from itertools import pairwise
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
@@ -16,6 +16,7 @@ from aidl_lang.ide.selection import selections
 from aidl_lang.ide.semantic_tokens import MODIFIERS, TYPES, Colored, semantic_tokens
 from aidl_lang.ide.symbols import Entry, outline, search
 from aidl_lang.ide.view import View
+from tests.amount import tries
 
 from .conftest import EXAMPLES, opened, seen
 
@@ -178,7 +179,7 @@ def test_examples(example: View) -> None:
         check_everything(example, at)
 
 
-@settings(max_examples=60, deadline=None)
+@tries(60)
 @given(st.sampled_from(EXAMPLES), st.integers(0, 10**6))
 def test_what_is_broken_is_answered_too(path: object, seed: int) -> None:
     assert path in EXAMPLES

@@ -7,13 +7,14 @@ import re
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang import ast
 from aidl_lang.llm.merging import merge
 from aidl_lang.parser import parse
 from aidl_lang.source import SourceFile
+from tests.amount import tries
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.aidl"))
 TELEPHONE = (Path(__file__).parents[2] / "examples/telephone.aidl").read_text("utf-8")
@@ -79,7 +80,7 @@ def test_what_does_not_parse_is_handed_on_as_it_is() -> None:
     assert merge("solid a {", TELEPHONE) == TELEPHONE
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(st.sampled_from(EXAMPLES), st.data())
 def test_the_result_means_what_was_written(path: Path, data: st.DataObject) -> None:
     """Whatever lines a model leaves out or writes anew: if it parses, the result is the same program."""

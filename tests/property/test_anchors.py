@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import aidl_lang
+from tests.amount import tries
 
 COUNT = 4
 
@@ -55,7 +56,7 @@ def pictures(draw: st.DrawFn) -> tuple[list[str], list[str], dict[str, float]]:
     return lines, draw(st.permutations(constraints)), meant
 
 
-@settings(max_examples=40, deadline=None)
+@tries(40)
 @given(pictures())
 def test_one_thing_that_is_placed_places_its_equals(
     picture: tuple[list[str], list[str], dict[str, float]],
@@ -65,7 +66,7 @@ def test_one_thing_that_is_placed_places_its_equals(
     assert {k: round(v, 6) for k, v in found.items()} == {k: round(v, 6) for k, v in meant.items()}
 
 
-@settings(max_examples=20, deadline=None)
+@tries(20)
 @given(st.permutations(range(6)), st.lists(st.integers(-20, 20), min_size=7, max_size=7))
 def test_the_order_of_constraints_decides_nothing(order: list[int], off: list[int]) -> None:
     """Where nothing is placed, one of the equals begins, always the same."""

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import random
 from collections.abc import Callable
 from itertools import pairwise
@@ -18,9 +17,10 @@ import shapely
 import shapely.affinity
 
 import aidl_lang
+from tests.amount import tried
 
-TRIALS = 100 * int(os.environ.get("AIDL_EXAMPLES", "1"))
-BATCH = 50
+TRIALS = tried(100)
+BATCH = 25
 ENOUGH = 0.99
 NEAR = 1e-6
 STEP, ROW = 400, 10

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import random
 import time
 from typing import Any
@@ -21,9 +20,9 @@ from aidl_lang import ast, parser
 from aidl_lang.reference.collect import Entry, reference
 from aidl_lang.render.terminal import render
 from aidl_lang.source import SourceFile
+from tests.amount import TRIES_ALL, tried
 from tests.fuzz.calls import CALLABLES, Writer
 
-SCALE = int(os.environ.get("AIDL_EXAMPLES", "1"))
 LONGEST = 20.0
 """Seconds; what building and solving are allowed on a busy machine."""
 
@@ -65,14 +64,14 @@ def trouble(text: str) -> str | None:
     return f"{took:.1f} s" if took > LONGEST else None
 
 
-NAMES = list(CALLABLES) if SCALE > 1 else [n for n in CALLABLES if n in reference().entries]
+NAMES = list(CALLABLES) if TRIES_ALL else [n for n in CALLABLES if n in reference().entries]
 """What a program may call; with `AIDL_EXAMPLES` also what only the library itself calls."""
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_no_call_breaks_the_compiler(name: str) -> None:
-    for number in range(SCALE):
-        for overload in CALLABLES[name] if SCALE > 1 else CALLABLES[name][:1]:
+    for number in range(tried(1)):
+        for overload in CALLABLES[name] if TRIES_ALL else CALLABLES[name][:1]:
             text = Writer((number, str(overload))).program(name, overload)
             try:
                 found = trouble(text)
@@ -94,7 +93,7 @@ def test_every_number_counts(shape: Entry) -> None:
     sizes = [a.value for call in calls for a in call.arguments if not isinstance(a.value, ast.Point)]
     spans = [n.span for size in sizes for n in ast.walk(size) if isinstance(n, ast.Number) and n.value]
     before = outcome(example)
-    for span in spans if SCALE > 1 else random.Random(shape.name).sample(spans, min(1, len(spans))):
+    for span in spans if TRIES_ALL else random.Random(shape.name).sample(spans, min(1, len(spans))):
         text = f"{example[: span.start]}({span.text} * 2){example[span.end :]}"
         assert outcome(text) != before, text
 

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 import aidl_lang
 from aidl_lang.pipeline import Settings
+from tests.amount import tries
 from tests.checker.checking import broken
 from tests.property.orders import reordered
 from tests.property.programs import (
@@ -34,17 +35,13 @@ ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
 SCHEMA = json.loads((ROOT / "docs" / "model.schema.json").read_text("utf-8"))
 TOLERANCE = 1e-6
-SCALE = 1
 SMALL = Settings(building=replace(Settings().building, entities=400, turns=2000, constraints=400, items=2000))
 
 
 def profile(examples: int) -> settings:
-    """The same examples on every run; compiling is slow, so there is no deadline and no shrinking."""
-    return settings(
-        max_examples=examples,
-        derandomize=True,
-        deadline=None,
-        database=None,
+    """Compiling is slow, so there is no shrinking."""
+    return tries(
+        examples,
         phases=(Phase.explicit, Phase.generate),
         suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
     )
@@ -86,7 +83,7 @@ def is_degenerate(found: dict[str, Any]) -> bool:
 
 
 @given(sketches())
-@profile(30 * SCALE)
+@profile(30)
 def test_well_formed_programs_solve_and_their_constraints_hold(sketch: Sketch) -> None:
     text = sketch.text()
     note(text)
@@ -99,7 +96,7 @@ def test_well_formed_programs_solve_and_their_constraints_hold(sketch: Sketch) -
 
 
 @given(outlines())
-@profile(25 * SCALE)
+@profile(25)
 def test_outlines_that_are_said_to_be_solved_are(outline: tuple[list[str], list[str]]) -> None:
     text = outline_text(*outline)
     note(text)
@@ -113,7 +110,7 @@ def test_outlines_that_are_said_to_be_solved_are(outline: tuple[list[str], list[
 
 
 @given(sketches())
-@profile(10 * SCALE)
+@profile(10)
 def test_the_same_program_gives_the_same_bytes(sketch: Sketch) -> None:
     first, second = aidl_lang.compile(sketch.text()), aidl_lang.compile(sketch.text())
     assert first.to_json() == second.to_json()
@@ -129,7 +126,7 @@ def test_examples_validate_against_the_schema(path: Path) -> None:
 
 
 @given(sketches(least=3), st.randoms(use_true_random=False))
-@profile(10 * SCALE)
+@profile(10)
 def test_the_order_of_constraints_does_not_matter(sketch: Sketch, chance: random.Random) -> None:
     shuffled = chance.sample(sketch.relations, len(sketch.relations))
     one, other = sketch.text(), sketch.text(relations=shuffled)
@@ -139,7 +136,7 @@ def test_the_order_of_constraints_does_not_matter(sketch: Sketch, chance: random
 
 
 @given(outlines(), st.randoms(use_true_random=False))
-@profile(15 * SCALE)
+@profile(15)
 def test_the_order_of_geometric_constraints_does_not_matter(
     outline: tuple[list[str], list[str]], chance: random.Random
 ) -> None:
@@ -153,7 +150,7 @@ def test_the_order_of_geometric_constraints_does_not_matter(
 
 
 @given(sketches(least=3), st.randoms(use_true_random=False))
-@profile(10 * SCALE)
+@profile(10)
 def test_the_order_of_independent_structures_does_not_matter(sketch: Sketch, chance: random.Random) -> None:
     parts = [p.text() for p in sketch.parts]
     one, other = sketch.text(), sketch.text(parts=chance.sample(parts, len(parts)))
@@ -189,7 +186,7 @@ def survives(text: str) -> None:
 
 
 @given(st.one_of(ANY_TEXT, TOKEN_SOUP, STRUCTURED_SOUP))
-@profile(150 * SCALE)
+@profile(150)
 def test_any_text_gives_diagnostics(text: str) -> None:
     survives(text)
 
@@ -216,7 +213,7 @@ def mutants(draw: st.DrawFn) -> str:
 
 
 @given(mutants())
-@profile(25 * SCALE)
+@profile(25)
 def test_damaged_examples_give_diagnostics(text: str) -> None:
     survives(text)
 
@@ -245,7 +242,7 @@ def _points(value: Any) -> tuple[list[list[float]], list[float]]:
 
 
 @given(sketches())
-@profile(15 * SCALE)
+@profile(15)
 def test_a_part_that_its_parent_moves_keeps_its_shape(sketch: Sketch) -> None:
     """Only relations of boxes hold a part from outside, so it moves as a whole."""
     loose, held = (

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import Phase, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -18,6 +18,7 @@ from aidl_lang.pipeline import Compiled
 from aidl_lang.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.source import SourceFile
 from aidl_lang.world import MemoryWorld
+from tests.amount import tries
 
 SHAPES = (
     "circle(center: (3, 4), radius: 5)",
@@ -40,14 +41,7 @@ CLOSE = 1e-7
 
 places = st.tuples(*(st.integers(-300, 300).map(lambda n: n / 10) for _ in range(2)))
 angles = st.integers(-359, 359)
-profile = settings(
-    max_examples=8,
-    derandomize=True,
-    deadline=None,
-    database=None,
-    phases=(Phase.explicit, Phase.generate),
-    suppress_health_check=[HealthCheck.too_slow],
-)
+profile = tries(8, phases=(Phase.explicit, Phase.generate))
 
 
 @dataclass(frozen=True)

@@ -204,7 +204,11 @@ def test_the_curves_of_a_gear_close() -> None:
         assert abs(curve(before, 1) - curve(after, 0)) < 1e-9
 
 
-PAIRS = [(17, 24, 0.0, 2.0), (20, 20, 33.0, 1.0), (30, 41, 200.0, 1.5)]
+PAIRS = [
+    (17, 24, 0.0, 2.0),
+    (20, 20, 33.0, 1.0),
+    pytest.param(30, 41, 200.0, 1.5, marks=pytest.mark.slow),  # as the others, and more teeth
+]
 
 
 @pytest.mark.parametrize(("first", "second", "direction", "module"), PAIRS)

@@ -6,7 +6,6 @@ Places and sizes come from a coarse grid, so that shapes often share edges, touc
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
 from itertools import combinations
 
@@ -14,7 +13,7 @@ import manifold3d
 import numpy as np
 import pytest
 import shapely
-from hypothesis import HealthCheck, Phase, example, given, settings
+from hypothesis import Phase, example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -25,24 +24,18 @@ from aidl_lang.geometry.evaluate import ends, points
 from aidl_lang.geometry.measures import area, length, loop_area, perimeter, region_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.solved import SolvedStructure
+from tests.amount import tries
 from tests.geometry.models import compound, model, structure
 
-EXAMPLES = int(os.environ.get("AIDL_EXAMPLES", "40"))
-"""For each test; a few thousand were run by hand."""
 CHORDS = 128
 """Into how many straight lines a curve is cut for the comparison with polygons."""
 EXACT = 1e-9
 GRID = 1e-9
 """To which Shapely rounds: without, it loses faces whose edges all but coincide."""
 
-profile = settings(
-    max_examples=EXAMPLES,
-    derandomize="AIDL_EXAMPLES" not in os.environ,
-    deadline=None,
-    database=None,
-    phases=(Phase.explicit, Phase.generate),
-    suppress_health_check=[HealthCheck.too_slow],
-)
+WITHOUT_SHRINKING = (Phase.explicit, Phase.generate)
+profile = tries(40, phases=WITHOUT_SHRINKING)
+"""A few thousand were run by hand."""
 
 Shape = tuple[Piece, ...]
 """A closed outline, counter-clockwise."""
@@ -265,7 +258,7 @@ def test_areas_add_up(one: list[Shape], other: list[Shape]):
     check_laws(one, other)
 
 
-@settings(profile, max_examples=EXAMPLES // 2)
+@tries(20, phases=WITHOUT_SHRINKING)
 @given(mixed, mixed)
 @example([leaf(0.5, 1, 1, 1, 0)], [leaf(0.5, 1, 2.5, 1, 0)])  # parts of one Bézier curve, run both ways
 @example([ellipse(-3, 4, 3, 2.5, 270)], [disc(-2, 4, 3.5)])  # a touch with all but the same curvature
@@ -280,7 +273,7 @@ def test_areas_agree_with_polygons(one: list[Shape], other: list[Shape]):
     check_polygons(one, other)
 
 
-@settings(profile, max_examples=EXAMPLES // 2)
+@tries(20, phases=WITHOUT_SHRINKING)
 @given(any_shape, any_shape, any_shape)
 def test_union_takes_any_order(one: Shape, other: Shape, third: Shape):
     a, b, c = (region_of([s]) for s in (one, other, third))
@@ -299,7 +292,7 @@ def test_union_takes_any_order(one: Shape, other: Shape, third: Shape):
 holes_and_islands = st.lists(st.tuples(any_shape, st.lists(any_shape, max_size=1)), max_size=3)
 
 
-@settings(profile, max_examples=EXAMPLES // 2)
+@tries(20, phases=WITHOUT_SHRINKING)
 @given(mixed, holes_and_islands)
 def test_nested_structures_agree_with_polygons(solid: list[Shape], holes: list[tuple[Shape, list[Shape]]]):
     def part(kind: str, name: str, shapes: Sequence[Shape], *children: SolvedStructure) -> SolvedStructure:

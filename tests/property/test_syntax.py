@@ -5,7 +5,7 @@ from __future__ import annotations
 import string
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 from hypothesis.extra.lark import from_lark
 from lark import Lark
@@ -18,8 +18,9 @@ from aidl_lang.printer import format_module
 from aidl_lang.resources import resource
 from aidl_lang.source import SourceFile
 from tests import strategies as aidl
+from tests.amount import tries
 
-FEW = settings(max_examples=60, deadline=None)
+FEW = tries(60)
 
 
 def _errors(text: str) -> list[str]:
@@ -47,29 +48,27 @@ def test_a_program_reads_as_it_was_printed(module: ast.Module) -> None:
     assert format_module(parsed) == text
 
 
-_GRAMMAR = Lark(
-    resource("grammar/aidl.lark").read_text(encoding="utf-8"),
-    parser="lalr",
-    start="module",
-    maybe_placeholders=False,
-)
 _TERMINALS = {
     "NAME": st.sampled_from([" a ", " width ", " hole ", " b2 "]),
     "CALL": st.sampled_from([" circle(", " f("]),
     "NUMBER": st.sampled_from([" 5 ", " 0.5mm ", " 30deg "]),
     "STRING": st.sampled_from([' "s" ', ' "" ']),
 }
-_WORDS = {
-    terminal.name: st.just(f" {terminal.pattern.value} ")
-    for terminal in _GRAMMAR.terminals
-    if terminal.pattern.type == "str"
-}
 _LAYOUT = st.sampled_from([" ", "\n", " // note\n", " /* note */ ", "\n\n\n"])
-_IGNORED = dict.fromkeys(_GRAMMAR.ignore_tokens, _LAYOUT)
 
 
-@settings(FEW, max_examples=10, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])
-@given(from_lark(_GRAMMAR, start="module", explicit=_TERMINALS | _WORDS | _IGNORED))
+def _of_the_grammar() -> st.SearchStrategy[str]:
+    """What the grammar makes, with white space about every word."""
+    text = resource("grammar/aidl.lark").read_text(encoding="utf-8")
+    grammar = Lark(text, parser="lalr", start="module", maybe_placeholders=False)
+    terminals = [t for t in grammar.terminals if t.pattern.type == "str"]
+    words = {terminal.name: st.just(f" {terminal.pattern.value} ") for terminal in terminals}
+    ignored = dict.fromkeys(grammar.ignore_tokens, _LAYOUT)
+    return from_lark(grammar, start="module", explicit=_TERMINALS | words | ignored)
+
+
+@tries(10, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])
+@given(st.deferred(_of_the_grammar))
 def test_what_the_grammar_makes_formats_the_same_twice(text: str) -> None:
     parsed = parse(SourceFile("", text))
     if any(d.is_error for d in parsed.diagnostics):

@@ -1,32 +1,25 @@
-"""Random sketches, and how many of them are tried."""
+"""Random sketches."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from hypothesis import HealthCheck, Phase, settings
+from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
+
+from tests.amount import tries
 
 from .kinds import KINDS, SMOOTH, Kind
 from .sketches import Circle, Group, Link, Point, Sketch
 
 GRID = 10.0
 """Points lie on a grid this wide, so that they line up, coincide and are equally far apart by chance."""
-SCALE = int(os.environ.get("AIDL_EXAMPLES", "1"))
-"""How many times more examples than usual; if more than once, other ones on every run."""
 
 
 def profile(examples: int) -> settings:
-    return settings(
-        max_examples=examples * SCALE,
-        derandomize=SCALE == 1,
-        deadline=None,
-        database=None,
-        phases=(Phase.explicit, Phase.generate, Phase.shrink),
-        suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
-    )
+    large = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
+    return tries(examples, suppress_health_check=large)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 
 import numpy as np
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import least_squares
 
@@ -15,6 +15,7 @@ from aidl_lang.solver import Settings, Solution, solve
 from aidl_lang.solver.conflicts import WORK
 from aidl_lang.solver.lacking import lack
 from aidl_lang.solver.solution import GroupFailure
+from tests.amount import tries
 
 from .build import E, Model, call, distance
 from .test_linear_programming import Linear, random_problem
@@ -26,7 +27,7 @@ SEEDS = st.integers(0, 100_000)
 
 
 @given(SEEDS)
-@settings(max_examples=40, deadline=None)
+@tries(40)
 def test_what_is_lacking_tells_what_would_fit(seed: int) -> None:
     problem = random_problem(seed)
     count = len(problem.right)
@@ -51,7 +52,7 @@ def test_what_is_lacking_tells_what_would_fit(seed: int) -> None:
 
 
 @given(SEEDS, st.randoms(use_true_random=False))
-@settings(max_examples=20, deadline=None)
+@tries(20)
 def test_the_order_of_writing_does_not_make_a_conflict_wrong(seed: int, random: object) -> None:
     problem = random_problem(seed)
     assume(not problem.feasible(range(len(problem.right) + len(problem.bound))))
@@ -120,7 +121,7 @@ def random_distances(seed: int) -> Distances:
 
 
 @given(SEEDS)
-@settings(max_examples=10, deadline=None)
+@tries(10)
 def test_distances_that_conflict(seed: int) -> None:
     problem = random_distances(seed)
     solution = solve(problem.model().problem())

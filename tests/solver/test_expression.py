@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from aidl_lang.solver.expression import Tape, TapeBuilder
 from aidl_lang.solver.freezing import Freezer
 from aidl_lang.solver.valuation import Valuation
+from tests.amount import tries
 
 from .build import Model, call
 
@@ -74,7 +75,7 @@ def gradient(tape: Tape, root: int, x: list[float]) -> np.ndarray:
 
 @pytest.mark.parametrize("operation", REFERENCE)
 @given(data=st.data())
-@settings(max_examples=30, deadline=None)
+@tries(30)
 def test_value_and_derivative(operation: str, data: st.DataObject) -> None:
     arity, reference = REFERENCE[operation]
     low, high = DOMAIN.get(operation, (-20.0, 20.0))

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, example, given, settings
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
@@ -27,6 +27,7 @@ from aidl_lang.solver.notation import DEEPEST, LONGEST_TEXT
 from aidl_lang.solver.operations import Op
 from aidl_lang.source import SourceFile
 from aidl_lang.world import DiskWorld
+from tests.amount import tries
 from tests.documents import ROOT, blocks
 
 from .build import Model, call
@@ -197,7 +198,7 @@ def _value_near(text: str, change: float) -> Any:
 
 class TestExpressions:
     @given(_expressions(), st.sampled_from(["==", "<=", ">="]), _expressions())
-    @settings(max_examples=200, deadline=None)
+    @tries(200)
     @example("-3 ^ 2", "==", "2 ^ -1 ^ 2")
     @example("a - b.x - 3 + a", "==", "2 / 3 * 4 % 3 - -a")
     @example("2 ^ 3 ^ 2", ">=", "0")
@@ -412,7 +413,7 @@ def _read_or_refuse(form: object) -> None:
 
 class TestHostileInput:
     @given(st.data())
-    @settings(max_examples=300, deadline=None)
+    @tries(300)
     def test_anything_in_any_place(self, data: st.DataObject) -> None:
         form = copy.deepcopy(FULL)
         *place, last = data.draw(st.sampled_from(_places(FULL)[1:]))
@@ -426,17 +427,17 @@ class TestHostileInput:
         _read_or_refuse(form)
 
     @given(_JSON)
-    @settings(max_examples=200, deadline=None)
+    @tries(200)
     def test_anything(self, form: object) -> None:
         _read_or_refuse(form)
 
     @given(st.text(alphabet="xy.[]()+-*/%^=<>,0123456789e minhypot", max_size=30))
-    @settings(max_examples=300, deadline=None)
+    @tries(300)
     def test_any_expression(self, text: str) -> None:
         _read_or_refuse({"unknowns": {"x": 1, "y": 2}, "constraints": [text, f"{text} == 0"]})
 
     @given(st.text(max_size=30) | st.text(alphabet='{}[]:,"0e', max_size=30))
-    @settings(max_examples=200, deadline=None)
+    @tries(200)
     def test_any_text(self, text: str) -> None:
         with contextlib.suppress(FormError):
             read(text)

@@ -12,12 +12,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, reject, settings
+from hypothesis import given, reject
 from hypothesis import strategies as st
 
 from aidl_lang.solver import Problem, Solution, Status, dependence, mobility, solve, stacks
 from aidl_lang.solver.analysis import Freedom, State, analyse
 from aidl_lang.solver.operations import Op
+from tests.amount import tries
 
 from .build import E, Model, call, distance
 from .check import evaluate, jacobian
@@ -340,7 +341,7 @@ def assert_explained(problem: Problem, freedom: Freedom, slopes: np.ndarray) -> 
 
 
 @given(st.integers(0, 100_000))
-@settings(max_examples=60, deadline=None)
+@tries(60)
 def test_counts_motions_and_reasons_are_those_of_the_dense_matrices(seed: int) -> None:
     _, problem = random_problem(seed)
     freedom = analyse(problem, solve(problem))
@@ -349,7 +350,7 @@ def test_counts_motions_and_reasons_are_those_of_the_dense_matrices(seed: int) -
 
 
 @given(st.integers(0, 100_000))
-@settings(max_examples=40, deadline=None)
+@tries(40)
 def test_sparse_elimination_says_the_same(seed: int) -> None:
     _, problem = random_problem(seed, 4)
     solution = solve(problem)

@@ -7,11 +7,12 @@ import random
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang.solver import solve
 from aidl_lang.solver.analysis import analyse
+from tests.amount import tries
 
 from .build import Model, call, distance
 from .check import assert_smallest_change, assert_solved
@@ -59,7 +60,7 @@ def test_a_chain_of_pushes() -> None:
 
 
 @given(st.integers(0, 10_000))
-@settings(max_examples=25, deadline=None)
+@tries(25)
 def test_random_half_planes(seed: int) -> None:
     rng = random.Random(seed)
     m = Model()
@@ -74,7 +75,7 @@ def test_random_half_planes(seed: int) -> None:
 
 
 @given(st.integers(0, 10_000))
-@settings(max_examples=20, deadline=None)
+@tries(20)
 def test_points_kept_apart_and_within_a_disc(seed: int) -> None:
     rng = random.Random(seed)
     m = Model()

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse import csr_array
 
 from aidl_lang.solver import batch, components, dense, quadratic, sparse
 from aidl_lang.solver.sparse import SparseMatrix
+from tests.amount import tries
 
 KINDS = ("wide", "square", "tall", "redundant", "singular square")
 
@@ -39,7 +40,7 @@ def least_norm(way: str, matrix: np.ndarray, y: np.ndarray) -> dense.LeastNorm:
 @pytest.mark.parametrize("way", ["dense", "sparse"])
 @pytest.mark.parametrize("kind", KINDS)
 @given(seed=st.integers(0, 10_000))
-@settings(max_examples=20, deadline=None)
+@tries(20)
 def test_the_shortest_solution(way: str, kind: str, seed: int) -> None:
     matrix, y = system(seed, kind)
     found = least_norm(way, matrix, y)
@@ -57,7 +58,7 @@ def test_the_shortest_solution(way: str, kind: str, seed: int) -> None:
 @given(
     seed=st.integers(0, 100_000), kind=st.sampled_from(["column", "row", "copy", "stored zeros", "overflow"])
 )
-@settings(max_examples=100, deadline=None)
+@tries(100)
 def test_singular_square_matrices_are_no_danger(seed: int, kind: str) -> None:
     """SuperLU itself may crash on a matrix with an empty column."""
     random = np.random.default_rng(seed)
@@ -83,7 +84,7 @@ def test_singular_square_matrices_are_no_danger(seed: int, kind: str) -> None:
 
 @pytest.mark.parametrize("way", ["dense", "sparse"])
 @given(seed=st.integers(0, 10_000))
-@settings(max_examples=20, deadline=None)
+@tries(20)
 def test_what_is_out_of_reach(way: str, seed: int) -> None:
     matrix, y = system(seed, "redundant", consistent=False)
     found = least_norm(way, matrix, y)
@@ -93,7 +94,7 @@ def test_what_is_out_of_reach(way: str, seed: int) -> None:
 
 
 @given(seed=st.integers(0, 10_000), damping=st.floats(-4.0, 2.0))
-@settings(max_examples=30, deadline=None)
+@tries(30)
 def test_damped_steps(seed: int, damping: float) -> None:
     matrix, residuals = system(seed, "redundant", consistent=False)
     mu = 10.0**damping
@@ -108,7 +109,7 @@ def test_damped_steps(seed: int, damping: float) -> None:
 
 
 @given(st.lists(st.tuples(st.integers(0, 10_000), st.booleans()), min_size=1, max_size=6))
-@settings(max_examples=30, deadline=None)
+@tries(30)
 def test_a_stack_is_its_members(members: list[tuple[int, bool]]) -> None:
     systems = [system(seed, "redundant", consistent) for seed, consistent in members]
     matrices, sides = (np.array(column) for column in zip(*systems, strict=True))
@@ -122,7 +123,7 @@ def test_a_stack_is_its_members(members: list[tuple[int, bool]]) -> None:
 
 
 @given(st.integers(0, 10_000))
-@settings(max_examples=40, deadline=None)
+@tries(40)
 def test_many_inequalities_enter_together_and_end_at_the_same_point(seed: int) -> None:
     random = np.random.default_rng(seed)
     matrix, y = random.uniform(-1.0, 1.0, (40, 15)), random.uniform(-1.0, 0.5, 40)
@@ -137,7 +138,7 @@ def test_many_inequalities_enter_together_and_end_at_the_same_point(seed: int) -
 
 
 @given(st.integers(1, 40), st.lists(st.tuples(st.integers(0, 39), st.integers(0, 39))), st.booleans())
-@settings(max_examples=60, deadline=None)
+@tries(60)
 def test_components(count: int, links: list[tuple[int, int]], with_scipy: bool) -> None:
     links = [(a % count, b % count) for a, b in links]
     pairs = np.array(links, dtype=np.int64).reshape(-1, 2)

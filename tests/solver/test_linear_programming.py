@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import linprog, nnls
 
 from aidl_lang.solver import solve
+from tests.amount import tries
 
 from .build import E, Model
 
@@ -81,7 +82,7 @@ def random_problem(seed: int) -> Linear:
 
 
 @given(st.integers(0, 100_000))
-@settings(max_examples=60, deadline=None)
+@tries(60)
 def test_against_scipy(seed: int) -> None:
     problem = random_problem(seed)
     solution = solve(problem.model().problem())

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang.solver import Memory, Problem, Status, solve
 from aidl_lang.solver import hierarchy as hierarchy_module
 from aidl_lang.solver.hierarchy import Hierarchy
+from tests.amount import tries
 from tests.solver.build import Model, distance
 
 
@@ -79,7 +80,7 @@ class TestMemory:
         st.lists(st.floats(1.0, 12.0), min_size=5, max_size=5),
         st.lists(st.tuples(st.integers(0, 4), st.floats(1.0, 12.0)), max_size=3),
     )
-    @settings(max_examples=30, deadline=None)
+    @tries(30)
     def test_any_changes_end_where_a_first_solve_ends(
         self, lengths: list[float], changes: list[tuple[int, float]]
     ) -> None:

@@ -7,11 +7,12 @@ import random
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang.solver import Problem, Settings, solve
 from aidl_lang.solver.analysis import analyse
+from tests.amount import tries
 
 from .build import Model, call, distance
 from .check import assert_smallest_change, assert_solved
@@ -30,7 +31,7 @@ def truss(seed: int, points: int = 6) -> Problem:
 
 
 @given(st.integers(0, 10_000))
-@settings(max_examples=25, deadline=None)
+@tries(25)
 def test_a_truss_is_satisfied_by_the_smallest_change(seed: int) -> None:
     problem = truss(seed)
     solution = solve(problem)
@@ -40,7 +41,7 @@ def test_a_truss_is_satisfied_by_the_smallest_change(seed: int) -> None:
 
 
 @given(st.integers(0, 10_000))
-@settings(max_examples=15, deadline=None)
+@tries(15)
 def test_the_order_of_constraints_does_not_matter(seed: int) -> None:
     problem = truss(seed)
     shuffled = list(problem.constraints)

@@ -9,12 +9,13 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
 from aidl_lang.llm.intent import Kind, Ledger, request
 from aidl_lang.source import SourceFile
+from tests.amount import tries
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -440,7 +441,7 @@ def constraint_lines() -> list[tuple[str, str]]:
     return [(name, str(number)) for name, number in found]
 
 
-@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@tries(12)
 @given(st.sampled_from(constraint_lines()))
 def test_any_constraint_deleted_is_named_and_put_back(chosen: tuple[str, str]) -> None:
     name, number = chosen[0], int(chosen[1])
@@ -453,7 +454,7 @@ def test_any_constraint_deleted_is_named_and_put_back(chosen: tuple[str, str]) -
     assert phrases(text, restored(after, text)) == []
 
 
-@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@tries(10)
 @given(
     st.sampled_from(["telephone", "key", "bottle_opener", "toy_sword"]),
     st.text(st.characters(codec="utf-8"), max_size=5),

@@ -1,0 +1,80 @@
+"""All that a public name needs: one test tells everything that is missing, with the command that makes it or
+the file in which it is written.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import pytest
+
+from aidl_lang import builtins
+from aidl_lang.highlighting import site as colours
+from aidl_lang.reference import coverage, site
+from aidl_lang.reference.collect import reference
+from aidl_lang.reference.pages import image
+from tests.checker import test_corpus as corpus
+from tests.documents import ROOT
+from tests.property import test_shapes as shapes
+
+ENTRIES = list(reference().entries.values())
+
+FOR_THE_LIBRARY = {
+    "glyphs",
+    "ink",
+    "where",
+    "shown",
+    "sizes",
+    "convex_corners",
+    "refuse",
+    "outline_clearance",
+}
+"""Builtins that only the library's own definitions use: they have no section in `stdlib/docs`."""
+
+
+def test_every_public_name_has_all_that_it_needs() -> None:
+    told = [*_undocumented(), *_stale(), *_untried()]
+    if told:
+        pytest.fail("\n".join(told), pytrace=False)
+
+
+def _undocumented() -> Iterator[str]:
+    for entry in ENTRIES:
+        where = f"`{entry.name}`, {entry.where}"
+        if not re.search(r"[.:)]$", entry.doc.line) or len(entry.doc.line) > 160:
+            yield f"{where}: begins its `///` comment with a sentence of at most 160 letters, for lists"
+        if not entry.doc.example:
+            yield f"{where}: ends its `///` comment with a whole program that shows it"
+        if "```" in entry.doc.text:
+            yield f"{where}: has one example, after the text"
+    sections = {name for name in builtins.SIGNATURES if reference().find(name)}
+    for name in sorted(builtins.SIGNATURES.keys() - sections - FOR_THE_LIBRARY):
+        yield f"`{name}` is built in: write a section in `stdlib/docs`"
+
+
+def _stale() -> Iterator[str]:
+    """What one command makes."""
+    made = {**site.texts(ROOT), **colours.texts(ROOT)}
+    stale = [path for path, text in made.items() if _read(path) != text]
+    pictures = {f"docs/reference/{image(entry)}" for entry in ENTRIES if entry.doc.example}
+    stale += [path for path in pictures if not (ROOT / path).is_file()]
+    stale += site.strays(ROOT, pictures | site.texts(ROOT).keys())
+    if coverage.headings(_read(site.COVERAGE)) != coverage.constraints():
+        stale.append(site.COVERAGE)
+    if stale:
+        yield f"run `make reference`, which writes {', '.join(sorted(stale))}"
+
+
+def _untried() -> Iterator[str]:
+    for name in sorted(corpus.unused()):
+        yield f"`{name}` is in no program of `tests/checker/corpus`: use it in one"
+    for call in shapes.unmeasured():
+        yield f"`{call}` has no area and perimeter in `FORMS` of `tests/property/test_shapes.py`"
+
+    for name in coverage.unshown(_read(site.COVERAGE)):
+        yield f"`{name}(a, b)` takes nothing: say how it is called in `FORMS` of `{coverage.__name__}`"
+
+
+def _read(path: str) -> str:
+    return (ROOT / path).read_text("utf-8") if (ROOT / path).is_file() else ""
