@@ -121,8 +121,8 @@ class Drawing:
 def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     """The drawing of a model, and what is noteworthy about its curves and parts."""
     notes: list[Diagnostic] = []
-    curves, shapes = _collect(model.root, notes)
-    network, walk, masses, traced, gaps = _closed(model.root, curves, shapes)
+    curves, boxes, shapes = _collect(model.root, notes)
+    network, walk, masses, traced, gaps = _closed(model.root, Network(curves, boxes), shapes)
     notes += [gap_note(gap) for gap in gaps]
     regions = {path: outline.region for path, outline in traced.items()}
     styles = _styles(model.root, notes)
@@ -160,14 +160,13 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
 
 
 def _closed(
-    root: SolvedStructure, curves: list[Piece], shapes: dict[str, list[Shape]]
+    root: SolvedStructure, network: Network, shapes: dict[str, list[Shape]]
 ) -> tuple[Network, Bodies, list[Mass], dict[str, Traced], list[Gap]]:
     """What the curves enclose, once small gaps between them are closed, and their network and gaps."""
-    network = Network(curves)
     found = exactly(network, lambda: _arranged(root, network, shapes))
     gaps = open_gaps(network, found[0].findings, shapes)
     while gaps:
-        joined = Network(without_gaps(curves, gaps))
+        joined = Network(without_gaps(network.curves, gaps))
         then = exactly(joined, partial(_arranged, root, joined, shapes))
         kept = effective(gaps, then[0].findings)
         if len(kept) == len(gaps):
@@ -191,9 +190,12 @@ def _arranged(
     return walk, [m for m in masses if traced[m.structure.path].region], traced
 
 
-def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[list[Piece], dict[str, list[Shape]]]:
-    """All curves that can be drawn, numbered, and by structure the shapes they belong to."""
+def _collect(
+    root: SolvedStructure, notes: list[Diagnostic]
+) -> tuple[list[Piece], list[Bounds], dict[str, list[Shape]]]:
+    """All curves that can be drawn, numbered, their boxes, and by structure the shapes they belong to."""
     curves: list[Piece] = []
+    boxes: list[Bounds] = []
     shapes: dict[str, list[Shape]] = {}
     for structure in root.walk():
         own = shapes.setdefault(structure.path, [])
@@ -206,13 +208,14 @@ def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[list[Piece
                     vanished.append(leaf)
                     continue
                 leaves.append((leaf, len(curves)))
-                curves.append(usable)
+                curves.append(usable[0])
+                boxes.append(usable[1])
             if leaves:
                 # A shape may have edges of no length (a rounded rectangle with half-round ends).
                 own.append(Shape(geometry, tuple(leaves)))
                 vanished = [leaf for leaf in vanished if leaf.curve and not is_finite(leaf.curve)]
             notes += [unusable_note(structure, leaf, leaf if leaves else geometry) for leaf in vanished[:1]]
-    return curves, shapes
+    return curves, boxes, shapes
 
 
 def _leaves(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
@@ -225,8 +228,8 @@ def _leaves(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
         yield from _leaves(part)
 
 
-def _usable(curve: Piece) -> Piece | None:
-    """The curve with positive radii; None if it has no extent or no finite coordinates."""
+def _usable(curve: Piece) -> tuple[Piece, Bounds] | None:
+    """The curve with positive radii, and its box; None if it has no extent or no finite coordinates."""
     if not is_finite(curve):
         return None
     if isinstance(curve, Circle):
@@ -242,7 +245,7 @@ def _usable(curve: Piece) -> Piece | None:
     box = bounds(curve)
     if not all(map(math.isfinite, box)) or max(map(abs, box)) > LARGEST:
         return None
-    return curve if math.hypot(box[2] - box[0], box[3] - box[1]) >= NO_LENGTH else None
+    return (curve, box) if math.hypot(box[2] - box[0], box[3] - box[1]) >= NO_LENGTH else None
 
 
 def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:

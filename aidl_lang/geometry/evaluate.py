@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import fields, replace
+from operator import attrgetter
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,10 +27,14 @@ NO_LENGTH = 1e-7
 """Extent of a curve, in mm, that is none: its ends were made to meet, or its size to vanish."""
 
 
+_VALUES = {kind: attrgetter(*(f.name for f in fields(kind))) for kind in get_args(Piece)}
+
+
 def is_finite(curve: Piece) -> bool:
     """Whether every number of the curve is one that can be drawn."""
-    values = [getattr(curve, f.name) for f in fields(curve)]
-    return all(math.isfinite(n) for v in values for n in (v if isinstance(v, tuple) else (v,)))
+    return all(
+        math.isfinite(n) for v in _VALUES[type(curve)](curve) for n in (v if isinstance(v, tuple) else (v,))
+    )
 
 
 def is_closed(curve: Piece) -> bool:
@@ -109,6 +115,19 @@ def points(curve: Piece, t: NDArray[np.float64]) -> NDArray[np.float64]:
     c, s_ = math.cos(curve.angle), math.sin(curve.angle)
     x, y = curve.rx * cos, curve.ry * sin
     return np.stack((curve.center[0] + c * x - s_ * y, curve.center[1] + s_ * x + c * y), axis=1)
+
+
+def round_points(rows: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A point on each of some circles and arcs; a row has the centre, radius, first angle and sweep."""
+    x, y, radius, first, sweep = rows.T
+    u = first + sweep * t
+    return np.stack((x + radius * np.cos(u), y + radius * np.sin(u)), axis=1)
+
+
+def cubic_points(rows: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A point on each of some cubics; a row has the control points."""
+    spots: NDArray[np.float64] = (_weights(t)[:, :, None] * rows.reshape(-1, 4, 2)).sum(axis=1)
+    return spots
 
 
 def derivative(curve: Piece, t: float) -> Vec:

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import TypeVar
 
@@ -24,12 +23,14 @@ from aidl_lang.geometry.evaluate import (
     TAU,
     Bounds,
     bounds,
+    cubic_points,
     ends,
     is_closed,
     locate,
     part,
     point,
     points,
+    round_points,
     round_range,
 )
 from aidl_lang.geometry.intersect import intersections, self_crossing, sorted_cuts
@@ -102,9 +103,9 @@ class Network:
     numbers of these curves; work done by `exactly` is then begun again with these curves cut finer.
     """
 
-    def __init__(self, curves: Sequence[Piece]) -> None:
+    def __init__(self, curves: Sequence[Piece], boxes: Sequence[Bounds] | None = None) -> None:
         self.curves = list(curves)
-        self.boxes = [bounds(c) for c in self.curves]
+        self.boxes = [bounds(c) for c in self.curves] if boxes is None else list(boxes)
         self.box = union_bounds(self.boxes)
         left, bottom, right, top = self.box
         self.size = max(right - left, top - bottom) or 1.0
@@ -207,32 +208,47 @@ class Network:
         counts = [
             _segments(curves[e.curve], e.t1 - e.t0, chord) for e, chord in zip(edges, chords, strict=True)
         ]
-        inner = dict(self._round_points([k for k, count in enumerate(counts) if count > 1], counts))
-        self.edges = [replace(e, inner=inner.get(k, _NO_POINTS)) for k, e in enumerate(edges)]
+        inner = dict(self._inner_points([k for k, count in enumerate(counts) if count > 1], counts))
+        self.edges = [
+            Edge(e.curve, e.t0, e.t1, e.start, e.end, inner.get(k, _NO_POINTS)) for k, e in enumerate(edges)
+        ]
         self._index()
 
-    def _round_points(self, numbers: Sequence[int], counts: Sequence[int]) -> Iterator[tuple[int, Ints]]:
-        """The inner points of edges cut into many chords: those of circles and arcs in one go."""
-        rounds, centers = [], []
+    def _inner_points(self, numbers: Sequence[int], counts: Sequence[int]) -> Iterator[tuple[int, Ints]]:
+        """The inner points of edges cut into many chords: those of circles and arcs in one go, likewise those
+        of Bézier curves.
+        """
+        rounds, cubics = [], []
         for k in numbers:
-            edge, curve = self.edges[k], self.curves[self.edges[k].curve]
+            curve = self.curves[self.edges[k].curve]
             if isinstance(curve, Arc | Circle):
-                rounds.append((k, edge.t0, edge.t1 - edge.t0, curve.radius, *round_range(curve)))
-                centers.append(curve.center)
+                rounds.append((k, (*curve.center, curve.radius, *round_range(curve))))
+            elif isinstance(curve, Bezier):
+                cubics.append((k, (*curve.p0, *curve.p1, *curve.p2, *curve.p3)))
             else:
+                edge = self.edges[k]
                 ts = edge.t0 + (edge.t1 - edge.t0) * np.arange(1, counts[k]) / counts[k]
                 yield k, self.to_grid(points(curve, ts))
-        if not rounds:
-            return
-        table = np.array(rounds)
-        count = np.array([counts[k] for k, *_ in rounds])
-        row = np.repeat(np.arange(len(rounds)), count - 1)
+        for found, at in ((rounds, round_points), (cubics, cubic_points)):
+            if found:
+                table = np.array([row for _, row in found])
+                yield from self._along([k for k, _ in found], table, counts, at)
+
+    def _along(
+        self,
+        numbers: Sequence[int],
+        table: NDArray[np.float64],
+        counts: Sequence[int],
+        at: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]],
+    ) -> Iterator[tuple[int, Ints]]:
+        """The inner points of edges of curves of one kind, which have a row each."""
+        parts = np.array([(self.edges[k].t0, self.edges[k].t1 - self.edges[k].t0) for k in numbers])
+        count = np.array([counts[k] for k in numbers])
+        row = np.repeat(np.arange(len(numbers)), count - 1)
         place = np.arange(1, len(row) + 1) - np.repeat(np.cumsum(count - 1) - (count - 1), count - 1)
-        _, t0, share, radius, first, sweep = table[row].T
-        u = first + sweep * (t0 + share * place / count[row])
-        spots = np.array(centers)[row] + radius[:, None] * np.stack((np.cos(u), np.sin(u)), axis=1)
-        grids = np.split(self.to_grid(spots), np.cumsum(count - 1)[:-1])
-        yield from zip((k for k, *_ in rounds), grids, strict=True)
+        t = parts[row, 0] + parts[row, 1] * place / count[row]
+        grids = np.split(self.to_grid(at(table[row], t)), np.cumsum(count - 1)[:-1])
+        yield from zip(numbers, grids, strict=True)
 
     def refine(self) -> None:
         """Cut the curves finer whose chords crossed."""

@@ -75,13 +75,15 @@ class _Hulls:
         self._hulls = _hulls(curves)
         self._least = 2 * tolerance
         margin = _MARGIN * tolerance / 2
-        self._low = self._hulls.min(axis=2) - margin
-        self._high = self._hulls.max(axis=2) + margin
+        # By axis, as to reduce an axis of two takes long.
+        self._low = np.moveaxis(self._hulls.min(axis=2) - margin, 2, 0).copy()
+        self._high = np.moveaxis(self._hulls.max(axis=2) + margin, 2, 0).copy()
 
     def may_meet(self, one: Ints, other: Ints, nodes: Ints, places: Floats) -> Mask:
-        low, high = self._low, self._high
-        meets = (low[one][:, :, None] <= high[other][:, None]).all(axis=3)
-        meets &= (low[other][:, None] <= high[one][:, :, None]).all(axis=3)
+        meets = np.ones((len(one), PARTS, PARTS), dtype=np.bool_)
+        for low, high in zip(self._low, self._high, strict=True):
+            meets &= low[one][:, :, None] <= high[other][:, None]
+            meets &= low[other][:, None] <= high[one][:, :, None]
         for end, across in product((0, 1), (0, 1)):
             shared = nodes[one, end]
             rows = np.flatnonzero(shared == nodes[other, across])
@@ -91,8 +93,7 @@ class _Hulls:
                 a, b = self._hulls[one[rows], ours], self._hulls[other[rows], theirs]
                 apart = rows[self._on_two_sides(a, b, places[shared[rows]])]
                 meets[apart, ours, theirs] = False
-        result: Mask = meets.any(axis=(1, 2))
-        return result
+        return np.asarray(meets.any(axis=(1, 2)), dtype=np.bool_)
 
     def _on_two_sides(self, ours: Floats, theirs: Floats, spots: Floats) -> Mask:
         """Whether a straight line through a spot tells some parts from others. Points that are as good as the
