@@ -20,7 +20,6 @@ from aidl_lang.diagnostics import Diagnostic, has_errors, is_too_many, ordered, 
 from aidl_lang.drawing_time import TooLongError, blaming, within
 from aidl_lang.interp import Interpretation, interpret, nothing_built
 from aidl_lang.model import Knob, Model
-from aidl_lang.printer import format_module
 from aidl_lang.records import record
 from aidl_lang.resolve import resolve
 from aidl_lang.resolving.symbols import SymbolKind
@@ -240,6 +239,8 @@ def check(
 
 def formatted(source: SourceFile, world: World | None = None) -> tuple[str | None, list[Diagnostic]]:
     """The canonical form of a program, names spelled as they are defined; None if it does not parse."""
+    from aidl_lang.printer import format_module
+
     with working:
         parsed = parser.parse(source)
         if has_errors(parsed.diagnostics):

@@ -12,7 +12,6 @@ from aidl_lang.building.conditions import RELATIONS, holds
 from aidl_lang.building.wording import Wording
 from aidl_lang.diagnostics import Label
 from aidl_lang.expression import Expression
-from aidl_lang.expression_printer import format_expression
 from aidl_lang.model import Comparison, Geometry, Structure
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.source import Span
@@ -162,7 +161,11 @@ def _shown(values: Sequence[float], digits: int) -> str:
 
 def _in_numbers(wording: Wording, node: ast.Expression, evaluate: Evaluate) -> str:
     """A sum or product with numbers in place of names; empty for what is none."""
-    return format_expression(_substituted(wording, node, evaluate)) if _is_calculated(node) else ""
+    if not _is_calculated(node):
+        return ""
+    from aidl_lang.expression_printer import format_expression
+
+    return format_expression(_substituted(wording, node, evaluate))
 
 
 def _is_calculated(node: ast.Expression) -> bool:

@@ -12,7 +12,6 @@ from aidl_lang.builtins import COPYING, PATTERNS, is_word
 from aidl_lang.checking import fields
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, Place, joined
 from aidl_lang.checking.habits import check_habits
-from aidl_lang.checking.misfits import no_overload
 from aidl_lang.checking.standard import CONSTANT, result
 from aidl_lang.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.types import (
@@ -57,6 +56,8 @@ def call(check: Inference, node: ast.Call) -> Fact:
             for index, word in words.items():
                 check.resolution.uses[node.arguments[index].value] = Symbol(word, SymbolKind.WORD)
     if not fits:
+        from aidl_lang.checking.misfits import no_overload
+
         check.rejected.append(node)
         no_overload(check, node, nodes, given, [o for o in found if isinstance(o, Mismatch)])
         return UNKNOWN

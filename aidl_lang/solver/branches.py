@@ -26,7 +26,6 @@ from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Floats, Op
 from aidl_lang.solver.problem import Relation, Row, Settings
 from aidl_lang.solver.program import AffineProgram, Program
-from aidl_lang.solver.refuting import is_refuted
 from aidl_lang.solver.valuation import Valuation
 
 TIGHTER = 0.5
@@ -263,6 +262,8 @@ class _Attempt:
 
     def _is_refuted(self) -> bool:
         """Whether it is shown that no branches would help."""
+        from aidl_lang.solver.refuting import is_refuted
+
         return is_refuted(self.values, self.task.rows, self.free, self.settings.tolerance)
 
     def _proof_without_branches(self) -> Mapping[int, float] | None:

@@ -32,13 +32,11 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from aidl_lang.records import record
-from aidl_lang.solver import conflicts
 from aidl_lang.solver.forms import Affine
 from aidl_lang.solver.freezing import Freezer
 from aidl_lang.solver.gradients import FLAT, gradients
 from aidl_lang.solver.preferences import prefer
 from aidl_lang.solver.problem import Relation
-from aidl_lang.solver.refuting import is_refuted
 from aidl_lang.solver.solution import Giving, GroupFailure, StageReport
 from aidl_lang.solver.thinning import thin
 
@@ -241,6 +239,8 @@ class Group:
             if reached is None:
                 reached, best, _ = self._climb([tier for tier in tiers if tier > POSITIONS], part, best)
         if reached is None:
+            from aidl_lang.solver import conflicts
+
             failure = conflicts.explain(hierarchy, self.group, violated, everything, before, best[1])
             reached = self._from_elsewhere(failure, part, before)
             if reached is None:
@@ -313,6 +313,8 @@ class Group:
         """Whether it is shown that no stage can satisfy `seeds` and what binds all that is free for them."""
         key = tuple(seeds)
         if key not in self._refuted:
+            from aidl_lang.solver.refuting import is_refuted
+
             hierarchy, scope = self.hierarchy, self.everything(seeds)
             hierarchy.refresh(scope.constraints)
             rows = hierarchy.rows(scope.constraints)

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.solver import conflicts
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
 from aidl_lang.solver.expression import mentioned
 from aidl_lang.solver.group import Group, Scope, Tier, stage_name
@@ -108,6 +107,8 @@ class Hierarchy:
     @cached_property
     def patience(self) -> Clock:
         """How long failures are explained; it runs from the first one."""
+        from aidl_lang.solver import conflicts
+
         return Clock(conflicts.PATIENCE)
 
     @cached_property
