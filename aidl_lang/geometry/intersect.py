@@ -148,9 +148,9 @@ def _lie_on_each_other(a: Piece, b: Piece, tolerance: float) -> bool:
         ]
         marks = sorted(on_both)
     return any(
-        math.dist(point(a, t0), point(a, t1)) > tolerance or t1 - t0 > 0.5
+        all(_on(b, point(a, t0 + (t1 - t0) * k / 8), tolerance) for k in range(1, 8))
         for t0, t1 in pairwise(marks)
-        if all(_on(b, point(a, t0 + (t1 - t0) * k / 8), tolerance) for k in range(1, 8))
+        if math.dist(point(a, t0), point(a, t1)) > tolerance or t1 - t0 > 0.5
     )
 
 

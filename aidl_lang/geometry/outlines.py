@@ -346,7 +346,7 @@ def _region(geometry: Sequence[SolvedGeometry]) -> Region:
 
 
 def _pieces(region: Region) -> list[Piece]:
-    return [p for loop in region.loops for p in loop.pieces]
+    return list(region.pieces)
 
 
 def _extent(curves: Sequence[Piece]) -> float:
