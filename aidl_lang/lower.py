@@ -6,7 +6,7 @@ a frame that no constraint mentions, an argument that was read while building, a
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,10 +21,10 @@ from aidl_lang.model import (
     Model,
     Structure,
     chain,
-    convert,
     is_size,
     own_geometry,
 )
+from aidl_lang.placing import FLOATS, Placing
 from aidl_lang.records import record
 from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Row
@@ -79,17 +79,21 @@ class _Lowering:
         self.structures = list(model.root.walk())
         self.groups = {s: i for i, s in enumerate(self.structures)}
         self.tape = TapeBuilder()
+        self.make = {op: getattr(self.tape, op) for op in ex.EVALUATE}
         self.node_of: dict[Expression, int] = {}
         self.numbers: dict[Unknown, int] = {}
         self.variables: dict[Structure, list[Unknown]] = {}
         self.mentioned: set[Unknown] = set()
         self.holders = {c.holder for c in model.constraints}
-        # Every number that defines what is drawn, in the root's frame, by the structure that draws it.
-        self.drawn = {s: [self._in_root(s, at) for _, _, at in seen(s)] for s in self.structures}
-        self.size = _extent(at for drawn in self.drawn.values() for at in drawn)
+        self.standing: dict[Structure, bool] = {}
+        self.named: dict[Constraint, tuple[set[Structure], set[Structure]]] = {}
+        # Every number that defines what is drawn, by the structure that draws it.
+        self.seen = {s: [at for _, _, at in seen(s)] for s in self.structures}
+        self.size = _extent(self.seen)
+        self.place = Placing(self._node, self.tape)
 
     def run(self) -> Lowered:
-        self._number_unknowns(e for drawn in self.drawn.values() for at in drawn for e in at)
+        self._number_unknowns()
         stated: list[Constraint | None] = []
         constraints: list[SolverConstraint] = []
         # In an order of their own, so that the order of writing cannot show in the last digits.
@@ -102,9 +106,7 @@ class _Lowering:
         for never in self._never_vanishing():
             constraints.append(never)
             stated.append(None)
-        observables = tuple(
-            (self.groups[s], self._node(e)) for s in self.structures for e in self._observables(s)
-        )
+        observables = tuple((self.groups[s], o) for s in self.structures for o in self._observables(s))
         found = tuple(self.numbers)
         parents = [self.groups[s.parent] if s.parent else -1 for s in self.structures]
         problem = Problem(
@@ -130,7 +132,7 @@ class _Lowering:
 
     # --- Unknowns ------------------------------------------------------------------------------
 
-    def _number_unknowns(self, observed: Iterable[Expression]) -> None:
+    def _number_unknowns(self) -> None:
         """Unknowns that can move: those of what is drawn, and both coordinates of frames that a constraint
         names, or that it mentions.
         """
@@ -139,11 +141,12 @@ class _Lowering:
                 e for c in self.model.constraints for part in c.comparisons for e in (part.left, part.right)
             )
         )
-        drawn = {u for u in ex.unknowns(observed) if u.frame_of is None}
+        drawn = {u for u in ex.unknowns(self._observed()) if u.frame_of is None}
+        self.named = {c: self._named(c) for c in self.model.constraints}
         named = {
             s
-            for c in self.model.constraints
-            for structures in self._named(c)
+            for c, both in self.named.items()
+            for structures in both
             for structure in structures
             for s in chain(structure)
             if s.is_within(c.holder) and s is not c.holder
@@ -181,45 +184,60 @@ class _Lowering:
         s = unknown.frame_of
         if s is None or unknown.angular:
             return False
-        if not s.frame.x.value == s.frame.y.value == s.frame.rotation.value == 0.0:
-            return False
-        return any(len(at) == 2 and all(u.kept or u.angular for u in ex.unknowns(at)) for _, _, at in seen(s))
+        if s not in self.standing:
+            lies_on = s.frame.x.value == s.frame.y.value == s.frame.rotation.value == 0.0
+            self.standing[s] = lies_on and any(map(_is_exact, self.seen[s]))
+        return self.standing[s]
 
     # --- Expressions ---------------------------------------------------------------------------
 
     def _node(self, root: Expression) -> int:
         """The number of an expression on the tape."""
-        known, tape = self.node_of, self.tape
+        known, make, leaf = self.node_of, self.make, self._leaf
+        if root in known:
+            return known[root]
         stack = [root]
         while stack:
             node = stack[-1]
             if node in known:
                 stack.pop()
-            elif missing := [a for a in node.args if a not in known]:
-                stack.extend(missing)
-            else:
-                known[node] = self._make(tape, node)
+                continue
+            ready = True
+            for arg in node.args:
+                if arg not in known:
+                    stack.append(arg)
+                    ready = False
+            if ready:
                 stack.pop()
+                known[node] = make[node.op](*[known[a] for a in node.args]) if node.args else leaf(node)
         return known[root]
 
-    def _make(self, tape: TapeBuilder, node: Expression) -> int:
+    def _leaf(self, node: Expression) -> int:
         if node.op == "constant":
-            return tape.constant(node.value)
-        if node.op == "unknown":
-            assert isinstance(node.payload, Unknown)
-            number = self.numbers.get(node.payload)
-            return tape.constant(node.payload.guess) if number is None else tape.unknown(number)
-        made: int = getattr(tape, node.op)(*[self.node_of[a] for a in node.args])
-        return made
+            return self.tape.constant(node.value)
+        if not isinstance(node.payload, Unknown):
+            raise TypeError(f"`{node.op}` is known only once all is drawn")
+        number = self.numbers.get(node.payload)
+        return self.tape.constant(node.payload.guess) if number is None else self.tape.unknown(number)
 
-    def _in_root(self, s: Structure, at: _Seen) -> _Seen:
-        return convert(*at, s, self.structures[0]) if len(at) == 2 else at
+    def _observed(self) -> Iterator[Expression]:
+        """What the numbers that define the drawing are made of."""
+        for s, found in self.seen.items():
+            for at in found:
+                yield from at
+            if any(len(at) == 2 for at in found):
+                for frame in (each.frame for each in chain(s)[:-1]):
+                    yield from (frame.x, frame.y, frame.rotation)
 
-    def _observables(self, s: Structure) -> Iterator[Expression]:
+    def _observables(self, s: Structure) -> Iterator[int]:
         """What a reader of the drawing could see move of a structure, and its variables."""
-        for at in self.drawn[s]:
-            yield from at
-        yield from map(ex.unknown, self.variables.get(s, ()))
+        node = self._node
+        for at in self.seen[s]:
+            if len(at) == 2:
+                yield from self.place(node(at[0]), node(at[1]), s)
+            else:
+                yield node(at[0])
+        yield from (self.tape.unknown(self.numbers[u]) for u in self.variables.get(s, ()))
 
     # --- Constraints ---------------------------------------------------------------------------
 
@@ -228,9 +246,8 @@ class _Lowering:
         placed = frozenset(
             self.numbers[u] for c in constraint.comparisons for u in c.placed if u in self.numbers
         )
-        whole, inside = (
-            frozenset(self.groups[s] for s in named if s in self.groups) for named in self._named(constraint)
-        )
+        named = self.named[constraint] if constraint in self.named else self._named(constraint)
+        whole, inside = (frozenset(self.groups[s] for s in each if s in self.groups) for each in named)
         return SolverConstraint(
             self.groups[constraint.holder], rows, placed, constraint.weight, whole, inside
         )
@@ -296,6 +313,11 @@ class _Lowering:
                 expression = self.tape.sub(self.tape.constant(least), self.tape.unknown(number))
                 row = Row(expression, Relation.AT_MOST, self.size)
                 yield SolverConstraint(self.groups[unknown.owner], (row,), frozenset())
+
+
+def _is_exact(at: _Seen) -> bool:
+    """Whether it is a place that only sizes and angles could move."""
+    return len(at) == 2 and all(u.kept or u.angular for u in ex.unknowns(at))
 
 
 def _comparisons(condition: Condition | bool) -> Iterator[Comparison]:
@@ -391,14 +413,16 @@ def _numbered(keys: Iterable[Hashable]) -> NDArray[np.int64]:
     return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.int64)
 
 
-def _extent(seen: Iterable[_Seen]) -> float:
+def _extent(drawn: Mapping[Structure, Iterable[_Seen]]) -> float:
     """About the extent of the places at the first guesses in mm: the power of two above it, at least 1.
 
     A small change of a model changes no tolerance, and so nothing in parts that it does not concern.
     """
+    place = Placing(lambda e: e.value, FLOATS)
     low, high = 0.0, 0.0
-    for at in seen:
-        for e in at if len(at) == 2 else ():
-            if abs(e.value) < 1e12:
-                low, high = min(low, e.value), max(high, e.value)
+    for s, found in drawn.items():
+        for at in found:
+            for value in place(at[0].value, at[1].value, s) if len(at) == 2 else ():
+                if abs(value) < 1e12:
+                    low, high = min(low, value), max(high, value)
     return float(2.0 ** np.ceil(np.log2(max(high - low, 1.0))))

@@ -62,7 +62,7 @@ class Frame:
         """Coordinates of the parent's frame → of this one."""
         a, b = ex.sub(x, self.x), ex.sub(y, self.y)
         if not self.is_level:
-            c, s = self._cos_sin()
+            c, s = self.cos_sin()
             a, b = ex.add(ex.mul(c, a), ex.mul(s, b)), ex.sub(ex.mul(c, b), ex.mul(s, a))
         return (ex.apply("neg", a) if self.mirrored else a), b
 
@@ -71,10 +71,10 @@ class Frame:
             x = ex.apply("neg", x)
         if self.is_level:
             return x, y
-        c, s = self._cos_sin()
+        c, s = self.cos_sin()
         return ex.sub(ex.mul(c, x), ex.mul(s, y)), ex.add(ex.mul(s, x), ex.mul(c, y))
 
-    def _cos_sin(self) -> tuple[Expression, Expression]:
+    def cos_sin(self) -> tuple[Expression, Expression]:
         if self.rotation.is_constant:
             c, s = ex.exact_turn(self.rotation.value)
             return ex.constant(c), ex.constant(s)
@@ -453,7 +453,7 @@ class Constraint:
     is_inherent: bool = False
     """what a shape asks of itself: nobody said it of the structure that the shape is in"""
 
-    @property
+    @cached_property
     def mentions(self) -> tuple[str, ...]:
         """Paths of the geometry and structures whose unknowns it relates."""
         both = (e for c in self.comparisons for e in (c.left, c.right))

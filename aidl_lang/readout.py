@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 from typing import TypeAlias
 
 from aidl_lang import ast
@@ -25,11 +25,10 @@ from aidl_lang.model import (
     Model,
     Recipe,
     Structure,
-    convert,
-    convert_point,
     own_geometry,
 )
-from aidl_lang.primitives import clockwise, number, translate, view, xy
+from aidl_lang.placing import FLOATS, Placing
+from aidl_lang.primitives import clockwise, number, translate, xy
 from aidl_lang.records import record
 from aidl_lang.solved import (
     Box,
@@ -128,7 +127,7 @@ def report_of(stated: Constraint, residual: float, satisfied: bool) -> Constrain
         stated.span,
         residual,
         satisfied,
-        stated.mentions,
+        stated,
         stated.weight is not None,
         all(comparison.relation == "==" for comparison in stated.comparisons),
     )
@@ -140,6 +139,11 @@ class _Reader:
     evaluate: Evaluator
     degrees: Mapping[Structure, int | None]
     states: Mapping[Structure, str]
+
+    @cached_property
+    def place(self) -> Placing[float]:
+        """Converts points to the frame of the root."""
+        return Placing(self.evaluate, FLOATS)
 
     def structure(self, s: Structure) -> SolvedStructure:
         geometry = tuple(map(self._named, s.own()))
@@ -216,7 +220,7 @@ class _Reader:
         if s.plan:
             left, bottom, width, height = s.plan
             for corner in ((left, bottom), (ex.add(left, width), ex.add(bottom, height))):
-                x, y = (self.evaluate(e) for e in convert(*corner, s, self.model.root))
+                x, y = self.place(self.evaluate(corner[0]), self.evaluate(corner[1]), s)
                 boxes.append((x, y, x, y))
         boxes += [bounds(curve) for g in geometry for curve in g.curves()]
         boxes += [
@@ -239,17 +243,16 @@ class _Reader:
             return self.geometry(g)
 
     def geometry(self, g: Geometry) -> SolvedGeometry:
-        core = g.fields if g.is_compound else view(g, self.model.root)
         if g.type == "glyphs":
-            return self._text(g, core)
+            return self._text(g)
         recipe = self._recipe(g.recipe) if g.recipe is not None else None
         is_plain = not g.is_compound and not g.is_drawn_later and g.type != "point"
-        curve = self._curve(g, core) if is_plain else None
+        curve = self._curve(g) if is_plain else None
         return SolvedGeometry(
             name=g.name or g.type,
             path=g.path,
             type=g.type,
-            values=self._own_values(g, core, curve),
+            values=self._own_values(g, curve),
             curve=curve,
             parts=tuple(self.geometry(part) for part in own_geometry(g.parts, g)),
             construction=g.construction,
@@ -270,16 +273,16 @@ class _Reader:
     def _finish(self, s: Structure, finish: Finish) -> SolvedFinish:
         at = None
         if finish.at is not None:
-            at = self._at(convert_point(finish.at, s, self.model.root))
+            at = self._at(finish.at, s)
         of = tuple(g.path for g in finish.of)
         sizes = tuple(map(self._number, finish.sizes))
         literal = partial(_literal, self.model, finish)
         return SolvedFinish(finish.kind, of, at, sizes, finish.text, finish.span, literal=literal)
 
-    def _text(self, g: Geometry, core: Mapping[str, Value]) -> SolvedGeometry:
+    def _text(self, g: Geometry) -> SolvedGeometry:
         """A text with its characters as parts, and the curves of each as theirs."""
-        (x, y), height = self._at(core["start"]), self._number(core["height"])
-        c, s = ex.exact_turn(self._number(core["angle"]))
+        (x, y), height = self._at(g.fields["start"], g.owner), self._number(g.fields["height"])
+        c, s = ex.exact_turn(self._direction(g))
         up = -1.0 if clockwise(g, self.model.root) else 1.0
 
         def at(p: Vec) -> Vec:
@@ -292,19 +295,24 @@ class _Reader:
         source = g.source.path if g.source is not None else None
         return replace(whole, source=source, attributes=self._attributes(g))
 
-    def _at(self, value: Value) -> Vec:
+    def _at(self, value: Value, owner: Structure) -> Vec:
+        """A point of `owner` in the frame of the root."""
         x, y = xy(value)
-        return self.evaluate(x), self.evaluate(y)
+        return self.place(self.evaluate(x), self.evaluate(y), owner)
+
+    def _direction(self, g: Geometry) -> float:
+        """The angle of an ellipse or a text in the frame of the root, in degrees."""
+        return self._number(translate("angle", g.fields["angle"], g.owner, self.model.root))
 
     def _number(self, value: Value) -> float:
         return self.evaluate(number(value))
 
-    def _own_values(self, g: Geometry, core: Mapping[str, Value], curve: Curve | None) -> Values:
+    def _own_values(self, g: Geometry, curve: Curve | None) -> Values:
         if g.is_compound:
             return self._shape_values(g)
         if g.recipe is not None and g.is_drawn_later:
             return {name: self._number(value) for name, value in g.recipe.numbers.items()}
-        return self._values(g, core, curve)
+        return self._values(g, curve)
 
     def _shape_values(self, g: Geometry) -> Values:
         """The number and point arguments of a compound shape."""
@@ -313,14 +321,14 @@ class _Reader:
         assert isinstance(g.scope, Scope)
         found: Values = {}
         for name in g.arguments:
-            value = translate(name, g.scope.values[name], g.owner, self.model.root)  # type: ignore[arg-type]
+            value = g.scope.values[name]
             if isinstance(value, PointVal):
-                found[name] = self._at(value)
+                found[name] = self._at(value, g.owner)
             elif isinstance(value, Num):
-                found[name] = self._number(value)
+                found[name] = self._number(translate(name, value, g.owner, self.model.root))
         return found
 
-    def _values(self, g: Geometry, core: Mapping[str, Value], curve: Curve | None) -> Values:
+    def _values(self, g: Geometry, curve: Curve | None) -> Values:
         match curve:
             case curves.Line(start, end):
                 return {"start": start, "end": end}
@@ -334,32 +342,33 @@ class _Reader:
             case curves.Ellipse(center, rx, ry, angle):
                 return {"center": center, "rx": rx, "ry": ry, "angle": angle / DEGREE}
             case _:
-                return {"at": self._at(core["at"])}
+                return {"at": self._at(g.fields["at"], g.owner)}
 
-    def _curve(self, g: Geometry, core: Mapping[str, Value]) -> Curve:
+    def _curve(self, g: Geometry) -> Curve:
+        core, at = g.fields, partial(self._at, owner=g.owner)
         match g.type:
             case "line":
-                return curves.Line(self._at(core["start"]), self._at(core["end"]))
+                return curves.Line(at(core["start"]), at(core["end"]))
             case "circle":
-                return curves.Circle(self._at(core["center"]), self._number(core["radius"]))
+                return curves.Circle(at(core["center"]), self._number(core["radius"]))
             case "bezier":
-                return curves.Bezier(*(self._at(core[p]) for p in ("p0", "p1", "p2", "p3")))
+                return curves.Bezier(*(at(core[p]) for p in ("p0", "p1", "p2", "p3")))
             case "ellipse":
-                angle = self._number(core["angle"]) * DEGREE
-                return curves.Ellipse(
-                    self._at(core["center"]), self._number(core["rx"]), self._number(core["ry"]), angle
-                )
+                rx, ry = self._number(core["rx"]), self._number(core["ry"])
+                return curves.Ellipse(at(core["center"]), rx, ry, self._direction(g) * DEGREE)
             case _:
-                return self._arc(g, core)
+                return self._arc(g)
 
-    def _arc(self, g: Geometry, core: Mapping[str, Value]) -> Curve:
-        center, start, end = (self._at(core[n]) for n in ("center", "start", "end"))
+    def _arc(self, g: Geometry) -> Curve:
+        center, start, end = (self._at(g.fields[n], g.owner) for n in ("center", "start", "end"))
         first, last = (math.atan2(p[1] - center[1], p[0] - center[0]) for p in (start, end))
         is_clockwise = clockwise(g, self.model.root)
         sweep = (first - last if is_clockwise else last - first) % _FULL_TURN
         if sweep < 1e-12:
             sweep = _FULL_TURN
-        return curves.Arc(center, self._number(core["radius"]), start, end, -sweep if is_clockwise else sweep)
+        return curves.Arc(
+            center, self._number(g.fields["radius"]), start, end, -sweep if is_clockwise else sweep
+        )
 
 
 def _glyph(

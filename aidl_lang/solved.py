@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field
 from functools import cached_property
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 from aidl_lang import ast
 from aidl_lang.geometry.curves import Arc, Circle, Piece, Vec
@@ -159,10 +159,17 @@ class SolvedStructure:
         return next((s for s in self.walk() if s.path == path), None)
 
 
+class Relating(Protocol):
+    """What relates some geometry and structures."""
+
+    @property
+    def mentions(self) -> tuple[str, ...]: ...
+
+
 @record()
 class ConstraintReport:
-    """A constraint as written, the structure that holds it, and how well it holds. `exact`: it is made of
-    equations alone.
+    """A constraint as written, the structure that holds it, and how well it holds. `stated`: what tells what
+    it speaks of; `exact`: it is made of equations alone.
     """
 
     path: str
@@ -170,9 +177,14 @@ class ConstraintReport:
     span: Span
     residual: float
     satisfied: bool
-    mentions: tuple[str, ...] = ()
+    stated: Relating = field(repr=False, compare=False)
     soft: bool = False
     exact: bool = False
+
+    @property
+    def mentions(self) -> tuple[str, ...]:
+        """Paths of the geometry and structures whose unknowns it relates."""
+        return self.stated.mentions
 
 
 @record()

@@ -11,9 +11,9 @@ Inequalities join the system when they are violated; those that hold all along h
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -67,11 +67,14 @@ class Verdict:
     proof      for rows by their number in the task, factors with which their sum is the same wherever the
                free unknowns are, though it would have to vanish (Farkas): no branch is left to choose in
                these rows, and no start could satisfy them. Empty if that is not known.
+    turned     goes on where an attempt without turned branches failed, and turns them; the values must be
+               those that it began with. None where there is nothing to go on from.
     """
 
     end: End
     violation: float
     proof: Mapping[int, float] = field(default_factory=dict)
+    turned: Callable[[], Verdict] | None = None
 
     @property
     def satisfied(self) -> bool:
@@ -137,8 +140,15 @@ class _Attempt:
             if row.relation is Relation.EQUAL or not holds(row, self.values, tolerance)
         ]
         verdict = self._follow_branches()
-        if verdict.satisfied or verdict.proof or not self.task.turning:
+        if verdict.satisfied or verdict.proof:
             return verdict
+        if not self.task.turning:
+            return replace(verdict, turned=partial(self._turn, verdict, self._current()))
+        return self._try_neighbours(verdict)
+
+    def _turn(self, verdict: Verdict, reached: list[float]) -> Verdict:
+        """Goes on from the place at which the search without turned branches failed."""
+        self._move_to(reached)
         return self._try_neighbours(verdict)
 
     # -- branches

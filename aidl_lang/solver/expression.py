@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from aidl_lang.records import record
 from aidl_lang.solver.operations import ARITY, VALUE, Floats, Op
 
+CONSTANT = Op.CONSTANT
 DENSE = 8
 """Nodes to a root up to which the whole tape is looked through for those below."""
 
@@ -68,17 +69,23 @@ class TapeBuilder:
 
     def constant(self, value: float) -> int:
         value = float(value) + 0.0  # -0.0 becomes 0.0
-        return self._intern((Op.CONSTANT, repr(value)), Op.CONSTANT, (), value)
+        key = (CONSTANT, value if value == value else "nan")
+        node = self._known.get(key)
+        return self._new(key, CONSTANT, (), value) if node is None else node
 
     def unknown(self, index: int) -> int:
-        return self._intern((Op.UNKNOWN, int(index)), Op.UNKNOWN, (int(index),), 0.0)
+        index = int(index)
+        key = (Op.UNKNOWN, index)
+        node = self._known.get(key)
+        return self._new(key, Op.UNKNOWN, (index,), 0.0) if node is None else node
 
     def add(self, a: int, b: int) -> int:
-        if self._is(a, 0.0):
+        ops, constants = self._ops, self._constants
+        if ops[a] == CONSTANT and constants[a] == 0.0:
             return b
-        if self._is(b, 0.0):
+        if ops[b] == CONSTANT and constants[b] == 0.0:
             return a
-        return self._commutative(Op.ADD, a, b)
+        return self._of_two(Op.ADD, a, b) if a <= b else self._of_two(Op.ADD, b, a)
 
     def sub(self, a: int, b: int) -> int:
         if a == b:
@@ -92,17 +99,22 @@ class TapeBuilder:
             for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
                 if self._operands[a][i] == self._operands[b][j]:
                     return self.sub(self._operands[a][1 - i], self._operands[b][1 - j])
-        return self._node(Op.SUB, a, b)
+        return self._of_two(Op.SUB, a, b)
 
     def mul(self, a: int, b: int) -> int:
         for factor, other in ((a, b), (b, a)):
-            if self._is(factor, 0.0):
+            if self._ops[factor] != CONSTANT:
+                continue
+            value = self._constants[factor]
+            if value == 0.0:
                 return factor
-            if self._is(factor, 1.0):
+            if value == 1.0:
                 return other
-            if self._is(factor, -1.0):
+            if value == -1.0:
                 return self.neg(other)
-        return self.square(a) if a == b else self._commutative(Op.MUL, a, b)
+        if a == b:
+            return self.square(a)
+        return self._of_two(Op.MUL, a, b) if a < b else self._of_two(Op.MUL, b, a)
 
     def div(self, a: int, b: int) -> int:
         if self._is(b, 1.0):
@@ -186,13 +198,13 @@ class TapeBuilder:
         )
 
     def _is(self, node: int, value: float) -> bool:
-        return self._ops[node] == Op.CONSTANT and self._constants[node] == value
+        return self._ops[node] == CONSTANT and self._constants[node] == value
 
     def _minimum_of_two(self, a: int, b: int) -> int:
-        return a if a == b else self._commutative(Op.MINIMUM, a, b)
+        return a if a == b else self._of_two(Op.MINIMUM, min(a, b), max(a, b))
 
     def _maximum_of_two(self, a: int, b: int) -> int:
-        return a if a == b else self._commutative(Op.MAXIMUM, a, b)
+        return a if a == b else self._of_two(Op.MAXIMUM, min(a, b), max(a, b))
 
     def _extremum(self, of_two: Callable[[int, int], int], args: Sequence[int]) -> int:
         """A balanced tree of binary nodes, so that the depth of the tape stays logarithmic."""
@@ -204,26 +216,41 @@ class TapeBuilder:
             level = pairs + level[len(pairs) * 2 :]
         return level[0]
 
-    def _commutative(self, op: int, a: int, b: int) -> int:
-        return self._node(op, a, b) if a <= b else self._node(op, b, a)
+    def _of_two(self, op: int, a: int, b: int) -> int:
+        """The node of an operation on two, the kind that most are."""
+        key = (op, a, b)
+        node = self._known.get(key)
+        if node is not None:
+            return node
+        ops, levels = self._ops, self._levels
+        if ops[a] == CONSTANT == ops[b]:
+            return self._node(op, a, b)
+        node = self._known[key] = len(ops)
+        ops.append(op)
+        self._operands.append((a, b))
+        self._constants.append(0.0)
+        above, other = levels[a], levels[b]
+        levels.append(1 + (above if above > other else other))
+        return node
 
     def _node(self, op: int, *args: int) -> int:
-        if all(self._ops[a] == Op.CONSTANT for a in args):
-            values = [self._constants[a] for a in args]
+        ops, constants = self._ops, self._constants
+        if {ops[a] for a in args} == {CONSTANT}:
+            values = [constants[a] for a in args]
             folded = VALUE[op](*values) if len(values) > 1 else VALUE[op](values[0], 0.0)
             if math.isfinite(folded):
                 return self.constant(folded)
-        return self._intern((op, *args), op, args, 0.0)
-
-    def _intern(self, key: tuple[object, ...], op: int, operands: tuple[int, ...], constant: float) -> int:
+        key = (op, *args)
         node = self._known.get(key)
-        if node is None:
-            node = self._known[key] = len(self._ops)
-            self._ops.append(int(op))
-            self._operands.append(operands)
-            self._constants.append(constant)
-            levels = self._levels
-            levels.append(1 + max([levels[a] for a in operands]) if op > Op.UNKNOWN else 0)
+        return self._new(key, op, args, 0.0) if node is None else node
+
+    def _new(self, key: tuple[object, ...], op: int, operands: tuple[int, ...], constant: float) -> int:
+        node = self._known[key] = len(self._ops)
+        self._ops.append(op)
+        self._operands.append(operands)
+        self._constants.append(constant)
+        levels = self._levels
+        levels.append(1 + max([levels[a] for a in operands]) if op > Op.UNKNOWN else 0)
         return node
 
 

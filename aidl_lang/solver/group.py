@@ -275,6 +275,7 @@ class Group:
         before = hierarchy.save(everything)
         violated = hierarchy.unmet(seeds)
         tried: dict[bool, frozenset[int]] = {}
+        failed: dict[frozenset[int], Verdict] = {}
         obstacle: tuple[Tier, Proof] = ((1, 0), {})
         # A stage is searched branch by branch only when the branches that are active lead nowhere: in none of
         # the group's own stages, and in none of those that take apart what lies deeper.
@@ -294,10 +295,15 @@ class Group:
             tried[turning] = scope.free
             # What builds on a part that failed is drawn as well as it goes, and not searched for long.
             last = turning and tier == tiers[-1] and not hierarchy.failures
-            verdict = hierarchy.attempt(scope, LAST_RESTARTS if last else 1, turning=turning)
+            earlier = failed.get(scope.free) if turning and not last else None
+            if earlier is not None and earlier.turned is not None:
+                verdict = earlier.turned()
+            else:
+                verdict = hierarchy.attempt(scope, LAST_RESTARTS if last else 1, turning=turning)
             self._report(tier, scope, before if verdict.satisfied else None)
             if verdict.satisfied:
                 return tier, best, obstacle
+            failed[scope.free] = verdict
             if verdict.violation < 0.99 * best[0]:
                 best = (verdict.violation, hierarchy.save(everything))
             obstacle = tier, self._proof(scope, verdict)
@@ -331,7 +337,7 @@ class Group:
         if not proof:
             return False
         values = self.hierarchy.values
-        values.refresh(values.cone(proof))
+        values.update(list(proof))
         freezer = Freezer(values, free)
         total: dict[int, float] = {}
         sizes: dict[int, float] = {}

@@ -7,6 +7,7 @@ which says what the stages are).
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -257,7 +258,7 @@ class Hierarchy:
 
     def refresh(self, indices: Iterable[int]) -> None:
         """Brings up to date what these constraints are made of."""
-        self.values.refresh(self.values.cone(row.expression for row in self.rows(indices)))
+        self.values.update([row.expression for row in self.rows(indices)])
 
     def unmet(self, indices: Collection[int]) -> list[int]:
         """Those of the constraints that do not hold by the original expressions at the current values."""
@@ -283,6 +284,7 @@ class Hierarchy:
             # What is dear moves last in a search, too, which may end before that.
             self.values.assign(before.items())
             verdict = attempt(task, self.values, self.metric, self.settings, clock or self.clock)
+            verdict = replace(verdict, turned=None)  # that would be of this search alone
         idle = {u for u in sizes if abs(self.values.unknowns[u] - before[u]) < IDLE * self.problem.scale[u]}
         if verdict.satisfied and idle:
             reached = self.save(scope.free)

@@ -17,7 +17,7 @@ from aidl_lang.records import record
 from aidl_lang.solver.forms import Affine, Form, add_terms, applied, branched, combined, scaled
 from aidl_lang.solver.operations import BRANCHING, Bools, Floats, Op
 from aidl_lang.solver.problem import Relation, Row
-from aidl_lang.solver.quadratic import nearest
+from aidl_lang.solver.quadratic import nearest, plainly_hold
 from aidl_lang.solver.valuation import Valuation
 
 CANCELLED = 1e-9
@@ -30,6 +30,8 @@ MOST_LIMITS = 12
 """Times that a slot is put at a limit to see whether a form can be negative."""
 FEW = 60
 """Bounds and rows up to which the contradiction is found without loading a library for linear programs."""
+SOME = 400
+"""Bounds and rows up to which it is first looked for a place where all hold."""
 MANY = 3000
 """Bounds and rows beyond which no proof is sought."""
 
@@ -406,6 +408,8 @@ def _multipliers(jacobian: Floats, constant: Floats, inequality: Bools) -> Float
 
 def _many_multipliers(jacobian: Floats, constant: Floats, inequality: Bools) -> Floats | None:
     """The same for many rows: what it costs to bring each of them nearer, where they lack least together."""
+    if len(constant) <= SOME and plainly_hold(jacobian, -constant, inequality):
+        return None
     from scipy.optimize import linprog
     from scipy.sparse import csr_array, hstack
 

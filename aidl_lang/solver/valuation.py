@@ -80,6 +80,11 @@ class Valuation:
             code = self._code[node] = compiled(tape.op_list[node], node, tape.operand_lists[node])
         return code
 
+    def update(self, roots: Sequence[int]) -> None:
+        """Brings these nodes up to date, unless they are."""
+        if not self._fresh.issuperset(roots):
+            self.refresh(self.cone(roots))
+
     def refresh(self, cone: Cone) -> None:
         """Brings the nodes of a cone up to date, unless they are."""
         if self._fresh.issuperset(cone.roots):
