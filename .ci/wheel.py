@@ -363,6 +363,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Install AIDL as a user does, and run it.")
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="work there, and leave it as it is")
     folder = parser.parse_args().keep
+    # A shell lets what runs beside others ignore interrupts, and all that is started by it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     with contextlib.ExitStack() as stack:
         if folder is None:
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="aidl-wheel-")))

@@ -25,6 +25,11 @@ def tried(count: int) -> int:
     )
 
 
+def large(size: int) -> int:
+    """Returns how large something is made that is `size` where all is tried."""
+    return size if TRIES_ALL else round(size * _SHARE)
+
+
 def tries(count: int, **more: Any) -> settings:
     """Settings of a property of which `count` examples are tried where all are."""
     return settings(max_examples=tried(count), **more)

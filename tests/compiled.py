@@ -4,12 +4,23 @@ from __future__ import annotations
 
 from functools import cache
 
+import pytest
+
 import aidl_lang
 from aidl_lang import pipeline
 from aidl_lang.source import SourceFile
 from tests.documents import ROOT
 
 EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
+
+DEAR = {"finger_box", "gear_pair", "ruler"}
+LIGHTER = [
+    pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.stem in DEAR else [])
+    for path in EXAMPLES
+]
+"""The examples for tests that ask much of each: the largest three are slow. They are drawn, exported and
+checked on every run, and what they are made of (gears, joints, text) has specs.
+"""
 
 
 @cache

@@ -38,7 +38,14 @@ def _solved(path: Path) -> tuple[str, dict[str, Any]]:
     return text, json.loads(model.to_json())
 
 
-@pytest.mark.parametrize("path", compiled.EXAMPLES + CORPUS, ids=_name)
+ALL = [
+    pytest.param(path, id=_name(path), marks=[pytest.mark.slow] if path.stem == "meshing" else [])
+    for path in compiled.EXAMPLES + CORPUS
+]
+"""Gears mesh in an example too, and those of `test_checker` where they should and should not."""
+
+
+@pytest.mark.parametrize("path", ALL)
 def test_every_constraint_holds_on_the_coordinates(path: Path) -> None:
     text, document = _solved(path)
     findings = check(text, document)
@@ -46,7 +53,7 @@ def test_every_constraint_holds_on_the_coordinates(path: Path) -> None:
     assert [str(f) for f in findings if not f.holds] == [], f"residuals of {TOLERANCE} or more, or unchecked"
 
 
-@pytest.mark.parametrize("path", compiled.EXAMPLES + CORPUS, ids=_name)
+@pytest.mark.parametrize("path", ALL)
 def test_the_checker_and_the_document_speak_of_the_same_constraints(path: Path) -> None:
     """Those that the program writes; the document has hidden equations too (arguments of templates)."""
     text, document = _solved(path)
@@ -94,17 +101,7 @@ def _ends(path: Path) -> list[dict[str, float]]:
     return [{k.path: end} for k in knobs for end in (k.low, k.high) if end is not None]
 
 
-DEAR = {"finger_box", "gear_pair", "ruler"}
-"""Examples so large that to try the ends of all their knobs takes most of a minute. Their constraints are
-checked as they are written, and what they are made of (gears, joints, text) at other values in the specs.
-"""
-KNOBS = [
-    pytest.param(path, id=_name(path), marks=[pytest.mark.slow] if path.stem in DEAR else [])
-    for path in compiled.EXAMPLES
-]
-
-
-@pytest.mark.parametrize("path", KNOBS)
+@pytest.mark.parametrize("path", compiled.LIGHTER)
 def test_examples_hold_at_the_ends_of_their_knobs(path: Path) -> None:
     """An assertion of the program may refuse a value; the constraints hold all the same."""
     text = path.read_text("utf-8")

@@ -17,7 +17,7 @@ from aidl_lang.geometry.drawing import draw
 from aidl_lang.render import render
 from aidl_lang.solved import SolvedModel
 from aidl_lang.source import SourceFile
-from tests.amount import tried
+from tests.amount import large
 from tests.geometry.models import circle, model, rectangle, structure
 
 SUFFIXES = (".stl", ".3mf")
@@ -204,7 +204,7 @@ def test_what_does_not_fit_into_3mf() -> None:
 
 
 def test_a_plate_with_many_holes() -> None:
-    count = tried(2500)
+    count = large(2500)
     holes = [circle(f"c[{k}]", 10 * (k % 50), 10 * (k // 50), 3) for k in range(count)]
     m = model(structure("solid", "s", rectangle("r", -10, -10, 500, 500), structure("hole", "h", *holes)))
     body = only(of_model(m, ".stl", 2), ".stl")

@@ -23,7 +23,7 @@ from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.render import render
 from aidl_lang.solved import SolvedGeometry, SolvedModel
 from aidl_lang.source import SourceFile
-from tests.amount import tried
+from tests.amount import large
 from tests.compiled import EXAMPLES, compiled
 from tests.documents import ROOT
 from tests.export.step_reading import StepFile, read
@@ -405,11 +405,11 @@ def test_what_open_cascade_raises_is_said_of_the_body() -> None:
 
 
 def test_thousands_of_holes() -> None:
-    holes = [circle(f"c[{k}]", 10 * (k % 100), 10 * (k // 100), 3) for k in range(tried(3_000))]
+    holes = [circle(f"c[{k}]", 10 * (k % 100), 10 * (k // 100), 3) for k in range(large(3_000))]
     m = model(structure("solid", "s", rectangle("r", -10, -10, 1000, 1000), structure("hole", "h", *holes)))
     drawing, _ = draw(m)
     data = export(Job(m, drawing, options=Options(thickness=3)), ".step").data
-    assert data.count(b"CYLINDRICAL_SURFACE(") == tried(3_000)
+    assert data.count(b"CYLINDRICAL_SURFACE(") == large(3_000)
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)

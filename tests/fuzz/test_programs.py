@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.amount import large
 from tests.fuzz.judge import Judge
 from tests.fuzz.minimise import minimised
 from tests.fuzz.sources import FOUND, program
@@ -33,17 +34,21 @@ LARGE = {
     "lists one in the other": _doubled("[1]", "[{a}]", 3000, "solid s {{ r = circle(radius: len({a})) }}"),
     "records in records": _doubled("record(a: 1)", "record(a: {a}, b: {a})", 40, "assert {a}.a == 1"),
     "texts doubled": _doubled('"abcdefgh"', "{a} + {a}", 40, "solid s {{ t = text({a}, height: 5) }}"),
-    "constants one from the other": _doubled("1", "{a} + 1", 9000, "solid s {{ r = circle(radius: {a}) }}"),
+    "constants one from the other": _doubled(
+        "1", "{a} + 1", large(9000), "solid s {{ r = circle(radius: {a}) }}"
+    ),
     "constraints doubled": _doubled_constraint(24),
-    "many errors": "\n".join(f"solid s{k} {{ r = nope{k}(radius: x{k}) }}" for k in range(4000)),
+    "many errors": "\n".join(f"solid s{k} {{ r = nope{k}(radius: x{k}) }}" for k in range(large(4000))),
     "many names, much alike": "\n".join(
-        [f"solid structure_number_{k} {{ r = circle(radius: 1) }}" for k in range(1500)]
-        + [f"constrain structure_nmber_{k}.left == 0" for k in range(500)]
+        [f"solid structure_number_{k} {{ r = circle(radius: 1) }}" for k in range(large(1500))]
+        + [f"constrain structure_nmber_{k}.left == 0" for k in range(large(500))]
     ),
     "nested brackets": f"drawing d {{ for i in enumerate({'[' * 190}{']' * 190}) {{}} }}",
-    "a long text": f'drawing s {{ t = text("{"Ag" * 8000}", height: 5) }}',
-    "many labels": "assembly a { for i in 0..<1200 { solid s[i] at (9 * i, 0) { c = circle(radius: 3) } } }",
-    "all boxes meet": "solid s { for i in 0..5000 { c[i] = circle(center: (i * 0.001, 0), radius: 20) } }",
+    "a long text": f'drawing s {{ t = text("{"Ag" * large(8000)}", height: 5) }}',
+    "many labels": f"assembly a {{ for i in 0..<{large(1200)} "
+    "{ solid s[i] at (9 * i, 0) { c = circle(radius: 3) } } }",
+    "all boxes meet": f"solid s {{ for i in 0..{large(5000)} "
+    "{ c[i] = circle(center: (i * 0.001, 0), radius: 20) } }",
 }
 
 

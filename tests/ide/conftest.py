@@ -8,6 +8,7 @@ import pytest
 from aidl_lang.ide.project import Project
 from aidl_lang.ide.view import View, look, run
 from aidl_lang.ide.workspace import Workspace
+from tests.compiled import LIGHTER
 
 EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*.aidl"))
 
@@ -30,7 +31,7 @@ def seen(text: str, *, solved: bool = False, **files: str) -> View:
     return run(view) if solved else view
 
 
-@pytest.fixture(params=EXAMPLES, ids=lambda path: path.stem)
+@pytest.fixture(params=LIGHTER)
 def example(request: pytest.FixtureRequest) -> View:
     """Each example, checked and not solved."""
     path: Path = request.param

@@ -20,8 +20,9 @@ from aidl_lang.source import SourceFile
 from aidl_lang.syntax.tokens import tokenize
 from aidl_lang.vocabulary import vocabulary
 from aidl_lang.world import MemoryWorld
+from tests.compiled import LIGHTER
 
-from .conftest import EXAMPLES, cursor, seen
+from .conftest import cursor, seen
 
 THINGS = """\
 import "parts.aidl" as parts
@@ -387,7 +388,7 @@ def closed(text: str) -> str:
 _CLOSERS = {"(": ")", "CALL": ")", "[": "]", "{": "}"}
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", LIGHTER)
 def test_what_is_inserted_parses_no_worse(path: Path) -> None:
     """A word is taken out of a program, or all that follows it too, what is open being closed: each entry
     that is put there leaves no more mistakes than there are without it. A name may begin a statement.

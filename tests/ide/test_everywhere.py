@@ -13,8 +13,9 @@ from aidl_lang.ide.hover import hover
 from aidl_lang.ide.signatures import signature_help
 from aidl_lang.ide.view import View, look, run
 from aidl_lang.ide.workspace import Workspace
+from tests.compiled import LIGHTER
 
-from .conftest import EXAMPLES, seen
+from .conftest import seen
 
 _MARKS = (
     *('"', "'", "/*", "{", "}", "(", ")", "[", "]", ".", "..", "@", "\t", "\r\n", "\ufeff", "\U0001d51b"),
@@ -54,7 +55,7 @@ def _ask(view: View, offset: int, files: Callable[[], list[Path]]) -> None:
         assert overload.active is None or overload.active < len(overload.parameters)
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", LIGHTER)
 def test_every_place_is_answered(path: Path) -> None:
     chance = random.Random(f"all of {path.stem}")
     text = path.read_text("utf-8")

@@ -14,8 +14,9 @@ from aidl_lang.ide.view import View, look, run
 from aidl_lang.ide.workspace import Workspace
 from aidl_lang.reference.collect import reference
 from aidl_lang.solved import SolvedGeometry
+from tests.compiled import LIGHTER
 
-from .conftest import EXAMPLES, cursor, seen
+from .conftest import cursor, seen
 
 PLATE = """\
 /// A plate with a bolt.
@@ -158,7 +159,7 @@ def test_a_selected_expression() -> None:
     assert found.span.text == "0.1 + 0.2"
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", LIGHTER)
 def test_values_are_those_of_the_model(path: Path) -> None:
     """Radii as they are told where circles are made, beside those of the drawing."""
     text = path.read_text("utf-8")

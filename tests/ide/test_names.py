@@ -16,8 +16,9 @@ from aidl_lang.ide.rename import rename, renameable
 from aidl_lang.ide.view import View
 from aidl_lang.ide.workspace import Workspace
 from aidl_lang.source import SourceFile
+from tests.compiled import LIGHTER
 
-from .conftest import EXAMPLES, opened
+from .conftest import opened
 
 FOLDER = Path("/project")
 
@@ -237,7 +238,7 @@ def test_every_name_of_the_examples_has_a_meaning_and_leads_back(example: View) 
             assert own[0].span in spans
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", LIGHTER)
 def test_each_param_of_an_example_can_be_renamed(path: Path) -> None:
     project = Project(Workspace([path.parent]))
     view = project.view(path)

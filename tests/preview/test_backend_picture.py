@@ -18,12 +18,13 @@ from aidl_lang.ide.preview.picture import svg_of
 from aidl_lang.ide.view import View, look, run
 from aidl_lang.ide.workspace import Workspace
 from aidl_lang.solved import SolvedGeometry, SolvedStructure
-from tests.preview.views import EXAMPLES, view_of
+from tests.compiled import LIGHTER
+from tests.preview.views import view_of
 
 SVG = "{http://www.w3.org/2000/svg}"
 
 
-@pytest.fixture(scope="module", params=EXAMPLES, ids=lambda path: path.stem)
+@pytest.fixture(scope="module", params=LIGHTER)
 def example(request: pytest.FixtureRequest) -> View:
     path: Path = request.param
     return run(look(path, path.read_text("utf-8"), Workspace([path.parent]).world(path)))

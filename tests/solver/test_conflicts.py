@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 
 import numpy as np
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import least_squares
@@ -134,6 +135,7 @@ def test_distances_that_conflict(seed: int) -> None:
             assert problem.reachable(rest, problem.lengths)
 
 
+@pytest.mark.slow  # each kind of conflict is found above and below
 def test_most_conflicts_of_distances_are_found() -> None:
     failures = [f for seed in range(20) for f in solve(random_distances(seed).model().problem()).failures]
     proven = [f for f in failures if f.reason != "not converged"]

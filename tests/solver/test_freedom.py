@@ -481,6 +481,7 @@ def test_small_models_do_without_scipy() -> None:
     subprocess.run([sys.executable, "-c", program], check=True)
 
 
+@pytest.mark.slow  # large frames are analysed, and rightly, above
 @pytest.mark.parametrize("kind", ["one part", "many groups"])
 def test_large_models_take_about_linear_time(kind: str) -> None:
     """Four times the size takes less than ten times as long."""
