@@ -26,12 +26,17 @@ def _doubled_constraint(times: int) -> str:
     return "\n".join(["constraint q0(a: box) { a.left == 0 }", *made, use])
 
 
+DEEP = 1200
+"""Deeper than Python calls."""
+
 LARGE = {
     "lists doubled": _doubled("[1, 2]", "{a} + {a}", 40, "solid s {{ r = circle(radius: len({a})) }}"),
     "lists in lists": _doubled("[1]", "[{a}, {a}]", 40, "solid s {{ r = circle(radius: len({a})) }}"),
     "lists in lists compared": _doubled("[1]", "[{a}, {a}]", 40, "assert {a} == {a}"),
     "lists in lists as text": _doubled("[1]", "[{a}, {a}]", 40, "@note(str({a})) solid s {{}}"),
-    "lists one in the other": _doubled("[1]", "[{a}]", 3000, "solid s {{ r = circle(radius: len({a})) }}"),
+    "lists one in the other": _doubled(
+        "[1]", "[{a}]", max(large(3000), DEEP), "solid s {{ r = circle(radius: len({a})) }}"
+    ),
     "records in records": _doubled("record(a: 1)", "record(a: {a}, b: {a})", 40, "assert {a}.a == 1"),
     "texts doubled": _doubled('"abcdefgh"', "{a} + {a}", 40, "solid s {{ t = text({a}, height: 5) }}"),
     "constants one from the other": _doubled(
