@@ -1,14 +1,13 @@
 """The constraint solver: `solve(problem) -> Solution`. It knows nothing of the language.
 
-In the order of reading: `operations`, `expression` (the tape), `problem`; `valuation`, `freezing`,
-`program` (some rows, on numbers); `schedule`, `arrays`, `array_freezing`, `array_program` (many rows, on
-arrays); `dense`, `sparse`, `linear`, `quadratic`; `newton` (one smooth system), `batch` (many small ones),
-`branches` (one attempt); `group` (the stages), `levels` (the same for all groups of a depth), `hierarchy`,
-`memory`, `solving`; `preferences`, `suspects`, `conflicts`, `solution`. What is said of a solution afterwards
-is in `analysis`; `form` reads problem files.
-
-What stands at this door is loaded when it is asked for: who only checks a program needs the limits of the
-solver (`settings`) and neither the solver nor numpy.
+In the order of reading: `operations`, `expression` (the tape), `problem`; `valuation`, `freezing`, `program`
+(some rows, on numbers); `schedule`, `arrays`, `array_freezing`, `array_program` (many rows, on arrays);
+`dense`, `sparse`, `linear`, `quadratic`; `newton` (one smooth system), `batch` (many small ones), `branches`
+(one attempt); `tiers` (what is free when), `group` (the stages), `levels` (the same for all groups of a
+depth), `hierarchy`, `memory`, `solving`; `preferences`, `suspects`, `conflicts`, `solution`. What is said of
+a solution afterwards is in `analysis`; `form` reads problem files. What stands at this door is loaded when it
+is asked for: who only checks a program needs the limits of the solver (`settings`) and neither the solver nor
+numpy.
 """
 
 from __future__ import annotations

@@ -25,8 +25,8 @@ from aidl_lang.solver.solution import Failure, GroupFailure, Member
 from aidl_lang.solver.suspects import MANY, needed, suspects
 
 if TYPE_CHECKING:
-    from aidl_lang.solver.group import Scope
     from aidl_lang.solver.hierarchy import Hierarchy
+    from aidl_lang.solver.tiers import Scope
 
 WORK = 60_000
 """Budget of all explanations of one solve: rows times unknowns, summed over the attempts."""

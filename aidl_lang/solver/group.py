@@ -1,23 +1,7 @@
 """The stages of one group.
 
-At a group every unknown of its subtree has a tier, which says at which stage it becomes free:
-
-    (1, 0)  own position that a constraint of the group places
-    (1, 1)  own position that only a bound which holds anyway would place
-    (1, 2)  own length or direction between two points of which a constraint places one
-    (2, 0)  own position, or translation of a child's frame (owned by the group, too)
-    (2, 1)  the same of a frame that stands where its content counts as exact
-    (3, d)  translation of a frame, owned by a group d levels below
-    (4, d)  other position of a group d levels below, or such a length or direction
-    (5, d)  position of what rides along with its parent, since no constraint names it
-    (6, 0)  kept size that a constraint places, at any level
-    (6, 1)  own kept size
-    (6, 1 + d)  kept size of a group d levels below
-
-A stage frees all tiers up to its own, as far as they are mentioned: by the group's constraints, or by
-constraints of descendants that mention something free. Those constraints are the ones that a move could
-break, and they join the system; a descendant that nothing outside mentions therefore never moves. Where a
-stage leaves a choice, as few things move as can be found (`thinning`).
+A stage frees the unknowns of the tiers up to its own (`tiers`). Where it leaves a choice, as few things move
+as can be found (`thinning`).
 
 A stage whose rows contradict each other says so with a proof. The stages after it are only tried if what they
 free has a share in that proof, and among the kept sizes only those that have are freed, one after another.
@@ -26,39 +10,28 @@ free has a share in that proof, and among the kept sizes only those that have ar
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from aidl_lang.records import record
 from aidl_lang.solver.forms import Affine
 from aidl_lang.solver.freezing import Freezer
 from aidl_lang.solver.gradients import FLAT, gradients
 from aidl_lang.solver.preferences import prefer
-from aidl_lang.solver.problem import Relation
 from aidl_lang.solver.solution import Giving, GroupFailure, StageReport
 from aidl_lang.solver.thinning import thin
+from aidl_lang.solver.tiers import DEEP, OWN, POSITIONS, SIZES, Scope, Tier, Tiers, stage_name
 
 if TYPE_CHECKING:
     from aidl_lang.solver.branches import Verdict
     from aidl_lang.solver.hierarchy import Hierarchy
 
-Tier: TypeAlias = tuple[int, int]
 Best: TypeAlias = tuple[float, dict[int, float]]
 """The least violation reached so far, and the values there."""
 Proof: TypeAlias = Mapping[int, float]
 """Factors of tape nodes whose sum shows that rows contradict each other; empty if that is not known."""
 
-PLACED: Tier = (1, 2)
-DEEP: Tier = (3, 0)
-"""Before the first tier of what lies deeper than the group itself."""
-OWN: Tier = (2, 0)
-RIDING: Tier = (5, -1)
-"""Before the first tier of what rides along."""
-POSITIONS: Tier = (6, -1)
-"""Before the first tier of kept sizes."""
-SIZES: Tier = (6, 0)
 LAST_RESTARTS = 5
 """Perturbed starts at the last stage; the earlier ones have one."""
 MOST_FAILURES = 20
@@ -69,28 +42,6 @@ MOST_SIZES = 8
 SHARE = 1e-9
 """Slope, relative to those that it is the sum of, below which an unknown has no share in a proof."""
 
-NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "riding", 6: "sizes"}
-
-
-def stage_name(tier: Tier) -> str:
-    """`placed`, `placed bounds`, `placed spans`, `own`, `own standing`, `translations 1`, `positions 2`,
-    `riding 1`, `placed sizes`, `own sizes`, `sizes 1`, …
-    """
-    kind, level = tier
-    if tier >= SIZES:
-        return ("placed sizes", "own sizes")[level] if level < 2 else f"sizes {level - 1}"
-    if kind < 3:
-        return NAMES[kind] + (("", " bounds", " spans"), ("", " standing"))[kind - 1][level]
-    return f"{NAMES[kind]} {level}"
-
-
-@record()
-class Scope:
-    """What takes part in one stage: the free unknowns and the indices of the hard constraints."""
-
-    free: frozenset[int]
-    constraints: tuple[int, ...]
-
 
 class Group:
     """The stages of one group."""
@@ -100,62 +51,27 @@ class Group:
         held = hierarchy.held_by(group)
         self.hard = [index for index in held if hierarchy.is_hard(index)]
         self.soft = [index for index in held if not hierarchy.is_hard(index)]
-        self.placed: Mapping[int, int] = {}
-        """Which own positions, and sizes, constraints place, and the level at which: 0, or 1 for what only
-        bounds that hold anyway would place.
-        """
-        self._tiers: dict[int, Tier] = {}
-        self._everything: dict[tuple[int, ...], Scope] = {}
-        """What takes part if all is free, by the constraints that are to hold."""
+        self.tiers = Tiers(hierarchy, group)
         self._refuted: dict[tuple[int, ...], bool] = {}
-
-    def _place(self, indices: Iterable[int]) -> None:
-        """Takes up what these constraints place: what they name first and what has a share in them. A width
-        places nothing that shifts.
-        """
-        hierarchy, found = self.hierarchy, dict[int, int]()
-        constraints, mentions = hierarchy.problem.constraints, hierarchy.mentions
-        placing = [index for index in indices if constraints[index].placed & mentions[index]]
-        unmet = set(hierarchy.unmet(placing))
-        sizing = {i for i in placing if any(map(hierarchy.is_kept, constraints[i].placed & mentions[i]))}
-        for index, reached in self._reached(placing, sizing):
-            is_bound = all(row.relation is Relation.AT_MOST for row in constraints[index].rows)
-            level = int(is_bound and index not in unmet)
-            for unknown in constraints[index].placed.intersection(itertools.chain(*reached)):
-                found[unknown] = min(level, found.get(unknown, level))
-        self.placed = found
-        self._tiers.clear()
 
     def solve(self, reached: Tier = (0, 0)) -> None:
         """Satisfies the constraints. Those that share nothing that could ever move are problems of their own:
         what one needs does not loosen the other. `reached` is the last stage that some of them needed before.
         """
-        for part in self._independent():
+        hierarchy = self.hierarchy
+        for part in [part for part in self.tiers.independent(self.hard) if hierarchy.unmet(part)]:
             tier = self._solve_part(part)
             if tier is None:
                 return
             reached = max(reached, tier)
         self._weigh_preferences(reached)
 
-    def _independent(self) -> list[list[int]]:
-        """The hard constraints by what they share, in order of writing."""
-        hierarchy = self.hierarchy
-        parts: list[list[int]] = []
-        left = list(self.hard)
-        while left:
-            everything = self.scope((9, 0), left[:1])
-            linked = set(everything.constraints)
-            parts.append([index for index in left if index in linked])
-            self._everything[tuple(parts[-1])] = everything
-            left = [index for index in left if index not in linked]
-        return [part for part in parts if hierarchy.unmet(part)]
-
     def _solve_part(self, part: list[int]) -> Tier | None:
         """The stage that satisfied everything; of a conflict the last one written is left out, and the rest
         solved. None when it is not known what to leave out.
         """
         hierarchy = self.hierarchy
-        self._place(part)
+        self.tiers.place(part)
         while True:
             violated = hierarchy.unmet(part)
             if not violated:
@@ -169,7 +85,7 @@ class Group:
             part.remove(left_out)
             self.hard.remove(left_out)
             hierarchy.give_up([left_out])
-            self._everything.clear()
+            self.tiers.forget()
             self._refuted.clear()
 
     def _leave_out(self) -> int | None:
@@ -179,48 +95,17 @@ class Group:
         known = failure.minimal and own and not self.hierarchy.clock.expired
         return max(own) if known and len(self.hierarchy.failures) <= MOST_FAILURES else None
 
-    def tier(self, unknown: int) -> Tier:
-        found = self._tiers.get(unknown)
-        if found is None:
-            found = self._tiers[unknown] = self.hierarchy.tier(self.group, unknown, self.placed)
-        return found
-
-    def scope(self, last: Tier, seeds: Iterable[int], further: Collection[int] = ()) -> Scope:
-        """The unknowns up to tier `last`, or in `further`, that `seeds` mention, what binds those, what that
-        mentions, …
-        """
-        hierarchy = self.hierarchy
-        constraints, free = set(seeds), set[int]()
-        stack = list(constraints)
-        while stack:
-            for unknown in hierarchy.mentions[stack.pop()]:
-                if unknown in free or (self.tier(unknown) > last and unknown not in further):
-                    continue
-                free.add(unknown)
-                for index in hierarchy.solved_mentioning(unknown, self.group):
-                    if index not in constraints and hierarchy.is_hard(index):
-                        constraints.add(index)
-                        stack.append(index)
-        return Scope(frozenset(free), tuple(sorted(constraints)))
-
-    def everything(self, seeds: Sequence[int]) -> Scope:
-        """The scope of `seeds` with all free."""
-        key = tuple(seeds)
-        if key not in self._everything:
-            self._everything[key] = self.scope((9, 0), seeds)
-        return self._everything[key]
-
     # -- stages
 
     def _deepen(self, part: list[int], violated: list[int]) -> Tier | None:
         """The tier of the first stage that satisfies everything, None if there is none."""
         hierarchy = self.hierarchy
-        everything = self.everything(part)
+        everything = self.tiers.everything(part)
         before = hierarchy.save(everything.free)
         best: Best = (np.inf, before)
-        tiers = sorted({self.tier(unknown) for unknown in everything.free})
-        if self._beyond_positions(violated):
-            broken = self._settle_sizes(self._beyond_positions(part), part)
+        tiers = sorted({self.tiers.tier(unknown) for unknown in everything.free})
+        if self.tiers.beyond_positions(violated):
+            broken = self._settle_sizes(self.tiers.beyond_positions(part), part)
             if broken is not None:
                 seeds = sorted({*part, *broken})
                 positions = [tier for tier in tiers if tier <= POSITIONS]
@@ -255,7 +140,7 @@ class Group:
         """
         hierarchy = self.hierarchy
         for tier in (POSITIONS, (9, 0)) if failure.holds_elsewhere else ():
-            scope = self.scope(tier, part)
+            scope = self.tiers.scope(tier, part)
             hierarchy.values.assign(before.items())
             hierarchy.values.assign(pair for pair in failure.nearest if pair[0] in scope.free)
             if hierarchy.attempt(scope, 1).satisfied:
@@ -271,7 +156,7 @@ class Group:
         None and the values that came nearest. With the last stage that was tried and why it failed.
         """
         hierarchy = self.hierarchy
-        everything = self.everything(seeds).free
+        everything = self.tiers.everything(seeds).free
         before = hierarchy.save(everything)
         violated = hierarchy.unmet(seeds)
         tried: dict[bool, frozenset[int]] = {}
@@ -283,9 +168,9 @@ class Group:
         for turning, tier in itertools.chain(
             *(itertools.product((False, True), part) for part in (near, deep))
         ):
-            if not self._promising(violated, tier):
+            if not self.tiers.promising(violated, tier):
                 continue
-            scope = self.scope(tier, seeds)
+            scope = self.tiers.scope(tier, seeds)
             if scope.free in (tried.get(True), tried.get(turning)):
                 continue
             if self._stands(obstacle[1], scope.free):
@@ -321,7 +206,7 @@ class Group:
         if key not in self._refuted:
             from aidl_lang.solver.refuting import is_refuted
 
-            hierarchy, scope = self.hierarchy, self.everything(seeds)
+            hierarchy, scope = self.hierarchy, self.tiers.everything(seeds)
             hierarchy.refresh(scope.constraints)
             rows = hierarchy.rows(scope.constraints)
             tolerance = hierarchy.settings.tolerance
@@ -356,16 +241,16 @@ class Group:
         """
         hierarchy = self.hierarchy
         last, proof = obstacle
-        before = hierarchy.save(self.everything(seeds).free)
+        before = hierarchy.save(self.tiers.everything(seeds).free)
         freed: set[int] = set()
         while proof and len(freed) < MOST_SIZES and not hierarchy.clock.expired:
             size = self._cheapest(proof, freed)
             if size is None:
                 break
             freed.add(size)
-            scope = self.scope(last, seeds, freed)
+            scope = self.tiers.scope(last, seeds, freed)
             verdict = hierarchy.attempt(scope, 1)
-            level = max(map(self.tier, freed))
+            level = max(map(self.tiers.tier, freed))
             self._report(level, scope, before if verdict.satisfied else None)
             if verdict.satisfied:
                 return level
@@ -378,7 +263,7 @@ class Group:
         at which one has a share in it.
         """
         hierarchy = self.hierarchy
-        hierarchy.refresh(self.scope((9, 0), self.hard).constraints)
+        hierarchy.refresh(self.tiers.scope((9, 0), self.hard).constraints)
         slopes: dict[int, float] = {}
         for node, gradient in gradients(hierarchy.values, proof).items():
             for unknown, slope in gradient.items():
@@ -386,7 +271,7 @@ class Group:
         lack = sum(factor * hierarchy.values.nodes[node] for node, factor in proof.items())
         choices = []
         for unknown, slope in slopes.items():
-            tier = self.tier(unknown)
+            tier = self.tiers.tier(unknown)
             if tier > POSITIONS and unknown not in freed and abs(slope) > FLAT:
                 size, change = hierarchy.values.unknowns[unknown], -lack / slope
                 vanishes = size * (size + change) <= 0.0
@@ -396,47 +281,6 @@ class Group:
 
     # -- sizes that no position can help
 
-    def _beyond_positions(self, constraints: list[int]) -> list[int]:
-        """The constraints among these that hang on kept sizes alone, as `same_width` does."""
-        mentions, found = self.hierarchy.mentions, list[int]()
-        resizing = [i for i in constraints if any(self.tier(unknown) > POSITIONS for unknown in mentions[i])]
-        for index, reached in self._reached(resizing, ()):
-            tiers = [set(map(self.tier, unknowns)) for unknowns in reached]
-            if any(each and min(each) > POSITIONS for each in tiers) and not self._choices(index):
-                found.append(index)
-        return found
-
-    def _choices(self, index: int) -> bool:
-        """Whether positions choose a branch in a constraint, so that they may come to have a share in it."""
-        hierarchy = self.hierarchy
-        positions = [unknown for unknown in hierarchy.mentions[index] if self.tier(unknown) <= POSITIONS]
-        freezer = Freezer(hierarchy.values, positions)
-        return any(freezer.form(row.expression) is None for row in hierarchy.rows([index]))
-
-    def _reached(
-        self, indices: Sequence[int], sizing: Collection[int]
-    ) -> Iterator[tuple[int, list[list[int]]]]:
-        """Each constraint, with the unknowns that change it where it is now, for each row: the sizes among
-        them only in those `sizing`, and where no position does.
-        """
-        hierarchy, mentions = self.hierarchy, self.hierarchy.mentions
-        hierarchy.refresh(indices)
-        mentioned = frozenset[int]().union(*map(mentions.__getitem__, indices))
-        freezer = Freezer(hierarchy.values, (u for u in mentioned if not hierarchy.is_kept(u)))
-        slopes: dict[int, Mapping[int, float]] = {}
-        bent: list[int] = []
-        for index in indices:
-            for row in hierarchy.rows([index]):
-                plain = None if index in sizing else freezer.slopes(row.expression)
-                if plain and max(map(abs, plain.values())) > FLAT:
-                    slopes[row.expression] = plain
-                else:
-                    bent.append(row.expression)
-        slopes.update(gradients(hierarchy.values, bent))
-        for index in indices:
-            found = [slopes[row.expression] for row in hierarchy.rows([index])]
-            yield index, [[u for u, slope in gradient.items() if abs(slope) > FLAT] for gradient in found]
-
     def _settle_sizes(self, rigid: list[int], part: list[int]) -> list[int] | None:
         """Changes the sizes that `rigid` need: those they place, then as in the stages for sizes. Returns the
         constraints outside `part` that this broke and positions may mend; None if no sizes will do.
@@ -444,13 +288,13 @@ class Group:
         hierarchy = self.hierarchy
         mentioned = frozenset().union(*map(hierarchy.mentions.__getitem__, rigid))
         # Another row of such a constraint may hang on positions, which are free as they were before.
-        reached = frozenset(u for _, rows in self._reached(rigid, rigid) for row in rows for u in row)
-        positions = frozenset(unknown for unknown in reached if self.tier(unknown) <= POSITIONS)
-        sizes = frozenset(unknown for unknown in mentioned if self.tier(unknown) > POSITIONS)
+        reached = frozenset(u for _, rows in self.tiers.reached(rigid, rigid) for row in rows for u in row)
+        positions = frozenset(unknown for unknown in reached if self.tiers.tier(unknown) <= POSITIONS)
+        sizes = frozenset(unknown for unknown in mentioned if self.tiers.tier(unknown) > POSITIONS)
         unmet = hierarchy.unmet(rigid)
         placed = sizes & frozenset().union(*(hierarchy.problem.constraints[i].placed for i in unmet))
-        levels = sorted({self.tier(unknown) for unknown in sizes})
-        stages = [(level, frozenset(u for u in sizes if self.tier(u) <= level)) for level in levels]
+        levels = sorted({self.tiers.tier(unknown) for unknown in sizes})
+        stages = [(level, frozenset(u for u in sizes if self.tiers.tier(u) <= level)) for level in levels]
         tried: frozenset[int] = frozenset()
         for level, resized in ((SIZES, placed), *stages):
             if resized <= tried:
@@ -467,11 +311,6 @@ class Group:
             hierarchy.values.assign(before.items())
         return None
 
-    def _promising(self, violated: list[int], tier: Tier) -> bool:
-        """Whether each violated constraint mentions something free."""
-        mentions = self.hierarchy.mentions
-        return all(any(self.tier(unknown) <= tier for unknown in mentions[index]) for index in violated)
-
     def _report(
         self,
         tier: Tier,
@@ -485,8 +324,10 @@ class Group:
         hierarchy, gave = self.hierarchy, None
         if before is not None:
             before = hierarchy.since(before, scope.free)
-            thin(hierarchy, scope, before, self.tier)
-            moved = frozenset(u for u in scope.free if self._is_dear(u) and hierarchy.moved(u, before[u]))
+            thin(hierarchy, scope, before, self.tiers.tier)
+            moved = frozenset(
+                u for u in scope.free if self.tiers.is_dear(u) and hierarchy.moved(u, before[u])
+            )
             if moved:
                 values = np.array(hierarchy.values.unknowns)
                 values[list(before)] = list(before.values())
@@ -495,13 +336,6 @@ class Group:
         name = "elsewhere" if despite else stage_name(tier)
         report = StageReport(self.group, name, len(scope.free), rows, before is not None, gave, despite)
         hierarchy.stages.append(report)
-
-    def _is_dear(self, unknown: int) -> bool:
-        """Whether it is told that an unknown moved: a kept size, what rides along, and a frame that stood
-        where its content is exact, unless a constraint places it.
-        """
-        tier = self.tier(unknown)
-        return tier > RIDING or (tier > PLACED and bool(self.hierarchy.problem.standing[unknown]))
 
     def _fail(self, failure: GroupFailure, everything: Scope, best: dict[int, float]) -> None:
         hierarchy = self.hierarchy
@@ -522,7 +356,7 @@ class Group:
         limit = min(max(reached, OWN), POSITIONS)
         soft = set(self.soft)
         if reached > (0, 0):
-            for unknown in self.scope(min(reached, POSITIONS), self.hard).free:
+            for unknown in self.tiers.scope(min(reached, POSITIONS), self.hard).free:
                 soft.update(
                     index
                     for index in hierarchy.solved_mentioning(unknown, self.group)
@@ -531,7 +365,7 @@ class Group:
         if not hierarchy.unmet(soft):
             return
         preferences = tuple(sorted(soft))
-        self._place([*self.hard, *preferences])
+        self.tiers.place([*self.hard, *preferences])
         for tier in sorted({min(max(reached, (1, 0)), POSITIONS), limit}):
-            if prefer(hierarchy, self.scope(tier, preferences), preferences):
+            if prefer(hierarchy, self.tiers.scope(tier, preferences), preferences):
                 break

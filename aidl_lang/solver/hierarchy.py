@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
 from aidl_lang.solver.expression import mentioned
-from aidl_lang.solver.group import Group, Scope, Tier, stage_name
+from aidl_lang.solver.group import Group
 from aidl_lang.solver.memory import Recollection
 from aidl_lang.solver.naming import rides
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Bools, Floats
 from aidl_lang.solver.problem import Problem, Row, Settings, depths, violations
 from aidl_lang.solver.solution import GroupFailure, StageReport
+from aidl_lang.solver.tiers import Scope, Tier, stage_name
 from aidl_lang.solver.valuation import Valuation
 
 if TYPE_CHECKING:

@@ -6,11 +6,11 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
-from aidl_lang.solver.group import Scope
 from aidl_lang.solver.hierarchy import Hierarchy
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import Problem, Settings
 from aidl_lang.solver.refuting import Relaxation
+from aidl_lang.solver.tiers import Scope
 
 RESTARTS = 3
 """Perturbed starts."""

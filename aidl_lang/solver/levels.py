@@ -19,7 +19,6 @@ from aidl_lang.solver.array_freezing import ArrayFreezing
 from aidl_lang.solver.array_program import ArrayProgram
 from aidl_lang.solver.branches import TIGHTER, Metric
 from aidl_lang.solver.components import components
-from aidl_lang.solver.group import NAMES
 from aidl_lang.solver.naming import rides
 from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Bools, Floats, Ints
@@ -27,6 +26,7 @@ from aidl_lang.solver.problem import Problem, Settings, depths, violations
 from aidl_lang.solver.schedule import Schedule
 from aidl_lang.solver.thinning import MANY as MOST
 from aidl_lang.solver.thinning import STILL
+from aidl_lang.solver.tiers import NAMES
 
 ROUNDS = 4
 """Rounds of taking up inequalities that came to be violated."""

@@ -15,8 +15,8 @@ import numpy as np
 from aidl_lang.solver.branches import Task, attempt, violation_of
 
 if TYPE_CHECKING:
-    from aidl_lang.solver.group import Scope
     from aidl_lang.solver.hierarchy import Hierarchy
+    from aidl_lang.solver.tiers import Scope
 
 FIRMNESS = 1e-5
 """Unit of the slack of a preference of weight 1: how dear it is compared with moving things."""

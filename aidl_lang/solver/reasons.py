@@ -11,11 +11,11 @@ from collections.abc import Iterator
 
 from aidl_lang.records import record
 from aidl_lang.solver.conflicts import conflict
-from aidl_lang.solver.group import Scope
 from aidl_lang.solver.hierarchy import Hierarchy
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import Problem, Settings
 from aidl_lang.solver.solution import Giving
+from aidl_lang.solver.tiers import Scope
 
 
 @record()

@@ -20,8 +20,8 @@ from aidl_lang.solver.problem import Relation
 
 if TYPE_CHECKING:
     from aidl_lang.solver.branches import Verdict
-    from aidl_lang.solver.group import Scope
     from aidl_lang.solver.hierarchy import Hierarchy
+    from aidl_lang.solver.tiers import Scope
 
 STILL = 1e-9
 """What moved less than this, in units of its scale, did not move."""

@@ -1,0 +1,199 @@
+"""What becomes free in a group, and when.
+
+At a group every unknown of its subtree has a tier, which says at which stage it becomes free:
+
+    (1, 0)  own position that a constraint of the group places
+    (1, 1)  own position that only a bound which holds anyway would place
+    (1, 2)  own length or direction between two points of which a constraint places one
+    (2, 0)  own position, or translation of a child's frame (owned by the group, too)
+    (2, 1)  the same of a frame that stands where its content counts as exact
+    (3, d)  translation of a frame, owned by a group d levels below
+    (4, d)  other position of a group d levels below, or such a length or direction
+    (5, d)  position of what rides along with its parent, since no constraint names it
+    (6, 0)  kept size that a constraint places, at any level
+    (6, 1)  own kept size
+    (6, 1 + d)  kept size of a group d levels below
+
+A stage frees all tiers up to its own, as far as they are mentioned: by the group's constraints, or by
+constraints of descendants that mention something free. Those constraints are the ones that a move could
+break, and they join the system; a descendant that nothing outside mentions therefore never moves.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, TypeAlias
+
+from aidl_lang.records import record
+from aidl_lang.solver.freezing import Freezer
+from aidl_lang.solver.gradients import FLAT, gradients
+from aidl_lang.solver.problem import Relation
+
+if TYPE_CHECKING:
+    from aidl_lang.solver.hierarchy import Hierarchy
+
+Tier: TypeAlias = tuple[int, int]
+
+PLACED: Tier = (1, 2)
+DEEP: Tier = (3, 0)
+"""Before the first tier of what lies deeper than the group itself."""
+OWN: Tier = (2, 0)
+RIDING: Tier = (5, -1)
+"""Before the first tier of what rides along."""
+POSITIONS: Tier = (6, -1)
+"""Before the first tier of kept sizes."""
+SIZES: Tier = (6, 0)
+
+NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "riding", 6: "sizes"}
+
+
+def stage_name(tier: Tier) -> str:
+    """`placed`, `placed bounds`, `placed spans`, `own`, `own standing`, `translations 1`, `positions 2`,
+    `riding 1`, `placed sizes`, `own sizes`, `sizes 1`, …
+    """
+    kind, level = tier
+    if tier >= SIZES:
+        return ("placed sizes", "own sizes")[level] if level < 2 else f"sizes {level - 1}"
+    if kind < 3:
+        return NAMES[kind] + (("", " bounds", " spans"), ("", " standing"))[kind - 1][level]
+    return f"{NAMES[kind]} {level}"
+
+
+@record()
+class Scope:
+    """What takes part in one stage: the free unknowns and the indices of the hard constraints."""
+
+    free: frozenset[int]
+    constraints: tuple[int, ...]
+
+
+class Tiers:
+    """The tiers of the unknowns in the subtree of a group."""
+
+    def __init__(self, hierarchy: Hierarchy, group: int) -> None:
+        self.hierarchy, self.group = hierarchy, group
+        self.placed: Mapping[int, int] = {}
+        """Which own positions, and sizes, constraints place, and the level at which: 0, or 1 for what only
+        bounds that hold anyway would place.
+        """
+        self._known: dict[int, Tier] = {}
+        self._everything: dict[tuple[int, ...], Scope] = {}
+        """What takes part if all is free, by the constraints that are to hold."""
+
+    def place(self, indices: Iterable[int]) -> None:
+        """Takes up what these constraints place: what they name first and what has a share in them. A width
+        places nothing that shifts.
+        """
+        hierarchy, found = self.hierarchy, dict[int, int]()
+        constraints, mentions = hierarchy.problem.constraints, hierarchy.mentions
+        placing = [index for index in indices if constraints[index].placed & mentions[index]]
+        unmet = set(hierarchy.unmet(placing))
+        sizing = {i for i in placing if any(map(hierarchy.is_kept, constraints[i].placed & mentions[i]))}
+        for index, reached in self.reached(placing, sizing):
+            is_bound = all(row.relation is Relation.AT_MOST for row in constraints[index].rows)
+            level = int(is_bound and index not in unmet)
+            for unknown in constraints[index].placed.intersection(itertools.chain(*reached)):
+                found[unknown] = min(level, found.get(unknown, level))
+        self.placed = found
+        self._known.clear()
+
+    def tier(self, unknown: int) -> Tier:
+        found = self._known.get(unknown)
+        if found is None:
+            found = self._known[unknown] = self.hierarchy.tier(self.group, unknown, self.placed)
+        return found
+
+    def scope(self, last: Tier, seeds: Iterable[int], further: Collection[int] = ()) -> Scope:
+        """The unknowns up to tier `last`, or in `further`, that `seeds` mention, what binds those, what that
+        mentions, …
+        """
+        hierarchy = self.hierarchy
+        constraints, free = set(seeds), set[int]()
+        stack = list(constraints)
+        while stack:
+            for unknown in hierarchy.mentions[stack.pop()]:
+                if unknown in free or (self.tier(unknown) > last and unknown not in further):
+                    continue
+                free.add(unknown)
+                for index in hierarchy.solved_mentioning(unknown, self.group):
+                    if index not in constraints and hierarchy.is_hard(index):
+                        constraints.add(index)
+                        stack.append(index)
+        return Scope(frozenset(free), tuple(sorted(constraints)))
+
+    def everything(self, seeds: Sequence[int]) -> Scope:
+        """The scope of `seeds` with all free."""
+        key = tuple(seeds)
+        if key not in self._everything:
+            self._everything[key] = self.scope((9, 0), seeds)
+        return self._everything[key]
+
+    def beyond_positions(self, constraints: list[int]) -> list[int]:
+        """The constraints among these that hang on kept sizes alone, as `same_width` does."""
+        mentions, found = self.hierarchy.mentions, list[int]()
+        resizing = [i for i in constraints if any(self.tier(unknown) > POSITIONS for unknown in mentions[i])]
+        for index, reached in self.reached(resizing, ()):
+            tiers = [set(map(self.tier, unknowns)) for unknowns in reached]
+            if any(each and min(each) > POSITIONS for each in tiers) and not self._choices(index):
+                found.append(index)
+        return found
+
+    def _choices(self, index: int) -> bool:
+        """Whether positions choose a branch in a constraint, so that they may come to have a share in it."""
+        hierarchy = self.hierarchy
+        positions = [unknown for unknown in hierarchy.mentions[index] if self.tier(unknown) <= POSITIONS]
+        freezer = Freezer(hierarchy.values, positions)
+        return any(freezer.form(row.expression) is None for row in hierarchy.rows([index]))
+
+    def reached(
+        self, indices: Sequence[int], sizing: Collection[int]
+    ) -> Iterator[tuple[int, list[list[int]]]]:
+        """Each constraint, with the unknowns that change it where it is now, for each row: the sizes among
+        them only in those `sizing`, and where no position does.
+        """
+        hierarchy, mentions = self.hierarchy, self.hierarchy.mentions
+        hierarchy.refresh(indices)
+        mentioned = frozenset[int]().union(*map(mentions.__getitem__, indices))
+        freezer = Freezer(hierarchy.values, (u for u in mentioned if not hierarchy.is_kept(u)))
+        slopes: dict[int, Mapping[int, float]] = {}
+        bent: list[int] = []
+        for index in indices:
+            for row in hierarchy.rows([index]):
+                plain = None if index in sizing else freezer.slopes(row.expression)
+                if plain and max(map(abs, plain.values())) > FLAT:
+                    slopes[row.expression] = plain
+                else:
+                    bent.append(row.expression)
+        slopes.update(gradients(hierarchy.values, bent))
+        for index in indices:
+            found = [slopes[row.expression] for row in hierarchy.rows([index])]
+            yield index, [[u for u, slope in gradient.items() if abs(slope) > FLAT] for gradient in found]
+
+    def promising(self, violated: list[int], tier: Tier) -> bool:
+        """Whether each violated constraint mentions something free."""
+        mentions = self.hierarchy.mentions
+        return all(any(self.tier(unknown) <= tier for unknown in mentions[index]) for index in violated)
+
+    def is_dear(self, unknown: int) -> bool:
+        """Whether it is told that an unknown moved: a kept size, what rides along, and a frame that stood
+        where its content is exact, unless a constraint places it.
+        """
+        tier = self.tier(unknown)
+        return tier > RIDING or (tier > PLACED and bool(self.hierarchy.problem.standing[unknown]))
+
+    def independent(self, constraints: Iterable[int]) -> list[list[int]]:
+        """The constraints by what they share that could ever move, in their order."""
+        parts: list[list[int]] = []
+        left = list(constraints)
+        while left:
+            everything = self.scope((9, 0), left[:1])
+            linked = set(everything.constraints)
+            parts.append([index for index in left if index in linked])
+            self._everything[tuple(parts[-1])] = everything
+            left = [index for index in left if index not in linked]
+        return parts
+
+    def forget(self) -> None:
+        """Drops what was found to take part if all is free: constraints were given up."""
+        self._everything.clear()
