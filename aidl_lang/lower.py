@@ -24,8 +24,8 @@ from aidl_lang.model import (
     is_size,
     own_geometry,
 )
-from aidl_lang.placing import FLOATS, Placing
 from aidl_lang.records import record
+from aidl_lang.root_frame import FLOATS, Placing
 from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Row
 from aidl_lang.solver.expression import TapeBuilder

@@ -5,30 +5,28 @@ Each stage hands over one value and its diagnostics; nothing here raises for wha
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 from aidl_lang import ast, parser
 from aidl_lang import library as library_module
-from aidl_lang.building.state import DEFAULT_LIMITS, Limits
 from aidl_lang.checking.subset import adapted
 from aidl_lang.compiled import Compiled
-from aidl_lang.diagnostics import Diagnostic, has_errors, is_too_many, ordered, within_limit
-from aidl_lang.drawing_time import TooLongError, blaming, within
-from aidl_lang.interp import Interpretation, interpret, nothing_built
+from aidl_lang.diagnostics import Diagnostic, has_errors, ordered
+from aidl_lang.drawing_time import TooLongError, within
+from aidl_lang.front import Front, Settings, build, read
+from aidl_lang.interp import Interpretation, interpret
 from aidl_lang.model import Knob, Model
+from aidl_lang.picturing import pictured
 from aidl_lang.records import record
 from aidl_lang.resolve import resolve
 from aidl_lang.resolving.symbols import SymbolKind
 from aidl_lang.running import Stopwatch, working
-from aidl_lang.solver.settings import Settings as SolverSettings
 from aidl_lang.source import SourceFile, Span
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
-from aidl_lang.variants import Variant
 from aidl_lang.world import World
 
 if TYPE_CHECKING:
@@ -38,114 +36,17 @@ if TYPE_CHECKING:
     from aidl_lang.giving import GaveWay
     from aidl_lang.lower import Lowered
     from aidl_lang.otherwise import Otherwise
-    from aidl_lang.solved import Dimension, SolvedModel
+    from aidl_lang.solved import SolvedModel
     from aidl_lang.solver.analysis import Freedom
     from aidl_lang.solver.memory import Memory
     from aidl_lang.solver.solution import Solution
     from aidl_lang.trials import Trials
 
-_HEAVY = "most of its curves are made here"
-_IMPORT_FAILURES = frozenset({"E0210", "E0211", "E0212", "E0213", "E0804"})
-_CIRCLE = "E0207"
-_UNUSED = "W0201"
-_MISSING_NAMES = frozenset({"E0201", "E0203"})
-
-
-@record()
-class Settings:
-    """Limits for programs that are not trusted, the solver's settings, the subset of the language, and
-    whether it is an error that something gave way unasked.
-
-    drawing  seconds of the processor's time for what comes after solving, and for each thing that is done
-             with the drawing: writing a file, measuring, comparing
-    """
-
-    text: parser.Limits = parser.DEFAULT_LIMITS
-    building: Limits = DEFAULT_LIMITS
-    solving: SolverSettings = SolverSettings(tolerance=1e-10)
-    variant: Variant = Variant.FULL
-    strict: bool = False
-    drawing: float = 20.0
-
-
-Front: TypeAlias = tuple[Program, list[Diagnostic]]
-
 
 def front(source: SourceFile, world: World | None = None, settings: Settings = Settings()) -> Front:
     """Text → Program: parsed, resolved and type-checked. What `compile` can go on from."""
     with working:
-        return _front(source, world, settings, Stopwatch())
-
-
-def _front(source: SourceFile, world: World | None, settings: Settings, watch: Stopwatch) -> Front:
-    with watch("parse"):
-        parsed = parser.parse(source, settings.text)
-    with watch("library"):
-        library = library_module.load()
-    with watch("resolve"):
-        resolution = resolve(parsed.module, world, library)
-    with watch("typecheck"):
-        program = typecheck(resolution, settings.variant)
-    found = program.diagnostics
-    if has_errors(parsed.diagnostics):  # what was left out may have used them
-        found = tuple(d for d in found if d.code != _UNUSED)
-    return program, [*parsed.diagnostics, *found]
-
-
-def _build(
-    source: SourceFile,
-    world: World | None,
-    params: Mapping[str, str | float | bool],
-    settings: Settings,
-    watch: Stopwatch,
-    checked: Front | None = None,
-    turned: Mapping[int, int] | None = None,
-    states_constants: bool = False,
-) -> tuple[Interpretation, list[Diagnostic]]:
-    """Text → Model, with every diagnostic that does not need solving."""
-    program, found = checked or _front(source, world, settings, watch)
-    if is_too_many(found):  # what would be built is of no use, and nothing of it would be told
-        return nothing_built(), within_limit(ordered(adapted(found, settings.variant)))
-    static = list(found)
-    with watch("interpret"):
-        built = interpret(program, params, settings.building, turned, states_constants)
-    static += [violation.diagnostic(built.written) for violation in program.violations]
-    found = [*static, *_new(built.diagnostics, static)]
-    return built, within_limit(ordered(adapted(found, settings.variant)))
-
-
-def _new(found: Sequence[Diagnostic], known: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
-    """Findings of a later stage whose place an earlier one has not already complained about."""
-    places = [d.span for d in known if d.is_error and d.span is not None]
-    is_missing_file = any(d.code in _IMPORT_FAILURES for d in known)
-    for d in found:
-        if is_missing_file and d.code in _MISSING_NAMES:
-            continue  # the name may be in the file that could not be imported
-        if d.code == _CIRCLE and any(k.code == _CIRCLE for k in known):
-            continue  # the same circle, entered elsewhere
-        if not (d.is_error and d.span is not None and any(d.span.overlaps(p) for p in places)):
-            yield d
-
-
-def _completed(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
-    """The model with its derived outlines and finished corners; few programs have any to load code for."""
-    if not model.is_unfinished:
-        return model, []
-    from aidl_lang.geometry.outlines import complete
-
-    return complete(model)
-
-
-def _sizes(built: Model, evaluator: Evaluator) -> Callable[[SolvedModel], tuple[Dimension, ...]]:
-    """What tells the sizes of a solved model, loaded when they are asked for."""
-
-    def sizes(solved: SolvedModel) -> tuple[Dimension, ...]:
-        from aidl_lang.dimensions import sizes
-
-        with working:
-            return sizes(built, solved, evaluator)
-
-    return sizes
+        return read(source, world, settings, Stopwatch())
 
 
 def _conflicts(failures: Sequence[Explanation]) -> Callable[[], tuple[Conflict, ...]]:
@@ -211,7 +112,7 @@ class _Tries:
         """The program with ambiguous calls taken otherwise, or conditions over constants stated; None where
         it is wrong then.
         """
-        built, found = _build(
+        built, found = build(
             self.source,
             self.world,
             self.params,
@@ -234,7 +135,7 @@ def check(
 ) -> list[Diagnostic]:
     """Everything that can be said of a program without solving it."""
     with working:
-        return _build(source, world, {}, settings, Stopwatch())[1]
+        return build(source, world, {}, settings, Stopwatch())[1]
 
 
 def formatted(source: SourceFile, world: World | None = None) -> tuple[str | None, list[Diagnostic]]:
@@ -263,7 +164,7 @@ def knobs(
 ) -> tuple[tuple[Knob, ...], list[Diagnostic]]:
     """The `param`s of a program in order of writing."""
     with working:
-        built, diagnostics = _build(source, world, {}, settings, Stopwatch())
+        built, diagnostics = build(source, world, {}, settings, Stopwatch())
     return tuple(built.model.knobs), diagnostics
 
 
@@ -284,7 +185,7 @@ def compile(
     """
     watch = Stopwatch()
     with working:
-        built, diagnostics = _build(source, world, params or {}, settings, watch, checked)
+        built, diagnostics = build(source, world, params or {}, settings, watch, checked)
         known = tuple(built.model.knobs)
         tries = _Tries(source, world, params or {}, settings)
         if has_errors(diagnostics):
@@ -329,7 +230,7 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
     with working, within(outcome.limit, "drawing"):
         with watch("freedom"):
             freedom = analyse(lowered.problem, solution)
-        model, evaluator, drawing, _ = _pictured(outcome.built, lowered, solution, freedom, watch)
+        model, evaluator, drawing, _ = pictured(outcome.built, lowered, solution, freedom, watch)
     return replace(
         outcome,
         status=model.status,
@@ -468,7 +369,7 @@ def _drawn(
     """The solved model and its drawing; what there is to say of the solution, and of what is drawn."""
     from aidl_lang.outcome import assertion_notes, solution_notes
 
-    model, evaluator, drawing, notes = _pictured(built.model, lowered, solution, freedom, watch)
+    model, evaluator, drawing, notes = pictured(built.model, lowered, solution, freedom, watch)
     with watch("asserts"):
         if troubles.given:
             from aidl_lang.giving import explained
@@ -478,33 +379,6 @@ def _drawn(
         is_solved = solution.status.value == "solved"
         found += assertion_notes(built.model, model, drawing, evaluator, solved_fully=is_solved)
     return model, evaluator, drawing, found, notes
-
-
-def _pictured(
-    built: Model, lowered: Lowered, solution: Solution, freedom: Freedom, watch: Stopwatch
-) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic]]:
-    """A solution put back into names and coordinates, its drawing, and what there is to say of that."""
-    from aidl_lang.geometry.drawing import draw
-    from aidl_lang.geometry.placeless import with_places
-    from aidl_lang.readout import read_out
-
-    with watch("read out"):
-        model, evaluator = read_out(built, lowered, solution, freedom)
-    with watch("regions"), blaming(partial(_most_drawn, model), _HEAVY):
-        model, placeless = with_places(replace(model, size_up=_sizes(built, evaluator)))
-        model, wrong = _completed(model)
-        drawing, notes = draw(model)
-    return model, evaluator, drawing, [*placeless, *wrong, *notes]
-
-
-def _most_drawn(model: SolvedModel) -> Span | None:
-    """The statement of the program that makes more curves than any other."""
-    made: Counter[Span] = Counter()
-    for structure in model.root.walk():
-        for geometry in structure.geometry:
-            if geometry.span is not None:
-                made[geometry.span] += sum(1 for each in geometry.walk() if each.curve is not None)
-    return max(made, key=lambda span: made[span], default=None)
 
 
 __all__ = [

@@ -27,9 +27,9 @@ from aidl_lang.model import (
     Structure,
     own_geometry,
 )
-from aidl_lang.placing import FLOATS, Placing
 from aidl_lang.primitives import clockwise, number, translate, xy
 from aidl_lang.records import record
+from aidl_lang.root_frame import FLOATS, Placing
 from aidl_lang.solved import (
     Box,
     Change,
