@@ -100,6 +100,10 @@ class Host:
         """A file has changed, or may have."""
         self._worker.refresh()
 
+    def look(self) -> None:
+        """A file may have changed before anybody saw to it. What runs goes on."""
+        self._worker.ask(None)
+
     def join(self) -> Page:
         page = Page()
         self.pages.append(page)

@@ -64,7 +64,7 @@ async def _working(app: Starlette) -> AsyncIterator[None]:
     """The host works, and looks at the files, while the application runs."""
     host: Host = app.state.host
     async with AsyncExitStack() as stack:
-        for work in (host.run(), watch(host.program.path, host.changed)):
+        for work in (host.run(), watch(host.program.path, host.changed, host.look)):
             stack.push_async_callback(_end, asyncio.create_task(work))
         yield
 

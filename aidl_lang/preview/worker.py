@@ -73,7 +73,7 @@ class Worker:
         self._wake.set()
 
     def ask(self, page: Hashable) -> None:
-        """It wants to see the text as it is."""
+        """It wants to see the text as it is; so does None, which is no page."""
         self._lane(page).is_asked = True
         self._wake.set()
 
@@ -160,6 +160,11 @@ class Worker:
         lane = None if self._trying is None else self._lanes.get(self._trying)
         return lane is not None and (lane.is_asked or bool(lane.orders))
 
+    def _is_still_wanted(self) -> bool:
+        """Whether the attempt that was given up is what its page wants to see."""
+        lane = None if self._trying is None else self._lanes.get(self._trying)
+        return lane is not None and lane.is_empty
+
     async def _carry_out(self, job: Job, pool: ThreadPoolExecutor) -> None:
         loop = asyncio.get_running_loop()
         timer = loop.call_later(BUSY_AFTER, job.busy)
@@ -173,6 +178,8 @@ class Worker:
             future.result()()
         elif isinstance(error, Cancelled) and self._is_idling:
             self._later = self._later or job  # there will be time for it
+        elif isinstance(error, Cancelled) and self._is_still_wanted():
+            self._lanes[self._trying].attempt = job  # once the text, which may be new, was looked at
         else:
             job.failed(error)
 

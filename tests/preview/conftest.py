@@ -23,7 +23,7 @@ ARGUMENTS = [
 VIEWPORT = {"width": 1200, "height": 800}
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")  # it runs an event loop, in which the tests of other modules could start none
 def browser() -> Iterator[Browser]:
     if CHROMIUM is None:
         pytest.skip("there is no Chromium")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import re
 import threading
@@ -20,6 +21,7 @@ from aidl_lang.ide.view import View
 from aidl_lang.preview.host import MOST_UNTAKEN, Host, Page
 from aidl_lang.preview.program import Program
 from aidl_lang.preview.site import MOST_PAGES, PANE, site
+from aidl_lang.preview.watching import watch
 from aidl_lang.preview.worker import MOST_ORDERS
 
 TOKEN, ADDRESS = "tok-En_123", "127.0.0.1:8123"
@@ -200,6 +202,26 @@ def test_a_save_elsewhere_is_seen(client: TestClient, file: Path) -> None:
             assert stale["problems"][0]["severity"] == "error"
         file.write_text(TEXT, "utf-8")
         assert page.hear(type="picture", stale=False)["status"] == "solved"
+
+
+def test_a_save_before_the_files_are_watched_is_seen(
+    program: Program, file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    may_watch = threading.Event()
+
+    async def late(*told: Any) -> None:
+        await asyncio.to_thread(may_watch.wait, 60)
+        await watch(*told)
+
+    monkeypatch.setattr("aidl_lang.preview.site.watch", late)
+    app = site(Host(program), TOKEN, [ADDRESS])
+    with TestClient(app, base_url=f"http://{ADDRESS}") as client, talking(client) as page:
+        page.say(type="ready")
+        page.hear(type="picture", version=1)
+        file.write_text(TEXT.replace("60mm", "40mm"), "utf-8")
+        may_watch.set()
+        while page.hear(type="picture")["box"][2] != pytest.approx(20):  # half a file may be seen first
+            pass
 
 
 def test_each_page_has_its_own_layers(client: TestClient) -> None:

@@ -87,6 +87,18 @@ def test_a_new_text_gives_up_what_runs() -> None:
     assert [name for name in working(test) if not name.startswith("busy")] == ["order: Cancelled", "text"]
 
 
+def test_an_attempt_that_a_new_text_gives_up_is_made_again() -> None:
+    async def test(log: Log, worker: Worker) -> None:
+        worker.attempt("a", log.job("attempt", waits=True))
+        await log.until_started()
+        worker.refresh()
+        await log.until("text")
+        log.released.set()
+        await log.until("attempt")
+
+    assert done(working(test)) == ["text", "attempt"]
+
+
 def test_an_order_outdoes_an_attempt_but_no_order() -> None:
     async def test(log: Log, worker: Worker) -> None:
         worker.attempt("a", log.job("attempt", waits=True))
