@@ -110,7 +110,7 @@ def open_pane(browser: Browser, host: ScriptedHost) -> Iterator[Callable[..., Pa
         context.close()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def shared(browser: Browser) -> Iterator[tuple[BrowserContext, ScriptedHost]]:
     """One host for many tests, and a browser that keeps the pane's files."""
     with ScriptedHost() as host:
