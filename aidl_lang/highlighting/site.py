@@ -23,8 +23,7 @@ def texts(root: Path) -> dict[str, str]:
         "editors/vscode/syntaxes/markdown-aidl.tmLanguage.json": _json(markdown()),
         "editors/vscode/snippets/aidl.json": _json(_snippets()),
         "editors/codemirror/src/words.ts": words(),
-        "editors/vscode/src/preview/formats.ts": _formats("[", "] as const"),
-        "aidl_lang/preview/pane/formats.js": _formats("/** @type {const} */ ([", "])"),
+        "aidl_lang/preview/pane/formats.js": _formats(),
         **queries(),
         SAMPLES: _samples(root),
     }
@@ -43,11 +42,11 @@ def _json(data: object) -> str:
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
 
 
-def _formats(opening: str, closing: str) -> str:
+def _formats() -> str:
     """The files that menus offer to make of a drawing."""
     rows = "".join(f'  ["{name}", "{label}"],\n' for name, label in OFFERED.items())
     says = "// Made by `make colours` from aidl_lang/export/__init__.py; do not edit.\n"
-    return f"{says}\nexport const FORMATS = {opening}\n{rows}{closing};\n"
+    return f"{says}\nexport const FORMATS = /** @type {{const}} */ ([\n{rows}]);\n"
 
 
 def _snippets() -> dict[str, object]:
