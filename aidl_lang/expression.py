@@ -379,7 +379,9 @@ class Evaluator:
             if node in memo:
                 stack.pop()
                 continue
-            args = node.args if node.op != "lazy" else _arguments(node)
+            args = node.args
+            if node.op == "lazy":
+                args = (node.payload.spelled_out,)  # type: ignore[attr-defined]
             if missing := [a for a in args if a not in memo]:
                 stack += missing
                 continue
@@ -399,10 +401,3 @@ class Evaluator:
         if node.op == "measure":
             return self.measure(node.payload) if self.measure else math.nan
         return node.value
-
-
-def _arguments(node: Expression) -> tuple[Expression, ...]:
-    """What the value of a node is worked out from."""
-    if node.op == "lazy":
-        return (node.payload.spelled_out,)  # type: ignore[attr-defined]
-    return node.args

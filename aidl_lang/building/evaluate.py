@@ -152,13 +152,8 @@ def truth(it: Interpreter, value: Value, node: ast.Node) -> bool:
 
 
 def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
-    name = node.text
-    scope: Scope | None = env.scope
-    while scope is not None:
-        if name in scope.values:
-            return read(it, scope.values[name], node, env)
-        scope = scope.parent
-    if (found := env.scope.alike(name)) is not None:
+    found = env.scope.find(node.text)
+    if found is not None:
         name, scope = found
         return read(it, scope.values[name], node, env)
     for scope in env.scope.chain():

@@ -125,13 +125,11 @@ class Scope:
 
     def find(self, name: str) -> tuple[str, Scope] | None:
         """The scope that has a value of this name: as written anywhere, else the nearest spelled alike."""
-        for scope in self.chain():
+        scope: Scope | None = self
+        while scope is not None:
             if name in scope.values:
                 return name, scope
-        return self.alike(name)
-
-    def alike(self, name: str) -> tuple[str, Scope] | None:
-        """The nearest scope that has a value whose name is spelled alike, and how it is spelled there."""
+            scope = scope.parent
         for scope in self.chain():
             if scope._spellings is None:
                 scope._spellings = Spellings(scope.values)

@@ -89,8 +89,7 @@ class Drawing:
     """All that is to be seen, in order of writing. Coordinates in mm in the root frame.
 
     `regions` has every solid and every hole, each as it stands before the structures around it change it, and
-    the bodies as they are in the end. `box` bounds bodies and
-    strokes, not the plans.
+    the bodies as they are in the end. `box` bounds bodies and strokes, not the plans.
     """
 
     bodies: tuple[Body, ...]
@@ -154,9 +153,8 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     plans = tuple(_plans(model.root))
     boxes = [b.box for b in bodies]
     boxes += [bounds(piece) for s in strokes for piece in s.pieces]
-    return Drawing(bodies, regions, seams, strokes, plans, touching, styles, union_bounds(boxes)), ordered(
-        notes
-    )
+    drawing = Drawing(bodies, regions, seams, strokes, plans, touching, styles, union_bounds(boxes))
+    return drawing, ordered(notes)
 
 
 def _closed(

@@ -222,16 +222,9 @@ class TapeBuilder:
         node = self._known.get(key)
         if node is not None:
             return node
-        ops, levels = self._ops, self._levels
-        if ops[a] == CONSTANT == ops[b]:
+        if self._ops[a] == CONSTANT == self._ops[b]:
             return self._node(op, a, b)
-        node = self._known[key] = len(ops)
-        ops.append(op)
-        self._operands.append((a, b))
-        self._constants.append(0.0)
-        above, other = levels[a], levels[b]
-        levels.append(1 + (above if above > other else other))
-        return node
+        return self._new(key, op, (a, b), 0.0)
 
     def _node(self, op: int, *args: int) -> int:
         ops, constants = self._ops, self._constants
@@ -249,8 +242,7 @@ class TapeBuilder:
         self._ops.append(op)
         self._operands.append(operands)
         self._constants.append(constant)
-        levels = self._levels
-        levels.append(1 + max([levels[a] for a in operands]) if op > Op.UNKNOWN else 0)
+        self._levels.append(1 + max(map(self._levels.__getitem__, operands)) if op > Op.UNKNOWN else 0)
         return node
 
 
