@@ -55,8 +55,10 @@ class Trials:
     _lacks: dict[tuple[int, tuple[int, ...]], float] = field(default_factory=dict, repr=False)
     """By the problem, which `_built` keeps, and the constraints of the failure."""
     _mended: dict[tuple[int, tuple[int, ...]], bool] = field(default_factory=dict, repr=False)
-    _places: dict[int, dict[int, float] | None] = field(default_factory=dict, repr=False)
-    """Where the constraints of a failure hold without one of them."""
+    _places: dict[tuple[tuple[int, ...], int], dict[int, float] | None] = field(
+        default_factory=dict, repr=False
+    )
+    """Where the constraints of a failure hold without one of them, which may be in several failures."""
 
     @cached_property
     def _clock(self) -> Clock:
@@ -121,10 +123,11 @@ class Trials:
         return residual(other.problem, self._quick, matched[member], there)
 
     def _without(self, failure: GroupFailure, member: int) -> dict[int, float] | None:
-        if member not in self._places:
+        key = failure.conflict, member
+        if key not in self._places:
             rest = [index for index in self._together(failure) if index != member]
-            self._places[member] = settled(self.lowered.problem, self._quick, rest, self._free(failure))
-        return self._places[member]
+            self._places[key] = settled(self.lowered.problem, self._quick, rest, self._free(failure))
+        return self._places[key]
 
     def _free(self, failure: GroupFailure) -> dict[int, float]:
         """The unknowns that may move where nothing is to give way, and where the search came nearest."""
