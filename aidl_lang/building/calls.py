@@ -8,7 +8,7 @@ from aidl_lang import ast
 from aidl_lang.boxes import box_of
 from aidl_lang.building.arguments import arranged
 from aidl_lang.building.blocks import run_block
-from aidl_lang.building.coerce import as_point, edge_coordinate
+from aidl_lang.building.coerce import all_within, as_point, edge_coordinate
 from aidl_lang.building.conditions import all_of
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, refuses_measure, size, turn
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
@@ -61,12 +61,12 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
         unknown_callable(it, node, env)
         return NOTHING
     site = site_of(it, node, candidates)
-    if site.instantiates and env.reach is Reach.OWN:
-        # References passed to a template are tied by its instantiating structure, which may reach further.
-        env = Env(env.scope, env.here, Reach.SUBTREE)
+    around, env = env, _env_of_arguments(site, env)
     given, nodes = _given(it, site, receiver, node, env)
     if Nothing in map(type, given):
         return NOTHING
+    if env.reach is not around.reach is Reach.ABOVE and not all_within(it, given, node, env):
+        return NOTHING  # it came as an argument of a function
     if site.makes_outline:
         candidates = usable(candidates, given, env)
         site = site_of(it, node, candidates)
@@ -86,9 +86,22 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
     try:
         result = invoke(it, candidate, arguments, chosen, values, node, env)
         remember(result, candidate.signature.name, arguments)
-        return result
+        # What is derived may follow what is out of reach; a point or a number that does must not get further.
+        return result if not site.derives or all_within(it, (result,), node, around) else NOTHING
     finally:
         it.leave()
+
+
+def _env_of_arguments(site: Site, env: Env) -> Env:
+    """Where the arguments of a call stand, which may reach further than what is around it, or less far."""
+    if env.reach is Reach.OWN and site.instantiates:
+        # References passed to a template are tied by its instantiating structure, which may reach further.
+        return Env(env.scope, env.here, Reach.SUBTREE)
+    if env.reach is Reach.OWN and site.derives:
+        return Env(env.scope, env.here, Reach.ABOVE)
+    if env.reach is Reach.ABOVE and site.draws:
+        return Env(env.scope, env.here, Reach.OWN)
+    return env
 
 
 def _given(

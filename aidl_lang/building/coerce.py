@@ -6,6 +6,7 @@ Each returns None after reporting what does not fit, unless it says otherwise.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 
 from aidl_lang import ast, primitives, units
 from aidl_lang import expression as ex
@@ -15,7 +16,18 @@ from aidl_lang.diagnostics import Edit, Fix
 from aidl_lang.model import Geometry, Structure, common_ancestor
 from aidl_lang.source import Span
 from aidl_lang.units import LENGTH, PLAIN
-from aidl_lang.values import ListVal, Nothing, Num, PointVal, Value, kind_of, length
+from aidl_lang.values import (
+    Array,
+    ListVal,
+    Nothing,
+    Num,
+    PointVal,
+    RecordVal,
+    Value,
+    kind_of,
+    length,
+    members,
+)
 
 
 def as_written(value: Value) -> Value:
@@ -36,7 +48,7 @@ def _guessed(value: Num) -> Num:
 
 def may_read(it: Interpreter, owner: Structure, node: ast.Node, env: Env) -> bool:
     """Whether the unknowns of `owner` are within reach here; reported when they are not."""
-    if env.reach is Reach.READ or (owner is env.here):
+    if env.reach in (Reach.READ, Reach.ABOVE) or (owner is env.here):
         return True
     if env.reach is Reach.SUBTREE and owner.is_within(env.here):
         return True
@@ -51,6 +63,25 @@ def may_read(it: Interpreter, owner: Structure, node: ast.Node, env: Env) -> boo
             hints=[f"write a first guess here and a constraint in `{common_ancestor(owner, env.here).path}`"],
         )
     return False
+
+
+def owners_of(value: Value, here: Structure) -> Iterator[Structure]:
+    """The structures other than `here` whose unknowns a number, a point, or what holds such depends on."""
+    match value:
+        case Num(expression=e):
+            yield from (u.owner for u in ex.unknowns([e]) if u.owner is not here)
+        case PointVal(x, y):
+            yield from owners_of(x, here)
+            yield from owners_of(y, here)
+        case ListVal() | Array() | RecordVal():
+            for item in value.fields.values() if isinstance(value, RecordVal) else members(value) or ():
+                yield from owners_of(item, here)
+
+
+def all_within(it: Interpreter, values: Iterable[Value], node: ast.Node, env: Env) -> bool:
+    """Whether the unknowns of all numbers and points are within reach here; reported when they are not."""
+    owners = dict.fromkeys(owner for value in values for owner in owners_of(value, env.here))
+    return all(may_read(it, owner, node, env) for owner in owners)
 
 
 def look(it: Interpreter, geometry: Geometry, node: ast.Node, env: Env) -> dict[str, Value]:

@@ -62,11 +62,9 @@ _NONE = number(0.0, LENGTH)
 # --- What is copied --------------------------------------------------------------------------------
 
 
-def copied(
-    it: Interpreter, value: Value, motion: Motion, node: ast.Call, env: Env, axis: Value | None = None
-) -> Value:
+def copied(it: Interpreter, value: Value, motion: Motion, node: ast.Call, env: Env) -> Value:
     """The copy of anything that can be copied; NOTHING after an error, reported here."""
-    owners = [g.bound_to for v in (value, axis) for g in _geometry_in(v)]
+    owners = [*(g.bound_to for g in _geometry_in(value)), *(u.owner for u in ex.unknowns(motion.parts))]
     copier = Copier(it, env.here, motion, reach_of(owners, env.here), it.place(node))
     return _copied(it, value, copier, node, env)
 
@@ -182,7 +180,7 @@ def _at(x: ex.Expression, y: ex.Expression) -> PointVal:
 
 def _mirror(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     motion = _reflection(it, a["about"], node, env)
-    return copied(it, a["x"], motion, node, env, a["about"]) if motion is not None else NOTHING
+    return copied(it, a["x"], motion, node, env) if motion is not None else NOTHING
 
 
 def _reflection(it: Interpreter, about: Value, node: ast.Call, env: Env) -> Motion | None:

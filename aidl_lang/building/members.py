@@ -260,6 +260,8 @@ def _box_field(it: Interpreter, box: Box, name: str, node: ast.Node, env: Env) -
     if key is None:
         return None
     value = box.field(key)
+    if env.reach is Reach.ABOVE and any(isinstance(s, Structure) for s in box.sources):
+        env = Env(env.scope, env.here, Reach.OWN)  # the box of a structure is no geometry
     if value is not None and env.reach is Reach.OWN and env.here in box.sources:
         return as_written(value) if it.watched else _refuse_own_box(it, node, env)
     owners = (s if isinstance(s, Structure) else getattr(s, "bound_to", None) for s in box.sources)

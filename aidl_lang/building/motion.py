@@ -69,12 +69,16 @@ class Motion:
         return Frame(x, y, _in_turn(turned(self.turn, frame.rotation)), frame.mirrored != self.mirrored)
 
     @property
+    def parts(self) -> tuple[Expression, ...]:
+        """The numbers that it follows from."""
+        return (*self.about, *self.to, self.turn, self.cos, self.sin, self.scale)
+
+    @property
     def is_still(self) -> bool:
         """Whether it moves nothing."""
-        parts = (*self.about, *self.to, self.turn, self.scale)
         return (
             not self.mirrored
-            and all(p.is_constant for p in parts)
+            and all(p.is_constant for p in self.parts)
             and [a.value for a in self.about] == [a.value for a in self.to]
             and self.turn.value % 360.0 == 0.0
             and self.scale.value == 1.0

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from aidl_lang import ast
 from aidl_lang.boxes import spelled_out
-from aidl_lang.building.coerce import as_written, may_read
+from aidl_lang.building.coerce import as_written, may_read, owners_of
 from aidl_lang.building.construct import size
 from aidl_lang.building.scopes import Candidate
 from aidl_lang.building.state import Env, Interpreter
@@ -51,7 +51,9 @@ def _outline(kind: str, *words: str) -> Function:
         numbers = {n: size(it, v, geometry, n) for n, v in a.items() if isinstance(v, Num)}
         geometry.fields = dict(numbers)
         geometry.recipe = Recipe(kind, tuple(operands), numbers, {n: w for n, w in said.items() if w})
-        geometry.reach = reach_of((s.bound_to for s in geometry.recipe.sources), env.here)
+        owners = [s.bound_to for s in geometry.recipe.sources]
+        owners += [owner for number in numbers.values() for owner in owners_of(number, env.here)]
+        geometry.reach = reach_of(owners, env.here)
         if geometry.reach is not None:
             it.following.append(geometry)
         _take_over(geometry, env)
@@ -100,7 +102,8 @@ def _sources(it: Interpreter, kind: str, value: Value, node: ast.Call, env: Env)
     found: list[Geometry] = []
     for item in _flat(value):
         if isinstance(item, PointVal) and kind == "hull":
-            item = Geometry("point", env.here, it.place(node), {"at": item})
+            reach = reach_of(owners_of(item, env.here), env.here)
+            item = Geometry("point", env.here, it.place(node), {"at": item}, reach=reach)
         if not isinstance(item, Geometry) or (item.type == "point" and kind != "hull"):
             hint = (
                 "name the outline in it, as in `plate.outline`"
@@ -147,10 +150,11 @@ def keep_unnamed(geometry: Geometry) -> None:
 
 
 def usable(candidates: list[Candidate], values: Sequence[Value], env: Env) -> list[Candidate]:
-    """The overloads of an outline, without those of the library where a source is not of this structure: they
-    would read its unknowns.
+    """The overloads of an outline, without those of the library where a source or a size is not of this
+    structure: they would read its unknowns.
     """
-    far = any(isinstance(v, Geometry) and v.owner is not env.here for v in values)
+    owners = (o for v in values for o in ((v.owner,) if isinstance(v, Geometry) else owners_of(v, env.here)))
+    far = any(owner is not env.here for owner in owners)
     return [c for c in candidates if c.signature.kind is None] if far else candidates
 
 

@@ -9,14 +9,15 @@ from aidl_lang import ast
 from aidl_lang.binding import select
 from aidl_lang.building.scopes import Candidate, Scope
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.builtins import CUTS, OUTLINES, SIGNATURES, is_word
+from aidl_lang.builtins import CUTS, DERIVING, OUTLINES, PATTERNS, SIGNATURES, is_word
 from aidl_lang.names import find, nearest
 from aidl_lang.resolving.cuts import meant
 from aidl_lang.resolving.symbols import Symbol, SymbolKind
-from aidl_lang.types import ANY, Binding, Given, Mismatch, Signature, Type, with_article
+from aidl_lang.types import ANY, PRIMITIVES, Binding, Given, Mismatch, Signature, Type, with_article
 from aidl_lang.values import Namespace, Text, Value, kind_of, type_of
 
 _NO_NAMES: Mapping[ast.Node, Symbol] = {}
+_DRAWING = PATTERNS.union(PRIMITIVES)
 
 
 class Site:
@@ -27,6 +28,8 @@ class Site:
     doubtful       the arguments, by index, that are such words and names in reach as well
     instantiates   whether an overload is a template
     makes_outline  whether the overloads are those of an outline made of others
+    derives        whether they are those of what is derived for good, an outline of others or a copy
+    draws          whether one of them makes geometry that the solver may move
     """
 
     def __init__(
@@ -42,6 +45,8 @@ class Site:
         )
         self.instantiates = any(s.kind is ast.Structure for s in signatures)
         self.makes_outline = bool(signatures) and signatures[0].name in OUTLINES
+        self.derives = bool(signatures) and signatures[0].name in DERIVING
+        self.draws = any(s.kind is ast.ShapeDefinition or s.name in _DRAWING for s in signatures)
         self._names = tuple(a.name.text if a.name else None for a in node.arguments)
         self._meanings: dict[tuple[Type, ...], Binding | list[Mismatch]] = {}
         self._last: tuple[tuple[Type, ...] | None, Binding | list[Mismatch]] = (None, [])

@@ -36,6 +36,7 @@ class Reach(Enum):
     """What an expression may read (language reference: validity)."""
 
     OWN = "geometry: unknowns of its own structure"
+    ABOVE = "what geometry is derived of: anything further up, since the solver does not move it"
     SUBTREE = "constraints: unknowns of the holder's subtree"
     READ = "asserts: anything, since they steer nothing"
 

@@ -2,7 +2,7 @@
 
 Rule 1: geometry references only geometry and unknowns of its own structure. Arguments of templates may reach
 further, since the instantiating structure ties them by equalities; what is derived for good, as by `mirror`,
-`copy` and `offset`, may be made of geometry anywhere further up.
+`copy` and `offset`, may be made of geometry anywhere further up, of its points and sizes too.
 Rule 2: a constraint references only the subtree of the structure that holds it.
 
 A breach becomes a `Violation`. Its diagnostic names the nearest common ancestor, where the relation can be
@@ -105,12 +105,17 @@ class _Walker:
         if isinstance(fact.type, StructureType) or not self._makes_geometry(fact, name):
             return
         reach = name in DERIVING | PATTERNS
+        derives = name in DERIVING and not is_point(fact.type)
         path = None if name in DERIVING else path  # a copy has no parameters to constrain
         for index, node in enumerate(arguments(self.infer, call)):
-            if isinstance(node, ast.Call) and self._makes_geometry(self.infer.fact(node), node.callee.text):
+            is_thing = self._is_thing(node)
+            is_made = isinstance(node, ast.Call) and self._makes_geometry(
+                self.infer.fact(node), node.callee.text
+            )
+            if isinstance(node, ast.Call) and is_made and (is_thing or not derives):
                 self._made(node, None, site)
                 continue
-            if reach and self._is_thing(node) and _may_derive(self.infer.fact(node), site.homes):
+            if (derives or (reach and is_thing)) and _may_derive(self.infer.fact(node), site.homes):
                 self._order(node, site)
                 continue
             self._geometry(self._targets(call, index, node, path), node, site)
