@@ -46,10 +46,10 @@ format: $(READY) ## put all Python code into its canonical form
 	$(BIN)/ruff format .
 
 reference: $(READY) colours ## write all that is generated from the library: docs/reference, docs/guide.md, llms.txt, what editors read
-	$(BIN)/python -m aidl_lang.reference .
+	$(BIN)/python -m aidl_lang.tools.reference .
 
 colours: $(READY) ## write the grammars, words and snippets for editors anew
-	$(BIN)/python -m aidl_lang.highlighting .
+	$(BIN)/python -m aidl_lang.tools.highlighting .
 
 editors: vscode ## check all that is built with Node: the preview's pane, the CodeMirror package, the extension
 	cd editors/preview && npm ci --silent --no-audit --no-fund && npm run --silent check

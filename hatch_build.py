@@ -19,7 +19,7 @@ class DerivedData(BuildHookInterface[Any]):
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         sys.path.insert(0, self.root)
         try:
-            from aidl_lang import library
+            from aidl_lang.checking import library
             from aidl_lang.syntax import tables
         finally:
             sys.path.remove(self.root)

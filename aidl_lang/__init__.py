@@ -16,17 +16,17 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aidl_lang.diagnostics import Diagnostic, Severity
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.diagnostics import Diagnostic, Severity
+from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.version import __version__
 
 if TYPE_CHECKING:
-    from aidl_lang.comparison import Comparison
+    from aidl_lang.building.model import Knob
     from aidl_lang.export import Options
-    from aidl_lang.model import Knob
+    from aidl_lang.export.comparison import Comparison
+    from aidl_lang.geometry.solved import Change, ConstraintReport, SolvedModel, SolvedStructure
+    from aidl_lang.geometry.survey import Part
     from aidl_lang.pipeline import Compiled, Settings
-    from aidl_lang.solved import Change, ConstraintReport, SolvedModel, SolvedStructure
-    from aidl_lang.survey import Part
 
 __all__ = [
     "Diagnostic",
@@ -147,7 +147,7 @@ def _source(text_or_path: str | Path) -> tuple[SourceFile, Path | None]:
 def check(text: str | Path, settings: Settings | None = None) -> list[Diagnostic]:
     """What is wrong with a program, without solving it. A `Path` is read, a string is the program itself."""
     from aidl_lang import pipeline
-    from aidl_lang.world import DiskWorld
+    from aidl_lang.common.world import DiskWorld
 
     source, root = _source(text)
     world = DiskWorld(root) if root is not None else None
@@ -164,7 +164,7 @@ def compile(
     `params` sets knobs by path, as `{"width": 200}`. Never raises for what a program says.
     """
     from aidl_lang import pipeline
-    from aidl_lang.world import DiskWorld
+    from aidl_lang.common.world import DiskWorld
 
     source, root = _source(text_or_path)
     world = DiskWorld(root) if root is not None else None

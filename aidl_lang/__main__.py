@@ -2,7 +2,7 @@
 
 import sys
 
-from aidl_lang.cli import main
+from aidl_lang.tools.cli import main
 
 if __name__ == "__main__":
     sys.exit(main())

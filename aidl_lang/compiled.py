@@ -7,22 +7,22 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from aidl_lang.cancelling import OutOfTime, limited_to
-from aidl_lang.diagnostics import Diagnostic, has_errors
-from aidl_lang.drawing_time import within
-from aidl_lang.model import Knob, Model
-from aidl_lang.records import record
-from aidl_lang.source import Span
+from aidl_lang.building.model import Knob, Model
+from aidl_lang.common.cancelling import OutOfTime, limited_to
+from aidl_lang.common.diagnostics import Diagnostic, has_errors
+from aidl_lang.common.drawing_time import within
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
 
 if TYPE_CHECKING:
-    from aidl_lang.comparison import Comparison
+    from aidl_lang.building.expression import Evaluator
+    from aidl_lang.explaining.failures import Conflict
     from aidl_lang.export import Exported, Options
-    from aidl_lang.expression import Evaluator
-    from aidl_lang.failures import Conflict
+    from aidl_lang.export.comparison import Comparison
     from aidl_lang.geometry.drawing import Drawing
-    from aidl_lang.solved import SolvedModel
+    from aidl_lang.geometry.solved import SolvedModel
+    from aidl_lang.geometry.survey import Part, Survey
     from aidl_lang.solver.solution import StageReport
-    from aidl_lang.survey import Part, Survey
 
 
 @record(frozen=False)
@@ -81,7 +81,7 @@ class Compiled:
         Raises NothingThereError for a path at which nothing covers an area, TooLongError, and ValueError when
         there is nothing to measure.
         """
-        from aidl_lang.survey import survey
+        from aidl_lang.geometry.survey import survey
 
         model, drawing = self._finished
         with within(self.limit, "measuring"):
@@ -89,7 +89,7 @@ class Compiled:
 
     def measured(self, path: str | None = None, densities: Mapping[str, float] | None = None) -> Part:
         """What the part at a path measures, or the whole. Raises as `surveyed` does."""
-        from aidl_lang.survey import measured
+        from aidl_lang.geometry.survey import measured
 
         model, drawing = self._finished
         with within(self.limit, "measuring"):
@@ -97,7 +97,7 @@ class Compiled:
 
     def compared(self, after: Compiled) -> Comparison:
         """What differs in a later version. Raises TooLongError, and ValueError where there is no drawing."""
-        from aidl_lang.comparison import Version, compare
+        from aidl_lang.export.comparison import Version, compare
 
         with within(self.limit, "comparing"):
             return compare(Version(*self._finished), Version(*after._finished))

@@ -14,22 +14,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache
 
-from aidl_lang import ast
 from aidl_lang.building.anchors import anchored
 from aidl_lang.building.calls import call
 from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.model import Model, Structure
 from aidl_lang.building.modules import run_module
 from aidl_lang.building.scopes import Binding, Candidate, LetBinding, Scope
 from aidl_lang.building.state import DEFAULT_LIMITS, Interpreter, Limits, Stop
 from aidl_lang.building.statements import EXECUTORS
-from aidl_lang.builtins import MATH, ROTATION, SIGNATURES
-from aidl_lang.cancelling import limited_to
-from aidl_lang.diagnostics import Diagnostic
-from aidl_lang.model import Model, Structure
-from aidl_lang.names import fold
-from aidl_lang.records import record
+from aidl_lang.building.values import NOTHING, Namespace
+from aidl_lang.checking.builtins import MATH, ROTATION, SIGNATURES
+from aidl_lang.common.cancelling import limited_to
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.names import fold
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
-from aidl_lang.values import NOTHING, Namespace
 
 
 @record()

@@ -11,10 +11,10 @@ from __future__ import annotations
 from bisect import bisect_left
 from dataclasses import replace
 
-from aidl_lang import ast
-from aidl_lang.diagnostics import MOST_ERRORS, Diagnostic, ordered, too_many_errors
-from aidl_lang.records import record
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, ordered, too_many_errors
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.syntax import ast
 from aidl_lang.syntax.automaton import Automaton, Checkpoint
 from aidl_lang.syntax.brackets import lists_as_statements
 from aidl_lang.syntax.functions import understood

@@ -10,37 +10,38 @@ from dataclasses import replace
 from functools import cache, partial
 from typing import TYPE_CHECKING
 
-from aidl_lang import ast, parser
-from aidl_lang import library as library_module
+from aidl_lang import parser
+from aidl_lang.building.front import Front, Settings, build, read
+from aidl_lang.building.model import Knob, Model
+from aidl_lang.checking import library as library_module
+from aidl_lang.checking.resolve import resolve
+from aidl_lang.checking.resolving.symbols import SymbolKind
 from aidl_lang.checking.subset import adapted
+from aidl_lang.common.diagnostics import Diagnostic, has_errors, ordered
+from aidl_lang.common.drawing_time import TooLongError, within
+from aidl_lang.common.records import record
+from aidl_lang.common.running import Stopwatch, working
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.common.world import World
 from aidl_lang.compiled import Compiled
-from aidl_lang.diagnostics import Diagnostic, has_errors, ordered
-from aidl_lang.drawing_time import TooLongError, within
-from aidl_lang.front import Front, Settings, build, read
+from aidl_lang.geometry.picturing import pictured
 from aidl_lang.interp import Interpretation, interpret
-from aidl_lang.model import Knob, Model
-from aidl_lang.picturing import pictured
-from aidl_lang.records import record
-from aidl_lang.resolve import resolve
-from aidl_lang.resolving.symbols import SymbolKind
-from aidl_lang.running import Stopwatch, working
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
-from aidl_lang.world import World
 
 if TYPE_CHECKING:
-    from aidl_lang.expression import Evaluator
-    from aidl_lang.failures import Conflict, Explanation
+    from aidl_lang.building.expression import Evaluator
+    from aidl_lang.building.lower import Lowered
+    from aidl_lang.explaining.failures import Conflict, Explanation
+    from aidl_lang.explaining.giving import GaveWay
+    from aidl_lang.explaining.otherwise import Otherwise
+    from aidl_lang.explaining.trials import Trials
     from aidl_lang.geometry.drawing import Drawing
-    from aidl_lang.giving import GaveWay
-    from aidl_lang.lower import Lowered
-    from aidl_lang.otherwise import Otherwise
-    from aidl_lang.solved import SolvedModel
+    from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.solver.analysis import Freedom
     from aidl_lang.solver.memory import Memory
     from aidl_lang.solver.solution import Solution
-    from aidl_lang.trials import Trials
 
 
 def front(source: SourceFile, world: World | None = None, settings: Settings = Settings()) -> Front:
@@ -70,8 +71,8 @@ class _Tries:
 
     def trials(self, lowered: Lowered, solution: Solution, states_constants: bool = False) -> Trials:
         """What tries other texts of the program whose problem and solution these are."""
-        from aidl_lang.lower import lower
-        from aidl_lang.trials import Trials
+        from aidl_lang.building.lower import lower
+        from aidl_lang.explaining.trials import Trials
 
         solving = self.settings.solving
         hurried = replace(solving, explain=False, seconds=min(solving.seconds, 1.0))
@@ -93,8 +94,8 @@ class _Tries:
         solving = self.settings.solving
         if not (solving.explain and has_errors(found)):
             return found
-        from aidl_lang.decided import NEVER, answered, failing
-        from aidl_lang.lower import lower
+        from aidl_lang.building.lower import lower
+        from aidl_lang.explaining.decided import NEVER, answered, failing
         from aidl_lang.solver import solve
 
         is_decided = any(d.code == NEVER for d in found) or any(
@@ -140,7 +141,7 @@ def check(
 
 def formatted(source: SourceFile, world: World | None = None) -> tuple[str | None, list[Diagnostic]]:
     """The canonical form of a program, names spelled as they are defined; None if it does not parse."""
-    from aidl_lang.printer import format_module
+    from aidl_lang.syntax.printer import format_module
 
     with working:
         parsed = parser.parse(source)
@@ -201,8 +202,8 @@ def placed(
     """Where the parts of a program come to lie with these params, which are not drawn; None where it does not
     solve.
     """
-    from aidl_lang.expression import Evaluator
-    from aidl_lang.lower import lower
+    from aidl_lang.building.expression import Evaluator
+    from aidl_lang.building.lower import lower
     from aidl_lang.solver import Status, solve
 
     with working:
@@ -264,9 +265,9 @@ def _explained(
     tried: Trials,
     watch: Stopwatch,
 ) -> _Troubles:
-    from aidl_lang.failures import explained
-    from aidl_lang.giving import gave_way
-    from aidl_lang.otherwise import elsewhere_notes
+    from aidl_lang.explaining.failures import explained
+    from aidl_lang.explaining.giving import gave_way
+    from aidl_lang.explaining.otherwise import elsewhere_notes
 
     with watch("reasons"):
         given = gave_way(lowered, solution, settings.solving)
@@ -279,7 +280,7 @@ def _follows(lowered: Lowered, solution: Solution) -> Callable[[Span], bool]:
     """What tells whether what is stated in a place follows from the rest, loaded when it is asked."""
 
     def is_told(span: Span) -> bool:
-        from aidl_lang.repetitions import follows
+        from aidl_lang.explaining.repetitions import follows
 
         return follows(lowered, solution, span)
 
@@ -296,7 +297,7 @@ def _finish(
     memory: Memory | None,
     tries: _Tries,
 ) -> Compiled:
-    from aidl_lang.lower import lower, preference
+    from aidl_lang.building.lower import lower, preference
     from aidl_lang.solver import Status, solve
     from aidl_lang.solver.analysis import analyse
 
@@ -306,7 +307,7 @@ def _finish(
     with watch("solve"):
         solution = solve(lowered.problem, settings.solving, memory)
         if _is_troubled(solution):
-            from aidl_lang.otherwise import otherwise
+            from aidl_lang.explaining.otherwise import otherwise
 
             other, solution = otherwise(built, lowered, solution, tries.built, settings.solving)
     if other is not None:
@@ -325,7 +326,7 @@ def _finish(
     except TooLongError as reason:
         return Compiled("wrong", ordered([*diagnostics, reason.diagnostic]), watch.seconds, known)
     if settings.strict and troubles.given:
-        from aidl_lang.giving import refused
+        from aidl_lang.explaining.giving import refused
 
         found = list(map(refused, found))
     if solution.status is not Status.SOLVED:
@@ -335,7 +336,7 @@ def _finish(
     if settings.solving.explain:
         with watch("fixes"):
             if any(d.fix is not None for d in told):
-                from aidl_lang.verifying import verified
+                from aidl_lang.explaining.verifying import verified
 
                 told = verified(told, [*diagnostics, *told], tried())
             told = tries.answered(told, [*diagnostics, *told], built.model)
@@ -367,12 +368,12 @@ def _drawn(
     watch: Stopwatch,
 ) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic], list[Diagnostic]]:
     """The solved model and its drawing; what there is to say of the solution, and of what is drawn."""
-    from aidl_lang.outcome import assertion_notes, solution_notes
+    from aidl_lang.explaining.outcome import assertion_notes, solution_notes
 
     model, evaluator, drawing, notes = pictured(built.model, lowered, solution, freedom, watch)
     with watch("asserts"):
         if troubles.given:
-            from aidl_lang.giving import explained
+            from aidl_lang.explaining.giving import explained
 
             model = explained(model, troubles.given)
         found = solution_notes(lowered, solution, freedom, model, troubles.given, troubles.failures)

@@ -9,23 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from aidl_lang import ast
 from aidl_lang.checking.conditions import check_condition, check_empty, check_item, check_operation
 from aidl_lang.checking.cycles import find_cycles
 from aidl_lang.checking.facts import Fact
 from aidl_lang.checking.habits import check_square, check_unused_geometry, check_unused_params
 from aidl_lang.checking.infer import Inference
+from aidl_lang.checking.library import Library
 from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.operators import compare
+from aidl_lang.checking.resolving.resolution import Resolution
 from aidl_lang.checking.subset import check_subset
-from aidl_lang.checking.validity import check_validity
-from aidl_lang.checking.violations import Violation
-from aidl_lang.checking.wording import a, shown
-from aidl_lang.diagnostics import Diagnostic, ordered
-from aidl_lang.library import Library
-from aidl_lang.records import record
-from aidl_lang.resolving.resolution import Resolution
-from aidl_lang.types import (
+from aidl_lang.checking.types import (
     ANY,
     AnyType,
     GeometryType,
@@ -38,8 +32,14 @@ from aidl_lang.types import (
     Type,
     accepts,
 )
-from aidl_lang.units import ANGLE, LENGTH
-from aidl_lang.variants import Variant
+from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.checking.validity import check_validity
+from aidl_lang.checking.variants import Variant
+from aidl_lang.checking.violations import Violation
+from aidl_lang.checking.wording import a, shown
+from aidl_lang.common.diagnostics import Diagnostic, ordered
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
 
 
 @record(eq=False)

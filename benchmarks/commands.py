@@ -21,8 +21,8 @@ from pathlib import Path
 from statistics import median
 
 from aidl_lang import pipeline
-from aidl_lang.source import SourceFile
-from aidl_lang.world import DiskWorld
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import DiskWorld
 
 HERE = Path(__file__).resolve().parent
 

@@ -22,9 +22,10 @@ from functools import partial
 from pathlib import Path
 from statistics import median, quantiles
 
-from aidl_lang import library, pipeline
-from aidl_lang.source import SourceFile
-from aidl_lang.world import DiskWorld
+from aidl_lang import pipeline
+from aidl_lang.checking import library
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import DiskWorld
 
 ROOT = Path(__file__).resolve().parent.parent
 TELEPHONE = ROOT / "examples" / "telephone.aidl"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.cli import main
+from aidl_lang.tools.cli import main
 
 
 @dataclass(frozen=True)

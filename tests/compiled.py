@@ -8,7 +8,7 @@ import pytest
 
 import aidl_lang
 from aidl_lang import pipeline
-from aidl_lang.source import SourceFile
+from aidl_lang.common.source import SourceFile
 from tests.documents import ROOT
 
 EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))

@@ -6,7 +6,7 @@ import os
 # NumPy asks when it is loaded.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from aidl_lang import trials
+from aidl_lang.explaining import trials
 from tests import amount as amount  # how many examples are tried
 
 # What a message says hangs on the program here, and not on how busy the machine is.

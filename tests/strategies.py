@@ -6,9 +6,9 @@ from functools import partial
 
 from hypothesis import strategies as st
 
-from aidl_lang import ast
-from aidl_lang.kinds import KINDS
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.syntax import ast
+from aidl_lang.syntax.kinds import KINDS
 
 NOWHERE = Span(SourceFile("<made up>", ""), 0, 0)
 

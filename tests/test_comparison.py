@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import aidl_lang
-from aidl_lang.comparison import Comparison, GeometryChange, StructureChange, Version, compare
-from aidl_lang.comparison.changes import Fields, Sort
-from aidl_lang.comparison.move import Move
+from aidl_lang.export.comparison import Comparison, GeometryChange, StructureChange, Version, compare
+from aidl_lang.export.comparison.changes import Fields, Sort
+from aidl_lang.export.comparison.move import Move
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.drawing import draw
-from aidl_lang.solved import SolvedStructure
+from aidl_lang.geometry.solved import SolvedStructure
 from tests import compiled
 from tests.documents import ROOT
 from tests.geometry.models import circle, model, polygon, structure

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang.reference import coverage
+from aidl_lang.tools.reference import coverage
 from tests.amount import TRIES_ALL
 from tests.documents import ROOT
 

@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang import explain, pipeline
-from aidl_lang.render import render
-from aidl_lang.source import SourceFile
-from aidl_lang.variants import Variant
-from aidl_lang.world import MemoryWorld
+from aidl_lang import pipeline
+from aidl_lang.checking.variants import Variant
+from aidl_lang.common import pages
+from aidl_lang.common.render import render
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
 from tests.documents import ROOT, Block, blocks, programs
 
 PAGES = ROOT / "docs" / "diagnostics"
@@ -37,7 +38,7 @@ def test_every_page_has_a_code() -> None:
 def test_page_has_its_parts(code: str) -> None:
     text = (PAGES / f"{code}.md").read_text(encoding="utf-8")
     assert re.match(rf"# {code}: \S.*\n", text)
-    assert explain.title(code)
+    assert pages.title(code)
     shown = {block.heading for block in blocks(PAGES / f"{code}.md")}
     assert shown >= {MISTAKE, MENDED}
 

@@ -8,9 +8,9 @@ import math
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.dimensions import dimensions
-from aidl_lang.solved import Dimension, Length, Opening, Roundness
-from aidl_lang.source import SourceFile
+from aidl_lang.common.source import SourceFile
+from aidl_lang.geometry.dimensions import dimensions
+from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 
 
 def found(text: str) -> list[tuple[Dimension, ...]]:

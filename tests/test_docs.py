@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.diagnostics import Severity
+from aidl_lang.common.diagnostics import Severity
+from aidl_lang.common.render import render
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
 from aidl_lang.export import Options
 from aidl_lang.parser import parse
-from aidl_lang.render import render
-from aidl_lang.source import SourceFile
-from aidl_lang.world import MemoryWorld
 from tests.compiled import EXAMPLES, example
 from tests.documents import ROOT, Block, programs
 

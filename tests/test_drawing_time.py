@@ -11,20 +11,20 @@ import pytest
 
 from aidl_lang import compile as compiled_model
 from aidl_lang import diff, pipeline
-from aidl_lang.agents.calling import answer
-from aidl_lang.agents.tools import Tools
-from aidl_lang.cancelling import OutOfTime
-from aidl_lang.cli import main
-from aidl_lang.drawing_time import TooLongError
+from aidl_lang.common.cancelling import OutOfTime
+from aidl_lang.common.drawing_time import TooLongError
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
 from aidl_lang.export import ExportError
-from aidl_lang.ide.actions.action import drawn_alike
-from aidl_lang.ide.dragging import drag, handles
-from aidl_lang.ide.preview import preview
-from aidl_lang.ide.refusing import CannotError, Refusal
-from aidl_lang.ide.view import View, look, run
 from aidl_lang.pipeline import Compiled, Settings
-from aidl_lang.source import SourceFile
-from aidl_lang.world import MemoryWorld
+from aidl_lang.tools.agents.calling import answer
+from aidl_lang.tools.agents.tools import Tools
+from aidl_lang.tools.cli import main
+from aidl_lang.tools.ide.actions.action import drawn_alike
+from aidl_lang.tools.ide.dragging import drag, handles
+from aidl_lang.tools.ide.preview import preview
+from aidl_lang.tools.ide.refusing import CannotError, Refusal
+from aidl_lang.tools.ide.view import View, look, run
 
 PLATES = """\
 assembly plates {
@@ -63,7 +63,7 @@ def test_what_is_read_out_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def late(*_: object) -> None:
         raise OutOfTime
 
-    monkeypatch.setattr("aidl_lang.readout._Reader.geometry", late)
+    monkeypatch.setattr("aidl_lang.geometry.readout._Reader.geometry", late)
     (told,) = pipeline.compile(SourceFile("plates.aidl", PLATES)).diagnostics
     assert told.code == "E0805"
     assert told.span is not None
@@ -152,7 +152,7 @@ def test_the_command_says_so_of_the_picture_of_two(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("plates.aidl").write_text(PLATES)
-    monkeypatch.setattr("aidl_lang.cli.diff.LONGEST", 0.0)
+    monkeypatch.setattr("aidl_lang.tools.cli.diff.LONGEST", 0.0)
     assert main(["diff", "plates.aidl", "--to", "wide=30", "-o", "both.svg"]) == 1
     assert not Path("both.svg").exists()
     lead = "error[E0805]: drawing the differences in what this program says takes more than 0 seconds\n"

@@ -10,11 +10,11 @@ from functools import cache
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.diagnostics import Diagnostic, apply_fixes
-from aidl_lang.failures import _follows
-from aidl_lang.render import render, to_dict
+from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.common.render import render, to_dict
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.explaining.failures import _follows
 from aidl_lang.solver.solution import Failure, GroupFailure
-from aidl_lang.source import SourceFile, Span
 from tests.documents import ROOT, Block, programs
 
 UNSOLVABLE = programs(ROOT / "tests" / "spec" / "conflicts.md")

@@ -13,18 +13,18 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
-from aidl_lang.expression import DEGREE
-from aidl_lang.freedom import motions, report
-from aidl_lang.freedom.bending import Bending
-from aidl_lang.freedom.scene import Scene, X, Y
+from aidl_lang.building.expression import DEGREE
+from aidl_lang.building.lower import Lowered, lower
+from aidl_lang.building.model import Model
+from aidl_lang.common.source import SourceFile
+from aidl_lang.geometry.freedom import motions, report
+from aidl_lang.geometry.freedom.bending import Bending
+from aidl_lang.geometry.freedom.scene import Scene, X, Y
+from aidl_lang.geometry.solved import Motion, SolvedModel
 from aidl_lang.interp import interpret
-from aidl_lang.lower import Lowered, lower
-from aidl_lang.model import Model
-from aidl_lang.solved import Motion, SolvedModel
 from aidl_lang.solver import Relation, Solution, Status, solve
 from aidl_lang.solver.analysis import Freedom, analyse
 from aidl_lang.solver.gradients import linearise
-from aidl_lang.source import SourceFile
 from tests.amount import tries
 from tests.solver.check import evaluate
 

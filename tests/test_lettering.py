@@ -11,11 +11,12 @@ import pytest
 from fontTools.ttLib import TTFont
 from shapely.geometry import Polygon
 
-from aidl_lang import lettering, pipeline
-from aidl_lang.resources import resource
-from aidl_lang.source import SourceFile
+from aidl_lang import pipeline
+from aidl_lang.common import lettering
+from aidl_lang.common.resources import resource
+from aidl_lang.common.source import SourceFile
 
-FONT = TTFont(resource("aidl_lang/fonts/DejaVuSansAIDL.ttf"))
+FONT = TTFont(resource("aidl_lang/common/fonts/DejaVuSansAIDL.ttf"))
 CAPITAL = 1493
 CHARACTERS = {chr(code): name for code, name in FONT.getBestCmap().items()}
 
@@ -89,7 +90,7 @@ def test_accents_written_apart_are_joined() -> None:
 
 def test_no_font_is_loaded_without_text() -> None:
     program = (
-        "import sys; from aidl_lang import pipeline; from aidl_lang.source import SourceFile;"
+        "import sys; from aidl_lang import pipeline; from aidl_lang.common.source import SourceFile;"
         "pipeline.compile(SourceFile('p', 'solid s { c = circle(radius: 3) }'));"
         "sys.exit('fontTools' in sys.modules)"
     )

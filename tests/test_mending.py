@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from aidl_lang.mending import mend
+from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import Settings, check
-from aidl_lang.source import SourceFile
+from aidl_lang.tools.mending import mend
 
 
 def mended(text: str) -> str:

@@ -9,11 +9,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from aidl_lang import builtins
-from aidl_lang.highlighting import site as colours
-from aidl_lang.reference import coverage, site
-from aidl_lang.reference.collect import reference
-from aidl_lang.reference.pages import image
+from aidl_lang.checking import builtins
+from aidl_lang.tools.highlighting import site as colours
+from aidl_lang.tools.reference import coverage, site
+from aidl_lang.tools.reference.collect import reference
+from aidl_lang.tools.reference.pages import image
 from tests.checker import test_corpus as corpus
 from tests.documents import ROOT
 from tests.property import test_shapes as shapes

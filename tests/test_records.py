@@ -5,7 +5,7 @@ from dataclasses import FrozenInstanceError, asdict, dataclass, field, fields, r
 
 import pytest
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 
 
 @record()

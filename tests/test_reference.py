@@ -11,18 +11,20 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang import ast, builtins, library, pipeline
-from aidl_lang.diagnostics import Severity
-from aidl_lang.kinds import KINDS
+from aidl_lang import pipeline
+from aidl_lang.checking import builtins, library
+from aidl_lang.common.diagnostics import Severity
+from aidl_lang.common.render import render
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.reference.collect import Entry, doc, reference
-from aidl_lang.reference.guide import full_guide, guide, template
-from aidl_lang.reference.pages import image
-from aidl_lang.reference.signatures import exactness, held, parts, short, short_forms, split_items
-from aidl_lang.reference.site import texts
-from aidl_lang.render import render
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
+from aidl_lang.syntax.kinds import KINDS
 from aidl_lang.syntax.tables import load_tables
+from aidl_lang.tools.reference.collect import Entry, doc, reference
+from aidl_lang.tools.reference.guide import full_guide, guide, template
+from aidl_lang.tools.reference.pages import image
+from aidl_lang.tools.reference.signatures import exactness, held, parts, short, short_forms, split_items
+from aidl_lang.tools.reference.site import texts
 from tests.documents import ROOT
 
 ENTRIES = list(reference().entries.values())
@@ -255,8 +257,8 @@ def test_full_guide_holds_every_entry() -> None:
 
 
 def test_codes_in_the_guide_exist() -> None:
-    from aidl_lang import explain
+    from aidl_lang.common import pages
 
     codes = set(re.findall(r"\b[EWN]\d{4}\b", guide()))
     assert codes
-    assert codes <= set(explain.codes())
+    assert codes <= set(pages.codes())

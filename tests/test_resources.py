@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang import resources
+from aidl_lang.common import resources
 from tests.amount import tried
 from tests.documents import ROOT
 
@@ -108,7 +108,8 @@ def test_an_installation_without_it_says_so(checkout: Checkout) -> None:
 def test_a_package_is_built_the_same_each_time() -> None:
     """Whatever the order of Python's sets, which Lark works with."""
     program = (
-        "from hashlib import sha256; from aidl_lang import library; from aidl_lang.syntax import tables;"
+        "from hashlib import sha256; from aidl_lang.checking import library;"
+        "from aidl_lang.syntax import tables;"
         "print(*(sha256(part.built()).hexdigest() for part in (tables, library)))"
     )
     found = {

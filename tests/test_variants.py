@@ -13,16 +13,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang import builtins, pipeline
-from aidl_lang.cli import main
-from aidl_lang.diagnostics import Diagnostic, apply_fixes
+from aidl_lang import pipeline
+from aidl_lang.checking import builtins
+from aidl_lang.checking.variants import FORBIDDEN, Variant
+from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.common.render import render
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import DiskWorld, MemoryWorld
 from aidl_lang.pipeline import Compiled
-from aidl_lang.reference.collect import reference
-from aidl_lang.reference.guide import guide
-from aidl_lang.render import render
-from aidl_lang.source import SourceFile
-from aidl_lang.variants import FORBIDDEN, Variant
-from aidl_lang.world import DiskWorld, MemoryWorld
+from aidl_lang.tools.cli import main
+from aidl_lang.tools.reference.collect import reference
+from aidl_lang.tools.reference.guide import guide
 from tests.amount import tries
 from tests.documents import ROOT
 from tests.property.programs import Part, Sketch, part, sketches

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang import library
-from aidl_lang.builtins import SIGNATURES
+from aidl_lang.checking import library
+from aidl_lang.checking.builtins import SIGNATURES
 
 PROMISED = {
     "geometry": "point line arc circle bezier ellipse",

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.world import DiskWorld, FileError, MemoryWorld, Reason, World, normalize, relative_to
+from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, Reason, World, normalize, relative_to
 
 
 @pytest.fixture(params=["disk", "memory"])

@@ -12,11 +12,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field, replace
 from zlib import crc32
 
-from aidl_lang import expression as ex
+from aidl_lang.building import expression as ex
 from aidl_lang.building.conditions import holds
-from aidl_lang.expression import Unknown
-from aidl_lang.model import Comparison, Constraint, Structure
-from aidl_lang.records import record
+from aidl_lang.building.expression import Unknown
+from aidl_lang.building.model import Comparison, Constraint, Structure
+from aidl_lang.common.records import record
 
 _NUDGE = 1e-4
 """By how much a position is moved to see whether a comparison feels it: too little to pass another."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from aidl_lang import ast
 from aidl_lang.building.state import Interpreter
-from aidl_lang.diagnostics import Edit, Fix
-from aidl_lang.source import Span
-from aidl_lang.values import PointVal, Value
+from aidl_lang.building.values import PointVal, Value
+from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
 
 ROUND = 0.01
 """The distances of start and end from the centre may differ by this part of the larger one unsaid."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from aidl_lang import ast
-from aidl_lang.types import Binding, Source
-from aidl_lang.units import LENGTH
-from aidl_lang.values import NOTHING, ListVal, Num, PointVal, Value
+from aidl_lang.building.values import NOTHING, ListVal, Num, PointVal, Value
+from aidl_lang.checking.types import Binding, Source
+from aidl_lang.checking.units import LENGTH
+from aidl_lang.syntax import ast
 
 
 def arranged(

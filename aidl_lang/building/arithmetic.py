@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
-from aidl_lang import ast, units
-from aidl_lang.boxes import spelled_out
+from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_point
 from aidl_lang.building.conditions import RELATIONS, holds
+from aidl_lang.building.expression import Expression
+from aidl_lang.building.model import Comparison, Geometry, Structure
+from aidl_lang.building.values import Num, PointVal
 from aidl_lang.building.wording import Wording
-from aidl_lang.diagnostics import Label
-from aidl_lang.expression import Expression
-from aidl_lang.model import Comparison, Geometry, Structure
-from aidl_lang.resolving.symbols import SymbolKind
-from aidl_lang.source import Span
-from aidl_lang.values import Num, PointVal
+from aidl_lang.checking import units
+from aidl_lang.checking.resolving.symbols import SymbolKind
+from aidl_lang.common.diagnostics import Label
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
 
 _DIGITS = range(6, 18)
 """In so many a number is shown: as few as tell the two sides apart."""
@@ -163,7 +164,7 @@ def _in_numbers(wording: Wording, node: ast.Expression, evaluate: Evaluate) -> s
     """A sum or product with numbers in place of names; empty for what is none."""
     if not _is_calculated(node):
         return ""
-    from aidl_lang.expression_printer import format_expression
+    from aidl_lang.syntax.expression_printer import format_expression
 
     return format_expression(_substituted(wording, node, evaluate))
 

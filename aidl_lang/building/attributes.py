@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from aidl_lang import ast, units
 from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.builtins import ATTRIBUTES, WORDED
-from aidl_lang.model import Geometry, Structure
-from aidl_lang.names import find
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     Nothing,
     Num,
     Text,
@@ -19,6 +16,10 @@ from aidl_lang.values import (
     holds,
     members,
 )
+from aidl_lang.checking import units
+from aidl_lang.checking.builtins import ATTRIBUTES, WORDED
+from aidl_lang.common.names import find
+from aidl_lang.syntax import ast
 
 
 def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attribute], scope: Scope) -> None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from aidl_lang import ast
+from aidl_lang.building.model import Structure
 from aidl_lang.building.scopes import Candidate, LetBinding, ParamBinding, Scope
 from aidl_lang.building.state import Ahead, Interpreter
-from aidl_lang.library import signature
-from aidl_lang.model import Structure
+from aidl_lang.checking.library import signature
+from aidl_lang.syntax import ast
 
 
 def run_block(it: Interpreter, statements: Sequence[ast.Statement], scope: Scope, here: Structure) -> None:

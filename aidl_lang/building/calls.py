@@ -4,36 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
-from aidl_lang import ast
-from aidl_lang.boxes import box_of
 from aidl_lang.building.arguments import arranged
 from aidl_lang.building.blocks import run_block
+from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import all_within, as_point, edge_coordinate
 from aidl_lang.building.conditions import all_of
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, refuses_measure, size, turn
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.lists import run
+from aidl_lang.building.model import Condition, Geometry
 from aidl_lang.building.outlines import remember, usable
 from aidl_lang.building.overloads import Site, candidates_of, no_overload, site_of, unknown_callable
 from aidl_lang.building.placing import placing, spliced
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.turning import ask_to_turn, is_of_directions
-from aidl_lang.builtins import COPYING
-from aidl_lang.model import Condition, Geometry
-from aidl_lang.types import (
-    ANY,
-    Binding,
-    BoxType,
-    ListType,
-    NumberType,
-    PointType,
-    Signature,
-    TruthType,
-    Type,
-)
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     NOTHING,
     Array,
     Instantiation,
@@ -47,6 +34,19 @@ from aidl_lang.values import (
     Value,
     members,
 )
+from aidl_lang.checking.builtins import COPYING
+from aidl_lang.checking.types import (
+    ANY,
+    Binding,
+    BoxType,
+    ListType,
+    NumberType,
+    PointType,
+    Signature,
+    TruthType,
+    Type,
+)
+from aidl_lang.syntax import ast
 
 
 def call(it: Interpreter, node: ast.Call, env: Env) -> Value:

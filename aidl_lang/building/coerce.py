@@ -8,15 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 
-from aidl_lang import ast, primitives, units
-from aidl_lang import expression as ex
-from aidl_lang.boxes import SIDES
+from aidl_lang.building import expression as ex
+from aidl_lang.building import primitives
+from aidl_lang.building.boxes import SIDES
+from aidl_lang.building.model import Geometry, Structure, common_ancestor
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.diagnostics import Edit, Fix
-from aidl_lang.model import Geometry, Structure, common_ancestor
-from aidl_lang.source import Span
-from aidl_lang.units import LENGTH, PLAIN
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     Array,
     ListVal,
     Nothing,
@@ -28,6 +25,11 @@ from aidl_lang.values import (
     length,
     members,
 )
+from aidl_lang.checking import units
+from aidl_lang.checking.units import LENGTH, PLAIN
+from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
 
 
 def as_written(value: Value) -> Value:

@@ -7,15 +7,13 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import TypeAlias
 
-from aidl_lang import ast, units
-from aidl_lang import expression as ex
-from aidl_lang.boxes import box_of, boxes_in, source_unknowns, spelled_out
+from aidl_lang.building import expression as ex
+from aidl_lang.building.boxes import box_of, boxes_in, source_unknowns, spelled_out
 from aidl_lang.building.coerce import as_point, numeric
+from aidl_lang.building.expression import Expression, Unknown
+from aidl_lang.building.model import Comparison, Condition, Structure
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.expression import Expression, Unknown
-from aidl_lang.model import Comparison, Condition, Structure
-from aidl_lang.units import ANGLE, LENGTH
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     NOTHING,
     Array,
     ListVal,
@@ -27,6 +25,9 @@ from aidl_lang.values import (
     kind_of,
     members,
 )
+from aidl_lang.checking import units
+from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.syntax import ast
 
 RELATIONS = ("==", "<=", ">=", "<", ">")
 """What can constrain; `!=` can only be asserted or tested."""

@@ -10,19 +10,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from aidl_lang import ast
-from aidl_lang import expression as ex
-from aidl_lang.boxes import SIDES
+from aidl_lang.building import expression as ex
 from aidl_lang.building.arcs import ROUND, check_bare_points, differ
+from aidl_lang.building.boxes import SIDES
 from aidl_lang.building.conditions import all_of, compare_numbers
+from aidl_lang.building.expression import Expression
 from aidl_lang.building.lettering import typeset
+from aidl_lang.building.model import Constraint, Geometry, Measurement, Structure, is_size
+from aidl_lang.building.primitives import direction, distance, polar
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.expression import Expression
-from aidl_lang.model import Constraint, Geometry, Measurement, Structure, is_size
-from aidl_lang.primitives import direction, distance, polar
-from aidl_lang.source import Span
-from aidl_lang.units import ANGLE, LENGTH, MaybeDimension
-from aidl_lang.values import Nothing, Num, PointVal, Status, Value, length, point
+from aidl_lang.building.values import Nothing, Num, PointVal, Status, Value, length, point
+from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
 
 Arguments = Mapping[str, Value]
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
-from aidl_lang import ast
-from aidl_lang import expression as ex
-from aidl_lang.boxes import box_of, spelled_out
+from aidl_lang.building import expression as ex
+from aidl_lang.building.boxes import box_of, spelled_out
 from aidl_lang.building.coerce import as_written
 from aidl_lang.building.derive import Copier
 from aidl_lang.building.members import read
+from aidl_lang.building.model import Geometry, Structure, convert, reach_of
 from aidl_lang.building.motion import (
     NOWHERE,
     Motion,
@@ -25,12 +25,10 @@ from aidl_lang.building.motion import (
     translation,
     turned,
 )
+from aidl_lang.building.primitives import translate, view, xy
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.model import Geometry, Structure, convert, reach_of
-from aidl_lang.primitives import translate, view, xy
-from aidl_lang.units import LENGTH
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     NOTHING,
     Array,
     Instantiation,
@@ -45,6 +43,8 @@ from aidl_lang.values import (
     members,
     number,
 )
+from aidl_lang.checking.units import LENGTH
+from aidl_lang.syntax import ast
 
 Arguments = Mapping[str, Value]
 

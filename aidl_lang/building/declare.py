@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from aidl_lang import ast
 from aidl_lang.building.coerce import whole
 from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.scopes import LetBinding, Scope, VarBinding, indexed
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.builtins import EVERYWHERE
-from aidl_lang.model import Geometry, Structure
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     Array,
     ListVal,
     Nothing,
     Value,
 )
+from aidl_lang.checking.builtins import EVERYWHERE
+from aidl_lang.syntax import ast
 
 
 def declare(

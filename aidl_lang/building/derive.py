@@ -5,20 +5,20 @@ from __future__ import annotations
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
-from aidl_lang import expression as ex
+from aidl_lang.building import expression as ex
+from aidl_lang.building.model import Frame, Geometry, Structure
 from aidl_lang.building.motion import STILL, Motion, opposite
 from aidl_lang.building.outlines import keep_unnamed
+from aidl_lang.building.primitives import DIRECTIONS, clockwise, translate
 from aidl_lang.building.scopes import Binding, CopiedBinding, LetBinding, Scope
 from aidl_lang.building.state import Interpreter
-from aidl_lang.builtins import EVERYWHERE
-from aidl_lang.model import Frame, Geometry, Structure
-from aidl_lang.primitives import DIRECTIONS, clockwise, translate
-from aidl_lang.records import record
-from aidl_lang.source import Span
-from aidl_lang.values import Array, ListVal, Num, Pattern, PointVal, RecordVal
+from aidl_lang.building.values import Array, ListVal, Num, Pattern, PointVal, RecordVal
+from aidl_lang.checking.builtins import EVERYWHERE
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
 
 if TYPE_CHECKING:
-    from aidl_lang.values import Value
+    from aidl_lang.building.values import Value
 
 _OPPOSITE = {"left": "right", "right": "left", "top": "bottom", "bottom": "top"}
 _SIDES = frozenset(_OPPOSITE)

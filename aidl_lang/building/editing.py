@@ -5,20 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from aidl_lang import ast
-from aidl_lang import expression as ex
+from aidl_lang.building import expression as ex
 from aidl_lang.building.copies import centre_of
 from aidl_lang.building.derive import Copier
 from aidl_lang.building.edits import Edit, follows, motion_of, referred, refuse
 from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.model import Geometry
 from aidl_lang.building.motion import STILL, Motion, turned
+from aidl_lang.building.primitives import DIRECTIONS, xy
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.model import Geometry
-from aidl_lang.primitives import DIRECTIONS, xy
-from aidl_lang.records import record
-from aidl_lang.types import Binding, PointType
-from aidl_lang.units import ANGLE, LENGTH, UNITS
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     ListVal,
     Num,
     PointVal,
@@ -26,6 +22,10 @@ from aidl_lang.values import (
     Value,
     number,
 )
+from aidl_lang.checking.types import Binding, PointType
+from aidl_lang.checking.units import ANGLE, LENGTH, UNITS
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
 
 _CLOSE = 1e-9
 """How far two numbers may differ, relative to the size of the shape, and count as one."""

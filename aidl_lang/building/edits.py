@@ -11,9 +11,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TypeVar
 
-from aidl_lang import ast
-from aidl_lang import expression as ex
-from aidl_lang.binding import select
+from aidl_lang.building import expression as ex
 from aidl_lang.building.arguments import arranged
 from aidl_lang.building.blocks import hoist_values
 from aidl_lang.building.calls import bound
@@ -21,17 +19,12 @@ from aidl_lang.building.coerce import as_written, whole
 from aidl_lang.building.copies import motion_for
 from aidl_lang.building.derive import Copier
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
+from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.motion import STILL, Motion, Place, after
 from aidl_lang.building.overloads import find_candidates
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.builtins import EDITS
-from aidl_lang.model import Geometry, Structure
-from aidl_lang.names import fold
-from aidl_lang.records import record
-from aidl_lang.types import Given
-from aidl_lang.units import ANGLE
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     NOTHING,
     Array,
     Instantiation,
@@ -46,6 +39,13 @@ from aidl_lang.values import (
     number,
     type_of,
 )
+from aidl_lang.checking.binding import select
+from aidl_lang.checking.builtins import EDITS
+from aidl_lang.checking.types import Given
+from aidl_lang.checking.units import ANGLE
+from aidl_lang.common.names import fold
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
 
 T = TypeVar("T")
 

@@ -6,19 +6,15 @@ import math
 from collections.abc import Callable
 from functools import partial
 
-from aidl_lang import ast, units
-from aidl_lang import expression as ex
+from aidl_lang.building import expression as ex
 from aidl_lang.building import lists
 from aidl_lang.building.coerce import as_point, as_written, constant, coordinate, numeric, whole
 from aidl_lang.building.conditions import compare, conjunction, holds, negation
 from aidl_lang.building.members import member, no_index, not_built, read
+from aidl_lang.building.model import Condition, Geometry
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.builtins import WORDS
-from aidl_lang.model import Condition, Geometry
-from aidl_lang.names import nearest
-from aidl_lang.units import UNITS
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     NOTHING,
     Array,
     ListVal,
@@ -33,6 +29,11 @@ from aidl_lang.values import (
     members,
     number,
 )
+from aidl_lang.checking import units
+from aidl_lang.checking.builtins import WORDS
+from aidl_lang.checking.units import UNITS
+from aidl_lang.common.names import nearest
+from aidl_lang.syntax import ast
 
 
 def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:

@@ -5,20 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from aidl_lang import ast, units
-from aidl_lang import expression as ex
-from aidl_lang.boxes import spelled_out
 from aidl_lang.building import copies, lists, patterns, shapes
+from aidl_lang.building import expression as ex
+from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_point, as_written, constant, numeric
 from aidl_lang.building.conditions import compare_numbers
+from aidl_lang.building.expression import DEGREE, Expression
 from aidl_lang.building.lettering import ink
+from aidl_lang.building.model import Geometry, Measurement, Structure
 from aidl_lang.building.outlines import OPERATIONS
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.expression import DEGREE, Expression
-from aidl_lang.model import Geometry, Measurement, Structure
-from aidl_lang.names import find, nearest
-from aidl_lang.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     NOTHING,
     ListVal,
     Num,
@@ -31,6 +28,10 @@ from aidl_lang.values import (
     members,
     number,
 )
+from aidl_lang.checking import units
+from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension
+from aidl_lang.common.names import find, nearest
+from aidl_lang.syntax import ast
 
 Arguments = Mapping[str, Value]
 Function = Callable[[Interpreter, Arguments, ast.Call, Env], Value]

@@ -4,21 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from aidl_lang import ast
-from aidl_lang import expression as ex
-from aidl_lang.boxes import SIDES, Box
+from aidl_lang.building import expression as ex
 from aidl_lang.building.arithmetic import compared, differences, givens, sides
+from aidl_lang.building.boxes import SIDES, Box
 from aidl_lang.building.coerce import as_point
 from aidl_lang.building.conditions import EXACT, RELATIONS, all_of, compare_numbers, placed_by, value_unknowns
 from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.model import (
+    Assertion,
+    Comparison,
+    Condition,
+    Constraint,
+    Geometry,
+    Measurement,
+    Structure,
+)
+from aidl_lang.building.primitives import defining
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.turning import ask_to_turn
+from aidl_lang.building.values import (
+    Array,
+    ListVal,
+    Nothing,
+    Num,
+    PointVal,
+    Text,
+    Value,
+    kind_of,
+    members,
+    number,
+)
 from aidl_lang.building.wording import Read, Wording
-from aidl_lang.model import Assertion, Comparison, Condition, Constraint, Geometry, Measurement, Structure
-from aidl_lang.names import fold
-from aidl_lang.primitives import defining
-from aidl_lang.units import LENGTH
-from aidl_lang.values import Array, ListVal, Nothing, Num, PointVal, Text, Value, kind_of, members, number
+from aidl_lang.checking.units import LENGTH
+from aidl_lang.common.names import fold
+from aidl_lang.syntax import ast
 
 
 def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None = None) -> None:

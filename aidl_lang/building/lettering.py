@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from aidl_lang import ast, lettering
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.lettering import Glyph
-from aidl_lang.values import NOTHING, Num, RecordVal, Text, Value, number
+from aidl_lang.building.values import NOTHING, Num, RecordVal, Text, Value, number
+from aidl_lang.common import lettering
+from aidl_lang.common.lettering import Glyph
+from aidl_lang.syntax import ast
 
 Arguments = Mapping[str, Value]
 

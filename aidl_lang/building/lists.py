@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from aidl_lang import ast
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.names import find, nearest
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     NOTHING,
     ListVal,
     Num,
@@ -22,6 +20,8 @@ from aidl_lang.values import (
     members,
     number,
 )
+from aidl_lang.common.names import find, nearest
+from aidl_lang.syntax import ast
 
 Arguments = Mapping[str, Value]
 

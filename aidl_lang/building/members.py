@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from aidl_lang import ast, boxes, primitives
-from aidl_lang.boxes import Box
+from aidl_lang.building import boxes, primitives
+from aidl_lang.building.boxes import Box
 from aidl_lang.building.coerce import as_written, may_read
 from aidl_lang.building.lists import entry
+from aidl_lang.building.model import Condition, Geometry, Structure
 from aidl_lang.building.outlines import finish_size
 from aidl_lang.building.params import read_param
 from aidl_lang.building.scopes import (
@@ -22,13 +23,7 @@ from aidl_lang.building.scopes import (
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.templates import read_passed
 from aidl_lang.building.turning import unlock
-from aidl_lang.builtins import FINISHES, ROTATION
-from aidl_lang.diagnostics import Edit, Fix, Label
-from aidl_lang.model import Condition, Geometry, Structure
-from aidl_lang.names import find, fold, nearest
-from aidl_lang.synonyms import MEMBERS
-from aidl_lang.units import ANGLE
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     NOTHING,
     Array,
     ListVal,
@@ -43,6 +38,12 @@ from aidl_lang.values import (
     kind_of,
     members,
 )
+from aidl_lang.checking.builtins import FINISHES, ROTATION
+from aidl_lang.checking.synonyms import MEMBERS
+from aidl_lang.checking.units import ANGLE
+from aidl_lang.common.diagnostics import Edit, Fix, Label
+from aidl_lang.common.names import find, fold, nearest
+from aidl_lang.syntax import ast
 
 
 def not_built(it: Interpreter, node: ast.Name, branch: ast.If) -> Value:

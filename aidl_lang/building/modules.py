@@ -5,17 +5,17 @@ from __future__ import annotations
 import re
 from pathlib import PurePath
 
-from aidl_lang import ast
 from aidl_lang.building.blocks import hoist_callables, hoist_values, run_block
 from aidl_lang.building.construct import hidden_constraints
+from aidl_lang.building.model import Structure
 from aidl_lang.building.params import read_param, report_unused
 from aidl_lang.building.scopes import ParamBinding, Scope
 from aidl_lang.building.state import Interpreter
 from aidl_lang.building.structures import build_structure, finish, own_names
-from aidl_lang.model import Structure
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     Namespace,
 )
+from aidl_lang.syntax import ast
 
 
 def run_module(it: Interpreter, library: Scope) -> Structure:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from aidl_lang import expression as ex
-from aidl_lang.expression import Expression
-from aidl_lang.model import Frame
-from aidl_lang.primitives import direction, xy
-from aidl_lang.records import record
-from aidl_lang.units import MaybeDimension
-from aidl_lang.values import Num, PointVal
+from aidl_lang.building import expression as ex
+from aidl_lang.building.expression import Expression
+from aidl_lang.building.model import Frame
+from aidl_lang.building.primitives import direction, xy
+from aidl_lang.building.values import Num, PointVal
+from aidl_lang.checking.units import MaybeDimension
+from aidl_lang.common.records import record
 
 Place = tuple[Expression, Expression]
 

@@ -5,18 +5,29 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from aidl_lang import ast
-from aidl_lang.boxes import spelled_out
+from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_written, may_read, owners_of
 from aidl_lang.building.construct import size
+from aidl_lang.building.model import SIZES, Finish, Geometry, Recipe, Structure, convert_point, reach_of
 from aidl_lang.building.scopes import Candidate
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.builtins import FINISHES, OUTLINES
-from aidl_lang.model import SIZES, Finish, Geometry, Recipe, Structure, convert_point, reach_of
-from aidl_lang.names import find, fold
-from aidl_lang.records import record
-from aidl_lang.units import LENGTH
-from aidl_lang.values import NOTHING, ListVal, Num, PointVal, Status, Text, Value, kind_of, length, members
+from aidl_lang.building.values import (
+    NOTHING,
+    ListVal,
+    Num,
+    PointVal,
+    Status,
+    Text,
+    Value,
+    kind_of,
+    length,
+    members,
+)
+from aidl_lang.checking.builtins import FINISHES, OUTLINES
+from aidl_lang.checking.units import LENGTH
+from aidl_lang.common.names import find, fold
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
 
 Arguments = Mapping[str, Value]
 Function = Callable[[Interpreter, Arguments, ast.Call, Env], Value]

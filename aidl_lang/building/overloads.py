@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
-from aidl_lang import ast
-from aidl_lang.binding import select
 from aidl_lang.building.scopes import Candidate, Scope
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.builtins import CUTS, DERIVING, OUTLINES, PATTERNS, SIGNATURES, is_word
-from aidl_lang.names import find, nearest
-from aidl_lang.resolving.cuts import meant
-from aidl_lang.resolving.symbols import Symbol, SymbolKind
-from aidl_lang.types import ANY, PRIMITIVES, Binding, Given, Mismatch, Signature, Type, with_article
-from aidl_lang.values import Namespace, Text, Value, kind_of, type_of
+from aidl_lang.building.values import Namespace, Text, Value, kind_of, type_of
+from aidl_lang.checking.binding import select
+from aidl_lang.checking.builtins import CUTS, DERIVING, OUTLINES, PATTERNS, SIGNATURES, is_word
+from aidl_lang.checking.resolving.cuts import meant
+from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.checking.types import ANY, PRIMITIVES, Binding, Given, Mismatch, Signature, Type, with_article
+from aidl_lang.common.names import find, nearest
+from aidl_lang.syntax import ast
 
 _NO_NAMES: Mapping[ast.Node, Symbol] = {}
 _DRAWING = PATTERNS.union(PRIMITIVES)

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import re
 
-from aidl_lang import ast, units
-from aidl_lang import expression as ex
+from aidl_lang.building import expression as ex
 from aidl_lang.building.coerce import constant
+from aidl_lang.building.model import Knob, Structure
 from aidl_lang.building.scopes import ParamBinding
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.diagnostics import Edit, Fix
-from aidl_lang.model import Knob, Structure
-from aidl_lang.names import fold, nearest
-from aidl_lang.source import Span
-from aidl_lang.units import UNITS
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     NOTHING,
     Nothing,
     Num,
@@ -26,6 +21,12 @@ from aidl_lang.values import (
     members,
     number,
 )
+from aidl_lang.checking import units
+from aidl_lang.checking.units import UNITS
+from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.names import fold, nearest
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-z]*)\s*")
 _RANGE_SLACK = 1e-9

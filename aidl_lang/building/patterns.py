@@ -9,19 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from itertools import product
 
-from aidl_lang import ast
-from aidl_lang import expression as ex
+from aidl_lang.building import expression as ex
 from aidl_lang.building.coerce import whole
 from aidl_lang.building.construct import positions, size
 from aidl_lang.building.copies import centre_of, copied
+from aidl_lang.building.expression import Expression
+from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.motion import NOWHERE, Motion, Place, turned
+from aidl_lang.building.primitives import defining, xy
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.expression import Expression
-from aidl_lang.model import Geometry, Structure
-from aidl_lang.primitives import defining, xy
-from aidl_lang.records import record
-from aidl_lang.units import ANGLE, LENGTH
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     NOTHING,
     Instantiation,
     Nothing,
@@ -34,6 +31,9 @@ from aidl_lang.values import (
     number,
     point,
 )
+from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
 
 Arguments = Mapping[str, Value]
 Index = tuple[int, ...]

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from aidl_lang import ast
 from aidl_lang.building.conditions import replace_placed, value_unknowns
+from aidl_lang.building.model import Condition
 from aidl_lang.building.state import Env
-from aidl_lang.model import Condition
-from aidl_lang.names import fold
-from aidl_lang.types import PEERS, Binding, BoxType, GeometryType, PointType, StructureType
-from aidl_lang.values import Num, Value, members
+from aidl_lang.building.values import Num, Value, members
+from aidl_lang.checking.types import PEERS, Binding, BoxType, GeometryType, PointType, StructureType
+from aidl_lang.common.names import fold
+from aidl_lang.syntax import ast
 
 
 def placing(

@@ -10,15 +10,15 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING, TypeAlias
 
-from aidl_lang import ast
-from aidl_lang.expression import Unknown
-from aidl_lang.model import Geometry, Structure
-from aidl_lang.names import Spellings
-from aidl_lang.records import record
-from aidl_lang.types import Signature
+from aidl_lang.building.expression import Unknown
+from aidl_lang.building.model import Geometry, Structure
+from aidl_lang.checking.types import Signature
+from aidl_lang.common.names import Spellings
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
-    from aidl_lang.values import Value
+    from aidl_lang.building.values import Value
 
 
 def indexed(name: str, indices: Sequence[int]) -> str:

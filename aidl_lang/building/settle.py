@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from dataclasses import field, replace
 
-from aidl_lang import ast
-from aidl_lang import expression as ex
+from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import read_attributes
 from aidl_lang.building.declare import give_name
 from aidl_lang.building.derive import Copier
+from aidl_lang.building.model import Frame, Geometry, Structure
 from aidl_lang.building.motion import STILL, Motion, of_frame
 from aidl_lang.building.scopes import Scope, indexed
 from aidl_lang.building.state import Interpreter
 from aidl_lang.building.structures import instantiate
-from aidl_lang.model import Frame, Geometry, Structure
-from aidl_lang.records import record
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     NOTHING,
     Instantiation,
     ListVal,
@@ -24,6 +22,8 @@ from aidl_lang.values import (
     StructureCopy,
     Value,
 )
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
 
 _WAITING = Instantiation | StructureCopy | Pattern | ListVal
 

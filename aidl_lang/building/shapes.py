@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from aidl_lang import ast
 from aidl_lang.building.coerce import look
+from aidl_lang.building.model import Geometry
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.model import Geometry
-from aidl_lang.units import LENGTH
-from aidl_lang.values import NOTHING, ListVal, Num, PointVal, Text, Value
+from aidl_lang.building.values import NOTHING, ListVal, Num, PointVal, Text, Value
+from aidl_lang.checking.units import LENGTH
+from aidl_lang.syntax import ast
 
 Arguments = Mapping[str, Value]
 

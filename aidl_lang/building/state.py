@@ -8,19 +8,19 @@ from dataclasses import field
 from enum import Enum
 from typing import TYPE_CHECKING, NoReturn
 
-from aidl_lang import ast
-from aidl_lang import expression as ex
+from aidl_lang.building import expression as ex
+from aidl_lang.building.expression import Unknown
+from aidl_lang.building.model import Assertion, Comparison, Constraint, Geometry, Knob, Literal, Structure
 from aidl_lang.building.scopes import Scope
-from aidl_lang.cancelling import OutOfTime, checkpoint
-from aidl_lang.diagnostics import MOST_ERRORS, Diagnostic, Fix, Label
-from aidl_lang.expression import Unknown
-from aidl_lang.model import Assertion, Comparison, Constraint, Geometry, Knob, Literal, Structure
-from aidl_lang.records import record
-from aidl_lang.source import Span
+from aidl_lang.building.values import ListVal, Num, PointVal, RecordVal, Text, Value
+from aidl_lang.checking.types import Binding, Signature
+from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
+from aidl_lang.common.cancelling import OutOfTime, checkpoint
+from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Fix, Label
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
-from aidl_lang.types import Binding, Signature
-from aidl_lang.units import ANGLE, LENGTH, MaybeDimension
-from aidl_lang.values import ListVal, Num, PointVal, RecordVal, Text, Value
 
 if TYPE_CHECKING:
     from aidl_lang.building.derive import Copier

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from aidl_lang import ast
 from aidl_lang.building.blocks import hoist_values
 from aidl_lang.building.coerce import numeric
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.impose import impose, record_assertion
+from aidl_lang.building.model import Structure
 from aidl_lang.building.scopes import LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.model import Structure
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     Nothing,
 )
+from aidl_lang.syntax import ast
 
 
 def read_constraint(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) -> None:

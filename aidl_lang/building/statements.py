@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from aidl_lang import ast
-from aidl_lang import expression as ex
+from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import read_own_attributes
 from aidl_lang.building.blocks import declared_names, run_block
 from aidl_lang.building.coerce import as_point, numeric
@@ -16,13 +15,13 @@ from aidl_lang.building.editing import Placed, edited
 from aidl_lang.building.edits import check_edit, edits_on, is_edit
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.impose import record_assertion
+from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.params import read_param
 from aidl_lang.building.scopes import LetBinding, ParamBinding, Scope, VarBinding
 from aidl_lang.building.settle import Settling
 from aidl_lang.building.state import Env, Executor, Interpreter, Reach
 from aidl_lang.building.structures import build_structure, place_of
-from aidl_lang.model import Geometry, Structure
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     NOTHING,
     Array,
     Instantiation,
@@ -37,6 +36,7 @@ from aidl_lang.values import (
     holds,
     kind_of,
 )
+from aidl_lang.syntax import ast
 
 
 def _assign(it: Interpreter, node: ast.Assign, scope: Scope, here: Structure) -> None:

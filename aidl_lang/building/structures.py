@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from aidl_lang import ast
-from aidl_lang import expression as ex
+from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import read_attributes
 from aidl_lang.building.blocks import run_block
 from aidl_lang.building.calls import default_of
@@ -13,14 +12,12 @@ from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.construct import solvable
 from aidl_lang.building.edits import Edit, edits_on, frame_edited
 from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.model import Frame, Geometry, Structure
 from aidl_lang.building.scopes import Scope, indexed
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.stated import read_constraint
 from aidl_lang.building.templates import passed
-from aidl_lang.builtins import FINISHES, ROTATION
-from aidl_lang.model import Frame, Geometry, Structure
-from aidl_lang.units import ANGLE, LENGTH
-from aidl_lang.values import (
+from aidl_lang.building.values import (
     NOTHING,
     Instantiation,
     Nothing,
@@ -31,6 +28,9 @@ from aidl_lang.values import (
     number,
     point,
 )
+from aidl_lang.checking.builtins import FINISHES, ROTATION
+from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.syntax import ast
 
 _PLAN = 10.0
 """Width and height at which the box of an empty structure starts, in mm."""

@@ -7,14 +7,14 @@ structure holds.
 
 from __future__ import annotations
 
-from aidl_lang import ast
 from aidl_lang.building.coerce import as_written
 from aidl_lang.building.conditions import compare_numbers
 from aidl_lang.building.construct import positions, refuses_measure
+from aidl_lang.building.model import Condition, Constraint, Geometry, Structure, convert_point
 from aidl_lang.building.scopes import PassedBinding
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.model import Condition, Constraint, Geometry, Structure, convert_point
-from aidl_lang.values import Num, PointVal, RecordVal, Status, Value, kind_of, members
+from aidl_lang.building.values import Num, PointVal, RecordVal, Status, Value, kind_of, members
+from aidl_lang.syntax import ast
 
 
 def passed(

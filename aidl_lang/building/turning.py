@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from aidl_lang import expression as ex
-from aidl_lang.expression import Expression
-from aidl_lang.model import Comparison
-from aidl_lang.types import Signature
+from aidl_lang.building import expression as ex
+from aidl_lang.building.expression import Expression
+from aidl_lang.building.model import Comparison
+from aidl_lang.checking.types import Signature
 
 _OF_DIRECTIONS = frozenset({"parallel", "perpendicular", "angle", "collinear"})
 """Constraints on the directions of lines, which may be edges of shapes."""

@@ -10,12 +10,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
 from typing import TypeVar
 
-from aidl_lang import ast
+from aidl_lang.building.model import Comparison, Condition, Geometry, Structure
 from aidl_lang.building.state import Env, Interpreter, Stop
-from aidl_lang.cancelling import limited_to
-from aidl_lang.model import Comparison, Condition, Geometry, Structure
-from aidl_lang.records import record
-from aidl_lang.values import Num, PointVal, Value, members
+from aidl_lang.building.values import Num, PointVal, Value, members
+from aidl_lang.common.cancelling import limited_to
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
 
 _Tree = TypeVar("_Tree", bound=ast.Node)
 

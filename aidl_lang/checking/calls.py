@@ -6,15 +6,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from aidl_lang import ast, units
-from aidl_lang.binding import outcomes
-from aidl_lang.builtins import COPYING, PATTERNS, is_word
-from aidl_lang.checking import fields
+from aidl_lang.checking import fields, units
+from aidl_lang.checking.binding import outcomes
+from aidl_lang.checking.builtins import COPYING, PATTERNS, is_word
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, Place, joined
 from aidl_lang.checking.habits import check_habits
+from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.checking.standard import CONSTANT, result
-from aidl_lang.resolving.symbols import Symbol, SymbolKind
-from aidl_lang.types import (
+from aidl_lang.checking.types import (
     ANY,
     AnyType,
     Binding,
@@ -29,6 +28,7 @@ from aidl_lang.types import (
     TruthType,
     Type,
 )
+from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
     from aidl_lang.checking.infer import Inference

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from aidl_lang import ast
-from aidl_lang.builtins import EDITS, FINISHES
+from aidl_lang.checking.builtins import EDITS, FINISHES
 from aidl_lang.checking.infer import Inference
+from aidl_lang.checking.resolving.declare import made_by
+from aidl_lang.checking.resolving.symbols import SymbolKind
+from aidl_lang.checking.types import AnyType, GeometryType, NumberType, PointType, StructureType, TruthType
 from aidl_lang.checking.wording import a, shown
-from aidl_lang.diagnostics import Edit, Fix
-from aidl_lang.resolving.declare import made_by
-from aidl_lang.resolving.symbols import SymbolKind
-from aidl_lang.source import Span
-from aidl_lang.types import AnyType, GeometryType, NumberType, PointType, StructureType, TruthType
+from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
 
 _OPERATIONS = EDITS | FINISHES
 """Calls that are statements of their own: they edit what was written, and are no conditions."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from aidl_lang import ast
 from aidl_lang.checking.infer import Inference
-from aidl_lang.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.syntax import ast
 
 
 def find_cycles(infer: Inference) -> None:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from aidl_lang import ast
-from aidl_lang.records import record
-from aidl_lang.resolving.symbols import Symbol
-from aidl_lang.types import ANY, AnyType, GeometryType, ListType, NumberType, PointType, Type
+from aidl_lang.checking.resolving.symbols import Symbol
+from aidl_lang.checking.types import ANY, AnyType, GeometryType, ListType, NumberType, PointType, Type
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
 
 
 @record(slots=True)

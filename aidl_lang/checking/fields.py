@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from aidl_lang.builtins import FINISHES, ROTATION
-from aidl_lang.names import fold
-from aidl_lang.types import (
+from aidl_lang.checking.builtins import FINISHES, ROTATION
+from aidl_lang.checking.types import (
     ANY,
     BoxType,
     GeometryType,
@@ -17,7 +16,8 @@ from aidl_lang.types import (
     TextType,
     Type,
 )
-from aidl_lang.units import ANGLE, LENGTH
+from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.common.names import fold
 
 _LENGTH, _ANGLE, _POINT = NumberType(LENGTH), NumberType(ANGLE), PointType()
 

@@ -9,15 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
-from aidl_lang import ast, units
-from aidl_lang.checking import calls, members, named, operators
+from aidl_lang.checking import calls, members, named, operators, units
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, joined
-from aidl_lang.checking.wording import a, shown
-from aidl_lang.diagnostics import MOST_ERRORS, Diagnostic, Edit, Fix, Label
-from aidl_lang.resolving.resolution import Resolution
-from aidl_lang.resolving.symbols import Symbol
-from aidl_lang.source import SourceFile, Span
-from aidl_lang.types import (
+from aidl_lang.checking.resolving.resolution import Resolution
+from aidl_lang.checking.resolving.symbols import Symbol
+from aidl_lang.checking.types import (
     ANY,
     AnyType,
     Binding,
@@ -31,7 +27,11 @@ from aidl_lang.types import (
     TruthType,
     Type,
 )
-from aidl_lang.units import ANGLE, LENGTH, PLAIN, UNITS, MaybeDimension
+from aidl_lang.checking.units import ANGLE, LENGTH, PLAIN, UNITS, MaybeDimension
+from aidl_lang.checking.wording import a, shown
+from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Edit, Fix, Label
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.syntax import ast
 
 _DEEPEST = 120
 """How deep expressions and the names in them are followed: within the interpreter's usual limit on frames."""

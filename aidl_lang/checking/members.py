@@ -6,18 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from aidl_lang import ast
 from aidl_lang.checking import fields
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, Place
 from aidl_lang.checking.named import of_symbol
+from aidl_lang.checking.resolving.complaints import respell
+from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.checking.standard import body_of, part
-from aidl_lang.checking.wording import a, shown
-from aidl_lang.diagnostics import Edit, Fix
-from aidl_lang.names import find, fold, nearest
-from aidl_lang.resolving.complaints import respell
-from aidl_lang.resolving.symbols import Symbol, SymbolKind
-from aidl_lang.synonyms import MEMBERS
-from aidl_lang.types import (
+from aidl_lang.checking.synonyms import MEMBERS
+from aidl_lang.checking.types import (
     ANY,
     AnyType,
     BoxType,
@@ -28,6 +24,10 @@ from aidl_lang.types import (
     StructureType,
     Type,
 )
+from aidl_lang.checking.wording import a, shown
+from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.names import find, fold, nearest
+from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
     from aidl_lang.checking.infer import Inference

@@ -5,16 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from aidl_lang import ast
 from aidl_lang.checking.habits import two_sizes
-from aidl_lang.checking.wording import shown
-from aidl_lang.diagnostics import Edit, Fix
-from aidl_lang.lexicon import WORDS
-from aidl_lang.names import fold, is_slip, nearest
-from aidl_lang.resolving.complaints import called_field, respell
-from aidl_lang.source import Span
-from aidl_lang.synonyms import FIELDS, PAIRS, PARAMETERS
-from aidl_lang.types import (
+from aidl_lang.checking.resolving.complaints import called_field, respell
+from aidl_lang.checking.synonyms import FIELDS, PAIRS, PARAMETERS
+from aidl_lang.checking.types import (
     Given,
     ListType,
     Mismatch,
@@ -23,6 +17,12 @@ from aidl_lang.types import (
     Signature,
     accepts,
 )
+from aidl_lang.checking.wording import shown
+from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.lexicon import WORDS
+from aidl_lang.common.names import fold, is_slip, nearest
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
     from aidl_lang.checking.infer import Inference

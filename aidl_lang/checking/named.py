@@ -5,12 +5,20 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from aidl_lang import ast
 from aidl_lang.checking import fields
 from aidl_lang.checking.facts import UNKNOWN, Fact, Place, joined
-from aidl_lang.names import find
-from aidl_lang.resolving.symbols import Symbol, SymbolKind
-from aidl_lang.types import ANY, PARAMETER_TYPES, ListType, NumberType, RangeType, StructureType, Type
+from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.checking.types import (
+    ANY,
+    PARAMETER_TYPES,
+    ListType,
+    NumberType,
+    RangeType,
+    StructureType,
+    Type,
+)
+from aidl_lang.common.names import find
+from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
     from aidl_lang.checking.infer import Inference

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from aidl_lang import ast, units
+from aidl_lang.checking import units
 from aidl_lang.checking.facts import Fact, is_number, is_point
-from aidl_lang.checking.wording import a, comparison_hint, shown
-from aidl_lang.types import (
+from aidl_lang.checking.types import (
     ANY,
     ListType,
     NumberType,
@@ -16,6 +15,8 @@ from aidl_lang.types import (
     TextType,
     TruthType,
 )
+from aidl_lang.checking.wording import a, comparison_hint, shown
+from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
     from aidl_lang.checking.infer import Inference

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from aidl_lang import ast
 from aidl_lang.checking.facts import NOTHING_READ
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.named import of_symbol
-from aidl_lang.records import record
-from aidl_lang.resolving.symbols import Scope, Symbol, SymbolKind
-from aidl_lang.source import Span
+from aidl_lang.checking.resolving.symbols import Scope, Symbol, SymbolKind
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
 
 _ATOMS = ast.Name | ast.Member | ast.Index | ast.Call | ast.Number | ast.Point | ast.List
 

@@ -6,13 +6,13 @@ import threading
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from aidl_lang import ast
 from aidl_lang.checking.facts import Fact
+from aidl_lang.checking.library import Library
 from aidl_lang.checking.named import of_symbol
-from aidl_lang.library import Library
-from aidl_lang.names import fold
-from aidl_lang.resolving.symbols import Scope
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.checking.resolving.symbols import Scope
+from aidl_lang.common.names import fold
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
     from aidl_lang.checking.infer import Inference
@@ -89,6 +89,6 @@ _ONE_AT_A_TIME = threading.Lock()  # an inference is not to be asked by two thre
 def _alone(library: Library, definition: ast.Node) -> Inference:
     """What finds out about one definition: for it, the library is the program."""
     from aidl_lang.checking.infer import Inference  # which asks this module
-    from aidl_lang.resolve import resolve
+    from aidl_lang.checking.resolve import resolve
 
     return Inference(resolve(_EMPTY, None, library), standard=())

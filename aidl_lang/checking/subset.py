@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from aidl_lang import ast
-from aidl_lang.builtins import EDITS, FINISHES
+from aidl_lang.checking.builtins import EDITS, FINISHES
 from aidl_lang.checking.infer import Inference
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.names import fold
-from aidl_lang.source import Span
-from aidl_lang.types import AnyType, StructureType, TruthType, Type
-from aidl_lang.variants import FORBIDDEN, Construct, Variant, instead, speaks_of_absent
+from aidl_lang.checking.types import AnyType, StructureType, TruthType, Type
+from aidl_lang.checking.variants import FORBIDDEN, Construct, Variant, instead, speaks_of_absent
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.names import fold
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
 
 _WHOLE = frozenset({"E0406", "E0408"})
 """Codes that speak of a whole statement: what else is wrong inside it goes with it."""

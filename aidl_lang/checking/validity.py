@@ -13,18 +13,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from aidl_lang import ast
-from aidl_lang.binding import select
-from aidl_lang.builtins import DERIVING, PATTERNS
+from aidl_lang.checking.binding import select
+from aidl_lang.checking.builtins import DERIVING, PATTERNS
 from aidl_lang.checking.calls import arguments
 from aidl_lang.checking.facts import Fact, Place, is_point
 from aidl_lang.checking.fields import PRIMITIVE
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.relocate import Site, member_path
+from aidl_lang.checking.resolving.complaints import used_early
+from aidl_lang.checking.resolving.symbols import UNKNOWNS
+from aidl_lang.checking.types import (
+    Binding,
+    GeometryType,
+    Given,
+    ListType,
+    NumberType,
+    PointType,
+    StructureType,
+)
 from aidl_lang.checking.violations import Target, Violation
-from aidl_lang.resolving.complaints import used_early
-from aidl_lang.resolving.symbols import UNKNOWNS
-from aidl_lang.types import Binding, GeometryType, Given, ListType, NumberType, PointType, StructureType
+from aidl_lang.syntax import ast
 
 
 def check_validity(module: ast.Module, infer: Inference) -> list[Violation]:

@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from aidl_lang import ast
 from aidl_lang.checking.conditions import operation
 from aidl_lang.checking.facts import Place, is_point
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.relocate import Move, Site, insertion_after
+from aidl_lang.checking.resolving.symbols import SymbolKind
+from aidl_lang.checking.types import GeometryType, NumberType, StructureType
 from aidl_lang.checking.wording import shown
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.records import record
-from aidl_lang.resolving.symbols import SymbolKind
-from aidl_lang.source import Span
-from aidl_lang.types import GeometryType, NumberType, StructureType
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
 
 
 @record(eq=False)

@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
-from aidl_lang import ast
-from aidl_lang.types import AnyType, GeometryType, ListType, NumberType, PointType, StructureType, Type
+from aidl_lang.checking.types import (
+    AnyType,
+    GeometryType,
+    ListType,
+    NumberType,
+    PointType,
+    StructureType,
+    Type,
+)
+from aidl_lang.syntax import ast
 
 _LONGEST = 40
 

@@ -7,10 +7,10 @@ from dataclasses import field, replace
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.records import record
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.records import record
-from aidl_lang.solved import SolvedModel
+from aidl_lang.geometry.solved import SolvedModel
 
 if TYPE_CHECKING:
     from aidl_lang.export.marks import Picture

@@ -12,6 +12,7 @@ from itertools import groupby
 
 import numpy as np
 
+from aidl_lang.common.records import record
 from aidl_lang.export.chains import chains
 from aidl_lang.export.numbers import significant
 from aidl_lang.geometry.curves import Piece
@@ -20,8 +21,7 @@ from aidl_lang.geometry.evaluate import bounds, ends, locate, point, reverse
 from aidl_lang.geometry.measures import loop_area
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Loop
-from aidl_lang.records import record
-from aidl_lang.solved import SolvedModel
+from aidl_lang.geometry.solved import SolvedModel
 
 HOLE, OPEN = "hole", "open"
 

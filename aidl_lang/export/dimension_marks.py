@@ -11,6 +11,7 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TypeAlias
 
+from aidl_lang.common.records import record
 from aidl_lang.export import palette
 from aidl_lang.export.marks import Area, Curves, Ink, Mark, Text
 from aidl_lang.export.numbers import fixed
@@ -18,8 +19,7 @@ from aidl_lang.geometry.curves import Arc, Circle, Line, Vec
 from aidl_lang.geometry.evaluate import Bounds, point
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Face, Loop
-from aidl_lang.records import record
-from aidl_lang.solved import Dimension, Length, Opening, Roundness
+from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 
 Segment: TypeAlias = tuple[Vec, Vec]
 

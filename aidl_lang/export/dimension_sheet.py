@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.cancelling import checkpoint
+from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.export.dimension_marks import Block, Pen, Placed, Segment, arc_segments
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.drawing import Drawing

@@ -10,18 +10,18 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import field, replace
 
-from aidl_lang.dimensions import dimensions
-from aidl_lang.dimensions.features import X_AXIS, Y_AXIS
+from aidl_lang.common.records import record
 from aidl_lang.export import palette
 from aidl_lang.export.dimension_marks import HEIGHT, Pen, Placed, words_of
 from aidl_lang.export.dimension_sheet import Sheet, broken
 from aidl_lang.export.marks import Group, Text
 from aidl_lang.geometry.curves import Arc, Circle, Vec
+from aidl_lang.geometry.dimensions import dimensions
+from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import Bounds, point
 from aidl_lang.geometry.network import union_bounds
-from aidl_lang.records import record
-from aidl_lang.solved import Dimension, Length, Opening, Roundness, SolvedModel
+from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedModel
 
 MOST = 40
 """More dimensions than this are counted, not drawn."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from aidl_lang.diagnostics import Diagnostic
-from aidl_lang.solved import SolvedModel
-from aidl_lang.source import Span
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.source import Span
+from aidl_lang.geometry.solved import SolvedModel
 
 OWN = {"solid": 7, "assembly": 7, "hole": 1, "drawing": 5, "open": 6}
 """Layers for what has none of its own, with their colours (AutoCAD Color Index): outlines black or white,

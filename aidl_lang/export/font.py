@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.lettering import unknown_characters
+from aidl_lang.common.resources import resource
 from aidl_lang.export.marks import Picture, Text
-from aidl_lang.lettering import unknown_characters
-from aidl_lang.resources import resource
 
 FAMILY = "DejaVu Sans AIDL"
 _NAMED = 8
 
 
 def font_file() -> str:
-    return str(resource("aidl_lang/fonts/DejaVuSansAIDL.ttf"))
+    return str(resource("aidl_lang/common/fonts/DejaVuSansAIDL.ttf"))
 
 
 def character_notes(pages: Iterable[Picture]) -> tuple[Diagnostic, ...]:

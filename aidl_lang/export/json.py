@@ -10,17 +10,17 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from aidl_lang.cancelling import checkpoint
-from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.render.data import to_dict as diagnostic_dict
 from aidl_lang.export.numbers import rounded
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.described import described
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.measures import Measures
 from aidl_lang.geometry.region import Loop, Region
+from aidl_lang.geometry.solved import Box, Finish, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.tessellate import face_polygons
-from aidl_lang.render.data import to_dict as diagnostic_dict
-from aidl_lang.solved import Box, Finish, SolvedGeometry, SolvedModel, SolvedStructure
 
 VERSION = 1
 _NUMBERS = re.compile(r"\[\n\s*[-+.\deE]+(?:,\n\s*[-+.\deE]+)*\n\s*\]")

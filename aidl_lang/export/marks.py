@@ -6,10 +6,10 @@ import math
 from dataclasses import field
 from typing import TypeAlias
 
+from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.region import Face
-from aidl_lang.records import record
 
 CHARACTER = 0.6
 """Mean width of a character of the font, relative to its size."""

@@ -12,13 +12,13 @@ import manifold3d
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.records import record
 from aidl_lang.export import ExportError, Job
 from aidl_lang.export.solids import Placed, thick_bodies
 from aidl_lang.geometry.drawing import Body
 from aidl_lang.geometry.placement import placement_notes
 from aidl_lang.geometry.tessellate import face_polygons
-from aidl_lang.records import record
 
 FINENESS = 1e-4
 FINEST = 0.001

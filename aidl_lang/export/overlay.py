@@ -13,15 +13,15 @@ from typing import TypeGuard
 
 import numpy as np
 
-from aidl_lang.cancelling import checkpoint
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.records import record
 from aidl_lang.export import palette
 from aidl_lang.export.marks import Dot, Frame, Mark, Text
 from aidl_lang.geometry.curves import Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import Bounds, bounds
 from aidl_lang.geometry.network import union_bounds
-from aidl_lang.records import record
-from aidl_lang.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
 
 FONT_SIZE = 0.022
 MANY = 150

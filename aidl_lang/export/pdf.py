@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from functools import singledispatchmethod
 from typing import Any
 
-from aidl_lang.cancelling import checkpoint
+from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.export import ExportError
 from aidl_lang.export.font import FAMILY, font_file
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text

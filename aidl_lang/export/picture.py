@@ -15,7 +15,7 @@ from aidl_lang.export.overlay import explain
 from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.network import union_bounds
-from aidl_lang.solved import SolvedModel, SolvedStructure
+from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 
 MARGIN = 0.03
 OUTLINE_WIDTH, SEAM_WIDTH, STROKE_WIDTH = 0.0025, 0.001, 0.003

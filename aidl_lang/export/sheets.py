@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.export import ExportError, Job
 from aidl_lang.export.numbers import fixed, size_text
 from aidl_lang.geometry.drawing import Drawing, Stroke
@@ -14,7 +14,7 @@ from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.notes import listed
 from aidl_lang.geometry.offsets import offset
 from aidl_lang.geometry.sheets import Size, laid_out
-from aidl_lang.solved import SolvedModel
+from aidl_lang.geometry.solved import SolvedModel
 
 MOST_PARTS = 5000
 """Parts beyond this are a mistake, and would take minutes to pack."""

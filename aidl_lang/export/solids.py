@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.records import record
 from aidl_lang.export import ExportError, Job
 from aidl_lang.geometry.drawing import Body, Stroke
 from aidl_lang.geometry.evaluate import LARGEST
 from aidl_lang.geometry.placement import Plane, planes, thickness_of
-from aidl_lang.records import record
 
 THINNEST = 1e-6
 """mm. A thickness below this is lost among the tolerances of those who read the file."""

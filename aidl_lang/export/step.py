@@ -37,6 +37,7 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from OCP.XSControl import XSControl_WorkSession
 from PIL import ImageColor
 
+from aidl_lang.common.records import record
 from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.shapes import Shapes, together
 from aidl_lang.export.solids import placed_bodies, placed_strokes
@@ -44,7 +45,6 @@ from aidl_lang.geometry.drawing import Style
 from aidl_lang.geometry.joints import jointed
 from aidl_lang.geometry.placement import placement_notes
 from aidl_lang.geometry.region import Face
-from aidl_lang.records import record
 from aidl_lang.version import __version__
 
 _NO_TIME = "1970-01-01T00:00:00"

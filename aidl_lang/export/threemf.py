@@ -9,7 +9,7 @@ import lib3mf
 import numpy as np
 from PIL import ImageColor
 
-from aidl_lang.cancelling import checkpoint
+from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.mesh import Mesh, meshes, printable
 from aidl_lang.export.palette import body_fill

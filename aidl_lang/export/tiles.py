@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from aidl_lang.cancelling import checkpoint
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.records import record
 from aidl_lang.export import ExportError, palette
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.numbers import fixed, size_text
@@ -20,7 +21,6 @@ from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.sections import in_polygon
 from aidl_lang.geometry.tessellate import Polygon, face_polygons, piece_points
-from aidl_lang.records import record
 
 MARGIN = 10.0
 """Millimetres along each edge of a page: printers leave about 5 blank, labels stand in the rest."""

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 
+from aidl_lang.common.records import record
 from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Network
@@ -28,8 +29,7 @@ from aidl_lang.geometry.sections import (
     is_nothing,
     union,
 )
-from aidl_lang.records import record
-from aidl_lang.solved import SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 
 _FEW_HOLES, _FEW_VERTICES = 8, 200
 """Below which a hole is compared with the whole material."""

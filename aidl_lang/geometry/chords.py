@@ -12,9 +12,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.cancelling import checkpoint
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.records import record
 from aidl_lang.geometry.skeleton import Floats, Ints, Skeleton, within
-from aidl_lang.records import record
 
 ANGLE = 1e-6
 """Radians by which a right angle may be missed."""

@@ -12,6 +12,7 @@ from functools import cached_property
 from itertools import combinations
 from typing import Literal
 
+from aidl_lang.common.records import record
 from aidl_lang.geometry.distance import region_distance
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.measures import area
@@ -20,7 +21,6 @@ from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import Section, intersection, is_nothing
 from aidl_lang.geometry.trace import trace
-from aidl_lang.records import record
 
 ALL_PAIRS = 24
 NEAR = 0.05

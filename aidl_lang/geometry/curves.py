@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TypeAlias
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 
 Vec: TypeAlias = tuple[float, float]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
-from aidl_lang.solved import Scalar, SolvedGeometry
+from aidl_lang.geometry.solved import Scalar, SolvedGeometry
 
 
 def as_geometry(name: str, of: SolvedGeometry, curve: Piece, around: str = "") -> SolvedGeometry:

@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property, partial
 
-from aidl_lang.diagnostics import Diagnostic, ordered
+from aidl_lang.common.diagnostics import Diagnostic, ordered
+from aidl_lang.common.records import record
 from aidl_lang.geometry.bodies import Bodies, IdleHole, LooseCurves, Mass
 from aidl_lang.geometry.colors import css_color
 from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
@@ -24,9 +25,8 @@ from aidl_lang.geometry.notes import color_note, detached_notes, finding_note, g
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.seams import visible_seams
+from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.trace import Traced, trace_all
-from aidl_lang.records import record
-from aidl_lang.solved import Scalar, SolvedGeometry, SolvedModel, SolvedStructure
 
 
 @record()

@@ -16,11 +16,11 @@ from dataclasses import field
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.common.records import record
 from aidl_lang.geometry.network import Network, Use
 from aidl_lang.geometry.sections import Section, difference, fill, inside_mask, is_nothing, union
+from aidl_lang.geometry.solved import SolvedGeometry
 from aidl_lang.geometry.trace import trace
-from aidl_lang.records import record
-from aidl_lang.solved import SolvedGeometry
 
 
 @record()

@@ -12,11 +12,11 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import field
 
+from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import derivative, ends, is_closed, part, point, reverse
 from aidl_lang.geometry.intersect import circle_circle, line_circle
 from aidl_lang.geometry.measures import length
-from aidl_lang.records import record
 
 SMOOTH = 1e-7
 """Curves whose directions differ by less, in radians, run on smoothly: there is no corner."""

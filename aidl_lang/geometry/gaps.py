@@ -13,14 +13,14 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from aidl_lang.common.records import record
 from aidl_lang.geometry.bodies import Finding, LooseCurves
 from aidl_lang.geometry.curves import Arc, Bezier, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, bounds, ends, is_closed
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Network
-from aidl_lang.records import record
-from aidl_lang.solved import SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 
 WIDEST = 5e-4
 """Of a gap that is closed, relative to the size of the drawing: two decimals in a drawing of 30 mm."""

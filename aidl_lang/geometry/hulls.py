@@ -12,10 +12,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import derivative, ends, is_closed, nearest, part, point, points
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.records import record
 
 _SAMPLES = 720
 _NEAR = 1e-9

@@ -8,7 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.records import record
 from aidl_lang.geometry.colors import look_alike
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.measures import length
@@ -23,8 +24,7 @@ from aidl_lang.geometry.sections import (
     is_nothing,
     union,
 )
-from aidl_lang.records import record
-from aidl_lang.solved import SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 
 COVERED = 0.01
 """Part of the letters below which nobody misses what is covered."""

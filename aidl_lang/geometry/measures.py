@@ -14,10 +14,10 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds, bounds, derivative, ends, point, round_range
 from aidl_lang.geometry.region import Loop, Region
-from aidl_lang.records import record
 
 Floats = NDArray[np.float64]
 Moments = tuple[float, float, float]

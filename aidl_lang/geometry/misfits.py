@@ -8,14 +8,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.checking.units import UNITS
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.finishing import Result, TooLarge, Work, finish, largest, sized
 from aidl_lang.geometry.notes import at, listed, local, short
-from aidl_lang.records import record
-from aidl_lang.solved import Finish, SolvedGeometry, SolvedStructure
-from aidl_lang.source import Span
-from aidl_lang.units import UNITS
+from aidl_lang.geometry.solved import Finish, SolvedGeometry, SolvedStructure
 
 Leaves = Sequence[tuple[SolvedGeometry, Piece]]
 

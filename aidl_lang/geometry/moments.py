@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import math
 
+from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import derivative, point, round_range
 from aidl_lang.geometry.measures import gauss, moments_about_start
 from aidl_lang.geometry.region import Loop, Region
-from aidl_lang.records import record
 
 _ISOTROPIC = 1e-9
 """Difference of the principal moments, relative to them, below which every axis is a principal one."""

@@ -17,7 +17,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.cancelling import checkpoint
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import (
     TAU,
@@ -36,7 +37,6 @@ from aidl_lang.geometry.evaluate import (
 from aidl_lang.geometry.intersect import intersections, self_crossing, sorted_cuts
 from aidl_lang.geometry.nearness import Sides, near_rows
 from aidl_lang.geometry.separation import meeting
-from aidl_lang.records import record
 
 RELATIVE_TOLERANCE = 1e-6
 CHORD = 1e-4

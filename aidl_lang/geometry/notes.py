@@ -8,7 +8,8 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import lru_cache
 
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import CoveredHoles, FilledHole, Finding, IdleHole, InnerLoop, LooseCurves
 from aidl_lang.geometry.colors import similar_colors
 from aidl_lang.geometry.contacts import Contacts
@@ -16,8 +17,7 @@ from aidl_lang.geometry.curves import Bezier, Piece, Vec
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, bounds, ends, is_finite
 from aidl_lang.geometry.gaps import Gap
 from aidl_lang.geometry.network import Network
-from aidl_lang.solved import Scalar, SolvedGeometry, SolvedStructure
-from aidl_lang.source import Span
+from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedStructure
 
 GUIDE = "to guide other geometry only, write `construction` before it"
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from aidl_lang.diagnostics import Diagnostic, Label
+from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.finishing import Corner, arms_at, corners_of
 from aidl_lang.geometry.notes import at, listed, short
-from aidl_lang.solved import Finish, Recipe, SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.solved import Finish, Recipe, SolvedGeometry, SolvedStructure
 
 Leaves = Sequence[tuple[SolvedGeometry, Piece]]
 

@@ -10,7 +10,8 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 
-from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.records import record
 from aidl_lang.geometry import outline_notes as notes
 from aidl_lang.geometry.boolean import common, united, without
 from aidl_lang.geometry.clipping import clipped
@@ -25,9 +26,8 @@ from aidl_lang.geometry.misfits import Misfit, in_one, misfits
 from aidl_lang.geometry.network import Network, exactly, union_bounds
 from aidl_lang.geometry.offsets import NEAR, offset, thick
 from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.solved import Box, Finish, Recipe, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.trace import trace
-from aidl_lang.records import record
-from aidl_lang.solved import Box, Finish, Recipe, SolvedGeometry, SolvedModel, SolvedStructure
 
 Leaves = Sequence[tuple[SolvedGeometry, Piece]]
 """Primitives that are drawn, with their curves."""

@@ -10,7 +10,8 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
-from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.records import record
 from aidl_lang.geometry.bodies import Bodies, Mass
 from aidl_lang.geometry.contacts import UNNOTICED, Contact, Solid
 from aidl_lang.geometry.distance import region_distance
@@ -30,9 +31,8 @@ from aidl_lang.geometry.sections import (
     is_nothing,
     union,
 )
+from aidl_lang.geometry.solved import SolvedStructure
 from aidl_lang.geometry.trace import trace_all
-from aidl_lang.records import record
-from aidl_lang.solved import SolvedStructure
 
 _RING = 3
 """Outlines that a solid has at least where a piece of it lies in an opening of another."""

@@ -8,12 +8,12 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import field, replace
 
-from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.records import record
 from aidl_lang.geometry.evaluate import LARGEST, bounds
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.notes import unusable_note
-from aidl_lang.records import record
-from aidl_lang.solved import Box, Frame, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.solved import Box, Frame, SolvedGeometry, SolvedModel, SolvedStructure
 
 
 def with_places(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:

@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.diagnostics import Diagnostic, ordered
-from aidl_lang.expression import exact_turn
+from aidl_lang.building.expression import exact_turn
+from aidl_lang.common.diagnostics import Diagnostic, ordered
+from aidl_lang.common.records import record
 from aidl_lang.geometry.drawing import Body, Drawing
-from aidl_lang.records import record
-from aidl_lang.solved import Frame, SolvedStructure
+from aidl_lang.geometry.solved import Frame, SolvedStructure
 
 Matrix = NDArray[np.float64]
 

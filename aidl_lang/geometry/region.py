@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import bounds
-from aidl_lang.records import record
 
 
 @record(slots=True)

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+from aidl_lang.common.records import record
 from aidl_lang.geometry.contacts import Contacts
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
@@ -20,7 +21,6 @@ from aidl_lang.geometry.evaluate import Bounds, bounds, inward
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.records import record
 
 SPACING = 3.0
 """Millimetres between parts, and between them and the edge of the sheet."""

@@ -14,10 +14,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, derivative, ends, is_closed, point, points, reverse, round_range
 from aidl_lang.geometry.region import Loop, Region
-from aidl_lang.records import record
 
 _CHORDS = {"Bezier": 32, "EllipseArc": 32, "Ellipse": 64}
 _CUSP = 1e-6

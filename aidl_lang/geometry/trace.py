@@ -16,8 +16,9 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.arrays import each_once
-from aidl_lang.cancelling import checkpoint
+from aidl_lang.common.arrays import each_once
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, bounds, ends, is_closed, locate, nearest, part, point, points
 from aidl_lang.geometry.measures import length, loop_area
@@ -25,7 +26,6 @@ from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import NODE, UNKNOWN, Edge, Network, union_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import Section
-from aidl_lang.records import record
 
 T = TypeVar("T")
 STRAIGHT = -3

@@ -25,7 +25,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.cancelling import checkpoint
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.records import record
 from aidl_lang.geometry.chords import ANGLE, Chords, chords, joined
 from aidl_lang.geometry.curves import Arc, Circle, Line, Vec
 from aidl_lang.geometry.distance import piece_distance
@@ -33,7 +34,6 @@ from aidl_lang.geometry.evaluate import derivative, ends, is_closed, point, seco
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.skeleton import Floats, Skeleton, direction, within
-from aidl_lang.records import record
 
 _LEAN = math.radians(15)
 """How far each side of a narrowing end may lean towards the other."""

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.array_program import IDENTITY, ArrayProgram, Step
 from aidl_lang.solver.newton import GOLDEN
 from aidl_lang.solver.operations import BRANCHING, LINEAR, Bools, Floats, Ints, Op

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver import arrays
 from aidl_lang.solver.linear import Matrix
 from aidl_lang.solver.operations import Bools, Floats, Ints

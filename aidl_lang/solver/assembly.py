@@ -7,7 +7,7 @@ from operator import mul
 
 import numpy as np
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.forms import Affine
 from aidl_lang.solver.operations import PARTIALS
 from aidl_lang.solver.program import Program, Sweep

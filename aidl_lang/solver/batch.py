@@ -14,7 +14,7 @@ from dataclasses import field
 
 import numpy as np
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.array_program import ArrayProgram
 from aidl_lang.solver.dense import CONSISTENT, INDEPENDENT, NOISE, RANK
 from aidl_lang.solver.newton import GAIN, POLISHED, Clock

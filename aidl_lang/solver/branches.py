@@ -17,7 +17,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver import newton
 from aidl_lang.solver.array_freezing import ZERO
 from aidl_lang.solver.array_program import ArrayProgram

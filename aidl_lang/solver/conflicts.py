@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.branches import violation_of
 from aidl_lang.solver.gradients import FLAT, gradients
 from aidl_lang.solver.newton import Clock, End, perturbation

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.operations import Floats
 
 RANK = 1e-10

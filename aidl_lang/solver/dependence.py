@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from aidl_lang.arrays import each_once, others, scattered
+from aidl_lang.common.arrays import each_once, others, scattered
 from aidl_lang.solver.components import connected
 from aidl_lang.solver.gradients import Sparse
 from aidl_lang.solver.operations import Floats, Ints

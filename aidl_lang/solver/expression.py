@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.operations import ARITY, VALUE, Floats, Op
 
 CONSTANT = Op.CONSTANT

@@ -13,7 +13,7 @@ from typing import NoReturn, TypeVar
 
 import numpy as np
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.expression import Tape, TapeBuilder
 from aidl_lang.solver.members import (
     Members,

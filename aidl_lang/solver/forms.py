@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from typing import TypeAlias
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.array_program import CANCELLED
 from aidl_lang.solver.expression import Tape
 from aidl_lang.solver.operations import BRANCHING, VALUE, Op

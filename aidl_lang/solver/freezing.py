@@ -16,7 +16,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.array_freezing import TIE, ZERO, ArrayFreezing
 from aidl_lang.solver.array_program import ArrayProgram
 from aidl_lang.solver.assembly import NUMBER, SUM, Assembly, Recipe

@@ -15,7 +15,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver import arrays
 from aidl_lang.solver.expression import Tape, below
 from aidl_lang.solver.operations import PARTIALS, VALUE, Bools, Floats, Ints, Op

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver import batch, newton
 from aidl_lang.solver.array_freezing import ArrayFreezing
 from aidl_lang.solver.array_program import ArrayProgram

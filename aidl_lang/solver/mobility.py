@@ -13,8 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from aidl_lang.arrays import each_once
-from aidl_lang.records import record
+from aidl_lang.common.arrays import each_once
+from aidl_lang.common.records import record
 from aidl_lang.solver.components import connected
 from aidl_lang.solver.gradients import Sparse
 from aidl_lang.solver.operations import Bools, Floats, Ints

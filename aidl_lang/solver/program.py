@@ -14,7 +14,7 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.array_program import CANCELLED
 from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.valuation import Compiled, run

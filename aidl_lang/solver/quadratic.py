@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.linear import Matrix, least_norm
 from aidl_lang.solver.operations import Floats
 

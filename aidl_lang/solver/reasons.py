@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.conflicts import conflict
 from aidl_lang.solver.hierarchy import Hierarchy
 from aidl_lang.solver.newton import Clock

@@ -14,8 +14,8 @@ from functools import cached_property
 
 import numpy as np
 
-from aidl_lang.arrays import each_once, scattered
-from aidl_lang.records import record
+from aidl_lang.common.arrays import each_once, scattered
+from aidl_lang.common.records import record
 from aidl_lang.solver.dependence import Relation
 from aidl_lang.solver.expression import mentioned
 from aidl_lang.solver.gradients import Sparse, linearise

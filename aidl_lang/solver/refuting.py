@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.forms import Affine, Form, add_terms, applied, branched, combined, scaled
 from aidl_lang.solver.operations import BRANCHING, Bools, Floats, Op
 from aidl_lang.solver.problem import Relation, Row

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from aidl_lang.arrays import each_once
-from aidl_lang.records import record
+from aidl_lang.common.arrays import each_once
+from aidl_lang.common.records import record
 from aidl_lang.solver.gradients import Sparse
 from aidl_lang.solver.naming import Naming, mentioned, naming
 from aidl_lang.solver.operations import Bools, Ints

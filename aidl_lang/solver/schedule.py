@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver import arrays
 from aidl_lang.solver.expression import Tape
 from aidl_lang.solver.operations import Floats, Ints, Op

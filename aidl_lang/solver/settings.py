@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 
 
 @record()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from enum import StrEnum
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.problem import Floats
 
 

@@ -25,7 +25,7 @@ import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.freezing import Freezer
 from aidl_lang.solver.gradients import FLAT, gradients
 from aidl_lang.solver.problem import Relation

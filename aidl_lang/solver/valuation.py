@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from typing import TypeAlias
 
-from aidl_lang.records import record
+from aidl_lang.common.records import record
 from aidl_lang.solver.expression import Tape, below
 from aidl_lang.solver.forms import Forms
 from aidl_lang.solver.operations import VALUE, Op

@@ -1,1 +1,1 @@
-"""The parts of the parser: tables of the grammar, tokens, automaton, nodes, and what goes wrong with them."""
+"""Text becomes a tree (`ast`), and a tree its canonical text (`printer`). `parser` is the door."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from aidl_lang.diagnostics import Diagnostic, Label
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.diagnostics import Diagnostic, Label
+from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax.tokens import END, Token, begins_line
 from aidl_lang.syntax.trouble import Problem, Repair, Trouble, closing, replaced
 from aidl_lang.syntax.words import VALUE_STARTS

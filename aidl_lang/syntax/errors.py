@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from aidl_lang.diagnostics import Diagnostic, Label
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.diagnostics import Diagnostic, Label
+from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import brackets, foreign, functions, missing, placements, spelling
 from aidl_lang.syntax.tokens import END, Token
 from aidl_lang.syntax.trouble import Problem, Trouble, replaced

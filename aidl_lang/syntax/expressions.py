@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from aidl_lang import ast
-from aidl_lang.diagnostics import Diagnostic
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.syntax import ast
 from aidl_lang.syntax.tokens import Token
 
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "0": "\0"}

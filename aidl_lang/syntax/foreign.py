@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.source import Span
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.source import Span
 from aidl_lang.syntax.tokens import END, UNKNOWN, Token, tokenize
 from aidl_lang.syntax.trouble import (
     LONGEST,

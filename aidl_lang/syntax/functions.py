@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax.tokens import END, Token, begins_line
 from aidl_lang.syntax.trouble import (
     LONGEST,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from aidl_lang.diagnostics import Diagnostic, Label
-from aidl_lang.kinds import kind_of
-from aidl_lang.source import Span
+from aidl_lang.common.diagnostics import Diagnostic, Label
+from aidl_lang.common.source import Span
+from aidl_lang.syntax.kinds import kind_of
 from aidl_lang.syntax.tokens import END
 from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
 from aidl_lang.syntax.words import STATEMENT_WORDS, VALUE_STARTS, describe

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from aidl_lang import ast
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.syntax import ast
 
 _TUPLE = 0
 _CLASSES: tuple[Any, ...] = (

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.source import Span
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.source import Span
 from aidl_lang.syntax.tokens import END, UNKNOWN, Token, is_open_comment, tokenize
 from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
 from aidl_lang.syntax.words import (

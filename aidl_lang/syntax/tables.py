@@ -12,8 +12,8 @@ from dataclasses import field
 from functools import cache
 from pathlib import Path
 
-from aidl_lang.records import record
-from aidl_lang.resources import derived, resource
+from aidl_lang.common.records import record
+from aidl_lang.common.resources import derived, resource
 
 DERIVED = "tables.json"
 

@@ -11,9 +11,9 @@ from dataclasses import field
 from functools import cache
 from typing import NamedTuple
 
-from aidl_lang.ast import Comment
-from aidl_lang.records import record
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.syntax.ast import Comment
 from aidl_lang.syntax.tables import load_tables
 
 END = "$END"

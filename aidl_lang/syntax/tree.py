@@ -10,12 +10,12 @@ from collections.abc import Callable
 from keyword import iskeyword
 from typing import Any, cast
 
-from aidl_lang import ast
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.kinds import KIND_OF_WORD, KINDS, kind_of
-from aidl_lang.names import is_slip, nearest
-from aidl_lang.source import Span
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.names import is_slip, nearest
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
 from aidl_lang.syntax.expressions import ExpressionBuilder, arguments_of
+from aidl_lang.syntax.kinds import KIND_OF_WORD, KINDS, kind_of
 from aidl_lang.syntax.tokens import Token
 from aidl_lang.syntax.words import FOREIGN_WORDS
 

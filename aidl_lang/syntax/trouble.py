@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.records import record
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax.automaton import Automaton
 from aidl_lang.syntax.tokens import END, Token
 from aidl_lang.syntax.words import STATEMENT_WORDS

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from aidl_lang import ast
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.syntax import ast
 from aidl_lang.syntax.tokens import Token, begins_line
 
 _MOST_PLACES, _LONGEST = 100, 2000  # beyond this many lines and characters nobody wrote it by hand

@@ -12,10 +12,10 @@ from typing import Any
 import jsonschema
 import pytest
 
-from aidl_lang.agents.calling import answer
-from aidl_lang.agents.schema import for_anthropic, for_mcp, for_openai
-from aidl_lang.agents.tools import Tools
-from aidl_lang.cli import main
+from aidl_lang.tools.agents.calling import answer
+from aidl_lang.tools.agents.schema import for_anthropic, for_mcp, for_openai
+from aidl_lang.tools.agents.tools import Tools
+from aidl_lang.tools.cli import main
 from tests.agents.test_tools import CONFLICT, PLATE, TELEPHONE
 from tests.documents import ROOT
 
@@ -112,7 +112,7 @@ def test_calls_and_results_are_as_described(name: str, arguments: dict[str, Any]
 
 def test_schema_does_not_need_the_packages_of_the_server() -> None:
     code = (
-        "import sys; from aidl_lang.cli import main; main(['tool-schema']); "
+        "import sys; from aidl_lang.tools.cli import main; main(['tool-schema']); "
         "print(*sys.modules, file=sys.stderr)"
     )
     loaded = subprocess.run(

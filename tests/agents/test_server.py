@@ -19,8 +19,8 @@ import jsonschema
 import pytest
 from PIL import Image
 
-from aidl_lang.agents.schema import for_mcp
-from aidl_lang.cli import main
+from aidl_lang.tools.agents.schema import for_mcp
+from aidl_lang.tools.cli import main
 from tests.agents.test_tools import BOLT, CONFLICT, IMPORTS, PLATE, TELEPHONE
 from tests.documents import ROOT
 
@@ -212,7 +212,7 @@ def said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_packages_that_are_missing(said: Callable[..., str], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("aidl_lang.cli.mcp.find_spec", lambda name: None if name == "mcp" else object())
+    monkeypatch.setattr("aidl_lang.tools.cli.mcp.find_spec", lambda name: None if name == "mcp" else object())
     assert said() == (
         "error[E0942]: the server needs `mcp`, not installed here\n  = hint: pip install 'aidl-lang[mcp]'\n"
     )

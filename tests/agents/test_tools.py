@@ -13,9 +13,9 @@ import jsonschema
 import pytest
 from PIL import Image
 
-from aidl_lang.agents.calling import Answer, answer
-from aidl_lang.agents.tools import Tools
-from aidl_lang.agents.workspace import Limits, Workspace
+from aidl_lang.tools.agents.calling import Answer, answer
+from aidl_lang.tools.agents.tools import Tools
+from aidl_lang.tools.agents.workspace import Limits, Workspace
 from tests.documents import ROOT
 
 TELEPHONE = (ROOT / "examples" / "telephone.aidl").read_text("utf-8")

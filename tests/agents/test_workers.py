@@ -9,11 +9,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from aidl_lang.agents.results import Page
-from aidl_lang.agents.tools import Tools
-from aidl_lang.agents.workers import Workers
-from aidl_lang.processes import MEMORY
-from aidl_lang.records import record
+from aidl_lang.common.processes import MEMORY
+from aidl_lang.common.records import record
+from aidl_lang.tools.agents.results import Page
+from aidl_lang.tools.agents.tools import Tools
+from aidl_lang.tools.agents.workers import Workers
 
 
 @record()

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from aidl_lang import ast
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
 from tests.checker import boxes
 from tests.checker.conditions import residuals
 from tests.checker.copies import away

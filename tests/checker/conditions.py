@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from aidl_lang import ast
+from aidl_lang.syntax import ast
 from tests.checker.functions import FUNCTIONS, between, is_line
 from tests.checker.relations import RELATIONS
 from tests.checker.tree import Geo

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from aidl_lang import ast
+from aidl_lang.syntax import ast
 from tests.checker.functions import EMPTY, mirrored
 from tests.checker.tree import Geo, Node, Transform, Vec
 from tests.checker.values import MistakeError, Point, Scope, Thunk, fold

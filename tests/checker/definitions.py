@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from aidl_lang import ast
+from aidl_lang.syntax import ast
 from tests.checker.binding import respelled
 from tests.checker.evaluate import Evaluator
 from tests.checker.paths import OUTLINES, joints

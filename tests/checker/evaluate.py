@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from inspect import signature
 from typing import Any, TypeVar
 
-from aidl_lang import ast
-from aidl_lang.synonyms import PARAMETERS
+from aidl_lang.checking.synonyms import PARAMETERS
+from aidl_lang.syntax import ast
 from tests.checker import fields, functions
 from tests.checker.binding import chosen, respelled, with_defaults
 from tests.checker.boxes import Box, around, extremes, structure_extremes

@@ -9,9 +9,9 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from aidl_lang import ast
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
 from tests.checker.values import Scope, Thunk, fold
 
 FOLDER = Path(__file__).resolve().parents[2] / "stdlib"

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from aidl_lang import ast
+from aidl_lang.syntax import ast
 from tests.checker.relations import direction_at, sine
 from tests.checker.tree import Geo
 from tests.checker.values import Exact, Scope, fold

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from aidl_lang import ast
+from aidl_lang.syntax import ast
 from tests.checker.copies import Copy, away, own_center, turn
 from tests.checker.tree import Array, Geo, Node, Vec
 from tests.checker.values import Exact, MistakeError, Num, Point, Scope, fold, point_at, reference

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from aidl_lang import ast
+from aidl_lang.syntax import ast
 from tests.checker import copies, library, patterns
 from tests.checker.binding import chosen
 from tests.checker.conditions import expressions

@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 import aidl_lang
-from aidl_lang import ast
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
 from tests import compiled
 from tests.checker import library
 from tests.checker.checking import TOLERANCE, check

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.grammars import FORMATS, export
+from aidl_lang.tools.grammars import FORMATS, export
 from tests.commands import Result
 
 Aidl = Callable[..., Result]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import aidl_lang
-from aidl_lang.materials import densities, density, similar
+from aidl_lang.common.materials import densities, density, similar
 from tests.commands import Result
 
 Aidl = Callable[..., Result]

@@ -37,7 +37,7 @@ def loaded_by(*arguments: str) -> set[str]:
     """The modules that are loaded when a command ends."""
     code = (
         "import atexit, sys; atexit.register(lambda: print(*sys.modules, file=sys.stderr));"
-        "from aidl_lang.cli import main; sys.exit(main(sys.argv[1:]))"
+        "from aidl_lang.tools.cli import main; sys.exit(main(sys.argv[1:]))"
     )
     done = subprocess.run(
         [sys.executable, "-c", code, *arguments], capture_output=True, text=True, timeout=60, check=True
@@ -60,7 +60,7 @@ def test_what_draws_nothing_loads_no_stage(arguments: list[str]) -> None:
 @pytest.mark.parametrize("arguments", [["params"], ["fmt", "--check"]])
 def test_what_solves_nothing_loads_no_solver(folder: Path, arguments: list[str]) -> None:
     (folder / "plain.aidl").write_text("solid plate {\n    edge = circle(radius: 5)\n}\n")
-    solving = {"aidl_lang.solver.solving", "aidl_lang.geometry", "aidl_lang.export"}
+    solving = {"aidl_lang.solver.solving", "aidl_lang.geometry.drawing", "aidl_lang.export"}
     assert (PACKAGES | WEB | solving) & loaded_by(*arguments, "plain.aidl") == set()
 
 

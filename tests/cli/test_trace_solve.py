@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.cli import main
+from aidl_lang.tools.cli import main
 from tests.documents import ROOT, blocks
 
 PAGE = ROOT / "docs" / "solver.md"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.cli.new import structure_name
+from aidl_lang.tools.cli.new import structure_name
 from tests.cli.conftest import GOOD, WRONG
 from tests.commands import Result
 

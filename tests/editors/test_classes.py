@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang import ast
-from aidl_lang.highlighting.classes import CLASSES, Piece, classify
+from aidl_lang.checking.types import PRIMITIVES
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.reference.collect import reference
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
 from aidl_lang.syntax.tokens import tokenize
-from aidl_lang.types import PRIMITIVES
+from aidl_lang.tools.highlighting.classes import CLASSES, Piece, classify
+from aidl_lang.tools.reference.collect import reference
 from tests.documents import ROOT, programs
 
 EVERYTHING = Path(__file__).with_name("classes.aidl")

@@ -14,11 +14,11 @@ from pygments.formatters import HtmlFormatter, LatexFormatter
 from pygments.styles import get_all_styles
 from pygments.token import STANDARD_TYPES, Error, Name, Whitespace
 
-from aidl_lang.highlighting.classes import CLASSES, classify
-from aidl_lang.highlighting.pygments import TOKENS, AidlLexer
-from aidl_lang.highlighting.scopes import SCOPES
-from aidl_lang.highlighting.site import texts, write
-from aidl_lang.vocabulary import vocabulary
+from aidl_lang.tools.highlighting.classes import CLASSES, classify
+from aidl_lang.tools.highlighting.pygments import TOKENS, AidlLexer
+from aidl_lang.tools.highlighting.scopes import SCOPES
+from aidl_lang.tools.highlighting.site import texts, write
+from aidl_lang.tools.vocabulary import vocabulary
 from tests.documents import ROOT
 
 PROGRAMS = [*sorted((ROOT / "examples").glob("*.aidl")), ROOT / "tests/editors/classes.aidl"]
@@ -94,7 +94,7 @@ def test_the_core_does_without_pygments() -> None:
         for path in (ROOT / "aidl_lang").rglob("*.py")
         if re.search(r"^(?:from|import) pygments\b", path.read_text("utf-8"), re.MULTILINE)
     ]
-    assert importers == ["aidl_lang/highlighting/pygments.py"]
+    assert importers == ["aidl_lang/tools/highlighting/pygments.py"]
     assert Name.Class is TOKENS["name.structure"]
     assert "pygments" in sys.modules
 

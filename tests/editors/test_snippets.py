@@ -8,11 +8,11 @@ import re
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.diagnostics import Severity
-from aidl_lang.snippets import SNIPPETS, Snippet
-from aidl_lang.source import SourceFile
-from aidl_lang.vocabulary import vocabulary
-from aidl_lang.world import MemoryWorld
+from aidl_lang.common.diagnostics import Severity
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
+from aidl_lang.tools.snippets import SNIPPETS, Snippet
+from aidl_lang.tools.vocabulary import vocabulary
 from tests.documents import ROOT
 
 PARTS = "solid washer(outer = 20) { rim = circle(radius: outer / 2) }\n"

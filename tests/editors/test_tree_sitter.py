@@ -18,13 +18,13 @@ from pathlib import Path
 import pytest
 from tree_sitter import Node
 
-from aidl_lang import ast
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse as read
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
 from aidl_lang.syntax.lines import begins_with_sign
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import END, Token, tokenize
-from aidl_lang.vocabulary import vocabulary
+from aidl_lang.tools.vocabulary import vocabulary
 from tests.documents import ROOT, programs
 from tests.editors.trees import FOLDER, beyond, nodes, parse, refused
 from tests.property.test_hostile import HOSTILE

@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 from tree_sitter import Node, Query, QueryCursor
 
-from aidl_lang import ast
-from aidl_lang.highlighting.classes import classify
-from aidl_lang.highlighting.tree_sitter import HELIX, NEOVIM, queries
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse as read
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
+from aidl_lang.tools.highlighting.classes import classify
+from aidl_lang.tools.highlighting.tree_sitter import HELIX, NEOVIM, queries
 from tests.documents import ROOT
 from tests.editors.trees import FOLDER, language, nodes, parse
 

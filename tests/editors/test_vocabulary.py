@@ -6,16 +6,16 @@ import itertools
 import re
 from dataclasses import replace
 
-from aidl_lang import builtins, library
-from aidl_lang.builtins import CUTS
-from aidl_lang.kinds import kind_of
+from aidl_lang.checking import builtins, library
+from aidl_lang.checking.builtins import CUTS
+from aidl_lang.checking.types import type_named
+from aidl_lang.checking.units import UNITS
+from aidl_lang.common.resources import resource
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.resources import resource
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax.kinds import kind_of
 from aidl_lang.syntax.tables import load_tables
-from aidl_lang.types import type_named
-from aidl_lang.units import UNITS
-from aidl_lang.vocabulary import NAMES, unclaimed, vocabulary
+from aidl_lang.tools.vocabulary import NAMES, unclaimed, vocabulary
 
 WORDS = vocabulary()
 GRAMMAR = resource("grammar/aidl.lark").read_text("utf-8")
@@ -44,7 +44,7 @@ def test_every_word_and_sign_of_the_grammar_has_one_class() -> None:
 
 
 def test_a_word_that_the_grammar_gains_is_missed(monkeypatch) -> None:
-    from aidl_lang import vocabulary as module
+    from aidl_lang.tools import vocabulary as module
 
     now = load_tables()
     tables = replace(now, literals=now.literals | {"later", "~~"})

@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 from tree_sitter import Language, Node, Parser, Tree
 
-from aidl_lang.kinds import kind_of
+from aidl_lang.syntax.kinds import kind_of
 from aidl_lang.syntax.tables import load_tables
-from aidl_lang.vocabulary import vocabulary
+from aidl_lang.tools.vocabulary import vocabulary
 from tests.documents import ROOT
 
 FOLDER = ROOT / "editors" / "tree-sitter-aidl"

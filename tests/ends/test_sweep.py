@@ -10,11 +10,11 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.building.state import Limits
-from aidl_lang.cancelling import Cancelled, cancelled_when
-from aidl_lang.ends import Job, Sweep, searching, sentence, sweep
-from aidl_lang.ends.told import Tried
-from aidl_lang.source import SourceFile
-from aidl_lang.world import MemoryWorld
+from aidl_lang.common.cancelling import Cancelled, cancelled_when
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
+from aidl_lang.tools.ends import Job, Sweep, searching, sentence, sweep
+from aidl_lang.tools.ends.told import Tried
 
 PLATE = """\
 solid plate {

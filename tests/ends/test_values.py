@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang.ends.values import ends, limit
-from aidl_lang.model import Knob
+from aidl_lang.building.model import Knob
+from aidl_lang.tools.ends.values import ends, limit
 
 
 def knob(value: object, low: float | None = None, high: float | None = None, **more: object) -> Knob:

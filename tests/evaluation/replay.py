@@ -11,8 +11,8 @@ import json
 import sys
 from pathlib import Path
 
-from aidl_lang.evaluation.plan import VARIANTS
-from aidl_lang.evaluation.requirements import load
+from aidl_lang.tools.evaluation.plan import VARIANTS
+from aidl_lang.tools.evaluation.requirements import load
 
 
 def main() -> int:

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from aidl_lang.evaluation import clip
-from aidl_lang.evaluation.store import Store
+from aidl_lang.tools.evaluation import clip
+from aidl_lang.tools.evaluation.store import Store
 
 TINY = {
     "embed_dim": 16,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang.evaluation.editability import Outcome, of_aidl, of_openscad, turned
-from aidl_lang.evaluation.openscad import OpenScad
-from aidl_lang.model import Knob
-from aidl_lang.source import SourceFile
+from aidl_lang.building.model import Knob
+from aidl_lang.common.source import SourceFile
+from aidl_lang.tools.evaluation.editability import Outcome, of_aidl, of_openscad, turned
+from aidl_lang.tools.evaluation.openscad import OpenScad
 
 
 def knob(value: float | str | bool, **rest: object) -> Knob:

@@ -8,9 +8,9 @@ import json
 
 import pytest
 
-from aidl_lang.evaluation import table
-from aidl_lang.evaluation.clip import Scores
-from aidl_lang.evaluation.summary import Mean, Record, Share, Total, rows
+from aidl_lang.tools.evaluation import table
+from aidl_lang.tools.evaluation.clip import Scores
+from aidl_lang.tools.evaluation.summary import Mean, Record, Share, Total, rows
 
 
 def attempt(ok: bool | None) -> Record:

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from aidl_lang.evaluation import openscad, shapes
-from aidl_lang.evaluation.openscad import OpenScad, knobs, render, structures
 from aidl_lang.geometry.measures import area, region_bounds
+from aidl_lang.tools.evaluation import openscad, shapes
+from aidl_lang.tools.evaluation.openscad import OpenScad, knobs, render, structures
 
 needs_openscad = pytest.mark.skipif(not OpenScad().is_installed, reason="openscad is not installed")
 

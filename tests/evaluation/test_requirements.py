@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.evaluation.requirements import (
+from aidl_lang.common.source import SourceFile
+from aidl_lang.pipeline import compile
+from aidl_lang.tools.evaluation.requirements import (
     Prompt,
     PromptError,
     Result,
@@ -16,8 +18,6 @@ from aidl_lang.evaluation.requirements import (
     load,
     read,
 )
-from aidl_lang.pipeline import compile
-from aidl_lang.source import SourceFile
 
 ROOT = Path(__file__).parents[2]
 PROGRAMS = Path(__file__).parent / "programs"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from aidl_lang.evaluation.worker import Broken, Remote, Worker
+from aidl_lang.tools.evaluation.worker import Broken, Remote, Worker
 from tests.evaluation.fakes import Fake, obey
 
 

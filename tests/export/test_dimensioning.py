@@ -12,11 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
+from aidl_lang.common.source import SourceFile
 from aidl_lang.export import ExportError, Options
 from aidl_lang.export.marks import Area, Curves, Group, Picture, Text
 from aidl_lang.export.picture import picture
 from aidl_lang.geometry.curves import Arc, Line
-from aidl_lang.source import SourceFile
 from tests.amount import tries
 from tests.compiled import EXAMPLES, compiled
 

@@ -20,12 +20,12 @@ from ezdxf.document import Drawing as Document
 
 import aidl_lang
 from aidl_lang import pipeline
-from aidl_lang.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.source import SourceFile
 from aidl_lang.export import Job, export
 from aidl_lang.geometry.curves import Bezier, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
-from aidl_lang.solved import SolvedModel, SolvedStructure
-from aidl_lang.source import SourceFile
+from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from tests.amount import large, tried
 from tests.compiled import EXAMPLES, compiled
 from tests.export.readers import read_dxf

@@ -11,12 +11,12 @@ import trimesh
 
 from aidl_lang import export as export_module
 from aidl_lang import pipeline
+from aidl_lang.common.render import render
+from aidl_lang.common.source import SourceFile
 from aidl_lang.export import Exported, ExportError, Job, Options, export
 from aidl_lang.geometry.curves import Circle
 from aidl_lang.geometry.drawing import draw
-from aidl_lang.render import render
-from aidl_lang.solved import SolvedModel
-from aidl_lang.source import SourceFile
+from aidl_lang.geometry.solved import SolvedModel
 from tests.amount import large
 from tests.geometry.models import circle, model, rectangle, structure
 

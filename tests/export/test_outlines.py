@@ -8,7 +8,7 @@ from pathlib import Path
 import jsonschema
 
 from aidl_lang import pipeline
-from aidl_lang.source import SourceFile
+from aidl_lang.common.source import SourceFile
 
 SCHEMA = json.loads((Path(__file__).parents[2] / "docs" / "model.schema.json").read_text(encoding="utf-8"))
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from svgelements import Close, Line, Move, Path
 
 import aidl_lang
-from aidl_lang.comparison import Comparison
-from aidl_lang.comparison.picture import overlay
+from aidl_lang.export.comparison import Comparison
+from aidl_lang.export.comparison.picture import overlay
 from aidl_lang.export.marks import Area, Curves, Frame, Text
 from aidl_lang.export.svg import to_svg
 from tests.amount import tries

@@ -15,7 +15,7 @@ from aidl_lang.export.pdf import to_pdf
 from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, EllipseArc, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.region import Face, Loop
-from aidl_lang.solved import SolvedStructure
+from aidl_lang.geometry.solved import SolvedStructure
 from tests.documents import ROOT
 from tests.export.colours import near
 from tests.export.readers import read_pdf

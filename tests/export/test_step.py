@@ -15,14 +15,14 @@ from OCP.Interface import Interface_Static
 from OCP.Message import Message, Message_PrinterOStream
 
 from aidl_lang import pipeline
+from aidl_lang.common.render import render
+from aidl_lang.common.source import SourceFile
 from aidl_lang.export import ExportError, Job, Options, export
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.measures import area
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.render import render
-from aidl_lang.solved import SolvedGeometry, SolvedModel
-from aidl_lang.source import SourceFile
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel
 from tests.amount import large
 from tests.compiled import EXAMPLES, compiled
 from tests.documents import ROOT

@@ -9,13 +9,13 @@ from xml.etree import ElementTree
 
 import pytest
 
+from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.export import SHOW, Job, Options, export
 from aidl_lang.export.paths import face_path, loop_path, open_path
 from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.region import Face, Loop
-from aidl_lang.solved import Box, ConstraintReport, SolvedModel, SolvedStructure
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.geometry.solved import Box, ConstraintReport, SolvedModel, SolvedStructure
 from tests.geometry.models import Stated, arc, circle, model, primitive, rectangle, structure
 
 SVG = "{http://www.w3.org/2000/svg}"

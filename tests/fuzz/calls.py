@@ -7,8 +7,8 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 
-from aidl_lang import builtins, library
-from aidl_lang.types import Signature
+from aidl_lang.checking import builtins, library
+from aidl_lang.checking.types import Signature
 
 CALLABLES = {**builtins.SIGNATURES}
 for _name, _overloads in library.load().callables.items():

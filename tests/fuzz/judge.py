@@ -18,16 +18,17 @@ from dataclasses import dataclass, fields, replace
 from types import FrameType
 from typing import Any
 
-from aidl_lang import ast, pipeline
+from aidl_lang import pipeline
 from aidl_lang.building.state import Limits
-from aidl_lang.diagnostics import Diagnostic, has_errors
+from aidl_lang.common.diagnostics import Diagnostic, has_errors
+from aidl_lang.common.render.terminal import render
+from aidl_lang.common.source import SourceFile
 from aidl_lang.export import ExportError, Options
-from aidl_lang.mending import mend
 from aidl_lang.parser import parse
 from aidl_lang.pipeline import Settings
-from aidl_lang.printer import format_module
-from aidl_lang.render.terminal import render
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
+from aidl_lang.syntax.printer import format_module
+from aidl_lang.tools.mending import mend
 
 SETTINGS = replace(
     Settings(),

@@ -17,14 +17,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from aidl_lang import ast, pipeline
+from aidl_lang import pipeline
 from aidl_lang.building.state import Limits
-from aidl_lang.mending import mend
-from aidl_lang.names import fold
+from aidl_lang.checking.resolving.foreign import IDLE
+from aidl_lang.common.names import fold
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.reference.collect import reference
-from aidl_lang.resolving.foreign import IDLE
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
+from aidl_lang.tools.mending import mend
+from aidl_lang.tools.reference.collect import reference
 from tests.fuzz.judge import RECURSION, Finding, attempt
 from tests.fuzz.minimise import minimised
 from tests.fuzz.sources import misspelt, mutant, seeds

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 
-from aidl_lang.source import SourceFile
+from aidl_lang.common.source import SourceFile
 from aidl_lang.syntax.tokens import tokenize
 
 

@@ -11,9 +11,9 @@ from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
-from aidl_lang.reference.collect import reference
-from aidl_lang.source import SourceFile
+from aidl_lang.common.source import SourceFile
 from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.tools.reference.collect import reference
 from tests.documents import ROOT, programs
 from tests.fuzz.calls import CALLABLES, Writer
 from tests.property.programs import COMPARISONS, RELATIONS

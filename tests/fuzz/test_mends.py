@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang.source import SourceFile
+from aidl_lang.common.source import SourceFile
 from tests.amount import tried
 from tests.fuzz.mends import constraining, finding, program
 from tests.fuzz.sources import seeds

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from aidl_lang.common.source import Span
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Curve, Ellipse, Line, Vec
 from aidl_lang.geometry.evaluate import bounds
 from aidl_lang.geometry.network import union_bounds
-from aidl_lang.solved import Box, Frame, Scalar, SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.source import Span
+from aidl_lang.geometry.solved import Box, Frame, Scalar, SolvedGeometry, SolvedModel, SolvedStructure
 
 
 def arc(center: Vec, radius: float, first: float, last: float) -> Arc:

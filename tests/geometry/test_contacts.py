@@ -14,7 +14,7 @@ from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece
 from aidl_lang.geometry.distance import piece_distance
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.evaluate import points
-from aidl_lang.solved import SolvedGeometry
+from aidl_lang.geometry.solved import SolvedGeometry
 from tests.amount import tries
 from tests.geometry.models import arc, circle, model, rectangle, structure
 

@@ -7,14 +7,14 @@ import math
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line
 from aidl_lang.geometry.evaluate import ends
 from aidl_lang.geometry.measures import area
 from aidl_lang.geometry.region import Region
 from aidl_lang.pipeline import Compiled
-from aidl_lang.source import SourceFile
-from aidl_lang.world import MemoryWorld
 
 WEDGE = """\
 solid wedge {

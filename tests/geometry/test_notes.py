@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.geometry.curves import Line
 from aidl_lang.geometry.drawing import draw
-from aidl_lang.solved import SolvedStructure
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.geometry.solved import SolvedStructure
 from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
 
 

@@ -18,7 +18,7 @@ from aidl_lang.geometry.drawing import Drawing, draw
 from aidl_lang.geometry.evaluate import ends, points
 from aidl_lang.geometry.measures import area, measure
 from aidl_lang.geometry.region import Loop, Region
-from aidl_lang.solved import SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from tests.amount import tries
 from tests.geometry.models import arc, circle, compound, model, polygon, primitive, rectangle, structure
 

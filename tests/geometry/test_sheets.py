@@ -16,8 +16,8 @@ from aidl_lang.geometry.drawing import Body, Drawing, draw
 from aidl_lang.geometry.evaluate import ends, point
 from aidl_lang.geometry.measures import area
 from aidl_lang.geometry.sheets import Layout, laid_out
+from aidl_lang.geometry.solved import SolvedStructure
 from aidl_lang.geometry.tessellate import face_polygons
-from aidl_lang.solved import SolvedStructure
 from tests.amount import tries
 from tests.geometry.models import arc, circle, compound, model, polygon, primitive, rectangle, structure
 

@@ -17,8 +17,8 @@ from shapely.geometry import LineString, Point, Polygon
 from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line, Vec
 from aidl_lang.geometry.evaluate import nearest, point
 from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.geometry.walls import Widths, widths
-from aidl_lang.solved import SolvedGeometry, SolvedStructure
 from tests.amount import tries
 from tests.geometry.models import arc, circle, compound, polygon, primitive, rectangle, structure
 from tests.geometry.test_regions import region_of, shapely_of

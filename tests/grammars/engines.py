@@ -10,9 +10,9 @@ import mistral_common
 from mistral_common.tokens.tokenizers.base import SpecialTokenPolicy
 from mistral_common.tokens.tokenizers.tekken import Tekkenizer
 
-from aidl_lang.grammars import export
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.source import SourceFile
+from aidl_lang.tools.grammars import export
 from tests.documents import ROOT, programs
 
 _VOCABULARY = Path(mistral_common.__file__).parent / "data" / "tekken_240911.json"

@@ -7,9 +7,9 @@ import re
 import pytest
 from llguidance.gbnf_to_lark import gbnf_to_lark
 
-from aidl_lang.grammars import FENCED_FORMATS, FORMATS, export
-from aidl_lang.resources import resource
+from aidl_lang.common.resources import resource
 from aidl_lang.syntax.tables import load_tables
+from aidl_lang.tools.grammars import FENCED_FORMATS, FORMATS, export
 from tests.grammars.engines import Engine, all_programs, syntax_errors
 from tests.grammars.recogniser import Recogniser
 

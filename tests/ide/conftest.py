@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.ide.project import Project
-from aidl_lang.ide.view import View, look, run
-from aidl_lang.ide.workspace import Workspace
+from aidl_lang.tools.ide.project import Project
+from aidl_lang.tools.ide.view import View, look, run
+from aidl_lang.tools.ide.workspace import Workspace
 from tests.compiled import LIGHTER
 
 EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*.aidl"))

@@ -7,19 +7,19 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.diagnostics import has_errors
-from aidl_lang.ide.completion import MOST, Completion, complete
-from aidl_lang.ide.completion.fitting import forms, read
-from aidl_lang.ide.view import look
-from aidl_lang.ide.workspace import Workspace
-from aidl_lang.library import load
+from aidl_lang.checking.library import load
+from aidl_lang.common.diagnostics import has_errors
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
 from aidl_lang.parser import parse
-from aidl_lang.reference.coverage import cells
-from aidl_lang.snippets import expanded
-from aidl_lang.source import SourceFile
 from aidl_lang.syntax.tokens import tokenize
-from aidl_lang.vocabulary import vocabulary
-from aidl_lang.world import MemoryWorld
+from aidl_lang.tools.ide.completion import MOST, Completion, complete
+from aidl_lang.tools.ide.completion.fitting import forms, read
+from aidl_lang.tools.ide.view import look
+from aidl_lang.tools.ide.workspace import Workspace
+from aidl_lang.tools.reference.coverage import cells
+from aidl_lang.tools.snippets import expanded
+from aidl_lang.tools.vocabulary import vocabulary
 from tests.compiled import LIGHTER
 
 from .conftest import cursor, seen

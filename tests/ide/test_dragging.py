@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 
 from aidl_lang.geometry.curves import Vec
-from aidl_lang.ide.dragging import MOST_HANDLES, Dragged, Handle, drag, handles
-from aidl_lang.ide.edits import applied
-from aidl_lang.ide.refusing import Refusal
-from aidl_lang.ide.view import View, look, run
-from aidl_lang.ide.workspace import Workspace
 from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.tools.ide.dragging import MOST_HANDLES, Dragged, Handle, drag, handles
+from aidl_lang.tools.ide.edits import applied
+from aidl_lang.tools.ide.refusing import Refusal
+from aidl_lang.tools.ide.view import View, look, run
+from aidl_lang.tools.ide.workspace import Workspace
 from tests.ide.conftest import EXAMPLES, seen
 
 ROD = """drawing d {

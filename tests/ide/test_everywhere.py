@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.ide.completion import complete
-from aidl_lang.ide.hover import hover
-from aidl_lang.ide.signatures import signature_help
-from aidl_lang.ide.view import View, look, run
-from aidl_lang.ide.workspace import Workspace
+from aidl_lang.tools.ide.completion import complete
+from aidl_lang.tools.ide.hover import hover
+from aidl_lang.tools.ide.signatures import signature_help
+from aidl_lang.tools.ide.view import View, look, run
+from aidl_lang.tools.ide.workspace import Workspace
 from tests.compiled import LIGHTER
 
 from .conftest import seen

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.ide.hover import hover
-from aidl_lang.ide.view import View, look, run
-from aidl_lang.ide.workspace import Workspace
-from aidl_lang.reference.collect import reference
-from aidl_lang.solved import SolvedGeometry
+from aidl_lang.geometry.solved import SolvedGeometry
+from aidl_lang.tools.ide.hover import hover
+from aidl_lang.tools.ide.view import View, look, run
+from aidl_lang.tools.ide.workspace import Workspace
+from aidl_lang.tools.reference.collect import reference
 from tests.compiled import LIGHTER
 
 from .conftest import cursor, seen

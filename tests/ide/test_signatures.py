@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang.ide.signatures import SignatureHelp, signature_help
+from aidl_lang.tools.ide.signatures import SignatureHelp, signature_help
 
 from .conftest import cursor, seen
 

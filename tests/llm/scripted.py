@@ -21,8 +21,8 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from types import TracebackType
 from typing import Any
 
-from aidl_lang.llm.messages import Image, Message
-from aidl_lang.llm.providers import Closable, Connection, connect
+from aidl_lang.tools.llm.messages import Image, Message
+from aidl_lang.tools.llm.providers import Closable, Connection, connect
 
 Json = dict[str, Any]
 Event = tuple[str, Json | str]

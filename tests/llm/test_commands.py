@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
-from aidl_lang.llm.messages import Finish, Image, Message, ProviderError, Reply, Sampling, Usage
-from aidl_lang.llm.providers import Closable, Connection, Price, connect
+from aidl_lang.tools.llm.messages import Finish, Image, Message, ProviderError, Reply, Sampling, Usage
+from aidl_lang.tools.llm.providers import Closable, Connection, Price, connect
 
 Make = Callable[..., Closable]
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from aidl_lang.cli import main
-from aidl_lang.llm.replies import find_program
+from aidl_lang.tools.cli import main
+from aidl_lang.tools.llm.replies import find_program
 from tests.grammars.engines import engine
 from tests.llm.scripted import Failed, Says, Scripted
 
@@ -152,7 +152,7 @@ def test_openscad_has_none(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("aidl_lang.evaluation.openscad.OpenScad.is_installed", True)
+    monkeypatch.setattr("aidl_lang.tools.evaluation.openscad.OpenScad.is_installed", True)
     said = ["--base-url", "http://localhost:1/v1", "--model", "m", "--constrain", "vllm"]
     assert main(["eval", "--variants", "openscad", *said]) == 2
     assert capsys.readouterr().err == (

@@ -9,15 +9,15 @@ from pathlib import Path
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.agents.calling import answer
-from aidl_lang.agents.tools import Tools
-from aidl_lang.agents.workspace import Workspace
-from aidl_lang.cli import main
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.discretion import Programs, Reader
-from aidl_lang.render import compact
-from aidl_lang.source import SourceFile, Span
-from aidl_lang.world import DiskWorld, FileError, MemoryWorld, Reason
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.render import compact
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, Reason
+from aidl_lang.tools.agents.calling import answer
+from aidl_lang.tools.agents.tools import Tools
+from aidl_lang.tools.agents.workspace import Workspace
+from aidl_lang.tools.cli import main
+from aidl_lang.tools.discretion import Programs, Reader
 from tests.llm.scripted import Scripted
 
 SECRET = "hunter2correcthorse"

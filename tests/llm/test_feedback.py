@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from aidl_lang import pipeline
-from aidl_lang.llm import feedback
-from aidl_lang.source import SourceFile
+from aidl_lang.common.source import SourceFile
+from aidl_lang.tools.llm import feedback
 
 
 def floats(program: str) -> tuple[str, ...]:

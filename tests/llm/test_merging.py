@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang import ast
-from aidl_lang.llm.merging import merge
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
+from aidl_lang.tools.llm.merging import merge
 from tests.amount import tries
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.aidl"))

@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from aidl_lang.cli import options
-from aidl_lang.llm.messages import Finish, Image, Message, ProviderError, Sampling, Usage
-from aidl_lang.llm.providers import Connection, Price, connect
+from aidl_lang.tools.cli import options
+from aidl_lang.tools.llm.messages import Finish, Image, Message, ProviderError, Sampling, Usage
+from aidl_lang.tools.llm.providers import Connection, Price, connect
 from tests.llm.scripted import Cut, Failed, Garbage, Hangs, Limited, Request, Says, Scripted, Step
 
 Start = Callable[..., Scripted]
@@ -477,7 +477,7 @@ def test_package_that_is_not_installed(kind: str, monkeypatch: pytest.MonkeyPatc
 
 
 def test_options_become_connection_and_sampling(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("aidl_lang.llm.providers.connect", lambda said: said)
+    monkeypatch.setattr("aidl_lang.tools.llm.providers.connect", lambda said: said)
     parser = argparse.ArgumentParser()
     options.add_provider(parser)
     who = "--provider openai --model m --base-url http://x/v1 --timeout 30 --price 2.5/10"

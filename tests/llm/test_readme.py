@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.cli import main
+from aidl_lang.tools.cli import main
 
 README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
 PLATE = "solid plate { outline = rectangle(width: 60, height: 40) }\n"

@@ -8,8 +8,8 @@ import pytest
 from lsprotocol import types
 
 from aidl_lang import pipeline
-from aidl_lang.source import SourceFile
-from aidl_lang.world import MemoryWorld
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
 from tests.lsp.editor import Editor
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")

@@ -10,7 +10,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from aidl_lang import pipeline
-from aidl_lang.source import SourceFile
+from aidl_lang.common.source import SourceFile
 from tests.lsp.editor import TELEPHONE, Editor, edited
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")

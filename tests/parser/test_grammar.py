@@ -7,9 +7,9 @@ import re
 import pytest
 from lark import Lark
 
+from aidl_lang.common.resources import resource
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.resources import resource
-from aidl_lang.source import SourceFile
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import tokenize
 

@@ -6,10 +6,10 @@ import re
 
 import pytest
 
-from aidl_lang.diagnostics import apply_fixes
+from aidl_lang.common.diagnostics import apply_fixes
+from aidl_lang.common.resources import resource
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.resources import resource
-from aidl_lang.source import SourceFile
 
 PAGES = [
     *sorted(resource("docs/diagnostics").glob("E01*.md")),

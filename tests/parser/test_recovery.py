@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang import ast
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import Limits, parse
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
 
 
 def codes(text: str) -> list[str]:

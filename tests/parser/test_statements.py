@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang import ast
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.printer import format_statement
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
+from aidl_lang.syntax.printer import format_statement
 
 
 def read(text: str) -> tuple[ast.Statement, ...]:

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang import resources
-from aidl_lang.resources import resource
+from aidl_lang.common import resources
+from aidl_lang.common.resources import resource
 from aidl_lang.syntax import tables
 from aidl_lang.syntax.construction import build_tables
 
@@ -53,7 +53,7 @@ def test_nobody_needs_lark_to_parse() -> None:
     program = (
         "import sys; from aidl_lang.syntax.tables import load_tables; load_tables();"
         "sys.modules.update(lark=None, interegular=None);"
-        "from aidl_lang.parser import parse; from aidl_lang.source import SourceFile;"
+        "from aidl_lang.parser import parse; from aidl_lang.common.source import SourceFile;"
         "print(len(parse(SourceFile('', 'let a = 3')).module.statements), 'pickle' in sys.modules)"
     )
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

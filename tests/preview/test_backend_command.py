@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang import cli
-from aidl_lang.cli import preview
+from aidl_lang.tools import cli
+from aidl_lang.tools.cli import preview
 
 
 @pytest.fixture

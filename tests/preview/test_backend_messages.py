@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from aidl_lang.preview.messages import ApplyFix, Cancel, Drag, Export, Ready, SetKnob, Show, read
+from aidl_lang.tools.preview.messages import ApplyFix, Cancel, Drag, Export, Ready, SetKnob, Show, read
 
 
 @pytest.mark.parametrize(

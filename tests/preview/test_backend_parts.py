@@ -8,13 +8,13 @@ import re
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.agents.workspace import RefusalError
-from aidl_lang.ide.edits import applied
-from aidl_lang.ide.preview import preview, set_knob, tried
-from aidl_lang.ide.preview.values import Slider, Way
-from aidl_lang.ide.view import View, look, run
-from aidl_lang.ide.workspace import Workspace
-from aidl_lang.source import SourceFile
+from aidl_lang.common.source import SourceFile
+from aidl_lang.tools.agents.workspace import RefusalError
+from aidl_lang.tools.ide.edits import applied
+from aidl_lang.tools.ide.preview import preview, set_knob, tried
+from aidl_lang.tools.ide.preview.values import Slider, Way
+from aidl_lang.tools.ide.view import View, look, run
+from aidl_lang.tools.ide.workspace import Workspace
 from tests.preview.views import EXAMPLES, view_of
 
 KNOBS = """

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.diagnostics import Edit
-from aidl_lang.ide.refusing import CannotError
-from aidl_lang.preview.program import Program
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.tools.ide.refusing import CannotError
+from aidl_lang.tools.preview.program import Program
 
 TEXT = "param width = 60mm in 20..100\nsolid a { body = rectangle(width: width, height: 20) }\n"
 

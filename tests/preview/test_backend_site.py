@@ -16,13 +16,13 @@ import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
 from starlette.websockets import WebSocketDisconnect
 
-from aidl_lang.ide.preview.protocol import Json
-from aidl_lang.ide.view import View
-from aidl_lang.preview.host import MOST_UNTAKEN, Host, Page
-from aidl_lang.preview.program import Program
-from aidl_lang.preview.site import MOST_PAGES, PANE, site
-from aidl_lang.preview.watching import watch
-from aidl_lang.preview.worker import MOST_ORDERS
+from aidl_lang.tools.ide.preview.protocol import Json
+from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.preview.host import MOST_UNTAKEN, Host, Page
+from aidl_lang.tools.preview.program import Program
+from aidl_lang.tools.preview.site import MOST_PAGES, PANE, site
+from aidl_lang.tools.preview.watching import watch
+from aidl_lang.tools.preview.worker import MOST_ORDERS
 
 TOKEN, ADDRESS = "tok-En_123", "127.0.0.1:8123"
 TEXT = "param width = 60mm in 20..100\nsolid a { body = rectangle(width: width, height: 20) }\n"
@@ -213,7 +213,7 @@ def test_a_save_before_the_files_are_watched_is_seen(
         await asyncio.to_thread(may_watch.wait, 60)
         await watch(*told)
 
-    monkeypatch.setattr("aidl_lang.preview.site.watch", late)
+    monkeypatch.setattr("aidl_lang.tools.preview.site.watch", late)
     app = site(Host(program), TOKEN, [ADDRESS])
     with TestClient(app, base_url=f"http://{ADDRESS}") as client, talking(client) as page:
         page.say(type="ready")

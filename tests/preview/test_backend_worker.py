@@ -7,8 +7,8 @@ import threading
 from collections.abc import Callable
 from functools import partial
 
-from aidl_lang.cancelling import Cancelled, checkpoint
-from aidl_lang.preview.worker import MOST_ORDERS, Job, Worker
+from aidl_lang.common.cancelling import Cancelled, checkpoint
+from aidl_lang.tools.preview.worker import MOST_ORDERS, Job, Worker
 
 PATIENCE = 20.0
 

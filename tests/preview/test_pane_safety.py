@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
+from aidl_lang.common.source import SourceFile
 from aidl_lang.export import Options
 from aidl_lang.pipeline import compile
-from aidl_lang.source import SourceFile
 from tests.preview.conftest import Pane
 from tests.preview.messages import SVG, URI, handle, knob, place, problem
 from tests.preview.scripted import ScriptedHost

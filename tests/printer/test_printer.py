@@ -6,10 +6,10 @@ import textwrap
 
 import pytest
 
-from aidl_lang import ast
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.printer import format_module
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
+from aidl_lang.syntax.printer import format_module
 
 
 def form(text: str) -> str:

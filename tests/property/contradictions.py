@@ -15,9 +15,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from aidl_lang import pipeline
-from aidl_lang.diagnostics import Fix, apply_fixes
-from aidl_lang.failures import Conflict
-from aidl_lang.source import SourceFile
+from aidl_lang.common.diagnostics import Fix, apply_fixes
+from aidl_lang.common.source import SourceFile
+from aidl_lang.explaining.failures import Conflict
 
 GAVE_WAY = frozenset({"N0601", "W0601", "W0602"})
 

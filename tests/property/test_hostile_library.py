@@ -16,10 +16,11 @@ from typing import Any
 import pytest
 
 import aidl_lang
-from aidl_lang import ast, parser
-from aidl_lang.reference.collect import Entry, reference
-from aidl_lang.render.terminal import render
-from aidl_lang.source import SourceFile
+from aidl_lang import parser
+from aidl_lang.common.render.terminal import render
+from aidl_lang.common.source import SourceFile
+from aidl_lang.syntax import ast
+from aidl_lang.tools.reference.collect import Entry, reference
 from tests.amount import TRIES_ALL, tried
 from tests.fuzz.calls import CALLABLES, Writer
 

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from aidl_lang import pipeline
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Curve, Ellipse, Line
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled
-from aidl_lang.solved import SolvedGeometry, SolvedStructure
-from aidl_lang.source import SourceFile
-from aidl_lang.world import MemoryWorld
 from tests.amount import tries
 
 SHAPES = (

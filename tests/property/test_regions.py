@@ -23,7 +23,7 @@ from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.evaluate import ends, points
 from aidl_lang.geometry.measures import area, length, loop_area, perimeter, region_bounds
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.solved import SolvedStructure
+from aidl_lang.geometry.solved import SolvedStructure
 from tests.amount import tries
 from tests.geometry.models import compound, model, structure
 

@@ -18,8 +18,10 @@ from hypothesis import Phase, given
 from hypothesis import strategies as st
 
 import aidl_lang
-from aidl_lang import ast, library, parser
-from aidl_lang.source import SourceFile
+from aidl_lang import parser
+from aidl_lang.checking import library
+from aidl_lang.common.source import SourceFile
+from aidl_lang.syntax import ast
 from tests.amount import tries
 
 FILES = (

@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from hypothesis.extra.lark import from_lark
 from lark import Lark
 
-from aidl_lang import ast
-from aidl_lang.diagnostics import apply_fixes
-from aidl_lang.expression_printer import format_expression
+from aidl_lang.common.diagnostics import apply_fixes
+from aidl_lang.common.resources import resource
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
-from aidl_lang.printer import format_module
-from aidl_lang.resources import resource
-from aidl_lang.source import SourceFile
+from aidl_lang.syntax import ast
+from aidl_lang.syntax.expression_printer import format_expression
+from aidl_lang.syntax.printer import format_module
 from tests import strategies as aidl
 from tests.amount import tries
 

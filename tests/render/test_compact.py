@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from aidl_lang import pipeline
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.render import compact
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.render import compact
+from aidl_lang.common.source import SourceFile, Span
 
 SHELF = """assembly shelf {
     solid board { edge = rectangle(width: 80, height: 4) }

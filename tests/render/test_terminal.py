@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.render import Style, one_line, render, summary, to_dict, wants_colour
-from aidl_lang.source import SourceFile, Span
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.render import Style, one_line, render, summary, to_dict, wants_colour
+from aidl_lang.common.source import SourceFile, Span
 
 PART = SourceFile(
     "part.aidl",

@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.diagnostics import Diagnostic
-from aidl_lang.mending import mend
-from aidl_lang.source import SourceFile
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.source import SourceFile
+from aidl_lang.tools.mending import mend
 
 CORPUS = Path(__file__).parent / "names.txt"
 NONE = "none"

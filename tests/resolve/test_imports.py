@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang import library, parser
-from aidl_lang.resolve import resolve
-from aidl_lang.source import SourceFile
+from aidl_lang import parser
+from aidl_lang.checking import library
+from aidl_lang.checking.resolve import resolve
+from aidl_lang.common.source import SourceFile
 from tests.typecheck.checking import checked, messages, resolved
 
 BOLTS = """

@@ -6,11 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang import ast, library, parser, resources
-from aidl_lang.builtins import CUTS
-from aidl_lang.resolve import resolve
-from aidl_lang.source import SourceFile
-from aidl_lang.syntax import plain
+from aidl_lang import parser
+from aidl_lang.checking import library
+from aidl_lang.checking.builtins import CUTS
+from aidl_lang.checking.resolve import resolve
+from aidl_lang.common import resources
+from aidl_lang.common.source import SourceFile
+from aidl_lang.syntax import ast, plain
 from aidl_lang.typecheck import check
 
 SMALL = """

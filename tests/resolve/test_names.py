@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang import ast
-from aidl_lang.resolving.symbols import SymbolKind
+from aidl_lang.checking.resolving.symbols import SymbolKind
+from aidl_lang.syntax import ast
 from tests.typecheck.checking import checked, mended, messages, resolved
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang.names import is_slip
+from aidl_lang.common.names import is_slip
+from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import check
-from aidl_lang.source import SourceFile
 
 
 @pytest.mark.parametrize(

@@ -18,15 +18,15 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
+from aidl_lang.building.lower import lower
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import DiskWorld
 from aidl_lang.interp import interpret
-from aidl_lang.lower import lower
 from aidl_lang.solver import Problem, Relation, solve
 from aidl_lang.solver.__main__ import main
 from aidl_lang.solver.form import LEVELS, Case, FormError, dump, load, read
 from aidl_lang.solver.notation import DEEPEST, LONGEST_TEXT
 from aidl_lang.solver.operations import Op
-from aidl_lang.source import SourceFile
-from aidl_lang.world import DiskWorld
 from tests.amount import tries
 from tests.documents import ROOT, blocks
 

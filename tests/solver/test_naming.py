@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from aidl_lang import pipeline
+from aidl_lang.building.lower import lower
+from aidl_lang.common.source import SourceFile
 from aidl_lang.interp import interpret
-from aidl_lang.lower import lower
 from aidl_lang.solver.naming import naming
-from aidl_lang.source import SourceFile
 
 PROGRAM = """
 assembly top {

@@ -15,8 +15,8 @@ from typing import TypeAlias
 
 from aidl_lang.geometry.curves import Arc, Line, Vec
 from aidl_lang.geometry.evaluate import bounds
+from aidl_lang.geometry.solved import Box, SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled
-from aidl_lang.solved import Box, SolvedGeometry, SolvedStructure
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 
 import aidl_lang
 from aidl_lang import pipeline
-from aidl_lang.diagnostics import Diagnostic, apply_fixes
-from aidl_lang.freedom import report
-from aidl_lang.render import render
-from aidl_lang.source import SourceFile
-from aidl_lang.world import MemoryWorld
+from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.common.render import render
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
+from aidl_lang.geometry.freedom import report
 from tests.spec.parts import Case, Expectation, Line, Program
 from tests.spec.readings import Missing, Reader, shown
 

@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.diagnostics import Diagnostic, apply_fixes
-from aidl_lang.source import SourceFile
-from aidl_lang.world import MemoryWorld
+from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
 from tests.documents import Block, blocks
 from tests.spec.running import headline
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping
 
-from aidl_lang import library, parser
-from aidl_lang.diagnostics import Diagnostic, apply_fixes, ordered
-from aidl_lang.resolve import Resolution, resolve
-from aidl_lang.source import SourceFile
+from aidl_lang import parser
+from aidl_lang.checking import library
+from aidl_lang.checking.resolve import Resolution, resolve
+from aidl_lang.common.diagnostics import Diagnostic, apply_fixes, ordered
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MemoryWorld
 from aidl_lang.typecheck import Program, check
-from aidl_lang.world import MemoryWorld
 
 
 def checked(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from aidl_lang import boxes, primitives
+from aidl_lang.building import boxes, primitives
 from aidl_lang.checking import fields
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from itertools import combinations
 
-from aidl_lang import library, pipeline
-from aidl_lang.builtins import SIGNATURES
-from aidl_lang.names import fold
-from aidl_lang.source import SourceFile
-from aidl_lang.types import Binding, Given, Signature, bind
+from aidl_lang import pipeline
+from aidl_lang.checking import library
+from aidl_lang.checking.builtins import SIGNATURES
+from aidl_lang.checking.types import Binding, Given, Signature, bind
+from aidl_lang.common.names import fold
+from aidl_lang.common.source import SourceFile
 
 
 def codes(text: str) -> list[str]:

@@ -6,7 +6,7 @@ import textwrap
 
 import pytest
 
-from aidl_lang.diagnostics import apply_fixes
+from aidl_lang.common.diagnostics import apply_fixes
 from tests.typecheck.checking import checked, mended, messages
 
 OUTLINE = "    plate = rectangle(width: 80, height: 40)"

@@ -1,4 +1,4 @@
-// Made by `make colours` from aidl_lang/vocabulary.py; do not edit.
+// Made by `make colours` from aidl_lang/tools/vocabulary.py; do not edit.
 
 export const words: Record<string, readonly string[]> = {
   "kinds": ["assembly", "solid", "hole", "drawing"],

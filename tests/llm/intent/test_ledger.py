@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
-from aidl_lang.llm.intent import Kind, Ledger, request
-from aidl_lang.source import SourceFile
+from aidl_lang.common.source import SourceFile
+from aidl_lang.tools.llm.intent import Kind, Ledger, request
 from tests.amount import tries
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -417,7 +417,7 @@ def test_a_busy_machine_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None
     clocks = SimpleNamespace(
         thread_time=time.thread_time, monotonic=hours, perf_counter=hours, time=hours, process_time=hours
     )
-    monkeypatch.setattr("aidl_lang.llm.intent.probing.time", clocks)
+    monkeypatch.setattr("aidl_lang.tools.llm.intent.probing.time", clocks)
     ledger = Ledger()
     for source, result in programs:
         ledger.note(source, result)

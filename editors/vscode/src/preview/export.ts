@@ -2,7 +2,7 @@
 
 import * as vscode from "vscode";
 
-import { FORMATS } from "../../../../aidl_lang/preview/pane/formats.js";
+import { FORMATS } from "../../../../aidl_lang/tools/preview/pane/formats.js";
 import type { Ask, Format } from "./protocol";
 
 /** Undefined: the reader thought better of it. */

@@ -1,6 +1,6 @@
 /** What is said between the pane, this extension and the language server. The pane owns the types of its messages. */
 
-import type { FromHost, Preview, Status, Value, Vec } from "../../../../aidl_lang/preview/pane/protocol";
+import type { FromHost, Preview, Status, Value, Vec } from "../../../../aidl_lang/tools/preview/pane/protocol";
 
 export type {
   Element,
@@ -16,7 +16,7 @@ export type {
   ToHost,
   Value,
   Vec,
-} from "../../../../aidl_lang/preview/pane/protocol";
+} from "../../../../aidl_lang/tools/preview/pane/protocol";
 
 /** The answer to a request that edits the text. */
 export interface Applied {

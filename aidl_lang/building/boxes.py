@@ -1,0 +1,367 @@
+"""Boxes: the extent of structures, geometry and lists of them in the frame of the structure that asks.
+
+A box contains a structure's own curves (tight, construction geometry aside) and its child structures' boxes,
+holes excepted. Its sides are spelled out only when the comparison they stand in is known, because a box that
+meets the box of one of its descendants there leaves that descendant out (paper, appendix B).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
+
+from aidl_lang.building import expression as ex
+from aidl_lang.building.expression import Expression, Unknown
+from aidl_lang.building.model import Geometry, Measurement, Recipe, Structure, chain, convert
+from aidl_lang.building.primitives import clockwise, defining, direction, number, on_text, sweep, view, xy
+from aidl_lang.building.values import Array, ListVal, Num, PointVal, Value, length, members, point
+from aidl_lang.common.lettering import box_around
+from aidl_lang.common.records import record
+
+SIDES = ("left", "right", "top", "bottom")
+
+FIELDS = (
+    *SIDES,
+    "width",
+    "height",
+    "center",
+    "center_x",
+    "center_y",
+    "top_left",
+    "top_right",
+    "bottom_left",
+    "bottom_right",
+    "top_center",
+    "bottom_center",
+    "left_center",
+    "right_center",
+)
+
+Source = Geometry | Structure | PointVal
+
+
+@record(eq=False)
+class Box:
+    """The common box of its sources, as `here` sees them."""
+
+    sources: tuple[Source, ...]
+    here: Structure
+
+    def side(self, name: str) -> Expression:
+        """left, right, top or bottom; spelled out at once where no structure is in the box."""
+        side = _Side(self, name)
+        if any(isinstance(source, Structure) for source in self.sources):
+            return ex.lazy(side)
+        return extent(side, frozenset())
+
+    def field(self, name: str) -> Num | PointVal | None:
+        """One of `FIELDS`."""
+        match name:
+            case "left" | "right" | "top" | "bottom":
+                return length(self.side(name))
+            case "width":
+                return length(ex.sub(self.side("right"), self.side("left")))
+            case "height":
+                return length(ex.sub(self.side("top"), self.side("bottom")))
+            case "center_x":
+                return length(ex.half(ex.add(self.side("left"), self.side("right"))))
+            case "center_y":
+                return length(ex.half(ex.add(self.side("bottom"), self.side("top"))))
+            case "center":
+                return self._at("center", "center")
+            case _:
+                if name not in FIELDS:
+                    return None
+                a, b = name.split("_")
+                return self._at(a, b) if a in ("top", "bottom") else self._at(b, a)
+
+    def _at(self, vertical: str, horizontal: str) -> PointVal:
+        x = self.field("center_x" if horizontal == "center" else horizontal)
+        y = self.field("center_y" if vertical == "center" else vertical)
+        assert isinstance(x, Num)
+        assert isinstance(y, Num)
+        return point(x.expression, y.expression)
+
+
+@record(frozen=False, eq=False)
+class _Side:
+    """A side of a box that is not yet spelled out."""
+
+    box: Box
+    name: str
+
+    @property
+    def value(self) -> float:
+        return self.spelled_out.value
+
+    @cached_property
+    def spelled_out(self) -> Expression:
+        return extent(self, frozenset())
+
+    def unknowns(self) -> Iterator[Unknown]:
+        for source in self.box.sources:
+            yield from source_unknowns(source, self.box.here)
+
+
+def source_unknowns(source: object, here: Structure) -> Iterator[Unknown]:
+    """The unknowns that place a source: its own, and the frames between it and `here`."""
+    if isinstance(source, PointVal):
+        yield from ex.unknowns([source.x.expression, source.y.expression])
+    elif isinstance(source, Geometry):
+        yield from ex.unknowns(defining(source, here))
+    elif isinstance(source, Structure):
+        for structure in chain(source):
+            if structure is here:
+                break
+            frame = structure.frame
+            yield from ex.unknowns([frame.x, frame.y, frame.rotation])
+        yield from _interior(source)
+
+
+def _interior(structure: Structure) -> Iterable[Unknown]:
+    """The unknowns that place what is in a structure, each in the frame that it is in."""
+    if structure.interior is not None:
+        return structure.interior
+    found = dict.fromkeys(
+        u
+        for inner in structure.walk()
+        for u in ex.unknowns([*(inner.plan or ()), *(e for g in inner.own() for e in defining(g, inner))])
+    )
+    if structure.is_complete:
+        structure.interior = tuple(found)
+    return found
+
+
+def boxes_in(*roots: Expression) -> tuple[frozenset[Structure], frozenset[Unknown] | None]:
+    """The structures of whose boxes expressions speak, and the unknowns that they mention beside these; None
+    for the latter where they speak of no structure's box.
+    """
+    if not any(root.is_open for root in roots):
+        return frozenset(), None
+    leaves = [node for node in ex.nodes(roots) if not node.args]
+    boxes = [node.payload.box for node in leaves if isinstance(node.payload, _Side)]
+    structures = {s for box in boxes for s in box.sources if isinstance(s, Structure)}
+    if not structures:
+        return frozenset(), None
+    beside = {node.payload for node in leaves if isinstance(node.payload, Unknown)}
+    for box in boxes:
+        others = (s for s in box.sources if not isinstance(s, Structure))
+        beside.update(u for source in others for u in source_unknowns(source, box.here))
+    return frozenset(structures), frozenset(beside)
+
+
+def spelled_out(*roots: Expression, equal: bool = False) -> tuple[Expression, ...]:
+    """The expressions of one comparison with every side of a box replaced by what it is there. If they are
+    the same sides of an assembly of parts and of one of these, and shall be `equal`, that one is the
+    outermost: it is not left out.
+    """
+    if not any(root.is_open for root in roots):
+        return roots
+    order = list(ex.nodes(roots, only_open=True))
+    sides = [n.payload for n in order if isinstance(n.payload, _Side)]
+    if not sides:
+        return roots
+    flush = equal and len({root.payload.name for root in roots if isinstance(root.payload, _Side)}) == 1
+    flush = flush and all(isinstance(root.payload, _Side) for root in roots)
+    used = {s for side in sides for s in side.box.sources if isinstance(s, Structure)}
+    replaced: dict[Expression, Expression] = {}
+    for node in order:
+        if isinstance(node.payload, _Side):
+            tops = [s for s in node.payload.box.sources if isinstance(s, Structure)]
+            ignored = frozenset(
+                u for u in used for t in tops if u is not t and u.is_within(t) and (t.geometry or not flush)
+            )
+            replaced[node] = extent(node.payload, ignored)
+        elif any(a in replaced for a in node.args):
+            replaced[node] = ex.apply(node.op, *[replaced.get(a, a) for a in node.args])
+    return tuple(replaced.get(root, root) for root in roots)
+
+
+def extent(side: _Side, ignored: frozenset[Structure]) -> Expression:
+    """A side as the extreme of everything in the box; 0 when there is nothing in it."""
+    here, name = side.box.here, side.name
+    only = side.box.sources[0] if len(side.box.sources) == 1 else None
+    whole = only if isinstance(only, Structure) and only.is_complete else None
+    key = (here, name, ignored)
+    if whole is not None and key in whole.extents:
+        return whole.extents[key]
+    candidates = list(dict.fromkeys(e for s in side.box.sources for e in _extremes(s, here, name, ignored)))
+    found = _extreme_of(candidates, name)
+    if whole is not None:
+        whole.extents[key] = found
+    return found
+
+
+def _extreme_of(candidates: list[Expression], side: str) -> Expression:
+    if not candidates:
+        return ex.ZERO
+    if len(candidates) == 1:
+        return candidates[0]
+    return ex.apply("maximum" if side in ("right", "top") else "minimum", *candidates)
+
+
+def _extremes(
+    source: Source, here: Structure, side: str, ignored: frozenset[Structure]
+) -> Iterator[Expression]:
+    if isinstance(source, PointVal):
+        yield xy(source)[side in ("top", "bottom")]
+    elif isinstance(source, Geometry):
+        if source.type == "point":
+            yield xy(view(source, here)["at"])[side in ("top", "bottom")]
+        else:
+            for primitive in source.primitives(even_construction=True):
+                yield from _curve(primitive, here, side)
+    elif source not in ignored:
+        yield from _structure(source, here, side, ignored)
+
+
+def _structure(
+    source: Structure, here: Structure, side: str, ignored: frozenset[Structure]
+) -> Iterator[Expression]:
+    if source.plan:
+        left, bottom, width, height = source.plan
+        right, top = ex.add(left, width), ex.add(bottom, height)
+        for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
+            yield convert(*corner, source, here)[side in ("top", "bottom")]
+    for primitive in source.drawn():
+        yield from _curve(primitive, here, side)
+    for child in source.children:
+        if child.kind != "hole" and child not in ignored:
+            yield from _structure(child, here, side, ignored)
+
+
+def _curve(primitive: Geometry, here: Structure, side: str) -> Iterator[Expression]:
+    """Candidates for the extreme of one curve towards a side."""
+    if primitive.recipe is not None and primitive.is_drawn_later:
+        yield from _made(primitive, primitive.recipe, here, side)
+        return
+    if primitive.type == "point":
+        return
+    core = view(primitive, here)
+    axis = side in ("top", "bottom")
+    positive = side in ("right", "top")
+    match primitive.type:
+        case "line":
+            yield xy(core["start"])[axis]
+            yield xy(core["end"])[axis]
+        case "circle":
+            yield (ex.add if positive else ex.sub)(xy(core["center"])[axis], number(core["radius"]))
+        case "arc":
+            yield _arc_extreme(primitive, here, side)
+        case "ellipse":
+            yield _ellipse_extreme(core, axis, positive)
+        case "glyphs" if primitive.glyphs:
+            yield from _text_extremes(primitive, here, side)
+        case "bezier":
+            yield _cubic_extreme([xy(core[p])[axis] for p in ("p0", "p1", "p2", "p3")], positive)
+
+
+def _cubic_extreme(controls: Sequence[Expression], positive: bool) -> Expression:
+    """The extreme of a cubic Bézier curve by one coordinate of its control points."""
+    if positive:
+        return ex.apply("cubic_max", *controls)
+    return ex.apply("neg", ex.apply("cubic_max", *[ex.apply("neg", c) for c in controls]))
+
+
+def _text_extremes(text: Geometry, here: Structure, side: str) -> Iterator[Expression]:
+    """Of a text that stands square to the axes, the corners of its ink; of one that is turned, what of its
+    silhouette reaches furthest, or all of that where it is not known how far it is turned.
+    """
+    at, angle = on_text(text, here), number(view(text, here)["angle"])
+    axis, positive = side in ("top", "bottom"), side in ("right", "top")
+    if angle.is_constant and angle.value % 90.0 == 0.0:
+        left, bottom, right, top = box_around(text.glyphs)
+        for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
+            yield at(corner)[axis]
+        return
+    reaching = [
+        reach[0] if len(reach) == 1 else _cubic_extreme(reach, positive)
+        for reach in ([at(p)[axis] for p in piece] for piece in text.silhouette)
+    ]
+    if angle.is_constant:
+        furthest = max if positive else min
+        yield furthest(reaching, key=lambda reach: reach.value)
+    else:
+        yield from reaching
+
+
+_AS_WIDE = frozenset({"hull", "union", "shell"})
+"""Outlines whose box is the box of what they are made of."""
+
+
+def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iterator[Expression]:
+    """Of an outline made of others: theirs, or theirs moved out by as much as a disc reaches around them; any
+    other has a box only once it is drawn.
+    """
+    grown: Expression | None = None
+    match recipe.kind:
+        case kind if kind in _AS_WIDE:
+            grown = ex.ZERO
+        case "thick" if recipe.words["caps"] == recipe.words["joins"] == "round":
+            grown = ex.half(recipe.numbers["width"].expression)
+        case "offset" if (
+            recipe.words["corners"] == "round" and (out := recipe.numbers["distance"]).value >= 0
+        ):
+            grown = out.expression
+    if grown is None:
+        yield ex.measure(Measurement(side, (outline,), here))
+        return
+    for source in recipe.sources:
+        for extreme in _extremes(source, here, side, frozenset()):
+            yield ex.apply("add" if side in ("right", "top") else "sub", extreme, grown)
+
+
+_TOWARDS = {"right": 0.0, "top": 90.0, "left": 180.0, "bottom": 270.0}
+
+
+def _arc_extreme(arc: Geometry, here: Structure, side: str) -> Expression:
+    """The quadrant point if the arc passes through it, else the further end."""
+    axis, positive = side in ("top", "bottom"), side in ("right", "top")
+    core = view(arc, here)
+    first, turn = _turn(arc, here)
+    reached = ex.apply("mod", ex.sub(ex.constant(_TOWARDS[side]), first), ex.constant(360.0))
+    passes = ex.sub(turn, reached)
+    outwards = ex.add if positive else ex.sub
+    quadrant = outwards(xy(core["center"])[axis], number(core["radius"]))
+    further = "maximum" if positive else "minimum"
+    ends = ex.apply(further, xy(core["start"])[axis], xy(core["end"])[axis])
+    return ex.apply("select", passes, quadrant, ends)
+
+
+def _turn(arc: Geometry, here: Structure) -> tuple[Expression, Expression]:
+    """Counter-clockwise, the direction in which an arc begins and its sweep, the same for all four sides."""
+    if (known := arc.turns.get(here)) is None:
+        core, is_clockwise = view(arc, here), clockwise(arc, here)
+        first = direction(core["center"], core["end" if is_clockwise else "start"])
+        known = arc.turns[here] = first, sweep(core, is_clockwise)
+    return known
+
+
+def _ellipse_extreme(core: Mapping[str, Value], axis: bool, positive: bool) -> Expression:
+    """Centre plus or minus sqrt((rx cos)^2 + (ry sin)^2), the half-width of a turned ellipse."""
+    angle = number(core["angle"])
+    along, across = (ex.sin, ex.cos) if axis else (ex.cos, ex.sin)
+    half_width = ex.apply(
+        "hypot",
+        ex.mul(number(core["rx"]), along(angle)),
+        ex.mul(number(core["ry"]), across(angle)),
+    )
+    return ex.apply("add" if positive else "sub", xy(core["center"])[axis], half_width)
+
+
+def box_of(value: object, here: Structure) -> Box | None:
+    """The box of a value; None when it has none."""
+    if isinstance(value, Box):
+        return value
+    sources = tuple(_sources(value))
+    return Box(sources, here) if sources else None
+
+
+def _sources(value: object) -> Iterable[Source]:
+    if isinstance(value, Geometry | Structure | PointVal):
+        yield value
+    elif isinstance(value, Box):
+        yield from value.sources
+    elif isinstance(value, ListVal | Array):
+        for item in members(value) or ():
+            yield from _sources(item)

@@ -1,0 +1,403 @@
+"""Expressions over unknowns: what a program's arithmetic becomes once a solver has to find the numbers.
+
+An expression is an immutable node of a shared graph. Each carries the value it has at the first guesses, so
+that branches and readings can be chosen by what was written. Arithmetic over constants is folded, hence an
+expression is constant exactly when `op == "constant"`. Angles inside this graph are radians only between a
+trigonometric node and its argument; every number of the language is in millimetres or degrees.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import field
+from typing import TYPE_CHECKING, Protocol
+
+from aidl_lang.common.records import record
+
+if TYPE_CHECKING:
+    from aidl_lang.building.model import Geometry, Structure
+
+DEGREE = math.pi / 180.0
+
+LARGEST = 1e30
+"""No number of a program is larger: squares and cubes of such numbers, and their sums, are still finite."""
+
+
+def is_number(value: float) -> bool:
+    """Whether a program may work with a value: not with NaN, infinity, or what lies beyond LARGEST."""
+    return abs(value) <= LARGEST
+
+
+_WAYS = {
+    "length": "distance",
+    "angle": "direction",
+    "dx": "horizontal distance",
+    "dy": "vertical distance",
+}
+
+
+@record(frozen=False, eq=False)
+class Unknown:
+    """A number that the solver finds.
+
+    guess     the first guess: what was written
+    kept      a size: changes only if the constraints cannot hold otherwise
+    holder    the geometry or structure it belongs to, `field` its name there (`center.x`)
+    owner     the structure that owns it
+    angular   counts in degrees
+    frame_of  for a coordinate of a frame, the structure that frame places
+    cell      stands for a number argument, and may still be read as a constant while building
+    exact     a constant after all: read while building, or locked and named by no constraint
+    outline   a side of the box of an empty structure
+    locked    an angle that stays as written until a constraint asks it to turn
+    since     for the way to a literal point, the name of the one before it
+    implied   follows from literal points, and no number was written for it
+    """
+
+    guess: float
+    owner: Structure
+    holder: Geometry | Structure
+    field: str
+    kept: bool = False
+    angular: bool = False
+    frame_of: Structure | None = None
+    cell: bool = False
+    exact: bool = False
+    locked: bool = False
+    outline: bool = False
+    since: str = ""
+    implied: bool = False
+
+    @property
+    def path(self) -> str:
+        return f"{self.holder.path}.{self.field}"
+
+    @property
+    def is_size(self) -> bool:
+        """Whether half of it is something else: not for an angle, nor a coordinate of the way to a point."""
+        is_offset = bool(self.since) and self.field.endswith((".dx", ".dy"))
+        return not self.angular and not (is_offset and "_to." not in self.field)
+
+    @property
+    def told(self) -> str:
+        """What it is, for people: not all that is unknown has a name in the program."""
+        if self.since:
+            target, _, measure = self.path.rpartition(".")
+            if target.endswith("_to"):  # how the library calls the point where a size ends
+                return f"`{target.removesuffix('_to')}`"
+            return f"the {_WAYS[measure]} from `{self.holder.path}.{self.since}` to `{target}`"
+        if self.holder.is_nameless:
+            return f"`{self.field}` of a {self.holder.path.rpartition('.')[2]} in `{self.owner.path}`"
+        return quoted(self.path)
+
+
+def quoted(path: str) -> str:
+    """A path, for people: no program can name what is nameless inside an outline made of others."""
+    outline, is_source, rest = path.partition(".source[")
+    if not is_source:
+        return f"`{path}`"
+    number, _, inside = rest.partition("]")
+    of = f"`{inside[1:]}` of " if inside else ""
+    return f"{of}nameless outline {int(number) + 1} in `{outline}`"
+
+
+class Lazy(Protocol):
+    """An expression that is spelled out only when the comparison it stands in is known (a side of a box)."""
+
+    @property
+    def value(self) -> float: ...
+
+    @property
+    def spelled_out(self) -> Expression:
+        """What it is where nothing is left out of it."""
+        ...
+
+    def unknowns(self) -> Iterable[Unknown]: ...
+
+
+class Expression:
+    """One node. `payload` is an `Unknown`, a `Lazy`, or a measurement for the ops that need one, and of a
+    constant that stands in the text as a number, where; `is_open` tells that a lazy or a measurement is in
+    it, so that no graph is searched for what few have.
+    """
+
+    __slots__ = ("args", "is_open", "op", "payload", "value")
+
+    def __init__(
+        self,
+        op: str,
+        args: tuple[Expression, ...],
+        value: float,
+        is_open: bool = False,
+        payload: object = None,
+    ) -> None:
+        self.op = op
+        self.args = args
+        self.value = value
+        self.is_open = is_open
+        self.payload = payload
+
+    @property
+    def is_constant(self) -> bool:
+        return self.op == "constant"
+
+    def __repr__(self) -> str:
+        inner = ", ".join(map(repr, self.args)) or f"{self.payload or self.value}"
+        return f"{self.op}({inner})"
+
+
+def constant(value: float) -> Expression:
+    return Expression("constant", (), float(value))
+
+
+def literal(value: float, written: object) -> Expression:
+    """A constant that is `written` as a number in the text; what is computed from it no longer is."""
+    return Expression("constant", (), value, payload=written)
+
+
+ZERO = constant(0.0)
+ONE = constant(1.0)
+
+
+def unknown(source: Unknown) -> Expression:
+    return Expression("unknown", (), source.guess, payload=source)
+
+
+def lazy(source: Lazy) -> Expression:
+    return Expression("lazy", (), source.value, is_open=True, payload=source)
+
+
+def measure(source: object) -> Expression:
+    """What only the finished drawing can tell; it has no value before."""
+    return Expression("measure", (), math.nan, is_open=True, payload=source)
+
+
+def _safe(function: Callable[..., float]) -> Callable[..., float]:
+    """Arithmetic that answers nan where a number does not exist, as the solver's does."""
+
+    def evaluate(*args: float) -> float:
+        try:
+            result = function(*args)
+        except (ValueError, ZeroDivisionError, OverflowError):
+            return math.nan
+        return result if isinstance(result, float | int) else math.nan
+
+    return evaluate
+
+
+def _cubic_max(p0: float, p1: float, p2: float, p3: float) -> float:
+    """The largest value of a cubic in Bernstein form over 0 <= t <= 1."""
+    a, b, c = -p0 + 3 * p1 - 3 * p2 + p3, 2 * (p0 - 2 * p1 + p2), p1 - p0
+    roots: list[float] = []
+    if abs(a) > 1e-12 * (abs(b) + abs(c) + 1e-300):
+        discriminant = b * b - 4 * a * c
+        if discriminant >= 0:
+            root = math.sqrt(discriminant)
+            q = -0.5 * (b + math.copysign(root, b))
+            roots = [q / a, c / q if q else 0.0]
+    elif b:
+        roots = [-c / b]
+
+    def at(t: float) -> float:
+        s = 1 - t
+        return s * s * s * p0 + 3 * s * s * t * p1 + 3 * s * t * t * p2 + t * t * t * p3
+
+    return max([p0, p3, *(at(t) for t in roots if 0 < t < 1)])
+
+
+EVALUATE: dict[str, Callable[..., float]] = {
+    "add": lambda a, b: a + b,
+    "sub": lambda a, b: a - b,
+    "mul": lambda a, b: a * b,
+    "neg": lambda a: -a,
+    "div": _safe(lambda a, b: a / b),
+    "power": _safe(lambda a, b: a**b),
+    "sin": _safe(math.sin),
+    "cos": _safe(math.cos),
+    "tan": _safe(math.tan),
+    "asin": _safe(math.asin),
+    "acos": _safe(math.acos),
+    "atan2": math.atan2,
+    "sqrt": _safe(math.sqrt),
+    "abs": abs,
+    "square": lambda a: a * a,
+    "hypot": math.hypot,
+    "minimum": lambda *args: min(args),
+    "maximum": lambda *args: max(args),
+    "mod": _safe(lambda a, b: a - b * math.floor(a / b)),
+    "select": lambda c, a, b: a if c >= 0 else b,
+    "cubic_max": _cubic_max,
+}
+"""The meaning of each op; the solver's tape has the same ops under the same names."""
+
+
+def apply(op: str, *args: Expression) -> Expression:
+    """A node, folded where all arguments are constants or where it changes nothing."""
+    if (folded := _FOLDED.get(op)) is not None:
+        return folded(*args)
+    value = EVALUATE[op](*[a.value for a in args])
+    for arg in args:
+        if arg.op != "constant":
+            return Expression(op, args, value, True in [a.is_open for a in args])
+    return Expression("constant", (), value)
+
+
+def add(a: Expression, b: Expression) -> Expression:
+    if b.op == "constant":
+        if a.op == "constant":
+            return Expression("constant", (), a.value + b.value)
+        if b.value == 0.0:
+            return a
+    elif a.op == "constant" and a.value == 0.0:
+        return b
+    return Expression("add", (a, b), a.value + b.value, a.is_open or b.is_open)
+
+
+def sub(a: Expression, b: Expression) -> Expression:
+    if b.op == "constant":
+        if a.op == "constant":
+            return Expression("constant", (), a.value - b.value)
+        if b.value == 0.0:
+            return a
+    return Expression("sub", (a, b), a.value - b.value, a.is_open or b.is_open)
+
+
+def mul(a: Expression, b: Expression) -> Expression:
+    if a.op == "constant":
+        if b.op == "constant":
+            return Expression("constant", (), a.value * b.value)
+        factor, other = a.value, b
+    else:
+        factor, other = (b.value, a) if b.op == "constant" else (math.nan, a)
+    if factor == 1.0:
+        return other
+    if factor == 0.0:
+        return ZERO
+    return Expression("mul", (a, b), a.value * b.value, a.is_open or b.is_open)
+
+
+def div(a: Expression, b: Expression) -> Expression:
+    value = EVALUATE["div"](a.value, b.value)
+    if b.op == "constant":
+        if a.op == "constant":
+            return Expression("constant", (), value)
+        if b.value == 1.0:
+            return a
+    return Expression("div", (a, b), value, a.is_open or b.is_open)
+
+
+_FOLDED: dict[str, Callable[..., Expression]] = {"add": add, "sub": sub, "mul": mul, "div": div}
+"""The operations that most nodes are made of, each with its own folding."""
+
+
+def half(a: Expression) -> Expression:
+    return mul(a, constant(0.5))
+
+
+def sin(degrees: Expression) -> Expression:
+    if degrees.is_constant:
+        return constant(exact_turn(degrees.value)[1])
+    return apply("sin", mul(degrees, constant(DEGREE)))
+
+
+def cos(degrees: Expression) -> Expression:
+    if degrees.is_constant:
+        return constant(exact_turn(degrees.value)[0])
+    return apply("cos", mul(degrees, constant(DEGREE)))
+
+
+def atan2(y: Expression, x: Expression) -> Expression:
+    """The direction of (x, y) in degrees."""
+    return mul(apply("atan2", y, x), constant(1.0 / DEGREE))
+
+
+def exact_turn(degrees: float) -> tuple[float, float]:
+    """Cosine and sine, exact at multiples of a right angle."""
+    quarter = degrees / 90.0
+    if not math.isfinite(quarter):
+        return math.nan, math.nan
+    if quarter == round(quarter):
+        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[round(quarter) % 4]
+    return math.cos(degrees * DEGREE), math.sin(degrees * DEGREE)
+
+
+def nodes(roots: Iterable[Expression], *, only_open: bool = False) -> Iterator[Expression]:
+    """Every node below the roots once, arguments before those that use them; or only the open ones, which
+    form the top of each graph.
+    """
+    seen: set[Expression] = set()
+    for root in roots:
+        stack = [(root, False)]
+        while stack:
+            node, done = stack.pop()
+            if done:
+                yield node
+            elif node not in seen:
+                seen.add(node)
+                if node.args:
+                    stack.append((node, True))
+                    stack.extend((a, False) for a in node.args if a not in seen and a.is_open >= only_open)
+                else:
+                    yield node
+
+
+def unknowns(roots: Iterable[Expression]) -> Iterator[Unknown]:
+    """The unknowns that the roots depend on, in the order of `nodes`."""
+    seen: set[Expression] = set()
+    for root in roots:
+        stack = [root] if root.op != "constant" else []
+        while stack:
+            node = stack.pop()
+            if node in seen:
+                continue
+            seen.add(node)
+            if node.op == "unknown":
+                yield node.payload  # type: ignore[misc]
+            elif node.op == "lazy":
+                yield from node.payload.unknowns()  # type: ignore[attr-defined]
+            else:
+                stack.extend(node.args)
+
+
+@record(frozen=False)
+class Evaluator:
+    """Evaluates expressions at given values of the unknowns, each node once.
+
+    `measure` answers nodes that only the finished drawing can (areas, clearances).
+    """
+
+    values: Mapping[Unknown, float]
+    measure: Callable[[object], float] | None = None
+    _memo: dict[Expression, float] = field(default_factory=dict)
+
+    def __call__(self, root: Expression) -> float:
+        memo = self._memo
+        stack = [root]
+        while stack:
+            node = stack[-1]
+            if node in memo:
+                stack.pop()
+                continue
+            args = node.args
+            if node.op == "lazy":
+                args = (node.payload.spelled_out,)  # type: ignore[attr-defined]
+            if missing := [a for a in args if a not in memo]:
+                stack += missing
+                continue
+            stack.pop()
+            if not args:
+                memo[node] = self._leaf(node)
+            elif node.op == "lazy":
+                memo[node] = memo[args[0]]
+            else:
+                memo[node] = EVALUATE[node.op](*[memo[a] for a in args])
+        return memo[root]
+
+    def _leaf(self, node: Expression) -> float:
+        if node.op == "unknown":
+            assert isinstance(node.payload, Unknown)
+            return self.values.get(node.payload, node.payload.guess)
+        if node.op == "measure":
+            return self.measure(node.payload) if self.measure else math.nan
+        return node.value

@@ -1,0 +1,98 @@
+"""Text → Program → Model: the stages before solving, with all that can be said of a program there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TypeAlias
+
+from aidl_lang import parser
+from aidl_lang.building.state import DEFAULT_LIMITS, Limits
+from aidl_lang.checking import library as library_module
+from aidl_lang.checking.resolve import resolve
+from aidl_lang.checking.subset import adapted
+from aidl_lang.checking.variants import Variant
+from aidl_lang.common.diagnostics import Diagnostic, has_errors, is_too_many, ordered, within_limit
+from aidl_lang.common.records import record
+from aidl_lang.common.running import Stopwatch
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import World
+from aidl_lang.interp import Interpretation, interpret, nothing_built
+from aidl_lang.solver.settings import Settings as SolverSettings
+from aidl_lang.typecheck import Program
+from aidl_lang.typecheck import check as typecheck
+
+_IMPORT_FAILURES = frozenset({"E0210", "E0211", "E0212", "E0213", "E0804"})
+_CIRCLE = "E0207"
+_UNUSED = "W0201"
+_MISSING_NAMES = frozenset({"E0201", "E0203"})
+
+
+@record()
+class Settings:
+    """Limits for programs that are not trusted, the solver's settings, the subset of the language, and
+    whether it is an error that something gave way unasked.
+
+    drawing  seconds of the processor's time for what comes after solving, and for each thing that is done
+             with the drawing: writing a file, measuring, comparing
+    """
+
+    text: parser.Limits = parser.DEFAULT_LIMITS
+    building: Limits = DEFAULT_LIMITS
+    solving: SolverSettings = SolverSettings(tolerance=1e-10)
+    variant: Variant = Variant.FULL
+    strict: bool = False
+    drawing: float = 20.0
+
+
+Front: TypeAlias = tuple[Program, list[Diagnostic]]
+
+
+def read(source: SourceFile, world: World | None, settings: Settings, watch: Stopwatch) -> Front:
+    """Text → Program: parsed, resolved and type-checked."""
+    with watch("parse"):
+        parsed = parser.parse(source, settings.text)
+    with watch("library"):
+        library = library_module.load()
+    with watch("resolve"):
+        resolution = resolve(parsed.module, world, library)
+    with watch("typecheck"):
+        program = typecheck(resolution, settings.variant)
+    found = program.diagnostics
+    if has_errors(parsed.diagnostics):  # what was left out may have used them
+        found = tuple(d for d in found if d.code != _UNUSED)
+    return program, [*parsed.diagnostics, *found]
+
+
+def build(
+    source: SourceFile,
+    world: World | None,
+    params: Mapping[str, str | float | bool],
+    settings: Settings,
+    watch: Stopwatch,
+    checked: Front | None = None,
+    turned: Mapping[int, int] | None = None,
+    states_constants: bool = False,
+) -> tuple[Interpretation, list[Diagnostic]]:
+    """Text → Model, with every diagnostic that does not need solving."""
+    program, found = checked or read(source, world, settings, watch)
+    if is_too_many(found):  # what would be built is of no use, and nothing of it would be told
+        return nothing_built(), within_limit(ordered(adapted(found, settings.variant)))
+    static = list(found)
+    with watch("interpret"):
+        built = interpret(program, params, settings.building, turned, states_constants)
+    static += [violation.diagnostic(built.written) for violation in program.violations]
+    found = [*static, *_new(built.diagnostics, static)]
+    return built, within_limit(ordered(adapted(found, settings.variant)))
+
+
+def _new(found: Sequence[Diagnostic], known: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
+    """Findings of a later stage whose place an earlier one has not already complained about."""
+    places = [d.span for d in known if d.is_error and d.span is not None]
+    is_missing_file = any(d.code in _IMPORT_FAILURES for d in known)
+    for d in found:
+        if is_missing_file and d.code in _MISSING_NAMES:
+            continue  # the name may be in the file that could not be imported
+        if d.code == _CIRCLE and any(k.code == _CIRCLE for k in known):
+            continue  # the same circle, entered elsewhere
+        if not (d.is_error and d.span is not None and any(d.span.overlaps(p) for p in places)):
+            yield d

@@ -1,0 +1,428 @@
+"""Model → Problem: the structure tree as the solver sees it, unknowns and constraints by number.
+
+The solver's groups are the structures, parents first. Unknowns that nothing can move are constants there:
+a frame that no constraint mentions, an argument that was read while building, an angle that nothing turns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aidl_lang.building import expression as ex
+from aidl_lang.building.expression import Expression, Unknown
+from aidl_lang.building.model import (
+    Comparison,
+    Condition,
+    Constraint,
+    Geometry,
+    Model,
+    Structure,
+    chain,
+    is_size,
+    own_geometry,
+)
+from aidl_lang.building.root_frame import FLOATS, Placing
+from aidl_lang.building.values import Num, PointVal
+from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
+from aidl_lang.common.records import record
+from aidl_lang.solver import Constraint as SolverConstraint
+from aidl_lang.solver import Problem, Relation, Row
+from aidl_lang.solver.expression import TapeBuilder
+from aidl_lang.solver.problem import constraint_arrays
+
+_RADIAN = 180.0 / np.pi
+
+_LONGEST_TURN = 60.0
+"""Degrees that an angle may turn in one step of the solver."""
+
+LEAST_SHARE = 1e-3
+"""A kept size may give way, but not vanish: what is left is at least this share of what was written."""
+
+
+@record()
+class Lowered:
+    """
+    unknowns  by their number in the problem
+    stated    for each constraint of the problem, the one of the model; None for those that come with the
+              nature of a size or a box (never negative)
+    groups    path of the structure that each group of the problem is
+    """
+
+    problem: Problem
+    unknowns: tuple[Unknown, ...]
+    stated: tuple[Constraint | None, ...]
+    groups: tuple[str, ...]
+
+
+def lower(model: Model) -> Lowered:
+    return _Lowering(model).run()
+
+
+def preference(lowered: Lowered) -> list[int]:
+    """The constraints in the order in which they are taken for granted: unwritten ones, then as written."""
+
+    def place(index: int) -> tuple[bool, str, int, int]:
+        stated = lowered.stated[index]
+        if stated is None:
+            return (False, "", 0, index)
+        return (stated.wording is not None, stated.span.source.name, stated.span.start, index)
+
+    return sorted(range(len(lowered.stated)), key=place)
+
+
+class _Lowering:
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.structures = list(model.root.walk())
+        self.groups = {s: i for i, s in enumerate(self.structures)}
+        self.tape = TapeBuilder()
+        self.make = {op: getattr(self.tape, op) for op in ex.EVALUATE}
+        self.node_of: dict[Expression, int] = {}
+        self.numbers: dict[Unknown, int] = {}
+        self.variables: dict[Structure, list[Unknown]] = {}
+        self.mentioned: set[Unknown] = set()
+        self.holders = {c.holder for c in model.constraints}
+        self.standing: dict[Structure, bool] = {}
+        self.named: dict[Constraint, tuple[set[Structure], set[Structure]]] = {}
+        # Every number that defines what is drawn, by the structure that draws it.
+        self.seen = {s: [at for _, _, at in seen(s)] for s in self.structures}
+        self.size = _extent(self.seen)
+        self.place = Placing(self._node, self.tape)
+
+    def run(self) -> Lowered:
+        self._number_unknowns()
+        stated: list[Constraint | None] = []
+        constraints: list[SolverConstraint] = []
+        # In an order of their own, so that the order of writing cannot show in the last digits.
+        for constraint in sorted(
+            [*self.model.constraints, *self._bounds()], key=lambda c: (c.text, c.label, c.span.start)
+        ):
+            if constraint.holder in self.groups:
+                constraints.append(self._constraint(constraint))
+                stated.append(constraint)
+        for never in self._never_vanishing():
+            constraints.append(never)
+            stated.append(None)
+        observables = tuple((self.groups[s], o) for s in self.structures for o in self._observables(s))
+        found = tuple(self.numbers)
+        parents = [self.groups[s.parent] if s.parent else -1 for s in self.structures]
+        problem = Problem(
+            tape=self.tape.finish(),
+            initial=np.array([u.guess for u in found], dtype=np.float64),
+            scale=np.array([self._scale(u) for u in found], dtype=np.float64),
+            kept=np.array([u.kept for u in found], dtype=np.bool_),
+            group=np.array([self.groups[self._placer(u)] for u in found], dtype=np.int64),
+            frame_of=np.array([self._frame_of(u) for u in found], dtype=np.int64),
+            axis=np.array([_axis(u) for u in found], dtype=np.int64),
+            longest=np.array([_LONGEST_TURN if u.angular else np.inf for u in found], dtype=np.float64),
+            parent=np.array(parents, dtype=np.int64),
+            **constraint_arrays(constraints),
+            named=True,
+            standing=np.array([self._stands(u) for u in found], dtype=np.bool_),
+            spanned=np.array([_is_spanned(u) for u in found], dtype=np.bool_),
+            thing=_numbered((u.holder, u.field if u.kept else u.field.rpartition(".")[0]) for u in found),
+            clinging=frozenset(self.groups[s] for parent in self.structures for s in _clinging(parent)),
+            observables=observables,
+            names=tuple(u.path for u in found),
+        )
+        return Lowered(problem, found, tuple(stated), tuple(s.path for s in self.structures))
+
+    # --- Unknowns ------------------------------------------------------------------------------
+
+    def _number_unknowns(self) -> None:
+        """Unknowns that can move: those of what is drawn, and both coordinates of frames that a constraint
+        names, or that it mentions.
+        """
+        mentioned = self.mentioned = set(
+            ex.unknowns(
+                e for c in self.model.constraints for part in c.comparisons for e in (part.left, part.right)
+            )
+        )
+        drawn = {u for u in ex.unknowns(self._observed()) if u.frame_of is None}
+        self.named = {c: self._named(c) for c in self.model.constraints}
+        named = {
+            s
+            for c, both in self.named.items()
+            for structures in both
+            for structure in structures
+            for s in chain(structure)
+            if s.is_within(c.holder) and s is not c.holder
+        }
+        for unknown in self.model.unknowns:
+            is_variable = _is_variable(unknown)
+            live = is_variable or unknown in mentioned or unknown in drawn or unknown.frame_of in named
+            if live and not unknown.exact and unknown.owner in self.groups:
+                self.numbers[unknown] = len(self.numbers)
+                if is_variable:
+                    self.variables.setdefault(unknown.owner, []).append(unknown)
+
+    def _placer(self, unknown: Unknown) -> Structure:
+        """The structure at whose turn an unknown is placed: for the box of an empty structure that says
+        nothing of itself, the parent, as if the box were its frame.
+        """
+        parent = unknown.owner.parent
+        return parent if parent is not None and self._is_outline(unknown) else unknown.owner
+
+    def _is_outline(self, unknown: Unknown) -> bool:
+        return unknown.outline and unknown in self.mentioned and unknown.owner not in self.holders
+
+    def _frame_of(self, unknown: Unknown) -> int:
+        moved = unknown.owner if self._is_outline(unknown) else unknown.frame_of
+        return self.groups[moved] if moved is not None else -1
+
+    def _scale(self, unknown: Unknown) -> float:
+        """One millimetre, or the turn that moves a point at the size of the model by as much."""
+        return _RADIAN / self.size if unknown.angular else 1.0
+
+    def _stands(self, unknown: Unknown) -> bool:
+        """Whether it shifts a frame that lies on its parent's, with something in it at an exact place: that
+        is exact in the parent, too, as long as the frame stays. A frame turns only where that is asked for.
+        """
+        s = unknown.frame_of
+        if s is None or unknown.angular:
+            return False
+        if s not in self.standing:
+            lies_on = s.frame.x.value == s.frame.y.value == s.frame.rotation.value == 0.0
+            self.standing[s] = lies_on and any(map(_is_exact, self.seen[s]))
+        return self.standing[s]
+
+    # --- Expressions ---------------------------------------------------------------------------
+
+    def _node(self, root: Expression) -> int:
+        """The number of an expression on the tape."""
+        known, make, leaf = self.node_of, self.make, self._leaf
+        if root in known:
+            return known[root]
+        stack = [root]
+        while stack:
+            node = stack[-1]
+            if node in known:
+                stack.pop()
+                continue
+            ready = True
+            for arg in node.args:
+                if arg not in known:
+                    stack.append(arg)
+                    ready = False
+            if ready:
+                stack.pop()
+                known[node] = make[node.op](*[known[a] for a in node.args]) if node.args else leaf(node)
+        return known[root]
+
+    def _leaf(self, node: Expression) -> int:
+        if node.op == "constant":
+            return self.tape.constant(node.value)
+        if not isinstance(node.payload, Unknown):
+            raise TypeError(f"`{node.op}` is known only once all is drawn")
+        number = self.numbers.get(node.payload)
+        return self.tape.constant(node.payload.guess) if number is None else self.tape.unknown(number)
+
+    def _observed(self) -> Iterator[Expression]:
+        """What the numbers that define the drawing are made of."""
+        for s, found in self.seen.items():
+            for at in found:
+                yield from at
+            if any(len(at) == 2 for at in found):
+                for frame in (each.frame for each in chain(s)[:-1]):
+                    yield from (frame.x, frame.y, frame.rotation)
+
+    def _observables(self, s: Structure) -> Iterator[int]:
+        """What a reader of the drawing could see move of a structure, and its variables."""
+        node = self._node
+        for at in self.seen[s]:
+            if len(at) == 2:
+                yield from self.place(node(at[0]), node(at[1]), s)
+            else:
+                yield node(at[0])
+        yield from (self.tape.unknown(self.numbers[u]) for u in self.variables.get(s, ()))
+
+    # --- Constraints ---------------------------------------------------------------------------
+
+    def _constraint(self, constraint: Constraint) -> SolverConstraint:
+        rows = tuple(self._row(c) for c in constraint.comparisons)
+        placed = frozenset(
+            self.numbers[u] for c in constraint.comparisons for u in c.placed if u in self.numbers
+        )
+        named = self.named[constraint] if constraint in self.named else self._named(constraint)
+        whole, inside = (frozenset(self.groups[s] for s in each if s in self.groups) for each in named)
+        return SolverConstraint(
+            self.groups[constraint.holder], rows, placed, constraint.weight, whole, inside
+        )
+
+    def _named(self, constraint: Constraint) -> tuple[set[Structure], set[Structure]]:
+        """The structures that a constraint names as a whole, and those in which it names something. What a
+        shape asks of itself names nothing.
+        """
+        whole: set[Structure] = set()
+        inside: set[Structure] = set()
+        for comparison in () if constraint.is_inherent else constraint.comparisons:
+            mentioned = set(comparison.spoken_of)
+            for structure in comparison.boxes:
+                whole.add(structure)
+                if structure.plan:  # its box is what there is in it
+                    inside.add(structure)
+                mentioned.update(ex.unknowns(_places(structure, constraint.holder)))
+            for unknown in mentioned:
+                moved = unknown.owner if self._is_outline(unknown) else unknown.frame_of
+                (inside if moved is None else whole).add(moved or unknown.owner)
+        return whole, inside
+
+    def _row(self, comparison: Comparison) -> Row:
+        tape = self.tape
+        left, right = self._node(comparison.left), self._node(comparison.right)
+        scale = self._magnitude(comparison.dimension)
+        if comparison.relation == "==":
+            difference = tape.sub(left, right)
+            if comparison.dimension == ANGLE:
+                # Angles agree modulo a turn: the difference as a direction, smooth except at half a turn.
+                radians = tape.mul(difference, tape.constant(1 / _RADIAN))
+                difference = tape.mul(
+                    tape.atan2(tape.sin(radians), tape.cos(radians)), tape.constant(_RADIAN)
+                )
+            return Row(difference, Relation.EQUAL, scale)
+        if comparison.relation in (">=", ">"):
+            left, right = right, left
+        return Row(tape.sub(left, right), Relation.AT_MOST, scale)
+
+    def _magnitude(self, dimension: MaybeDimension) -> float:
+        """A typical value of a residual, by which its tolerance is measured."""
+        length, angle = dimension or LENGTH
+        return float(self.size**length * _RADIAN**angle)
+
+    def _bounds(self) -> Iterator[Constraint]:
+        """What shapes ask of their sizes and what holds as written, as constraints: no size becomes one that
+        its shape would refuse.
+        """
+        for asked in self.model.assertions:
+            parts = list(_comparisons(asked.condition)) if asked.shape else []
+            if not parts or not all(_is_bound(part) for part in parts):
+                continue
+            for part in parts:
+                if any(u in self.numbers for u in ex.unknowns([part.left, part.right])):
+                    yield Constraint(
+                        asked.holder, (part,), asked.text, asked.span, None, asked.label, is_inherent=True
+                    )
+
+    def _never_vanishing(self) -> Iterator[SolverConstraint]:
+        for unknown, number in self.numbers.items():
+            if is_size(unknown.field.rpartition(".")[2]) and unknown.guess >= 0:
+                least = LEAST_SHARE * unknown.guess if unknown.kept else 0.0
+                expression = self.tape.sub(self.tape.constant(least), self.tape.unknown(number))
+                row = Row(expression, Relation.AT_MOST, self.size)
+                yield SolverConstraint(self.groups[unknown.owner], (row,), frozenset())
+
+
+def _is_exact(at: _Seen) -> bool:
+    """Whether it is a place that only sizes and angles could move."""
+    return len(at) == 2 and all(u.kept or u.angular for u in ex.unknowns(at))
+
+
+def _comparisons(condition: Condition | bool) -> Iterator[Comparison]:
+    """The comparisons that all have to hold for a condition; none where there is more to it."""
+    if not isinstance(condition, Condition) or condition.operator != "and":
+        return
+    for part in condition.parts:
+        if isinstance(part, Comparison):
+            yield part
+        else:
+            yield from _comparisons(part)
+
+
+def _is_bound(part: Comparison) -> bool:
+    """Whether it is an inequality that holds at the first guesses."""
+    if part.relation in ("==", "!=") or part.left.is_open or part.right.is_open:
+        return False
+    low, high = (part.left, part.right) if part.relation in ("<=", "<") else (part.right, part.left)
+    return low.value <= high.value
+
+
+def _clinging(parent: Structure) -> Sequence[Structure]:
+    """The children that belong to what is drawn around them: all that lie in a part, and holes and drawings
+    beside parts.
+    """
+    children = parent.children
+    if parent.plan or any(not geometry.construction for geometry in parent.own()):
+        return children
+    without = [child for child in children if child.kind in _NO_BODY]
+    return without if len(without) < len(children) else ()
+
+
+_NO_BODY = ("hole", "drawing")
+
+
+def _is_variable(unknown: Unknown) -> bool:
+    """Whether it is a number of a structure, and no part of its frame or outline."""
+    return isinstance(unknown.holder, Structure) and unknown.frame_of is None and not unknown.outline
+
+
+def _axis(unknown: Unknown) -> int:
+    """Along which axis a coordinate lies; -1 for what is no place."""
+    if unknown.kept or unknown.angular or _is_variable(unknown):
+        return -1
+    return {"x": 0, "y": 1, "left": 0, "bottom": 1}.get(unknown.field.rpartition(".")[2], -1)
+
+
+def _places(structure: Structure, holder: Structure) -> Iterator[Expression]:
+    """The frames by which a structure is placed in that which holds it."""
+    for s in chain(structure):
+        if s is holder:
+            return
+        yield from (s.frame.x, s.frame.y, s.frame.rotation)
+
+
+_Seen = tuple[Expression, Expression] | tuple[Expression]
+"""A place, or a number."""
+
+
+def seen(s: Structure) -> Iterator[tuple[Geometry | Structure, str, _Seen]]:
+    """What defines the geometry of a structure itself, in its own frame: of what, the path, and the numbers.
+    The observables of the problem are these, structure by structure, and after each its variables.
+    """
+    for geometry in s.own():
+        for path, at in _seen_geometry(geometry):
+            yield geometry, path, at
+    if s.plan:
+        left, bottom, width, height = s.plan
+        yield s, s.path, (left, bottom)
+        yield s, s.path, (ex.add(left, width), ex.add(bottom, height))
+
+
+def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:
+    for name, value in geometry.fields.items():
+        if isinstance(value, PointVal):
+            yield f"{geometry.path}.{name}", (value.x.expression, value.y.expression)
+        elif isinstance(value, Num):
+            yield f"{geometry.path}.{name}", (value.expression,)
+    for part in own_geometry(geometry.parts, geometry):
+        yield from _seen_geometry(part)
+
+
+def _is_spanned(unknown: Unknown) -> bool:
+    """Whether it is the way from one literal point of a shape to the next, for which no number was written.
+    The steps of a path do say where they lead.
+    """
+    return unknown.implied and isinstance(unknown.holder, Geometry) and unknown.holder.type != "path"
+
+
+def _numbered(keys: Iterable[Hashable]) -> NDArray[np.int64]:
+    """A number for each key, the same for equal ones."""
+    numbers: dict[Hashable, int] = {}
+    return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.int64)
+
+
+def _extent(drawn: Mapping[Structure, Iterable[_Seen]]) -> float:
+    """About the extent of the places at the first guesses in mm: the power of two above it, at least 1.
+
+    A small change of a model changes no tolerance, and so nothing in parts that it does not concern.
+    """
+    place = Placing(lambda e: e.value, FLOATS)
+    low, high = 0.0, 0.0
+    for s, found in drawn.items():
+        for at in found:
+            for value in place(at[0].value, at[1].value, s) if len(at) == 2 else ():
+                if abs(value) < 1e12:
+                    low, high = min(low, value), max(high, value)
+    return float(2.0 ** np.ceil(np.log2(max(high - low, 1.0))))

@@ -1,0 +1,528 @@
+"""The structure tree that a program describes, before it is solved.
+
+A structure has a frame, a sketch (geometry and parameters), children and constraints (paper, appendix A).
+Expressions in a geometry are in the frame of the structure that owns it; those in a constraint are in the
+frame of the structure that holds it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import field, replace
+from functools import cached_property, reduce
+from typing import TYPE_CHECKING, ClassVar
+
+from aidl_lang.building import expression as ex
+from aidl_lang.building.expression import Expression, Unknown
+from aidl_lang.building.values import Array, ListVal, Num, PointVal, members
+from aidl_lang.checking.units import MaybeDimension
+from aidl_lang.common.lettering import Curve, Glyph, silhouette
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
+
+if TYPE_CHECKING:
+    from aidl_lang.building.values import Value
+
+SIZES = frozenset(
+    {"radius", "diameter", "width", "height", "length", "rx", "ry", "thickness", "fillet", "chamfer"}
+)
+"""Names of sizes, which are never negative."""
+
+_SIZE_WORDS = SIZES | {"size", "side", "flats"}
+
+KINDS = ("assembly", "solid", "hole", "drawing")
+
+
+def is_size(name: str) -> bool:
+    """Whether a field or an argument is a size by its last word: `radius`, `inner_radius`, `top_width`."""
+    return name.rpartition("_")[2] in _SIZE_WORDS
+
+
+@record(frozen=False, eq=False)
+class Frame:
+    """Position and rotation relative to the parent; a mirrored frame reflects x before it turns."""
+
+    x: Expression = ex.ZERO
+    y: Expression = ex.ZERO
+    rotation: Expression = ex.ZERO
+    mirrored: bool = False
+
+    @property
+    def is_level(self) -> bool:
+        """Whether it is exactly not turned, as most are."""
+        return self.rotation.is_constant and self.rotation.value == 0.0
+
+    def outward(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
+        """Coordinates of this frame → of the parent's."""
+        u, v = self.turn(x, y)
+        return ex.add(self.x, u), ex.add(self.y, v)
+
+    def inward(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
+        """Coordinates of the parent's frame → of this one."""
+        a, b = ex.sub(x, self.x), ex.sub(y, self.y)
+        if not self.is_level:
+            c, s = self.cos_sin()
+            a, b = ex.add(ex.mul(c, a), ex.mul(s, b)), ex.sub(ex.mul(c, b), ex.mul(s, a))
+        return (ex.apply("neg", a) if self.mirrored else a), b
+
+    def turn(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
+        if self.mirrored:
+            x = ex.apply("neg", x)
+        if self.is_level:
+            return x, y
+        c, s = self.cos_sin()
+        return ex.sub(ex.mul(c, x), ex.mul(s, y)), ex.add(ex.mul(s, x), ex.mul(c, y))
+
+    def cos_sin(self) -> tuple[Expression, Expression]:
+        if self.rotation.is_constant:
+            c, s = ex.exact_turn(self.rotation.value)
+            return ex.constant(c), ex.constant(s)
+        return ex.cos(self.rotation), ex.sin(self.rotation)
+
+
+@record(frozen=False, eq=False)
+class Geometry:
+    """A primitive (point, line, arc, circle, bezier, ellipse) or a compound shape.
+
+    fields     what defines a primitive
+    scope      names of a compound shape: its parts, arguments and lets (see scopes)
+    arguments  names of the arguments of a compound shape
+    parts      named geometry inside a compound shape, in order of writing
+    clockwise  for an arc; for a text, that it reads in a mirror
+    source     what it is a copy of
+    known_as   of what is copied and has no name itself, the copy
+    reach      of what is derived of geometry outside of its owner, the structure that holds both
+    glyphs     for a text, its characters in units of its height
+    recipe     how its curves come from other outlines after solving
+    finishes   sizes of the fillets and chamfers of its corners: `fillet` of a point or a whole outline,
+               `end.fillet` of the end of a curve
+    attributes  what is said of it alone: `note`, and in a drawing `color`
+    """
+
+    type: str
+    owner: Structure
+    span: Span | None
+    fields: dict[str, Value] = field(default_factory=dict)
+    parts: dict[str, Value] = field(default_factory=dict)
+    scope: object = None
+    arguments: tuple[str, ...] = ()
+    clockwise: bool = False
+    glyphs: tuple[Glyph, ...] = ()
+    name: str | None = None
+    container: Geometry | Structure | None = None
+    construction: bool = False
+    source: Geometry | None = None
+    known_as: Geometry | None = None
+    reach: Structure | None = None
+    recipe: Recipe | None = None
+    finishes: dict[str, Num] = field(default_factory=dict)
+    attributes: dict[str, tuple[Value, ...]] = field(default_factory=dict)
+    views: dict[Structure, dict[str, Value]] = field(default_factory=dict, repr=False)
+    turns: dict[Structure, tuple[Expression, Expression]] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def silhouette(self) -> tuple[Curve, ...]:
+        """Of a text, in units of its height (see `lettering.silhouette`)."""
+        return silhouette(self.glyphs)
+
+    @property
+    def bound_to(self) -> Structure:
+        """The structure whose unknowns it depends on, which alone (and those around it) may constrain it."""
+        return self.reach or self.owner
+
+    @property
+    def is_nameless(self) -> bool:
+        return self.name is None and (self.known_as is None or self.known_as.is_nameless)
+
+    @property
+    def path(self) -> str:
+        if self.name is None and self.known_as is not None:
+            return self.known_as.path
+        container = self.container or self.owner
+        return f"{container.path}.{self.name or self.type}"
+
+    @property
+    def is_compound(self) -> bool:
+        return self.scope is not None
+
+    @property
+    def is_drawn_later(self) -> bool:
+        """Whether its curves are worked out after solving; what the library makes has its own."""
+        return self.recipe is not None and self.recipe.kind == self.type
+
+    def primitives(self, *, even_construction: bool = False) -> Iterator[Geometry]:
+        """The primitives that are drawn, in order of writing; of construction geometry only if asked for."""
+        if self.construction and not even_construction:
+            return
+        if not self.is_compound:
+            yield self
+        for part in own_geometry(self.parts, self):
+            yield from part.primitives()
+
+
+@record(eq=False)
+class Recipe:
+    """How the curves of an outline come from others, by exact geometry after solving.
+
+    kind      one of `builtins.OUTLINES`
+    operands  each some geometry that is one outline together
+    numbers   its distance, thickness or width
+    words     how it makes corners, joints and ends
+    """
+
+    kind: str
+    operands: tuple[tuple[Geometry, ...], ...]
+    numbers: Mapping[str, Num] = field(default_factory=dict)
+    words: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def sources(self) -> tuple[Geometry, ...]:
+        """What it is made of, each once."""
+        return tuple(dict.fromkeys(g for group in self.operands for g in group))
+
+    def made_of(self, copy: Callable[[Geometry], Geometry], measure: Callable[[Num], Num]) -> Recipe:
+        """The same of copies."""
+        operands = tuple(tuple(map(copy, group)) for group in self.operands)
+        return replace(self, operands=operands, numbers={n: measure(v) for n, v in self.numbers.items()})
+
+
+@record(eq=False)
+class Finish:
+    """A fillet or chamfer, which is applied after solving.
+
+    of     the geometry whose corner it is; empty for a bare point
+    at     the corner, in the frame of the structure that lists it; None for all corners of `of`
+    sizes  radius, or one distance or two
+    text   the corner as it was written
+    """
+
+    kind: str
+    of: tuple[Geometry, ...]
+    at: PointVal | None
+    sizes: tuple[Num, ...]
+    text: str
+    span: Span
+
+
+@record()
+class Measurement:
+    """A number that only the finished drawing has: area, perimeter, clearance, overlaps (1 or 0), or a side
+    of the box of an outline made of others, in the frame of `here`.
+    """
+
+    kind: str
+    of: tuple[Structure | Geometry, ...]
+    here: Structure | None = None
+
+
+@record(frozen=False, eq=False)
+class Structure:
+    """
+    members     everything that has a name in it: geometry, arrays, children, numbers
+    geometry    what it draws itself; children: structures directly inside
+    plan        the box of its own that an empty structure has: left, bottom, width, height
+    source      the structure it is a copy of
+    extents     sides of its box that were worked out, and `interior` the unknowns that place what is in it,
+                once it is complete (see boxes)
+    converted   coordinates in it as other structures see them (see `convert`)
+    scope       the names its body sees (see interp)
+    finishes    fillets and chamfers of its geometry
+    """
+
+    kind: str
+    name: str
+    parent: Structure | None
+    span: Span | None
+    frame: Frame = field(default_factory=Frame)
+    attributes: dict[str, tuple[Value, ...]] = field(default_factory=dict)
+    members: dict[str, Value] = field(default_factory=dict)
+    geometry: dict[str, Value] = field(default_factory=dict)
+    children: list[Structure] = field(default_factory=list)
+    scope: object = None
+    plan: tuple[Expression, Expression, Expression, Expression] | None = None
+    source: Structure | None = None
+    extents: dict[object, Expression] = field(default_factory=dict, repr=False)
+    interior: tuple[Unknown, ...] | None = field(default=None, repr=False)
+    converted: dict[tuple[Expression, Expression, Structure], tuple[Expression, Expression]] = field(
+        default_factory=dict, repr=False
+    )
+    finishes: list[Finish] = field(default_factory=list)
+    doc: str | None = None
+    is_complete: bool = False
+    is_nameless: ClassVar[bool] = False
+
+    @property
+    def path(self) -> str:
+        return f"{self.parent.path}.{self.name}" if self.parent and self.parent.name else self.name
+
+    @property
+    def is_empty(self) -> bool:
+        return not self.geometry and not self.children
+
+    def walk(self) -> Iterator[Structure]:
+        stack = [self]
+        while stack:
+            yield (top := stack.pop())
+            stack.extend(reversed(top.children))
+
+    def own(self) -> Iterable[Geometry]:
+        """Named geometry of this structure itself, in order of writing."""
+        return self._own if self.is_complete else own_geometry(self.geometry, self)
+
+    @cached_property
+    def _own(self) -> tuple[Geometry, ...]:
+        return tuple(own_geometry(self.geometry, self))
+
+    def drawn(self) -> Iterable[Geometry]:
+        """The primitives of its own that are drawn, in order of writing."""
+        return self._drawn if self.is_complete else (p for g in self.own() for p in g.primitives())
+
+    @cached_property
+    def _drawn(self) -> tuple[Geometry, ...]:
+        return tuple(p for g in self._own for p in g.primitives())
+
+    def is_within(self, other: Structure) -> bool:
+        """Whether this structure is `other` or lies below it."""
+        here: Structure | None = self
+        while here is not None and here is not other:
+            here = here.parent
+        return here is other
+
+
+def own_geometry(named: dict[str, Value], container: Geometry | Structure) -> Iterator[Geometry]:
+    """Geometry among named values that belongs to the container, members of arrays and lists included; each
+    once, however many names it has.
+    """
+    seen: set[Geometry] = set()
+    for value in named.values():
+        for geometry in _geometry_in(value, container):
+            if geometry not in seen:
+                seen.add(geometry)
+                yield geometry
+
+
+def _geometry_in(value: Value, container: Geometry | Structure) -> Iterator[Geometry]:
+    if isinstance(value, Geometry):
+        if value.container is container:
+            yield value
+    elif isinstance(value, ListVal | Array):
+        for item in members(value) or ():
+            yield from _geometry_in(item, container)
+
+
+def chain(structure: Structure) -> list[Structure]:
+    """The structure and its ancestors, innermost first."""
+    found = [structure]
+    while (parent := found[-1].parent) is not None:
+        found.append(parent)
+    return found
+
+
+def common_ancestor(a: Structure, b: Structure) -> Structure:
+    if a.is_within(b):
+        return b
+    above = set(chain(a))
+    return next(s for s in chain(b) if s in above)
+
+
+def reach_of(owners: Iterable[Structure], here: Structure) -> Structure | None:
+    """The nearest structure around `here` and all the owners of what something in it is made of; None where
+    that is `here` itself.
+    """
+    reach = reduce(common_ancestor, owners, here)
+    return reach if reach is not here else None
+
+
+def convert(
+    x: Expression, y: Expression, source: Structure, target: Structure
+) -> tuple[Expression, Expression]:
+    """Coordinates in the frame of `source` → in that of `target`; the same for the same."""
+    if source is target:
+        return x, y
+    if (known := source.converted.get((x, y, target))) is None:
+        known = source.converted[x, y, target] = _convert(x, y, source, target)
+    return known
+
+
+def _convert(
+    x: Expression, y: Expression, source: Structure, target: Structure
+) -> tuple[Expression, Expression]:
+    meeting = common_ancestor(source, target)
+    here = source
+    while here is not meeting:
+        x, y = here.frame.outward(x, y)
+        assert here.parent is not None
+        here = here.parent
+    below = chain(target)
+    for structure in reversed(below[: below.index(meeting)]):
+        x, y = structure.frame.inward(x, y)
+    return x, y
+
+
+def convert_point(point: PointVal, source: Structure, target: Structure) -> PointVal:
+    if source is target:
+        return point
+    x, y = convert(point.x.expression, point.y.expression, source, target)
+    status = max(point.x.status, point.y.status)
+    return PointVal(Num(x, point.x.dimension, status), Num(y, point.y.dimension, status))
+
+
+def convert_angle(angle: Expression, source: Structure, target: Structure) -> Expression:
+    """A direction in degrees in the frame of `source` → in that of `target`."""
+    meeting = common_ancestor(source, target)
+    for start, outward in ((source, True), (target, False)):
+        path: list[Structure] = chain(start)
+        path = path[: path.index(meeting)]
+        for structure in path if outward else reversed(path):
+            frame = structure.frame
+            if not outward:
+                angle = ex.sub(angle, frame.rotation)
+            if frame.mirrored:
+                angle = ex.sub(ex.constant(180.0), angle)
+            if outward:
+                angle = ex.add(angle, frame.rotation)
+    return angle
+
+
+# --- Conditions and constraints --------------------------------------------------------------------
+
+
+@record(eq=False)
+class Comparison:
+    """`left REL right`, REL one of `== != <= >= < >`, with boxes spelled out.
+
+    moved    the unknowns that may move first where a call decides that; else the left side does
+    parties  of a call over equals (`row`, `symmetric`, `same_width`, a list that is aligned) the unknowns
+             that place each of them, in the order of the arguments: none is held by its place. Once the whole
+             program is known, `moved` is what they have but for the anchor (see `building.anchors`)
+    boxes    the structures of whose boxes it speaks
+    beside   the unknowns it mentions beside these; None where it speaks of no structure's box
+    """
+
+    relation: str
+    left: Expression
+    right: Expression
+    dimension: MaybeDimension
+    moved: frozenset[Unknown] | None = None
+    boxes: frozenset[Structure] = frozenset()
+    beside: frozenset[Unknown] | None = None
+    parties: tuple[frozenset[Unknown], ...] = ()
+
+    @property
+    def placed(self) -> frozenset[Unknown]:
+        """What may move first to satisfy it; the rest is held until that is not enough."""
+        if self.moved is not None:
+            return self.moved
+        return frozenset(ex.unknowns([self.left])) or frozenset(ex.unknowns([self.right]))
+
+    @property
+    def spoken_of(self) -> Iterable[Unknown]:
+        """The unknowns that it mentions by themselves, and not only as what is in a structure's box."""
+        return ex.unknowns([self.left, self.right]) if self.beside is None else self.beside
+
+
+@record(eq=False)
+class Condition:
+    """A condition over unknowns: a comparison, or `and`, `or`, `not` of conditions."""
+
+    operator: str
+    parts: tuple[Condition | Comparison | bool, ...]
+
+    def comparisons(self) -> Iterator[Comparison]:
+        for part in self.parts:
+            if isinstance(part, Comparison):
+                yield part
+            elif isinstance(part, Condition):
+                yield from part.comparisons()
+
+
+@record(eq=False)
+class Constraint:
+    """One constraint as its author sees it. `weight` is None for a hard one."""
+
+    holder: Structure
+    comparisons: tuple[Comparison, ...]
+    text: str
+    span: Span
+    weight: float | None = None
+    label: str = ""
+    """loop variables at the place, as `i = 3`"""
+    wording: object = field(default=None, repr=False)
+    """the statement, to be read in other words (see building.wording); None for what was not stated"""
+    is_inherent: bool = False
+    """what a shape asks of itself: nobody said it of the structure that the shape is in"""
+
+    @cached_property
+    def mentions(self) -> tuple[str, ...]:
+        """Paths of the geometry and structures whose unknowns it relates."""
+        both = (e for c in self.comparisons for e in (c.left, c.right))
+        return tuple(sorted({u.holder.path for u in ex.unknowns(both)}))
+
+
+@record(eq=False)
+class Assertion:
+    holder: Structure
+    condition: Condition | bool
+    message: str | None
+    text: str
+    span: Span
+    label: str = ""
+    shape: str = ""
+    """the shape that asks this of its arguments"""
+    wording: object = field(default=None, repr=False)
+    """the condition, to be read again in parts (see building.wording)"""
+
+
+@record(eq=False)
+class Literal:
+    """A number that stands in the text, and what the solver is to find in its place.
+
+    node    the number, with its sign if there is one
+    became  of which the solved value is read, in the frame that the number is written in
+    holder  what it is a number of, `field` its name there (`end.x`)
+    dimension is what it has there, also where the number is bare; None where nothing says
+    """
+
+    node: ast.Number | ast.Unary
+    became: Expression
+    holder: Geometry | Structure
+    field: str
+    dimension: MaybeDimension
+
+    @property
+    def path(self) -> str:
+        return f"{self.holder.path}.{self.field}"
+
+
+@record()
+class Knob:
+    """A `param` as seen from outside: what may be set with `-D path=value` or a slider."""
+
+    path: str
+    value: float | str | bool
+    low: float | None
+    high: float | None
+    choices: tuple[float | str | bool, ...]
+    step: float | None
+    unit: str
+    doc: str | None
+    span: Span | None = field(default=None, compare=False)
+
+
+@record(frozen=False, eq=False)
+class Model:
+    """
+    unknowns    in order of creation
+    readings    choices among the meanings of ambiguous calls, by place, for the report
+    literals    numbers of the text, and of the library's, that are first guesses or kept sizes; one for each
+                use
+    """
+
+    root: Structure
+    constraints: list[Constraint]
+    assertions: list[Assertion]
+    unknowns: list[Unknown]
+    knobs: list[Knob]
+    readings: list[tuple[Span, str]] = field(default_factory=list)
+    literals: list[Literal] = field(default_factory=list)

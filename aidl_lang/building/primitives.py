@@ -1,0 +1,248 @@
+"""Fields of the primitives, seen from any structure (language reference: geometry).
+
+A primitive stores what defines it in the frame of its owner; `view` converts that to the frame of the
+structure that asks, and everything else a primitive is asked for follows from the view.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from aidl_lang.building import expression as ex
+from aidl_lang.building.expression import Expression
+from aidl_lang.building.model import (
+    Geometry,
+    Structure,
+    chain,
+    common_ancestor,
+    convert_angle,
+    convert_point,
+    own_geometry,
+)
+from aidl_lang.building.values import ListVal, Num, PointVal, Status, length, point
+from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.common.lettering import Vec
+
+if TYPE_CHECKING:
+    from aidl_lang.building.values import Value
+
+DIRECTIONS = frozenset({"angle", "start_angle", "end_angle"})
+"""Fields that are directions: they turn with the frame they are seen from."""
+
+
+def translate(name: str, value: Value, owner: Structure, here: Structure) -> Value:
+    """A value read in the frame of `owner`, as `here` sees it: points and directions turn, lengths do not."""
+    if owner is here:
+        return value
+    if isinstance(value, PointVal):
+        return convert_point(value, owner, here)
+    if isinstance(value, Num) and name in DIRECTIONS:
+        return Num(convert_angle(value.expression, owner, here), ANGLE, value.status)
+    return value
+
+
+def is_reflected(owner: Structure, here: Structure) -> bool:
+    """Whether an odd number of mirrored frames lies between the two."""
+    if owner is here:
+        return False
+    meeting = common_ancestor(owner, here)
+    flips = 0
+    for start in (owner, here):
+        path = chain(start)
+        flips += sum(s.frame.mirrored for s in path[: path.index(meeting)])
+    return flips % 2 == 1
+
+
+def view(geometry: Geometry, here: Structure) -> dict[str, Value]:
+    """What defines a primitive, in the frame of `here`."""
+    if geometry.owner is here:
+        return geometry.fields
+    if (known := geometry.views.get(here)) is None:
+        known = {n: translate(n, v, geometry.owner, here) for n, v in geometry.fields.items()}
+        geometry.views[here] = known
+    return known
+
+
+def clockwise(geometry: Geometry, here: Structure) -> bool:
+    """The sense of an arc as `here` sees it."""
+    return geometry.clockwise != is_reflected(geometry.owner, here)
+
+
+def xy(value: Value) -> tuple[Expression, Expression]:
+    assert isinstance(value, PointVal)
+    return value.x.expression, value.y.expression
+
+
+def number(value: Value) -> Expression:
+    assert isinstance(value, Num)
+    return value.expression
+
+
+def _angle(expression: Expression) -> Num:
+    return Num(expression, ANGLE, Status.REFERENCE)
+
+
+def direction(a: Value, b: Value) -> Expression:
+    """The direction from one point to another in degrees."""
+    (ax, ay), (bx, by) = xy(a), xy(b)
+    return ex.atan2(ex.sub(by, ay), ex.sub(bx, ax))
+
+
+def distance(a: Value, b: Value) -> Expression:
+    (ax, ay), (bx, by) = xy(a), xy(b)
+    return ex.apply("hypot", ex.sub(bx, ax), ex.sub(by, ay))
+
+
+def _midpoint(a: Value, b: Value) -> PointVal:
+    (ax, ay), (bx, by) = xy(a), xy(b)
+    return point(ex.half(ex.add(ax, bx)), ex.half(ex.add(ay, by)))
+
+
+def sweep(core: Mapping[str, Value], is_clockwise: bool) -> Expression:
+    """Degrees from the start of an arc to its end, in its own sense; 0 to 360."""
+    start, end = direction(core["center"], core["start"]), direction(core["center"], core["end"])
+    turn = ex.sub(start, end) if is_clockwise else ex.sub(end, start)
+    return ex.apply("mod", turn, ex.constant(360.0))
+
+
+def polar(center: Value, radius: Expression, angle: Expression) -> PointVal:
+    x, y = xy(center)
+    return point(ex.add(x, ex.mul(radius, ex.cos(angle))), ex.add(y, ex.mul(radius, ex.sin(angle))))
+
+
+def _line(name: str, core: dict[str, Value], _: bool) -> Value | None:
+    start, end = core["start"], core["end"]
+    match name:
+        case "midpoint" | "center":
+            return _midpoint(start, end)
+        case "length":
+            return length(distance(start, end))
+        case "angle":
+            return _angle(direction(start, end))
+        case "dx":
+            return length(ex.sub(xy(end)[0], xy(start)[0]))
+        case "dy":
+            return length(ex.sub(xy(end)[1], xy(start)[1]))
+        case _:
+            return None
+
+
+def _round(name: str, core: dict[str, Value], _: bool) -> Value | None:
+    if name == "diameter":
+        return length(ex.mul(number(core["radius"]), ex.constant(2.0)))
+    return None
+
+
+def _arc(name: str, core: dict[str, Value], is_clockwise: bool) -> Value | None:
+    match name:
+        case "start_angle":
+            return _angle(direction(core["center"], core["start"]))
+        case "end_angle":
+            return _angle(direction(core["center"], core["end"]))
+        case "sweep":
+            return _angle(sweep(core, is_clockwise))
+        case "length":
+            turn = ex.mul(sweep(core, is_clockwise), ex.constant(ex.DEGREE))
+            return length(ex.mul(number(core["radius"]), turn))
+        case "midpoint":
+            middle = ex.half(sweep(core, is_clockwise))
+            start = direction(core["center"], core["start"])
+            angle = ex.sub(start, middle) if is_clockwise else ex.add(start, middle)
+            return polar(core["center"], number(core["radius"]), angle)
+        case _:
+            return _round(name, core, is_clockwise)
+
+
+def _bezier(name: str, core: dict[str, Value], _: bool) -> Value | None:
+    return core.get({"start": "p0", "end": "p3"}.get(name, ""))
+
+
+def _point(name: str, core: dict[str, Value], _: bool) -> Value | None:
+    at = core["at"]
+    assert isinstance(at, PointVal)
+    fields: dict[str, Value] = {"x": at.x, "y": at.y, "center": at}
+    return fields.get(name)
+
+
+_DERIVED: dict[str, Callable[[str, dict[str, Value], bool], Value | None]] = {
+    "point": _point,
+    "line": _line,
+    "arc": _arc,
+    "circle": _round,
+    "bezier": _bezier,
+}
+
+FIELDS: dict[str, tuple[str, ...]] = {
+    "point": ("x", "y"),
+    "line": ("start", "end", "midpoint", "length", "angle", "dx", "dy"),
+    "arc": (
+        "center",
+        "start",
+        "end",
+        "midpoint",
+        "radius",
+        "diameter",
+        "start_angle",
+        "end_angle",
+        "sweep",
+        "length",
+    ),
+    "circle": ("center", "radius", "diameter"),
+    "bezier": ("p0", "p1", "p2", "p3", "start", "end"),
+    "ellipse": ("center", "rx", "ry", "angle"),
+    "glyphs": ("start", "height", "angle", "glyph"),
+}
+"""What each primitive can be asked for, for messages and completion."""
+
+
+def field(geometry: Geometry, name: str, here: Structure) -> Value | None:
+    """A field of a primitive as `here` sees it; None when it has none of that name."""
+    core = view(geometry, here)
+    if name in core:
+        return core[name]
+    if geometry.type == "glyphs" and name == "glyph":
+        return ListVal(tuple(_single(geometry, i) for i in range(len(geometry.glyphs))))
+    derive = _DERIVED.get(geometry.type)
+    sense = geometry.type == "arc" and clockwise(geometry, here)
+    return derive(name, core, sense) if derive else None
+
+
+def _single(text: Geometry, number: int) -> Geometry:
+    """One character of a text, to be measured: it is drawn with the others."""
+    return replace(text, glyphs=(text.glyphs[number],), name=f"glyph[{number}]", container=text, views={})
+
+
+def on_text(geometry: Geometry, here: Structure) -> Callable[[Vec], tuple[Expression, Expression]]:
+    """From units of the height of a text to the frame of `here`."""
+    core = view(geometry, here)
+    (x, y), height, angle = xy(core["start"]), number(core["height"]), number(core["angle"])
+    along = ex.mul(height, ex.cos(angle)), ex.mul(height, ex.sin(angle))
+    up = -1.0 if clockwise(geometry, here) else 1.0
+
+    def at(p: Vec) -> tuple[Expression, Expression]:
+        u, v = ex.constant(p[0]), ex.constant(up * p[1])
+        return (
+            ex.add(x, ex.sub(ex.mul(along[0], u), ex.mul(along[1], v))),
+            ex.add(y, ex.add(ex.mul(along[1], u), ex.mul(along[0], v))),
+        )
+
+    return at
+
+
+def defining(geometry: Geometry, here: Structure) -> list[Expression]:
+    """Every number that defines a geometry, compound ones through their parts and arguments."""
+    found: list[Expression] = []
+    for value in view(geometry, here).values():
+        if isinstance(value, Num):
+            found.append(value.expression)
+        elif isinstance(value, PointVal):
+            found += [value.x.expression, value.y.expression]
+    for part in own_geometry(geometry.parts, geometry):
+        found += defining(part, here)
+    return found
+
+
+def length_of(value: Num) -> Num:
+    return Num(value.expression, value.dimension or LENGTH, value.status)

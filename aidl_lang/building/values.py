@@ -1,0 +1,307 @@
+"""The values that expressions of the language have while a program is built."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from enum import IntEnum
+from functools import cache
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from aidl_lang.building import expression as ex
+from aidl_lang.building.expression import Expression
+from aidl_lang.checking.types import (
+    ANY,
+    BoxType,
+    ListType,
+    ModuleType,
+    PointType,
+    RangeType,
+    RecordType,
+    Signature,
+    StructureType,
+    TextType,
+    TruthType,
+    Type,
+    geometry_type,
+    number_type,
+    with_article,
+)
+from aidl_lang.checking.units import LENGTH, PLAIN, MaybeDimension
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
+
+if TYPE_CHECKING:
+    from aidl_lang.building.boxes import Box
+    from aidl_lang.building.model import Condition, Geometry, Structure
+
+
+class Status(IntEnum):
+    """How exact a number is meant, weakest first; it travels with the value (the exactness table)."""
+
+    GUESS = 0
+    NUMBER = 1
+    PARAM = 2
+    FIXED = 3
+    REFERENCE = 4
+
+
+@record(slots=True)
+class Num:
+    """A number: mm, degrees or their products."""
+
+    expression: Expression
+    dimension: MaybeDimension = None
+    status: Status = Status.NUMBER
+
+    @property
+    def value(self) -> float:
+        """At the first guesses."""
+        return self.expression.value
+
+    @property
+    def is_whole(self) -> bool:
+        value = self.expression.value
+        return (
+            self.dimension in (None, PLAIN) and value == value and abs(value) < 1e15 and value == int(value)
+        )
+
+
+@record(slots=True)
+class PointVal:
+    """Coordinates in the frame of the structure that asks."""
+
+    x: Num
+    y: Num
+
+
+@record(slots=True)
+class Text:
+    value: str
+    is_param: bool = False
+
+
+@record(slots=True)
+class RangeVal:
+    start: Num
+    end: Num
+    exclusive: bool
+    step: Num | None = None
+
+
+class _Holding:
+    """A value that holds others: `weight` of them, counted with those inside and as often as they are met,
+    on `depth` levels. `kind` is its type, once that was asked for.
+    """
+
+    __slots__ = ("depth", "kind", "weight")
+
+    weight: int
+    depth: int
+    kind: Type | None
+
+    def _weigh(self, held: Iterable[Value]) -> None:
+        weight, depth = 0, 0
+        for value in held:
+            if isinstance(value, _Holding):
+                weight += value.weight
+                depth = max(depth, value.depth)
+            else:
+                weight += 1
+        self.weight, self.depth, self.kind = max(weight, 1), depth + 1, None
+
+    def is_of(self, kind: Type) -> Type:
+        """Keeps the type."""
+        self.kind = kind
+        return kind
+
+
+@record(slots=True)
+class ListVal(_Holding):
+    items: tuple[Value, ...]
+
+    def __post_init__(self) -> None:
+        self._weigh(self.items)
+
+
+@record(slots=True)
+class RecordVal(_Holding):
+    """Values under names of their own: `record(clearance: 3.4, tap: 2.5)`."""
+
+    fields: Mapping[str, Value]
+
+    def __post_init__(self) -> None:
+        self._weigh(self.fields.values())
+
+
+@record(eq=False)
+class Instantiation:
+    """A call of a template, waiting for the name it is assigned to. `scope` is what its body sees."""
+
+    signature: Signature
+    scope: object
+    definition: ast.Structure
+    arguments: Mapping[str, Value]
+    node: ast.Call
+
+
+@record(slots=True)
+class Nothing:
+    """What an expression with a reported error yields; whatever it touches yields nothing too."""
+
+
+class Array:
+    """Members declared one by one under whole-number indices, possibly sparse; read in index order."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.members: dict[tuple[int, ...], Value] = {}
+
+    def items(self) -> list[Value]:
+        """The members in index order; of a many-index array its rows."""
+        firsts = sorted({index[0] for index in self.members})
+        return [self.members[(i,)] if (i,) in self.members else self._row(i) for i in firsts]
+
+    def _row(self, index: int) -> Array:
+        row = self.row(index)
+        assert row is not None
+        return row
+
+    def row(self, index: int) -> Array | None:
+        """The members of a many-index array whose first index is `index`."""
+        row = Array(f"{self.name}[{index}]")
+        row.members = {key[1:]: v for key, v in self.members.items() if key[0] == index and len(key) > 1}
+        return row if row.members else None
+
+
+class Pattern(Array):
+    """Members laid out by a rule; `settings` holds its centre, pitch and the like, which have names too."""
+
+    def __init__(self, name: str, settings: Geometry) -> None:
+        super().__init__(name)
+        self.settings = settings
+
+
+@record(eq=False)
+class StructureCopy:
+    """A structure yet to be made as a copy of another, waiting for the name it is assigned to.
+
+    source  what is copied: a structure, or a template that is instantiated for the purpose
+    motion  what places it, in the frame of the structure that holds it (see building.motion)
+    node    the call that asks for it
+    is_laid the motion alone says where the instance of a template stands
+    """
+
+    source: Structure | Instantiation
+    motion: object
+    node: ast.Call
+    is_laid: bool = False
+
+
+class Namespace:
+    """What `import "p" as name` gives."""
+
+    def __init__(self, values: Mapping[str, object]) -> None:
+        self.values = values
+
+
+NOTHING = Nothing()
+
+if TYPE_CHECKING:
+    Value: TypeAlias = (
+        Num
+        | PointVal
+        | Text
+        | bool
+        | Condition
+        | RangeVal
+        | ListVal
+        | RecordVal
+        | Array
+        | Geometry
+        | Structure
+        | Box
+        | Namespace
+        | Instantiation
+        | StructureCopy
+        | Nothing
+    )
+else:
+    Value = object
+
+
+def number(value: float, dimension: MaybeDimension = None, status: Status = Status.NUMBER) -> Num:
+    return Num(ex.constant(value), dimension, status)
+
+
+def length(expression: Expression, status: Status = Status.REFERENCE) -> Num:
+    return Num(expression, LENGTH, status)
+
+
+def point(x: Expression, y: Expression, status: Status = Status.REFERENCE) -> PointVal:
+    return PointVal(Num(x, LENGTH, status), Num(y, LENGTH, status))
+
+
+def members(value: Value) -> Sequence[Value] | None:
+    """The items of something that can be run through; None for anything else."""
+    match value:
+        case ListVal(items):
+            return items
+        case Array():
+            return value.items()
+        case _:
+            return None
+
+
+def holds(value: Value, kind: type) -> bool:
+    """Whether a value is of a kind, or a list with something of it."""
+    if isinstance(value, kind):
+        return True
+    items = members(value)
+    return items is not None and any(holds(item, kind) for item in items)
+
+
+def type_of(value: Value) -> Type:
+    """The type by which overloads are chosen."""
+    make = _types().get(type(value))
+    return make(value) if make is not None else ANY
+
+
+@cache
+def _types() -> Mapping[type, Callable[[Any], Type]]:
+    """What makes the type of a value, by its class."""
+    from aidl_lang.building.boxes import Box
+    from aidl_lang.building.model import Condition, Geometry, Structure
+
+    def always(kind: Type) -> Callable[[Any], Type]:
+        return lambda _: kind
+
+    return {
+        Num: lambda v: number_type(v.dimension, v.is_whole),
+        PointVal: always(PointType()),
+        Geometry: lambda v: geometry_type(v.type),
+        **dict.fromkeys((Structure, Instantiation), always(StructureType())),
+        Box: always(BoxType()),
+        Text: always(TextType()),
+        **dict.fromkeys((bool, Condition), always(TruthType())),
+        RangeVal: always(RangeType()),
+        RecordVal: always(RecordType()),
+        Namespace: always(ModuleType()),
+        ListVal: _type_of_list,
+        **dict.fromkeys((Array, Pattern), lambda v: _list_type(v.items())),
+    }
+
+
+def _type_of_list(value: ListVal) -> Type:
+    return value.kind or value.is_of(_list_type(value.items))
+
+
+def _list_type(items: Sequence[Value]) -> Type:
+    kinds = iter(items)
+    first = type_of(next(kinds, NOTHING))
+    same = all(kind is first or kind == first for kind in map(type_of, kinds))
+    return ListType(first if same else ANY, len(items))
+
+
+def kind_of(value: Value) -> str:
+    """What a value is, for messages: `a length`, `an angle`, `a structure`."""
+    return with_article(type_of(value))

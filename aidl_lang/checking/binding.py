@@ -1,0 +1,226 @@
+"""Which overload of a callable a call means: arguments as they are written first, then in other words.
+
+In other words means: an argument by a synonym of its parameter's name (`r` for `radius`), two parameters by
+one pair (`size: (40, 20)`), a point by its coordinates (`x: 3, y: 4`), sizes by their order without the
+centre before them (`circle(5)`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import TypeAlias
+
+from aidl_lang.checking.synonyms import COORDINATES, PAIRS, PARAMETERS
+from aidl_lang.checking.types import (
+    AnyType,
+    Binding,
+    Given,
+    ListType,
+    Mismatch,
+    NumberType,
+    PointType,
+    Signature,
+    Source,
+    TruthType,
+    Type,
+    accepts,
+    bind,
+)
+from aidl_lang.checking.units import LENGTH
+from aidl_lang.common.names import fold
+
+Outcomes: TypeAlias = Sequence[Binding | Mismatch]
+
+_MOST_KEPT = 16
+"""Arguments of a call whose outcome is kept for the next time: hardly any has more, and those take memory."""
+
+
+def outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> Outcomes:
+    """The candidates that fit, perhaps beside some that do not, or else why none does. Arguments are read in
+    other words only if none takes them as written. What the author defines comes before the definitions of
+    that name that every program has.
+    """
+    if len(given) <= _MOST_KEPT and all(candidate.standard for candidate in candidates):
+        return _of_standard(tuple(candidates), tuple(given))
+    return _outcomes(candidates, given)
+
+
+@lru_cache(maxsize=8192)
+def _of_standard(candidates: tuple[Signature, ...], given: tuple[Given, ...]) -> Outcomes:
+    """What comes of definitions that every program has is the same in every program."""
+    return tuple(_outcomes(candidates, given))
+
+
+def _outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> Outcomes:
+    words = {fold(g.name) for g in given if g.name is not None}
+    positional = sum(g.name is None for g in given)
+    own = [candidate for candidate in candidates if not candidate.standard]
+    choices = [own, candidates] if 0 < len(own) < len(candidates) else [candidates]
+    for among in choices:
+        plain = [bind(c, given) for c in among if c.may_take(positional, words)]
+        if any(isinstance(outcome, Binding) for outcome in plain):
+            return plain
+    for among in choices:
+        loose = [_loosely(candidate, given) for candidate in among]
+        if fits := _unambiguous([b for b in loose if isinstance(b, Binding)], given):
+            return fits
+    return loose
+
+
+def select(candidates: Sequence[Signature], given: Sequence[Given]) -> Binding | list[Mismatch]:
+    """The candidate that fits best (least conversion, then fewest defaults, then first written), or why none
+    does.
+    """
+    found = outcomes(candidates, given)
+    fits = [outcome for outcome in found if isinstance(outcome, Binding)]
+    return min(fits, key=lambda b: b.cost) if fits else [o for o in found if isinstance(o, Mismatch)]
+
+
+def _unambiguous(fits: Sequence[Binding], given: Sequence[Given]) -> list[Binding | Mismatch]:
+    """The candidates that fit; each a mismatch if a word means one parameter here and another there."""
+    for index, argument in enumerate(given):
+        if argument.name is None or isinstance(argument.type, AnyType):
+            continue
+        meant = dict.fromkeys(name for fit in fits if (name := fit.parameter_of(index)) is not None)
+        if len(meant) > 1 and fold(argument.name) not in map(fold, meant):
+            return [_ambiguous(fit.signature, argument.name, list(meant), index) for fit in fits]
+    return list(fits)
+
+
+def _ambiguous(signature: Signature, word: str, meant: Sequence[str], index: int) -> Mismatch:
+    names = " or ".join(f"`{name}`" for name in meant)
+    return Mismatch(signature, f"does not tell by `{word}` whether {names} is meant", index, tuple(meant))
+
+
+def _loosely(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch:
+    """Match arguments to the parameters of one callable in other words than theirs."""
+    read = [(replace(g), Source(i)) for i, g in enumerate(given)]
+    read = _without_flag(signature, read)
+    read = _joined(signature, read)
+    read = _split(signature, read)
+    renamed = _renamed(signature, read)
+    if isinstance(renamed, Mismatch):
+        return renamed
+    outcome = _bound(signature, renamed)
+    if isinstance(outcome, Mismatch) and (named := _after_center(signature, renamed)) is not None:
+        skipped = _bound(signature, named)
+        if isinstance(skipped, Binding) or all(not g.name for g in given):
+            outcome = skipped
+    return outcome
+
+
+_Read = list[tuple[Given, Source]]
+
+
+def _bound(signature: Signature, read: _Read) -> Binding | Mismatch:
+    outcome = bind(signature, [g for g, _ in read])
+    sources = tuple(source for _, source in read)
+    if isinstance(outcome, Binding):
+        return replace(outcome, sources=sources)
+    if outcome.argument is not None:
+        return replace(outcome, argument=sources[outcome.argument].index)
+    return outcome
+
+
+def _center(signature: Signature) -> str | None:
+    """The first parameter, where it is a point that may be left out."""
+    if not signature.parameters:
+        return None
+    name, kind, optional = signature.parameters[0]
+    return name if optional and isinstance(kind, PointType) and fold(name) == "center" else None
+
+
+def _without_flag(signature: Signature, read: _Read) -> _Read:
+    """`center: true` asks for what is so anyway: a place about the centre."""
+    center = _center(signature)
+    return [
+        (g, source)
+        for g, source in read
+        if not (center and g.name and isinstance(g.type, TruthType) and _means(g.name, center))
+    ]
+
+
+def _means(word: str, parameter: str) -> bool:
+    return fold(word) == fold(parameter) or parameter in PARAMETERS.get(fold(word), ())
+
+
+def _joined(signature: Signature, read: _Read) -> _Read:
+    """Two coordinates become the point they name."""
+    for x, y, meanings in COORDINATES:
+        target = next((m for m in meanings if m in signature.by_fold), None)
+        found = {fold(g.name): (g, s) for g, s in read if g.name and fold(g.name) not in signature.by_fold}
+        if target is None or x not in found or y not in found:
+            continue
+        pair = found[x], found[y]
+        if all(accepts(NumberType(LENGTH), g.type) is not None for g, _ in pair):
+            point = Given(target, PointType()), Source(pair[0][1].index, other=pair[1][1].index)
+            read = [one for one in read if one not in pair] + [point]
+    return read
+
+
+def _split(signature: Signature, read: _Read) -> _Read:
+    """A pair becomes the two parameters it stands for."""
+    result: _Read = []
+    for g, source in read:
+        word = fold(g.name) if g.name else ""
+        targets = PAIRS.get(word) if word not in signature.by_fold else None
+        parts = _parts(g.type)
+        if targets is None or parts is None or not all(t in signature.by_fold for t in targets):
+            result.append((g, source))
+            continue
+        result += [(Given(t, parts), replace(source, part=i)) for i, t in enumerate(targets)]
+    return result
+
+
+def _parts(kind: Type) -> Type | None:
+    """The type of the two parts of a pair."""
+    match kind:
+        case PointType():
+            return NumberType(LENGTH)
+        case ListType(element, 2) if isinstance(element, NumberType | AnyType):
+            return element
+        case _:
+            return None
+
+
+def _renamed(signature: Signature, read: _Read) -> _Read | Mismatch:
+    """Synonyms become the names of the parameters they can only mean."""
+    taken = {signature.by_fold[fold(g.name)] for g, _ in read if g.name and fold(g.name) in signature.by_fold}
+    positional = sum(1 for g, _ in read if g.name is None)
+    if not signature.gathers:
+        taken |= {name for name, _, _ in signature.parameters[:positional]}
+    open_words = {g.name for g, _ in read if g.name and fold(g.name) not in signature.by_fold}
+    known: dict[str, str] = {}
+    while open_words:
+        choices = {w: _meanings(signature, w, taken) for w in open_words}
+        settled = {w: names[0] for w, names in choices.items() if len(names) == 1}
+        if not settled:
+            break
+        known |= settled
+        taken |= set(settled.values())
+        open_words -= settled.keys()
+    for g, source in read:
+        meant = _meanings(signature, g.name, taken) if g.name in open_words and g.name else []
+        if len(meant) > 1:
+            return _ambiguous(signature, g.name or "", meant, source.index)
+    return [(replace(g, name=known.get(g.name or "", g.name)), source) for g, source in read]
+
+
+def _meanings(signature: Signature, word: str, taken: set[str]) -> list[str]:
+    known: Mapping[str, str] = signature.by_fold
+    found = (known[m] for meaning in PARAMETERS.get(fold(word), ()) if (m := fold(meaning)) in known)
+    return [name for name in found if name not in taken]
+
+
+def _after_center(signature: Signature, read: _Read) -> _Read | None:
+    """Positional sizes belong to the parameters behind the centre; what counts something has to be named."""
+    positional = [i for i, (g, _) in enumerate(read) if g.name is None]
+    following = signature.parameters[1 : len(positional) + 1]
+    if _center(signature) is None or not positional or len(following) < len(positional):
+        return None
+    if not all(isinstance(kind, NumberType) and not kind.whole for _, kind, _ in following):
+        return None
+    names = dict(zip(positional, (name for name, _, _ in following), strict=True))
+    return [(replace(g, name=names.get(i, g.name)), source) for i, (g, source) in enumerate(read)]

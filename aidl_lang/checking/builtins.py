@@ -1,0 +1,188 @@
+"""What is built in: the names that the standard library itself stands on, and what they take.
+
+Everything that AIDL can say is written in AIDL in `stdlib/`; this table holds what it cannot: the functions
+of a number, the primitives, the marks of exactness, and measurements of the finished drawing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from aidl_lang.checking.synonyms import PARAMETERS
+from aidl_lang.checking.types import PARAMETER_TYPES, Signature, TextType
+from aidl_lang.common.names import fold
+from aidl_lang.syntax import ast
+
+_DECLARATIONS = """
+sin(angle: angle)
+cos(angle: angle)
+tan(angle: angle)
+asin(value: number)
+acos(value: number)
+atan(value: number)
+atan2(y, x)
+sqrt(value)
+abs(value)
+square(value)
+hypot(a, b)
+min(values: list)
+max(values: list)
+sum(values: list)
+floor(value)
+ceil(value)
+round(value)
+len(values)
+record(**)
+str(value)
+range(end: number)
+range(start: number, end: number, step: number?)
+enumerate(values: list)
+zip(a: list, b: list)
+zip(a: list, b: list, c: list)
+reversed(values: list)
+choice(word: text, words: list)
+fixed(value)
+guess(value)
+written(value)
+nearest(value, candidates: list)
+point(x: length, y: length)
+point(at: point)
+line(start: point, end: point)
+line(start: point?, length: length, angle: angle)
+circle(center: point?, radius: length)
+circle(center: point?, diameter: length)
+arc(center: point, start: point, end: point, clockwise: bool?)
+arc(start: point, end: point, radius: length, large: bool?, clockwise: bool?)
+arc(center: point?, radius: length, start_angle: angle, end_angle: angle, clockwise: bool?)
+bezier(p0: point, p1: point, p2: point, p3: point)
+ellipse(center: point?, rx: length, ry: length, angle: turn?)
+glyphs(text: text, start: point, height: length, angle: angle, align: text, line_spacing: number)
+ink(text: text, align: text, line_spacing: number)
+where(value, positive, negative)
+shown(value)
+sizes(of)
+convex_corners(of)
+refuse(why: text)
+offset(of, distance: length, corners: text?)
+shell(of, thickness: length, corners: text?)
+thick(of, width: length, caps: text?, joins: text?)
+hull(of: list)
+union(of: list)
+intersect(of: list)
+difference(of: list)
+cut(of: list)
+cut(of, by)
+clip(of, by)
+fillet(of, radius: length)
+chamfer(of, size: length, second: length?)
+chamfer(of, distance: length, second: length?)
+mirror(x, about)
+copy(x, by: point?, angle: angle?, about: point?, scale: number?)
+copy(x, angle: angle?, scale: number?, center: point)
+move(x, by: point)
+move(x, dx: length, dy: length?)
+move(x, dx: length?, dy: length)
+translate(x, by: point)
+translate(x, dx: length, dy: length?)
+translate(x, dx: length?, dy: length)
+rotate(x, angle: angle, about: point?)
+scale(x, factor: number, about: point?)
+linear_array(x, n: integer, pitch: length, angle: angle?, center: point?, start: point?)
+linear_array(x, n: integer, by: point, center: point?, start: point?)
+grid(x, columns: integer, rows: integer, pitch: length, center: point?, start: point?)
+grid(x, columns: integer, rows: integer, pitch_x: length, pitch_y: length, center: point?, start: point?)
+polar_array(x, n: integer, radius: length?, center: point?, start: angle?, sweep: angle?, turn: bool?)
+area(of)
+perimeter(of)
+outline_clearance(a, b)
+overlaps(a, b)
+"""
+
+
+def _signature(declaration: str) -> Signature:
+    """`name(parameter: type, optional: type?)`; `name(**)` takes arguments of any name."""
+    name, _, inside = declaration.rstrip(")").partition("(")
+    if inside == "**":
+        return Signature(name, (), takes_any=True, standard=True)
+    parameters = []
+    for item in inside.split(", "):
+        word, _, kind = item.partition(": ")
+        parameters.append((word, PARAMETER_TYPES[kind.rstrip("?") or "any"], kind.endswith("?")))
+    return Signature(name, tuple(parameters), standard=True)
+
+
+def _table() -> dict[str, tuple[Signature, ...]]:
+    table: dict[str, list[Signature]] = {}
+    for line in _DECLARATIONS.split("\n"):
+        if line:
+            signature = _signature(line)
+            table.setdefault(signature.name, []).append(signature)
+    return {name: tuple(signatures) for name, signatures in table.items()}
+
+
+SIGNATURES: Mapping[str, tuple[Signature, ...]] = _table()
+
+OUTLINES = frozenset(("offset", "shell", "thick", "hull", "union", "intersect", "difference", "cut", "clip"))
+"""Operations that make an outline of others by exact geometry, after solving."""
+
+EDITS = frozenset({"move", "translate", "rotate", "scale"})
+"""Statements that change what was written; as expressions they make copies."""
+
+PATTERNS = frozenset({"linear_array", "grid", "polar_array"})
+"""Operations that make members of an array."""
+
+CUTS = frozenset(
+    (
+        *("clearance_hole", "through_hole", "tap_hole", "tapped_hole", "counterbore", "countersink"),
+        *("hex_pocket", "nut_trap", "nut_pocket", "bearing_seat"),
+    )
+)
+"""Ready-made cuts of the library: holes in a solid or an assembly, outlines elsewhere."""
+
+COPYING = frozenset({"mirror", "copy"}) | EDITS
+"""Operations that give what they are given, elsewhere."""
+
+DERIVING = COPYING | OUTLINES
+"""Operations that make new geometry, or a new structure, of one that is there, an ancestor's included."""
+
+FINISHES = frozenset({"fillet", "chamfer"})
+"""Statements that change the corners of outlines after solving."""
+
+WORDS = frozenset(
+    (
+        *("x", "y", "left", "right", "center", "top", "bottom", "middle", "horizontal", "vertical", "both"),
+        *("sharp", "miter", "round", "butt", "square"),
+    )
+)
+"""Words that may stand bare as an argument, as in `axis: x` and `align: left`."""
+
+
+EVERYWHERE = ("self", "origin", "x_axis", "y_axis")
+"""Names that every structure has."""
+
+ROTATION = "rotation"
+"""What a structure is asked for its turn against the one around it."""
+
+MATH = ("math", "np", "numpy")
+"""Modules of other languages whose functions are known here by the same names: `math.sqrt(2)`, `np.pi`."""
+
+ATTRIBUTES = (
+    *("orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note"),
+)
+"""What may stand behind `@` before a definition; `colour` is another spelling of `color`."""
+
+WORDED = frozenset({"orientation", "color", "colour", "layer", "material", "note"})
+"""Attributes whose argument may be a bare word, as in `@orientation(front)` and `@color(red)`."""
+
+
+def is_word(argument: ast.Argument, candidates: Iterable[Signature]) -> bool:
+    """Whether a bare name is the word itself: given by name to a parameter that takes a text."""
+    if argument.name is None or not isinstance(argument.value, ast.Name) or argument.value.text not in WORDS:
+        return False
+    word = fold(argument.name.text)
+    wanted = {word, *map(fold, PARAMETERS.get(word, ()))}
+    return any(
+        fold(name) in wanted and isinstance(kind, TextType)
+        for candidate in candidates
+        for name, kind, _ in candidate.parameters
+    )

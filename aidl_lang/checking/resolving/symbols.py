@@ -1,0 +1,181 @@
+"""What names stand for, and the scopes in which they are looked up before anything is built.
+
+A scope belongs to a structure, a definition, a turn of a `for`, a comprehension or a file. Values and
+callables live apart: `slot(` is looked up among callables only, `slot` among values only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import field
+from enum import StrEnum
+from typing import Literal
+
+from aidl_lang.checking.types import Signature
+from aidl_lang.common.names import Spellings, find, nearest
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
+
+
+class SymbolKind(StrEnum):
+    """The words in which messages speak of a symbol."""
+
+    PARAM = "param"
+    LET = "let"
+    VAR = "var"
+    LOOP = "loop variable"
+    ARGUMENT = "parameter"
+    GEOMETRY = "geometry"
+    STRUCTURE = "structure"
+    FUNCTION = "function"
+    SHAPE = "shape"
+    CONSTRAINT = "constraint"
+    TEMPLATE = "template"
+    ALIAS = "alias"
+    NAMESPACE = "imported file"
+    BUILTIN = "built-in name"
+    WORD = "word"
+    FIELD = "field"
+
+    @property
+    def with_article(self) -> str:
+        if self is SymbolKind.GEOMETRY:
+            return str(self)
+        return f"an {self}" if self[0] in "aeiou" else f"a {self}"
+
+
+UNKNOWNS = frozenset({SymbolKind.VAR, SymbolKind.GEOMETRY, SymbolKind.STRUCTURE})
+"""What exists only from its line on, and what only its own structure may build on."""
+
+
+@record(frozen=False, eq=False)
+class Symbol:
+    """
+    node          the definition, of several the first; None for what is built in
+    owner         the structure or other definition whose body declares it, or the file
+    declarations  the names at all places that declare it, in text order
+    is_array      declared with indices
+    """
+
+    name: str
+    kind: SymbolKind
+    node: ast.Node | None = None
+    owner: ast.Node | None = None
+    declarations: list[ast.Identifier] = field(default_factory=list)
+    nodes: list[ast.Node] = field(default_factory=list)
+    is_array: bool = False
+    scope: Scope | None = None
+
+
+@record(frozen=False, eq=False)
+class Scope:
+    """
+    owner      the node that opens it
+    homes      the structures around, outermost (the file) first; geometry declared here belongs to the last
+    callables  definitions of this scope under each name, in the order of writing
+    spaces     what `import … as name` names, by that name
+    own_name   of a structure, by which it is known inside
+    missing    names that imports which failed would have brought; None when they could have been any
+    """
+
+    owner: ast.Node
+    parent: Scope | None = None
+    homes: tuple[ast.Node, ...] = ()
+    values: dict[str, Symbol] = field(default_factory=dict)
+    callables: dict[str, list[Signature]] = field(default_factory=dict)
+    aliases: dict[str, Symbol] = field(default_factory=dict)
+    spaces: dict[str, Scope] = field(default_factory=dict)
+    own_name: Symbol | None = None
+    missing: set[str] | None = field(default_factory=set)
+    _spellings: dict[str, Spellings] = field(default_factory=dict, repr=False)
+
+    def spelled_alike(self, kind: Literal["values", "callables", "aliases"], name: str) -> str | None:
+        """The name that one of the tables of this scope has for another spelling of it (see `names.find`)."""
+        if (known := self._spellings.get(kind)) is None:
+            known = self._spellings[kind] = Spellings(getattr(self, kind))
+        return known.find(name)
+
+    def chain(self) -> Iterator[Scope]:
+        scope: Scope | None = self
+        while scope is not None:
+            yield scope
+            scope = scope.parent
+
+    def value(self, name: str) -> Symbol | None:
+        """As written anywhere around, else what is spelled alike in the nearest scope."""
+        for scope in self.chain():
+            if (symbol := scope.values.get(name)) is not None:
+                return symbol
+            if scope.own_name is not None and scope.own_name.name == name:
+                return scope.own_name
+        for scope in self.chain():
+            if (alike := scope.spelled_alike("values", name)) is not None:
+                return scope.values[alike]
+            if scope.own_name is not None and find(name, {scope.own_name.name: 0}):
+                return scope.own_name
+        return None
+
+    def container(self) -> Scope:
+        """The scope that gets what is declared here as its members: that of the structure or definition
+        around.
+        """
+        scope = self
+        while isinstance(scope.owner, ast.For) and scope.parent is not None:
+            scope = scope.parent
+        return scope
+
+    def visible(self) -> dict[str, Symbol]:
+        """Every value that can be named here; inner ones hide outer ones."""
+        names: dict[str, Symbol] = {}
+        for scope in self.chain():
+            for name, symbol in scope.values.items():
+                names.setdefault(name, symbol)
+            if scope.own_name is not None:
+                names.setdefault(scope.own_name.name, scope.own_name)
+        return names
+
+    def called(self, name: str) -> tuple[str, list[Signature]] | None:
+        """All callables of a name, innermost first, aliases followed: the name as it is defined, and the
+        candidates. None when there are none.
+        """
+        key: str | None = name
+        if not any(name in s.callables or name in s.aliases for s in self.chain()):
+            key = next(
+                (
+                    k
+                    for s in self.chain()
+                    if (k := s.spelled_alike("callables", name) or s.spelled_alike("aliases", name))
+                    is not None
+                ),
+                None,
+            )
+        found: list[Signature] = []
+        canonical: str | None = None
+        seen: set[str] = set()
+        while key is not None and key not in seen:
+            seen.add(key)
+            target: str | None = None
+            for scope in self.chain():
+                found += scope.callables.get(key, ())
+                if target is None and (alias := scope.aliases.get(key)) is not None:
+                    assert isinstance(alias.node, ast.Alias)
+                    target = alias.node.target.text
+            if found and canonical is None:
+                canonical = key
+            key = target
+        return (canonical or name, found) if found else None
+
+    def callable_names(self) -> list[str]:
+        return [name for scope in self.chain() for name in (*scope.callables, *scope.aliases)]
+
+    def may_be_missing(self, name: str) -> bool:
+        """Whether a name may have been in a file that could not be imported, which was reported."""
+        return any(scope.missing is None or name in scope.missing for scope in self.chain())
+
+    def near_values(self, name: str) -> list[str]:
+        return nearest(name, [*self.visible(), "origin", "x_axis", "y_axis", "self", "pi"], 2)
+
+
+def word_meant(name: str, known: Iterable[str]) -> str | None:
+    """The one of a few fixed words that a name means."""
+    return find(name, dict.fromkeys(known))

@@ -1,0 +1,438 @@
+"""Types, what a parameter accepts, and the choice among overloads.
+
+One choice serves the checker, which knows types only, and the interpreter, which takes the types of values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence, Set
+from functools import cached_property, lru_cache
+from typing import TypeAlias
+
+from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension, describe
+from aidl_lang.common.names import fold
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
+
+
+@record()
+class AnyType:
+    """Not known before the program is built: accepted everywhere, checked again when values are there."""
+
+    def __str__(self) -> str:
+        return "anything"
+
+
+@record()
+class NumberType:
+    """`dimension` is None for a bare number."""
+
+    dimension: MaybeDimension
+    whole: bool = False
+
+    def __str__(self) -> str:
+        return "whole number" if self.whole else describe(self.dimension)
+
+
+@record()
+class TextType:
+    def __str__(self) -> str:
+        return "text"
+
+
+@record()
+class TruthType:
+    """true and false, and conditions over unknowns."""
+
+    def __str__(self) -> str:
+        return "condition"
+
+
+@record()
+class PointType:
+    def __str__(self) -> str:
+        return "point"
+
+
+@record()
+class RangeType:
+    def __str__(self) -> str:
+        return "range"
+
+
+@record()
+class RecordType:
+    def __str__(self) -> str:
+        return "record"
+
+
+@record()
+class ListType:
+    """A list or an array; `length` where it is known."""
+
+    element: Type
+    length: int | None = None
+
+    def __str__(self) -> str:
+        return f"list of {self.element}s" if not isinstance(self.element, AnyType) else "list"
+
+
+@record()
+class GeometryType:
+    """`kind` is a primitive (`line`, `arc`, `circle`, …), the name of a shape, or "" for any geometry."""
+
+    kind: str
+
+    def __str__(self) -> str:
+        return self.kind or "geometry"
+
+
+@record()
+class StructureType:
+    def __str__(self) -> str:
+        return "structure"
+
+
+@record()
+class BoxType:
+    """The box of a structure, a geometry or a list of them."""
+
+    def __str__(self) -> str:
+        return "box"
+
+
+@record()
+class ModuleType:
+    """The names of a file: no value, so no parameter asks for it."""
+
+    def __str__(self) -> str:
+        return "module"
+
+
+Type: TypeAlias = (
+    AnyType
+    | NumberType
+    | TextType
+    | TruthType
+    | PointType
+    | RangeType
+    | RecordType
+    | ListType
+    | GeometryType
+    | StructureType
+    | BoxType
+    | ModuleType
+)
+
+ANY = AnyType()
+PRIMITIVES = ("point", "line", "arc", "circle", "bezier", "ellipse")
+
+PARAMETER_TYPES: Mapping[str, Type] = {
+    "any": ANY,
+    "length": NumberType(LENGTH),
+    "angle": NumberType(ANGLE),
+    "turn": NumberType(ANGLE),
+    "area": NumberType(AREA),
+    "number": NumberType(PLAIN),
+    "integer": NumberType(PLAIN, whole=True),
+    "text": TextType(),
+    "string": TextType(),
+    "bool": TruthType(),
+    "boolean": TruthType(),
+    "point": PointType(),
+    "list": ListType(ANY),
+    "peer": ANY,
+    "peers": ListType(ANY),
+    "points": ListType(PointType()),
+    "record": RecordType(),
+    "geometry": GeometryType(""),
+    "structure": StructureType(),
+    "box": BoxType(),
+    **{name: GeometryType(name) for name in PRIMITIVES if name != "point"},
+}
+"""The words that may stand behind `:` in a parameter; the name of a shape may stand there too."""
+
+PEERS = ("peer", "peers")
+"""Those that say of things, or of members of a list, that a constraint holds none of them by its place."""
+
+
+def parameter_type(parameter: ast.Parameter, shapes: Iterable[str] = ()) -> Type | None:
+    """The type a parameter asks for; None when the word is unknown."""
+    return type_named(parameter.type.text, shapes) if parameter.type is not None else ANY
+
+
+def type_named(word: str, shapes: Iterable[str] = ()) -> Type | None:
+    """The type of a word, the name of a shape being one; None when it is unknown."""
+    word = fold(word)
+    if (known := PARAMETER_TYPES.get(word)) is not None:
+        return known
+    return next((GeometryType(shape) for shape in shapes if fold(shape) == word), None)
+
+
+def accepts(wanted: Type, given: Type) -> int | None:
+    """How far `given` is from what a place wants: 0 exact, more for a conversion, None if it does not fit."""
+    if isinstance(wanted, AnyType):
+        return 4
+    if isinstance(given, AnyType):
+        return 3
+    if wanted is given:
+        return 0
+    match wanted:
+        case NumberType():
+            return _accepts_number(wanted, given)
+        case PointType():
+            return _accepts_point(given)
+        case GeometryType():
+            return _accepts_geometry(wanted, given)
+        case BoxType():
+            return _accepts_box(given)
+        case ListType(element):
+            if isinstance(given, ListType):
+                return 0 if accepts(element, given.element) is not None else None
+            return 1 if isinstance(given, RangeType) else None
+        case _:
+            return 0 if type(wanted) is type(given) else None
+
+
+def _accepts_number(wanted: NumberType, given: Type) -> int | None:
+    if isinstance(given, NumberType):
+        if wanted.whole and not given.whole:
+            return None
+        return 0 if wanted.dimension == given.dimension else 1 if given.dimension is None else None
+    # An edge stands for its coordinate.
+    return 2 if given == GeometryType("line") and wanted.dimension == LENGTH else None
+
+
+def _accepts_point(given: Type) -> int | None:
+    if isinstance(given, ListType):
+        is_pair = given.length in (2, None) and isinstance(given.element, NumberType | AnyType)
+        return 2 if is_pair else None
+    return 0 if given in (PointType(), GeometryType("point")) else None
+
+
+def _accepts_geometry(wanted: GeometryType, given: Type) -> int | None:
+    if isinstance(given, GeometryType):
+        return 0 if wanted.kind == given.kind else 1 if wanted.kind == "" else None
+    return 1 if wanted.kind == "" and isinstance(given, PointType) else None
+
+
+def _accepts_box(given: Type) -> int | None:
+    match given:
+        case BoxType():
+            return 0
+        case StructureType() | GeometryType() | PointType():
+            return 1
+        case ListType(element):
+            return None if isinstance(element, NumberType | TextType | TruthType) else 2
+        case _:
+            return None
+
+
+@record()
+class Given:
+    """An argument of a call as the choice sees it; `name` is None for a positional one."""
+
+    name: str | None
+    type: Type
+
+
+@record(eq=False)
+class Signature:
+    """A callable: `node` is its definition and `kind` what sort of one, both None for what is built in;
+    `standard` is what every program has. One that `takes_any` takes every named argument.
+    """
+
+    name: str
+    parameters: tuple[tuple[str, Type, bool], ...]
+    """name, type, and whether it has a default"""
+    node: ast.Callable | None = None
+    kind: type[ast.Callable] | None = None
+    takes_any: bool = False
+    standard: bool = False
+
+    @cached_property
+    def by_fold(self) -> Mapping[str, str]:
+        """Parameter names by their folded spelling."""
+        return {fold(name): name for name, _, _ in self.parameters}
+
+    @cached_property
+    def gathers(self) -> bool:
+        """Whether positional arguments are collected: the first parameter is a list."""
+        return bool(self.parameters) and isinstance(self.parameters[0][1], ListType)
+
+    @cached_property
+    def needed(self) -> int:
+        """How many parameters have to be given something."""
+        return sum(not optional for _, _, optional in self.parameters)
+
+    def may_take(self, positional: int, words: Set[str]) -> bool:
+        """Whether so many arguments without a name and these (folded) names could fit, whatever their types:
+        a look that spares most overloads of a name the matching.
+        """
+        if self.takes_any or self.gathers:
+            return self.takes_any or words <= self.by_fold.keys()
+        count = positional + len(words)
+        return self.needed <= count <= len(self.parameters) and words <= self.by_fold.keys()
+
+    def __str__(self) -> str:
+        shown = [
+            name + ("" if isinstance(kind, AnyType) else f": {kind}") + (" = …" if optional else "")
+            for name, kind, optional in self.parameters
+        ]
+        shown += ["name: value", "…"] if self.takes_any else []
+        return f"{self.name}({', '.join(shown)})"
+
+
+@record()
+class Source:
+    """Where an argument comes from: the one at `index` of the call, one of its two parts, or the point of it
+    as x and of `other` as y.
+    """
+
+    index: int
+    part: int | None = None
+    other: int | None = None
+
+
+@record()
+class Binding:
+    """Which argument goes to which parameter: parameter name → indices into the arguments.
+
+    Several indices (or `gathered`) make a list. `positional` are the indices given without a name. Where
+    `sources` are told, they are the arguments, made of those of the call.
+    """
+
+    signature: Signature
+    arguments: Mapping[str, tuple[int, ...]]
+    gathered: str | None
+    cost: tuple[int, int]
+    positional: tuple[int, ...] = ()
+    sources: tuple[Source, ...] = ()
+
+    @cached_property
+    def taken(self) -> tuple[tuple[str, Type, tuple[int, ...]], ...]:
+        """The parameters that are given something: name, type, and the indices of what."""
+        given = self.arguments
+        return tuple((n, kind, given[n]) for n, kind, _ in self.signature.parameters if n in given)
+
+    def parameter_of(self, index: int) -> str | None:
+        """The parameter that gets an argument of the call, whole."""
+        return self._meant.get(index)
+
+    @cached_property
+    def _meant(self) -> Mapping[int, str]:
+        meant: dict[int, str] = {}
+        for name, taken in self.arguments.items():
+            for place in taken:
+                source = self.sources[place] if self.sources else Source(place)
+                if source == Source(source.index):
+                    meant.setdefault(source.index, name)
+        return meant
+
+
+@record()
+class Mismatch:
+    """Why a candidate does not fit; `argument` is the index of the argument to blame, if one is; `meanings`
+    are the parameters between which its name does not choose; `kinds` are what is wanted and what is given,
+    where these differ.
+    """
+
+    signature: Signature
+    problem: str
+    argument: int | None = None
+    meanings: tuple[str, ...] = ()
+    kinds: tuple[Type, Type] | None = None
+
+    @property
+    def reason(self) -> str:
+        """What is said of it: most candidates that do not fit are never spoken of."""
+        if self.kinds is None:
+            return self.problem
+        wanted, given = map(with_article, self.kinds)
+        return f"{self.problem} to be {wanted}, not {given}"
+
+
+_GATHERED = 20
+"""Collecting arguments into a list is the last reading: an overload that names them is meant before."""
+
+
+def bind(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch:
+    """Match arguments to the parameters of one callable.
+
+    Where the first parameter is a list and the arguments do not fit as they stand, all positional ones are
+    its members: `align_left(a, b, c)`, `row(windows, door, gap: 3)`.
+    """
+    plain = _bind(signature, given, gather=False)
+    if isinstance(plain, Binding) or not signature.gathers or not any(g.name is None for g in given):
+        return plain
+    gathered = _bind(signature, given, gather=True)
+    return gathered if isinstance(gathered, Binding) or plain.argument != gathered.argument else plain
+
+
+def _bind(signature: Signature, given: Sequence[Given], *, gather: bool) -> Binding | Mismatch:
+    positional = [i for i, g in enumerate(given) if g.name is None]
+    parameters = signature.parameters
+    arguments: dict[str, tuple[int, ...]] = {}
+    gathered = parameters[0][0] if gather else None
+    if gathered is not None:
+        arguments[gathered] = tuple(positional)
+    elif len(positional) > len(parameters):
+        count = len(parameters)
+        reason = f"takes at most {count} argument{'s' * (count != 1)}"
+        return Mismatch(signature, reason, positional[count])
+    else:
+        arguments |= {name: (i,) for (name, _, _), i in zip(parameters, positional, strict=False)}
+    for index, argument in enumerate(given):
+        if argument.name is None:
+            continue
+        target = signature.by_fold.get(fold(argument.name))
+        if target is None and signature.takes_any:
+            target = argument.name
+        if target is None:
+            return Mismatch(signature, f"has no parameter `{argument.name}`", index)
+        if target in arguments:
+            return Mismatch(signature, f"gets `{target}` twice", index)
+        arguments[target] = (index,)
+    return _fitted(signature, given, arguments, gathered, tuple(positional))
+
+
+def _fitted(
+    signature: Signature,
+    given: Sequence[Given],
+    arguments: Mapping[str, tuple[int, ...]],
+    gathered: str | None,
+    positional: tuple[int, ...],
+) -> Binding | Mismatch:
+    """Whether every parameter is given something that fits, and how far it is from what it wants."""
+    distance, defaulted = (_GATHERED if gathered is not None else 0), 0
+    for name, kind, optional in signature.parameters:
+        if name not in arguments:
+            if not optional:
+                return Mismatch(signature, f"needs `{name}`")
+            defaulted += not isinstance(kind, TruthType)  # a flag that nobody raised assumes nothing
+        elif name != gathered:
+            index = arguments[name][0]
+            step = accepts(kind, given[index].type)
+            if step is None:
+                return Mismatch(signature, f"needs `{name}`", index, kinds=(kind, given[index].type))
+            distance += step
+    return Binding(signature, arguments, gathered, (distance, defaulted), positional)
+
+
+def with_article(kind: object) -> str:
+    """`a length`, `an angle`; what has no number of its own stands as it is."""
+    word = str(kind)
+    if word in ("anything", "geometry", "text"):
+        return word
+    return f"{'an' if word[0] in 'aeiou' else 'a'} {word}"
+
+
+@lru_cache(maxsize=256)
+def number_type(dimension: MaybeDimension, whole: bool) -> NumberType:
+    """The type of a number, made once: types are compared, and looked up, all the time."""
+    return NumberType(dimension, whole)
+
+
+@lru_cache(maxsize=256)
+def geometry_type(kind: str) -> GeometryType:
+    return GeometryType(kind)

@@ -1,0 +1,131 @@
+"""Subsets of the language, which show what hierarchy and what constraints are worth.
+
+`no-hierarchy` has one structure, and all geometry and all constraints are in it. A hole in it is cut by an
+operation on outlines (`cut`), which any structure has. `no-constraints` has nothing that is to be solved for:
+everything stands as it is written. What the library's own shapes are made of is no concern of either.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from enum import StrEnum
+
+from aidl_lang.common.records import record
+
+
+class Variant(StrEnum):
+    FULL = "full"
+    NO_HIERARCHY = "no-hierarchy"
+    NO_CONSTRAINTS = "no-constraints"
+
+
+class Construct(StrEnum):
+    """What a variant may be without."""
+
+    HOLE = "hole in a structure"
+    STRUCTURE = "structure in another or beside it"
+    LOOSE = "geometry or constraint beside a structure"
+    TEMPLATE = "template"
+    SHAPE = "shape of one's own"
+    CONSTRAINT = "constraint"
+    UNKNOWN = "unknown"
+    DEFINITION = "constraint of one's own"
+    RELATION = "relation that is checked"
+    SMOOTH = "smooth step"
+
+
+@record()
+class Rule:
+    """What to say of a construct; `{name}` is what it is called."""
+
+    code: str
+    message: str
+    hint: str
+
+
+_ONE = "`no-hierarchy` has one structure"
+_AS_WRITTEN = "`no-constraints` draws everything as it is written"
+_CUT = "cut it out: `body = cut(plate, bore)`"
+
+FORBIDDEN: Mapping[Variant, Mapping[Construct, Rule]] = {
+    Variant.FULL: {},
+    Variant.NO_HIERARCHY: {
+        Construct.HOLE: Rule(
+            "E0403",
+            f"{_ONE}, and `{{name}}` is a hole of its own",
+            f"draw its outline in the one structure, and {_CUT}",
+        ),
+        Construct.STRUCTURE: Rule(
+            "E0403",
+            f"{_ONE}, and `{{name}}` is another",
+            "write its geometry and constraints straight into the first structure, under names of their own",
+        ),
+        Construct.LOOSE: Rule(
+            "E0403",
+            f"{_ONE}, and this stands outside `{{name}}`",
+            "write it inside `{name}`",
+        ),
+        Construct.TEMPLATE: Rule(
+            "E0404",
+            f"{_ONE}, and the template `{{name}}` makes more",
+            f"repeat geometry in a loop, `for i in 0..3 {{ bore[i] = circle(…) }}`; if it is a hole, {_CUT}",
+        ),
+        Construct.SHAPE: Rule(
+            "E0405",
+            "in `no-hierarchy` all geometry is on one level, and the shape `{name}` has parts of its own",
+            "write its parts where it is used, or make it one `path` or `polygon`; `fn` can work out points",
+        ),
+    },
+    Variant.NO_CONSTRAINTS: {
+        Construct.CONSTRAINT: Rule(
+            "E0406",
+            f"{_AS_WRITTEN} and has no constraints",
+            "write where things are and how large: by numbers, `param`s, or parts of geometry above, as in "
+            "`center: plate.top_left + (5, -5)`",
+        ),
+        Construct.UNKNOWN: Rule(
+            "E0407",
+            f"{_AS_WRITTEN}, and `{{name}}` is an unknown",
+            "name its value by `let`, or make it a `param`",
+        ),
+        Construct.DEFINITION: Rule(
+            "E0408",
+            f"{_AS_WRITTEN}, and `{{name}}` defines a constraint",
+            "let a function work out what it ties, as in `fn top_of(a) = a.center + (0, 10)`",
+        ),
+        Construct.RELATION: Rule(
+            "E0409",
+            "`no-constraints` has no relations, and `{name}` is one",
+            "compare coordinates or measures, as in `assert lid.bottom >= box.top`",
+        ),
+        Construct.SMOOTH: Rule(
+            "E0409",
+            f"{_AS_WRITTEN}, and `{{name}}` would move a step of the path",
+            "give the points of a smooth outline, or use `tangent_arc_to` and `arc_by`, which go on smoothly",
+        ),
+    },
+}
+
+_ABSENT: Mapping[Variant, str] = {
+    Variant.NO_HIERARCHY: r"\bhole\b|\btemplate\b|\b(solid|drawing|assembly) \S+ \{|`drawing`",
+    Variant.NO_CONSTRAINTS: r"\b(constrain|prefer|var|guess|fixed)\b|\bas a constraint\b|\bfirst guess\b",
+}
+
+_INSTEAD: Mapping[tuple[Variant, str], str] = {
+    (Variant.NO_HIERARCHY, "W0701"): f"to make it a hole, {_CUT}",
+    (Variant.NO_CONSTRAINTS, "E0401"): "name the value in the structure around both, as in "
+    "`let middle = (10, 0)`, and use the name in both",
+}
+
+
+def speaks_of_absent(variant: Variant, text: str) -> bool:
+    """Whether a hint or an edit advises what the variant does not have."""
+    pattern = _ABSENT.get(variant)
+    return pattern is not None and re.search(pattern, text) is not None
+
+
+def instead(variant: Variant, code: str) -> tuple[str, ...]:
+    """The hint of a diagnostic whose own hints advise what the variant does not have."""
+    hint = _INSTEAD.get((variant, code))
+    return (hint,) if hint else ()

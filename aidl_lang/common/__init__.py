@@ -1,0 +1,1 @@
+"""What all rooms share: text and places in it, diagnostics, files, time, names, letters."""

@@ -1,0 +1,145 @@
+"""One diagnostic value for terminal, JSON, editor and language model; renderers live apart from it.
+
+Codes are `E`, `W` or `N` (error, warning, note) and four digits whose first two name the family:
+
+    01 syntax    02 names    03 types and arguments    04 validity of references
+    05 building the model    06 solving    07 regions and drawings    08 limits    09 files and use
+
+Every code has a page `docs/diagnostics/CODE.md` that shows the mistake and the mended program; the pages are
+the registry: `aidl explain` prints them and a test fails when a code and its page do not match.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from enum import StrEnum
+
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile, Span
+
+
+class Severity(StrEnum):
+    ERROR = "error"
+    WARNING = "warning"
+    NOTE = "note"
+
+
+_SEVERITY = {"E": Severity.ERROR, "W": Severity.WARNING, "N": Severity.NOTE}
+
+
+@record()
+class Label:
+    """A place with a few words about it, as "declared here"."""
+
+    span: Span
+    text: str = ""
+
+
+@record()
+class Edit:
+    """Replace the text of `span` (empty for an insertion)."""
+
+    span: Span
+    replacement: str
+
+
+@record()
+class Fix:
+    """Edits that together mend the program without losing what its author meant.
+
+    One that `is_sure` leaves the program its meaning whatever was meant, or mends what can have meant nothing
+    else: it is applied unasked. All others are offered, and applied where somebody chooses them.
+    """
+
+    title: str
+    edits: tuple[Edit, ...]
+    is_sure: bool = False
+
+
+@record()
+class Diagnostic:
+    """What is wrong, where, why and what to do about it. The headline must stand alone. `points` are the
+    places in the drawing that it is about, in mm.
+    """
+
+    code: str
+    message: str
+    span: Span | None = None
+    label: str = ""
+    secondary: tuple[Label, ...] = ()
+    hints: tuple[str, ...] = ()
+    fix: Fix | None = None
+    points: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def severity(self) -> Severity:
+        return _SEVERITY[self.code[0]]
+
+    @property
+    def is_error(self) -> bool:
+        return self.severity is Severity.ERROR
+
+
+MOST_ERRORS = 100
+"""Errors of a program that are told. A stage need not look for more once it has found one more than these."""
+
+
+def is_too_many(diagnostics: Iterable[Diagnostic]) -> bool:
+    """Whether there are more errors than are told."""
+    return sum(d.is_error for d in diagnostics) > MOST_ERRORS
+
+
+def within_limit(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Diagnostics in order, up to the first error that is too many, in whose place that is said (E0803)."""
+    errors = 0
+    for index, found in enumerate(diagnostics):
+        errors += found.is_error
+        if errors > MOST_ERRORS:
+            return [*diagnostics[:index], too_many_errors(found.span, MOST_ERRORS)]
+    return list(diagnostics)
+
+
+def too_many_errors(span: Span | None, most: int) -> Diagnostic:
+    return Diagnostic(
+        "E0803",
+        f"more than {most} errors; what comes after this is not told",
+        span,
+        hints=("mend the first ones and check again: later ones often follow from them",),
+    )
+
+
+def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
+    return any(d.is_error for d in diagnostics)
+
+
+def ordered(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """By place, each said once."""
+    seen: set[tuple[object, ...]] = set()
+    unique: list[Diagnostic] = []
+    for d in diagnostics:
+        place = (d.span.source.name, d.span.start, d.span.end) if d.span else ("", -1, -1)
+        if (key := (d.code, *place, d.message)) not in seen:
+            seen.add(key)
+            unique.append(d)
+    return sorted(unique, key=lambda d: (d.span.source.name, d.span.start) if d.span else ("", -1))
+
+
+def apply_fixes(source: SourceFile, diagnostics: Iterable[Diagnostic]) -> tuple[str, int]:
+    """The text with every fix applied that does not overlap an earlier one, and how many were.
+
+    Insertions at one place are kept in the order of the diagnostics.
+    """
+    taken: list[Edit] = []
+    applied = 0
+    for fix in (d.fix for d in diagnostics if d.fix):
+        edits = [e for e in fix.edits if e not in taken]
+        if any(e.span.source is not source for e in edits):
+            continue
+        if any(e.span.overlaps(t.span) for e in edits for t in taken):
+            continue
+        taken += edits
+        applied += 1
+    text = source.text
+    for _, edit in sorted(enumerate(taken), key=lambda pair: (-pair[1].span.start, -pair[0])):
+        text = text[: edit.span.start] + edit.replacement + text[edit.span.end :]
+    return text, applied

@@ -1,0 +1,50 @@
+"""Densities of materials by the names that makers write (`materials.toml`)."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+
+from aidl_lang.common.names import nearest
+from aidl_lang.common.resources import resource
+
+_TABLE = "aidl_lang/common/materials.toml"
+
+
+@cache
+def densities() -> Mapping[str, float]:
+    """kg/m³ by name, other names included, all in lower case."""
+    table = tomllib.loads(resource(_TABLE).read_text("utf-8"))
+    found: dict[str, float] = {}
+    for group in table.values():
+        for name, entry in group.items():
+            found |= dict.fromkeys((name, *entry.get("also", ())), float(entry["density"]))
+    return found
+
+
+def density(material: str, own: Mapping[str, float] | None = None) -> float | None:
+    """Of a material as it is written, kg/m³: that of the longest name in the text, `own` ones first.
+
+    None where no name is known: `6 mm birch plywood` has one, `unobtainium` has none.
+    """
+    text = _plain(material)
+    for table in ({_plain(name): value for name, value in (own or {}).items()}, densities()):
+        known = [name for name in table if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text)]
+        if known:
+            return table[max(known, key=lambda name: (len(name), name))]
+    return None
+
+
+def similar(material: str) -> list[str]:
+    """Known names that a text, or a word in it, may be a misspelling of, best first."""
+    text = _plain(material)
+    words = [word for word in re.findall(r"\w+", text) if len(word) > 2]
+    found = (name for part in (text, *words) for name in nearest(part, densities(), 3))
+    return list(dict.fromkeys(found))[:3]
+
+
+def _plain(text: str) -> str:
+    """Without regard to case, and with `-`, `_` and any run of spaces as one space."""
+    return re.sub(r"[\s_-]+", " ", text).strip().casefold()

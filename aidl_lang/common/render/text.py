@@ -1,0 +1,108 @@
+"""Source text made safe and measured for a terminal.
+
+A source may hold anything: tabs, wide and combining characters, escape sequences that would move the
+cursor or recolour the screen, marks that reorder the line. Each character becomes a harmless cell with a
+known width, so that carets stand under what they mean.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+
+from aidl_lang.common.records import record
+
+TAB = 4
+_BREAKING = {"Cc", "Cf", "Cs", "Zl", "Zp"}
+"""Categories that change the screen rather than print: controls, formats, surrogates, separators."""
+
+
+def escape(text: str) -> str:
+    """The text with every character that could disturb a terminal shown instead; line breaks are kept."""
+    return "".join(char if char == "\n" else _visible(char) for char in text)
+
+
+def width_of(text: str) -> int:
+    """Terminal columns that an escaped text takes."""
+    return sum(_width(char) for char in text)
+
+
+@record()
+class Line:
+    """One line as cells. `columns[i]` is where character i begins; the last entry is the end of the line."""
+
+    cells: tuple[str, ...]
+    columns: tuple[int, ...]
+
+    @property
+    def text(self) -> str:
+        return "".join(self.cells)
+
+    def column(self, index: int) -> int:
+        """Terminal column at which a character begins; past the end, that of the end."""
+        return self.columns[min(index, len(self.cells))]
+
+
+def lay_out(text: str) -> Line:
+    """Cells of a line: tabs go to the next stop, controls are shown by their pictures or code points."""
+    cells: list[str] = []
+    columns = [0]
+    for char in text:
+        cell = " " * (TAB - columns[-1] % TAB) if char == "\t" else _visible(char)
+        cells.append(cell)
+        columns.append(columns[-1] + width_of(cell))
+    return Line(tuple(cells), tuple(columns))
+
+
+@record()
+class Window:
+    """The part of a long line that is shown: characters `start:end`, with `…` where something is left out."""
+
+    line: Line
+    start: int
+    end: int
+
+    @property
+    def text(self) -> str:
+        before = "…" if self.start else ""
+        after = "…" if self.end < len(self.line.cells) else ""
+        return before + "".join(self.line.cells[self.start : self.end]) + after
+
+    def column(self, index: int) -> int:
+        """Where a character of the line stands within `text`; what is left out is at its edge."""
+        if index < self.start:
+            return 0
+        shift = self.line.column(self.start) - (1 if self.start else 0)
+        return self.line.column(min(index, self.end)) - shift
+
+
+def window(line: Line, width: int, focus: tuple[int, int]) -> Window:
+    """Cut a line to `width` columns so that the characters of `focus`, or its first ones, can be seen."""
+    total = line.columns[-1]
+    if total <= width:
+        return Window(line, 0, len(line.cells))
+    first, last = line.column(focus[0]), line.column(focus[1])
+    room = width - 2
+    lead = max(0, (room - (last - first)) // 2) if last - first <= room else room // 8
+    left = max(0, min(first - lead, total - room))
+    start = next(i for i, column in enumerate(line.columns) if column >= left)
+    end = start
+    while end < len(line.cells) and line.columns[end + 1] - line.columns[start] <= room:
+        end += 1
+    return Window(line, start, end)
+
+
+def _visible(char: str) -> str:
+    if char.isprintable() or unicodedata.category(char) not in _BREAKING:
+        return char
+    code = ord(char)
+    if code < 0x20:
+        return chr(0x2400 + code)
+    if code == 0x7F:
+        return "␡"
+    return f"<U+{code:04X}>"
+
+
+def _width(char: str) -> int:
+    if unicodedata.combining(char) or unicodedata.category(char) in ("Mn", "Me"):
+        return 0
+    return 2 if unicodedata.east_asian_width(char) in ("W", "F") else 1

@@ -1,0 +1,76 @@
+"""Where the files that ship with the package are: grammar, standard library, pages on diagnostics.
+
+In a wheel they lie in `aidl_lang/_data/`, in a checkout beside the package; nothing else needs to know. What
+is worked out from them once (the parser's tables, the parsed library) is built into the wheel; a checkout
+keeps it in its own `build/derived/`. All of it is data, and nothing is kept anywhere else.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Callable, Iterable
+from functools import cache
+from pathlib import Path
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+_SHIPPED = _PACKAGE / "_data"
+_CHECKOUT = _PACKAGE.parent
+
+
+@cache
+def resource(name: str) -> Path:
+    """The file or folder `name`, as `grammar/aidl.lark`, `stdlib` or `docs/diagnostics`.
+
+    Raises FileNotFoundError when the installation is incomplete.
+    """
+    for root in (_SHIPPED, _CHECKOUT):
+        if (path := root / name).exists():
+            return path
+    raise FileNotFoundError(f"{name} is missing from this installation of aidl_lang")
+
+
+def derived(name: str, inputs: Callable[[], Iterable[Path]], make: Callable[[], bytes]) -> bytes:
+    """What `make` gives, worked out once.
+
+    An installation has it among its files. A checkout makes it again when one of the `inputs` has changed;
+    what `make` raises is passed on.
+    """
+    if _SHIPPED.exists():
+        return resource(f"derived/{name}").read_bytes()
+    kept = _kept(name, inputs())
+    try:
+        return kept.read_bytes()
+    except OSError:
+        data = make()
+    # Where a checkout cannot be written, each run makes it anew.
+    with contextlib.suppress(OSError):
+        _keep(kept, data)
+    return data
+
+
+def _kept(name: str, inputs: Iterable[Path]) -> Path:
+    """The file of a checkout whose name holds a digest of everything its content depends on."""
+    import hashlib
+
+    digest = hashlib.sha256()
+    for path in inputs:
+        data = path.read_bytes()
+        digest.update(f"{path.name} {len(data)}\n".encode())
+        digest.update(data)
+    stem, suffix = os.path.splitext(name)
+    return _CHECKOUT / "build" / "derived" / f"{stem}-{digest.hexdigest()[:32]}{suffix}"
+
+
+def _keep(path: Path, data: bytes) -> None:
+    """Write beside the file and move into place, so that a reader sees the whole or nothing; what an older
+    state of the checkout left goes.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary.write_bytes(data)
+    os.replace(temporary, path)
+    stem = path.name.rpartition("-")[0]
+    for old in path.parent.glob(f"{stem}-*{path.suffix}"):
+        if old != path:
+            old.unlink(missing_ok=True)

@@ -1,9 +1,0 @@
-"""What becomes of a program at the ends of its params: each is turned alone, as far as its range goes."""
-
-from aidl_lang.ends.searching import sweep
-from aidl_lang.ends.told import Sweep, Turned
-from aidl_lang.ends.trying import Job
-from aidl_lang.ends.values import has_range
-from aidl_lang.ends.wording import described, sentence
-
-__all__ = ["Job", "Sweep", "Turned", "described", "has_range", "sentence", "sweep"]

@@ -1,0 +1,102 @@
+"""What would have to be another number where a condition over constants does not hold (E0513, E0604).
+
+Such a condition is put to the solver like any other, as a conflict of one statement; what is told of
+conflicts, numbers that were tried as they are printed, can then be told of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from aidl_lang.building.lower import Lowered
+from aidl_lang.building.model import Constraint
+from aidl_lang.building.wording import Wording
+from aidl_lang.common.diagnostics import Diagnostic, Label
+from aidl_lang.common.source import Span
+from aidl_lang.explaining.givens import Dial, behind
+from aidl_lang.explaining.givens import stated as stated_in
+from aidl_lang.explaining.remedies import Remedy, Search, remedies
+from aidl_lang.explaining.trials import Trials
+from aidl_lang.explaining.verifying import mends
+from aidl_lang.solver import Solution
+from aidl_lang.solver.solution import Failure, GroupFailure, Member
+
+NEVER, _ASSERTED = "E0513", "E0604"
+_CODES = frozenset({NEVER, _ASSERTED})
+_MOST = 0.5
+"""Part by which a number may change that is offered: beyond that it is told only."""
+_PLACES = 5
+"""That a message shows beside its own."""
+
+
+def failing(lowered: Lowered, solution: Solution) -> Solution:
+    """The solution of a problem that states constants, with each of these that does not hold as a failure of
+    its own.
+    """
+    found = []
+    for index, stated in enumerate(lowered.stated):
+        if stated is not None and _is_decided(stated) and not solution.satisfied[index]:
+            group, member = int(lowered.problem.holder[index]), Member(index, solution.residuals[index])
+            found.append(GroupFailure(group, Failure.CONTRADICTORY, (member,), minimal=True, within=(index,)))
+    return replace(solution, failures=tuple(found))
+
+
+def answered(
+    found: Sequence[Diagnostic], everything: Sequence[Diagnostic], trials: Trials
+) -> list[Diagnostic]:
+    """Findings among everything that is said of a program, those on constants with what would fit instead.
+    The trials are those of the program that states constants, with what is `failing`.
+    """
+    failures: dict[Span, tuple[Constraint, GroupFailure]] = {}
+    for failure in trials.solution.failures:
+        stated = trials.lowered.stated[failure.conflict[0]]
+        if stated is not None:
+            failures.setdefault(stated.span, (stated, failure))
+    return [
+        _answered(d, *failures[d.span], everything, trials)
+        if d.code in _CODES and d.fix is None and d.span in failures
+        else d
+        for d in found
+    ]
+
+
+def _answered(
+    d: Diagnostic, stated: Constraint, failure: GroupFailure, everything: Sequence[Diagnostic], trials: Trials
+) -> Diagnostic:
+    """A finding with what fits where its numbers are given, and the least change of these as the fix. Where
+    there is none, it is told what fits in a constraint; what an `assert` asks is not up for change.
+    """
+    wording = stated.wording
+    if not isinstance(wording, Wording) or wording.node.span != stated.span:
+        return d
+
+    def fitting(dials: Sequence[Dial]) -> Iterator[Remedy]:
+        searches = (Search(dial, failure, trials, dial.place) for dial in dials if not dial.is_factor)
+        return (each for each in remedies(searches) if mends(d, each.fix, everything, trials))
+
+    uses = wording.it.program.resolution.uses
+    given = sorted(fitting(behind([wording.node], uses)), key=lambda each: (each.counts, each.share))
+    if given:
+        labels = d.secondary
+        for each in given:
+            labels = _with(labels, each)
+        fix = given[0].fix if given[0].share <= _MOST else None
+        return replace(d, secondary=labels[:_PLACES], fix=fix)
+    dials = stated_in(wording.node) if d.code == NEVER else []
+    if (own := next(fitting(dials), None)) is None:
+        return d
+    return replace(d, label="; ".join(filter(None, (d.label, own.would_fit(len(dials))))))
+
+
+def _with(labels: tuple[Label, ...], found: Remedy) -> tuple[Label, ...]:
+    """The labels, one of them with what would fit in place of a number."""
+    place, text = found.dial.place, found.would_fit()
+    for index, label in enumerate(labels):
+        if found.dial.name and label.span.overlaps(place):
+            return *labels[:index], replace(label, text=f"{label.text}; {text}"), *labels[index + 1 :]
+    return *labels, Label(place, f"exact; {text}")
+
+
+def _is_decided(stated: Constraint) -> bool:
+    return all(part.left.is_constant and part.right.is_constant for part in stated.comparisons)

@@ -1,0 +1,419 @@
+"""What there is to say of a program that cannot be solved: who conflicts, where, and what would fit."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import cached_property
+
+from aidl_lang.building.expression import Expression, Unknown
+from aidl_lang.building.lower import Lowered
+from aidl_lang.building.model import Constraint
+from aidl_lang.building.values import Num
+from aidl_lang.building.wording import Wording
+from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.common.diagnostics import Diagnostic, Fix, Label
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.explaining.givens import Dial, behind
+from aidl_lang.explaining.givens import stated as stated_in
+from aidl_lang.explaining.remedies import Remedy, Search, dear, left_out, remedies, short, wished
+from aidl_lang.explaining.trials import Trials
+from aidl_lang.solver.solution import Failure, GroupFailure, Member, Solution
+from aidl_lang.syntax import ast
+
+_PROVEN = (Failure.CONTRADICTORY, Failure.OVERDETERMINED)
+"""Reasons that do not depend on where the search began."""
+_TOLERANCE = 1e-6
+"""Below this a constraint is not called off, in its own units."""
+_FINISHED = 5
+"""Fixes of which it is tried whether the program then compiles to the end."""
+_NAMED = 3
+"""Things that a list names."""
+_SHOWN = 12
+"""Places beside the one that a message is about."""
+_QUOTED = 60
+"""Characters of a constraint that a headline quotes."""
+
+
+def explained(lowered: Lowered, solution: Solution, trials: Trials) -> list[Explanation]:
+    """One explanation for each group that could not be solved for reasons of its own. What would help is
+    tried by `trials` when it is first asked for.
+    """
+    own = [f for f in solution.failures if not _follows(f, solution.failures, lowered.groups)]
+    found: list[Explanation] = []
+    for failure in own:
+        found.append(Explanation(lowered, solution, failure, trials, tuple(found)))
+    return found
+
+
+@record()
+class Party:
+    """A constraint in a conflict: the structure that holds it, how far it is off where the search came
+    nearest, what would fit in it in words ("" if that is not known), and the edit that writes it.
+    """
+
+    path: str
+    text: str
+    span: Span
+    off: float
+    would_fit: str
+    fix: Fix | None
+
+
+@record()
+class Given:
+    """An exact number behind a conflict: its name if it has one, its place, and what would fit there."""
+
+    name: str
+    span: Span
+    would_fit: str
+    fix: Fix
+
+
+@record()
+class Conflict:
+    """Constraints that do not hold together, in order of writing, and exact numbers that have a share in
+    that. `is_minimal`: without any one of the constraints the others hold.
+    """
+
+    headline: str
+    is_minimal: bool
+    parties: tuple[Party, ...]
+    givens: tuple[Given, ...] = ()
+
+
+def _follows(failure: GroupFailure, failures: Sequence[GroupFailure], paths: Sequence[str]) -> bool:
+    """Whether a search that found nothing may owe that to a failure in the same group or inside it."""
+    if failure.reason in _PROVEN:
+        return False
+    here = f"{paths[failure.group]}."
+    inside = [f for f in failures if f is not failure and f"{paths[f.group]}.".startswith(here)]
+    return any(f.group != failure.group or f.reason in _PROVEN for f in inside)
+
+
+@record()
+class _Party:
+    """A constraint in a conflict, as its author knows it."""
+
+    member: Member
+    stated: Constraint
+
+    @property
+    def name(self) -> str:
+        text = self.stated.text
+        return f"`{text if len(text) <= _QUOTED else text[: _QUOTED - 1] + '…'}`"
+
+    @property
+    def node(self) -> ast.Expression | None:
+        """The statement, where what is written at its place is just that."""
+        wording = self.stated.wording
+        if isinstance(wording, Wording) and wording.node.span == self.stated.span:
+            return wording.node
+        return None
+
+    def value(self, part: ast.Expression) -> Expression | None:
+        """The number that a part of the statement is."""
+        wording = self.stated.wording
+        value = wording.value(part) if isinstance(wording, Wording) else None
+        return value.expression if isinstance(value, Num) else None
+
+
+class Explanation:
+    """Why a group could not be solved, and what would help: perhaps what helps against an `earlier` one."""
+
+    def __init__(
+        self,
+        lowered: Lowered,
+        solution: Solution,
+        failure: GroupFailure,
+        trials: Trials,
+        earlier: tuple[Explanation, ...],
+    ) -> None:
+        self.lowered, self.solution, self.failure, self.trials = lowered, solution, failure, trials
+        self.earlier = earlier
+        self.is_proven = failure.reason in _PROVEN
+        self.times = Counter(c.span for c in lowered.stated if c is not None)
+        self.sizes = [self._size(i) for i in failure.conflict if lowered.stated[i] is None]
+        parties = [_Party(m, stated) for m in failure.members if (stated := lowered.stated[m.index])]
+        self.parties = sorted(parties, key=lambda party: party.stated.span.start)
+        self.turns: dict[Span, list[_Party]] = {}
+        """The parties by the place at which they are stated, in the turns of a loop perhaps."""
+        for party in self.parties:
+            self.turns.setdefault(party.stated.span, []).append(party)
+
+    @cached_property
+    def diagnostic(self) -> Diagnostic:
+        code, headline = self._headline()
+        labels = [
+            Label(u.holder.span, f"{u.told} would have to become 0")
+            for u in self.sizes
+            if u.holder.span is not None
+        ]
+        if not self.parties:
+            return Diagnostic(code, headline, secondary=tuple(labels))
+        chief = self._chief
+        labels = [*self._givens(), *self._labels(chief), *labels]
+        hints = tuple(self._hints())
+        return Diagnostic(
+            code, headline, chief.stated.span, self._claim(chief), tuple(labels), hints, self._fix
+        )
+
+    @cached_property
+    def conflict(self) -> Conflict:
+        parties = tuple(map(self._told, self.parties))
+        givens = tuple(
+            Given(r.dial.name, r.dial.place, r.would_fit(), r.fix) for r in self._remedies if r.dial.is_exact
+        )
+        return Conflict(self._headline()[1], self.failure.minimal, parties, givens)
+
+    def _told(self, party: _Party) -> Party:
+        stated, found = party.stated, self._remedy_of(party)
+        fix = found.fix if found else None
+        would_fit = found.would_fit() if found else ""
+        return Party(stated.holder.path, stated.text, stated.span, party.member.off, would_fit, fix)
+
+    def _size(self, index: int) -> Unknown:
+        """The size that a constraint which nobody stated keeps from vanishing: `least - size <= 0` or
+        `-size <= 0`.
+        """
+        problem = self.lowered.problem
+        operands = problem.tape.operand_lists
+        *_, size = operands[problem.constraints[index].rows[0].expression]
+        return self.lowered.unknowns[operands[size][0]]
+
+    # -- what would help
+
+    @cached_property
+    def _remedies(self) -> list[Remedy]:
+        """What would fit in place of numbers: those of the parties, one for each place, and exact ones."""
+        if not self.is_proven:
+            return []
+        searches = list(self._searches())
+        if self.sizes:  # of which would have to vanish there is only to say that a sign is wrong
+            return list(filter(None, (search.turned() for search in searches)))
+        order = {search.dial.place: n for n, search in enumerate(searches)}
+        known = [found for earlier in self.earlier for found in earlier._remedies]
+        both = [
+            replace(found, shown=found.written)
+            for found in known
+            if found.dial.place in order and self.trials.mends(found.fix.edits, self.failure)
+        ]
+        done = {found.dial.place for found in both}
+        fresh = remedies(search for search in searches if search.dial.place not in done)
+        return sorted([*both, *fresh], key=lambda found: order[found.dial.place])
+
+    def _searches(self) -> Iterator[Search]:
+        stated = {span: self._dials(parties[0]) for span, parties in self.turns.items()}
+
+        def order(span: Span) -> tuple[int, bool, float]:
+            dials = stated[span]
+            # Where all is straight, the largest numbers change by the smallest part of themselves.
+            largest = 0.0 if self.failure.is_curved else max((abs(dial.value) for dial in dials), default=0.0)
+            return -self._shares(span), any(dial.is_rough for dial in dials), -largest
+
+        for span in sorted(stated, key=order):
+            parties = self.turns[span]
+            member = parties[0].member.index if len(parties) == 1 else None
+            for dial in stated[span]:
+                yield Search(dial, self.failure, self.trials, span, member)
+        if not self.sizes:
+            wordings = [party.stated.wording for party in self.parties]
+            uses = next((w.it.program.resolution.uses for w in wordings if isinstance(w, Wording)), {})
+            for dial in behind([p.node for p in self.parties if p.node is not None], uses):
+                yield Search(dial, self.failure, self.trials, dial.place)
+
+    @staticmethod
+    def _dials(party: _Party) -> list[Dial]:
+        """The numbers of a statement for which others may be told: by what something is multiplied is no
+        measure.
+        """
+        return [] if party.node is None else [dial for dial in stated_in(party.node) if not dial.is_factor]
+
+    def _remedy_of(self, party: _Party) -> Remedy | None:
+        span = party.stated.span
+        inside = (r for r in self._remedies if not r.dial.is_exact)
+        return next((r for r in inside if span.overlaps(r.dial.place)), None)
+
+    @cached_property
+    def _fix(self) -> Fix | None:
+        """The smallest change of a number that mends it, those first that keep what is written alike alike;
+        at last that one of the constraints is a wish.
+        """
+        cheapest = sorted(self._remedies, key=self._dearness)
+        for found in cheapest[:_FINISHED]:
+            fix = self._once(found)
+            if self.trials.finishes(fix.edits):
+                return fix
+        if len(self.solution.failures) > 1 and cheapest:  # none mends all that is wrong
+            return self._once(cheapest[0])
+        for party in reversed(self.parties if self.is_proven else []):
+            if party.node is not None and self.times[party.stated.span] == 1:
+                edits = (fix := wished(party.stated)).edits
+                if self.trials.mends(edits, self.failure) and self.trials.finishes(edits):
+                    return fix
+        return None
+
+    def _once(self, found: Remedy) -> Fix:
+        """The fix; where it would say what another party says, that the statement is left out."""
+        for party in self.parties:
+            span = party.stated.span
+            if party.node is None or not span.overlaps(found.dial.place):
+                continue
+            behind_it = len(span.source.text) - span.end
+            text = self.trials.edited(found.fix.edits).text
+            said = text[span.start : len(text) - behind_it]
+            if any(said == other.stated.span.text for other in self.parties):
+                fix = left_out(party.stated)
+                if fix is not None and self.trials.mends(fix.edits, self.failure):
+                    return fix
+        return found.fix
+
+    def _dearness(self, found: Remedy) -> tuple[int, bool, bool, float, int]:
+        """What is to be kept: what takes part in other failures goes first, as one cause has several."""
+        shared = self._shares(found.dial.place)
+        others = [d for parties in self.turns.values() for d in self._dials(parties[0])]
+        size = abs(found.dial.value)
+        twins = [d for d in others if abs(d.value) == size and d.place != found.dial.place]
+        breaks = not found.dial.is_exact and bool(twins)
+        share = dear(found.dial, found.share, found.plain)
+        return -shared, found.counts, breaks, round(share, 4), -found.dial.place.start
+
+    def _shares(self, place: Span) -> int:
+        """The number of other failures in which what stands at a place takes part."""
+        return sum(any(span.overlaps(place) for span in spans) for spans in self._others)
+
+    @cached_property
+    def _others(self) -> list[set[Span]]:
+        """Where the constraints of each other failure are stated."""
+        others = [f for f in self.solution.failures if f is not self.failure]
+        return [{c.span for i in f.conflict if (c := self.lowered.stated[i]) is not None} for f in others]
+
+    @cached_property
+    def _chief(self) -> _Party:
+        """The party that the message is about: the one that is mended, else the last of those that can be."""
+        if not self.is_proven:
+            return max(self.parties, key=lambda party: (party.member.off, party.stated.span.start))
+        places = [edit.span for edit in self._fix.edits] if self._fix else []
+        return max(
+            self.parties,
+            key=lambda party: (
+                any(map(party.stated.span.overlaps, places)),
+                self._remedy_of(party) is not None,
+                party.stated.span.start,
+            ),
+        )
+
+    # -- words
+
+    def _headline(self) -> tuple[str, str]:
+        failure = self.failure
+        names = listed([_name(parties) for parties in self.turns.values()])
+        names = names or listed([unknown.told for unknown in self.sizes])
+        several = len(self.parties) > 1
+        match failure.reason:
+            case Failure.CONTRADICTORY:
+                return "E0601", f"{names} cannot hold{' together' * several}"
+            case Failure.OVERDETERMINED:
+                moving = len(failure.moving)
+                asked = f"{'are' if several else 'is'} {failure.equations} equations"
+                return "E0605", f"{names} {asked} for {moving} number{'s' * (moving > 1)} that may move"
+            case Failure.NOT_CONVERGED:
+                return "E0602", f"no position was found in which {names} hold{'s' * (not several)}"
+            case Failure.TIMED_OUT:
+                return "E0603", f"the time for solving ran out before {names} held"
+
+    def _claim(self, chief: _Party) -> str:
+        """What is wrong with the one that the message is about."""
+        if (would_fit := self._would_fit(chief)) != "":
+            return would_fit
+        off = chief.member.off
+        if not math.isfinite(off):
+            return "this has no value where the solver stopped"
+        if not self.is_proven:
+            return f"off by {measured_in(off, chief.stated)} at best" if off > _TOLERANCE else ""
+        return ("", "", "conflicts with the other", "conflicts with the others")[min(len(self.parties), 3)]
+
+    def _would_fit(self, party: _Party) -> str:
+        found = self._remedy_of(party)
+        if found is None:
+            return ""
+        assert party.node is not None
+        times = self.times[party.stated.span]
+        return found.would_fit(len(stated_in(party.node))) + (f", all {times} times" if times > 1 else "")
+
+    def _labels(self, chief: _Party) -> Iterator[Label]:
+        """The other places, each once; of many those where something would fit, and the first."""
+        text = "conflicts with this" if self.is_proven else "takes part"
+        spans = [span for span in self.turns if span != chief.stated.span]
+        fitting = {span: self._would_fit(self.turns[span][0]) for span in spans}
+        for span in sorted(spans, key=lambda span: not fitting[span])[:_SHOWN]:
+            yield Label(span, "; ".join(filter(None, (text, fitting[span]))))
+
+    def _givens(self) -> Iterator[Label]:
+        """The exact numbers that have a share in it."""
+        for found in self._remedies:
+            if found.dial.is_exact:
+                yield Label(found.dial.place, f"exact; {found.would_fit()}")
+
+    def _hints(self) -> Iterator[str]:
+        if (hidden := len(self.turns) - 1 - _SHOWN) > 0:
+            yield f"{hidden} more take part, which are not shown"
+        gaps = dict(self.failure.gaps)
+        parties = sorted(self.parties, key=lambda party: party is not self._chief)
+        yield from itertools.islice(
+            filter(None, (_apart(p, gaps[p.member.index]) for p in parties if p.member.index in gaps)), 1
+        )
+        match self.failure.reason:
+            case Failure.OVERDETERMINED:
+                wordings = [w for party in self.parties if isinstance(w := party.stated.wording, Wording)]
+                held = dict.fromkeys(f"`{name}`" for wording in wordings for name in wording.held())
+                if held:
+                    moving = listed([self.lowered.unknowns[i].told for i in self.failure.moving])
+                    yield f"{listed(list(held))} cannot move, only {moving}: a `guess(…)` frees a number"
+            case Failure.NOT_CONVERGED:
+                yield "the search starts from what is written: first guesses near to what is meant help it"
+            case Failure.TIMED_OUT:
+                yield "what concerns one part only is solved faster if that part states it"
+
+
+def _apart(party: _Party, gap: float) -> str:
+    """How far the sides of `a == b` are apart where the other parties hold; "" for what is no such
+    equation.
+    """
+    node, stated = party.node, party.stated
+    if not isinstance(node, ast.Comparison) or node.operators != ("==",) or len(stated.comparisons) != 1:
+        return ""
+    (comparison,) = stated.comparisons
+    sides = [party.value(operand) for operand in node.operands]
+    written = [comparison.left.value, comparison.right.value]  # how it is lowered may have turned them round
+    if comparison.dimension == ANGLE or [s and s.value for s in sides] != written or written[0] == written[1]:
+        return ""
+    left, right = (operand.span.one_line for operand in node.operands)
+    more = "more" if gap > 0.0 else "less"
+    return f"given the others, `{left}` is {short(abs(gap))} {more} than `{right}`"
+
+
+def _name(parties: Sequence[_Party]) -> str:
+    """What is stated at one place, in the turns of a loop perhaps."""
+    first, label = parties[0].name, parties[0].stated.label
+    if len(parties) > 1:
+        return f"{first} ({len(parties)} times)"
+    return f"{first} [{label}]" if label else first
+
+
+def listed(names: Sequence[str], most: int = _NAMED) -> str:
+    """`a`; `a and b`; `a, b and c`; `a, b and 3 more`"""
+    if len(names) > most:
+        names = [*names[: most - 1], f"{len(names) - most + 1} more"]
+    return " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+
+
+def measured_in(value: float, stated: Constraint) -> str:
+    """A value with its unit, where all that a constraint compares has the same."""
+    dimensions = {comparison.dimension for comparison in stated.comparisons}
+    unit = " mm" if dimensions <= {LENGTH, None} else "°" if dimensions == {ANGLE} else ""
+    return f"{short(value)}{unit}"

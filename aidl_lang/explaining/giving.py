@@ -1,0 +1,197 @@
+"""What gave way unasked, and because of which constraints: sizes that changed, frames whose content is exact
+or that no constraint names and that moved all the same (language, "What gives way").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from aidl_lang.building.expression import Unknown
+from aidl_lang.building.lower import Lowered
+from aidl_lang.building.model import Constraint, Structure
+from aidl_lang.common.diagnostics import Diagnostic, Label
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.explaining.failures import listed
+from aidl_lang.explaining.remedies import short
+from aidl_lang.explaining.trials import GAVE_WAY
+from aidl_lang.geometry.solved import Change, SolvedModel
+from aidl_lang.solver import Settings, Solution
+from aidl_lang.solver.reasons import reasons
+
+_A_TENTH = 0.1 + 1e-9
+"""Part of a size by which it may change without a warning."""
+_STILL = 1e-6
+"""A frame that moved by less, in mm or degrees, is where it was."""
+
+
+@record()
+class GaveWay:
+    """Unknowns that gave way together, with the values they had and have, and the constraints that ask for
+    it, in order of writing; without any one of them they would have stayed, if these are `minimal`.
+    """
+
+    moved: Mapping[Unknown, tuple[float, float]]
+    because: tuple[Constraint, ...]
+    minimal: bool
+
+
+def gave_way(lowered: Lowered, solution: Solution, settings: Settings) -> tuple[GaveWay, ...]:
+    """What gave way in a solution."""
+    problem, found, told = lowered.problem, [], set[int]()
+    for stage in reversed(solution.stages):
+        for reason in reasons(problem, settings, stage.gave) if stage.gave is not None else ():
+            stated = [c for i in reason.constraints if (c := lowered.stated[i]) is not None]
+            moved = {}
+            for index in sorted(reason.unknowns - told):
+                before, now = float(problem.initial[index]), float(solution.values[index])
+                if abs(now - before) > _STILL:
+                    moved[lowered.unknowns[index]] = before, now
+            told |= reason.unknowns
+            if moved:
+                stated.sort(key=lambda c: c.span.start)
+                found.append(GaveWay(moved, tuple(stated), reason.minimal))
+    return tuple(reversed(found))
+
+
+def explained(model: SolvedModel, given: Sequence[GaveWay]) -> SolvedModel:
+    """The model with the reasons of its changed sizes."""
+    texts = {u.path: tuple(c.text for c in g.because) for g in given for u in g.moved}
+    changed = tuple(replace(c, because=texts.get(c.path, ())) for c in model.changed)
+    return replace(model, changed=changed)
+
+
+def refused(note: Diagnostic) -> Diagnostic:
+    """A diagnostic, as an error if it tells that something gave way."""
+    return replace(note, code="E0606") if note.code in GAVE_WAY else note
+
+
+def giving_notes(given: Sequence[GaveWay], model: SolvedModel) -> Iterator[Diagnostic]:
+    """What is said of it: one message for all sizes that changed for the same reason, one for each frame.
+    Nothing is said of a length between literal points: no number was written for it, and its points were
+    placed.
+    """
+    changes = {change.path: change for change in model.changed}
+    for one in given:
+        sizes = [changes[u.path] for u in one.moved if u.path in changes and not u.implied]
+        visible = [c for c in sizes if short(c.written) != short(c.solved)]
+        if visible:
+            yield _of_sizes(visible, one)
+        frames: dict[Structure, list[Unknown]] = {}
+        for unknown in one.moved:
+            if not unknown.kept:
+                moved = unknown.frame_of or unknown.owner
+                frames.setdefault(moved, []).append(unknown)
+        for structure, unknowns in frames.items():
+            yield _of_frame(structure, unknowns, one)
+
+
+# --- Sizes -----------------------------------------------------------------------------------------
+
+
+def _of_sizes(sizes: Sequence[Change], given: GaveWay) -> Diagnostic:
+    """A note; a warning where a size changed by more than a tenth."""
+    chief = max(sizes, key=lambda c: (round(_share(c), 6), -c.span.start if c.span else 0))
+    rest = [c for c in sizes if c is not chief]
+    written, solved = short(chief.written), short(chief.solved)
+    message = f"{chief.told} was written {written} and became {solved}"
+    if rest:
+        others = [f"{c.told} {short(c.written)} → {short(c.solved)}" for c in rest]
+        message += f", and with it {listed(others)}"
+    labels = tuple(
+        Label(c.span, f"was written {short(c.written)} and became {short(c.solved)}")
+        for c in rest
+        if c.span is not None and c.span != chief.span
+    )
+    if _share(chief) <= _A_TENTH:
+        hints = (*_whose(given), f"write {solved} to agree, or `fixed({written})` to insist")
+        return _told("N0601", message, chief.span, given, labels, hints)
+    how = _distortion(chief)
+    hints = (
+        *_whose(given),
+        "look among them for one that says something else than you mean"
+        if given.because
+        else "look for a constraint that says something else than you mean",
+        "if it may become what it will, write it as a `guess(…)`",
+    )
+    return _told("W0601", f"{message}, {how}" if how else message, chief.span, given, labels, hints)
+
+
+def _share(change: Change) -> float:
+    """The part of a size by which it changed; of an angle or offset that of a right angle, or nothing."""
+    if not change.is_size or not change.written:
+        return 0.0
+    return abs(change.solved / change.written - 1.0)
+
+
+def _distortion(change: Change) -> str:
+    """What became of a size that is hardly meant; "" for one that is less off."""
+    share = change.solved / change.written
+    if share < 0.0:
+        return "turned around"
+    if share < 0.5 - _STILL:
+        return "less than half"
+    return "more than twice as much" if share > 2.0 + _STILL else ""
+
+
+# --- Frames ----------------------------------------------------------------------------------------
+
+
+def _of_frame(structure: Structure, unknowns: Sequence[Unknown], given: GaveWay) -> Diagnostic:
+    way = {u.field.rpartition(".")[2]: now - before for u in unknowns for before, now in [given.moved[u]]}
+    parent = structure.parent
+    assert parent is not None
+    if all(u.frame_of is None for u in unknowns):
+        what = f"something in `{structure.path}` moved"
+    else:
+        by = [f"{short(way[axis])} in {axis}" for axis in ("x", "y") if axis in way]
+        if "rotation" in way:
+            by.append(f"turned by {short(way['rotation'])}°")
+        what = f"`{structure.path}` moved against `{parent.path}`: {' and '.join(by)}"
+    if _is_named(structure, given):
+        why, hint = (
+            "something in it is exact, as `fixed(…)`, a `param` or `origin` makes it",
+            "`fixed(…)` is exact in its own frame, which may move: "
+            f"`{structure.name} at fixed((0, 0))` holds that as well",
+        )
+    else:
+        why, hint = (
+            "though no constraint names it",
+            f"name `{structure.name}` in the constraint that is to move it, or hold it by `at fixed(…)`",
+        )
+    return _told("W0602", f"{what}, {why}", structure.span, given, (), (*_whose(given), hint))
+
+
+def _is_named(structure: Structure, given: GaveWay) -> bool:
+    """Whether one of the constraints speaks of something in it."""
+    parts = [part for c in given.because for part in c.comparisons]
+    spoken = {s for part in parts for s in part.boxes}
+    spoken.update(u.frame_of or u.owner for part in parts for u in part.spoken_of)
+    return any(s.is_within(structure) for s in spoken)
+
+
+# --- Words -----------------------------------------------------------------------------------------
+
+
+def _whose(given: GaveWay) -> tuple[str, ...]:
+    """Who asks for it, in a sentence."""
+    if not given.because:
+        return ()
+    names = [f"`{c.text}`" + (f" [{c.label}]" if c.label else "") for c in given.because]
+    ask = f"{listed(names, 6)} ask{'s' * (len(names) == 1)} for it"
+    single = len(names) > 1 and given.minimal
+    return (f"{ask}: without any one of them it would have stayed" if single else ask,)
+
+
+def _told(
+    code: str,
+    message: str,
+    span: Span | None,
+    given: GaveWay,
+    labels: tuple[Label, ...],
+    hints: tuple[str, ...],
+) -> Diagnostic:
+    places = dict.fromkeys(c.span for c in given.because)
+    asked = tuple(Label(place, "asks for it") for place in places if place != span)
+    return Diagnostic(code, message, span, "this gave way", (*labels, *asked), hints)

@@ -1,0 +1,203 @@
+"""Programs that do not solve as their first guesses have it: with ambiguous calls taken otherwise, or from
+another place.
+
+Which angle between two lines is meant, and on which side a circle touches, is read off the first guesses.
+Before anything is refused, and before a size changes much, the calls that take part are tried the other ways.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from aidl_lang.building.expression import Evaluator, Unknown, unknowns
+from aidl_lang.building.lower import Lowered, lower
+from aidl_lang.building.model import Constraint, Model
+from aidl_lang.checking.units import UNITS
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.explaining.failures import listed
+from aidl_lang.explaining.remedies import short
+from aidl_lang.explaining.trials import Trials
+from aidl_lang.interp import Interpretation
+from aidl_lang.solver import Settings, Solution, Status, solve
+from aidl_lang.solver.lacking import lack
+from aidl_lang.solver.newton import Clock
+from aidl_lang.solver.solution import Failure
+from aidl_lang.syntax import ast
+
+_FIRST, _MOST = 16, 64
+"""Other ways that are solved at once, and those that are tried at all."""
+_RANKS = (1, 2, 3)
+"""How many places further off than the nearest a reading is tried."""
+_SECONDS, _LONGEST = 10.0, 0.5
+"""Time for all of them, and for one."""
+_MUCH = 0.1
+"""Part of a size by which it may change before it is asked whether something was meant otherwise."""
+_STILL = 1e-6
+_DIGITS = (2, 3, 6)
+_LOOK = "look whether this is how it is meant"
+
+
+@record()
+class Otherwise:
+    """A program that solved with some ambiguous calls taken otherwise; `calls` are their places, and how each
+    was taken.
+    """
+
+    built: Interpretation
+    lowered: Lowered
+    solution: Solution
+    calls: tuple[tuple[Span, str], ...]
+
+
+def otherwise(
+    built: Interpretation,
+    lowered: Lowered,
+    solution: Solution,
+    again: Callable[[Mapping[int, int]], Interpretation | None],
+    settings: Settings,
+) -> tuple[Otherwise | None, Solution]:
+    """The program with ambiguous calls taken so that it solves and nothing dear gives way; None where it does
+    as it is, or no way was found. With the solution as it is: what conflicts by such calls is no
+    contradiction in it unless they were taken in every way.
+    """
+    readings = list(built.model.readings)
+    troubled = _troubled(lowered, solution) if readings and settings.explain else ()
+    if not troubled:
+        return None, solution
+    clock, seen = Clock(_SECONDS), [readings]
+    near = _numbers(readings, lowered, troubled)
+    far = _numbers(readings, lowered, {i for failure in solution.failures for i in failure.within})
+    for turned in _ways([*near, *(n for n in far if n not in near)]):
+        if clock.expired or len(seen) > _MOST:
+            return None, _undecided(lowered, solution, readings)
+        other = again(turned)
+        if other is None or (taken := list(other.model.readings)) in seen:
+            continue
+        seen.append(taken)
+        made = lower(other.model)
+        if _still_fails(made, solution, settings):
+            continue
+        found = solve(made.problem, replace(settings, explain=False, seconds=min(settings.seconds, _LONGEST)))
+        if found.status is Status.SOLVED and not any(stage.gave for stage in found.stages):
+            calls = tuple(taken[n] for n in turned if n < len(taken))
+            return Otherwise(other, made, found, calls), solution
+    return None, solution
+
+
+def _still_fails(made: Lowered, solution: Solution, settings: Settings) -> bool:
+    """Whether what conflicted does so with calls taken otherwise, by a search that is quicker than solving.
+    The same statements in the same order have the same numbers there.
+    """
+    return any(
+        lack(made.problem, settings, f.conflict, f.conflict, dict(f.nearest)) for f in solution.failures
+    )
+
+
+def _numbers(readings: Sequence[tuple[Span, str]], lowered: Lowered, indices: Iterable[int]) -> list[int]:
+    """The readings, by number, that have a share in some constraints."""
+    spans = {c.span for i in indices if (c := lowered.stated[i]) is not None}
+    return [n for n, (span, _) in enumerate(readings) if any(map(span.overlaps, spans))]
+
+
+def _ways(numbers: Sequence[int]) -> Iterator[dict[int, int]]:
+    """The ways in which readings can be taken otherwise: one of them, two, and so on."""
+    for count in range(1, len(numbers) + 1):
+        for chosen in itertools.combinations(numbers, count):
+            for ranks in itertools.product(_RANKS, repeat=count):
+                yield dict(zip(chosen, ranks, strict=True))
+
+
+def _undecided(lowered: Lowered, solution: Solution, readings: Sequence[tuple[Span, str]]) -> Solution:
+    """The solution, in which failures that ambiguous calls have a share in are not taken for proven."""
+    failures = tuple(
+        replace(f, reason=Failure.NOT_CONVERGED) if _numbers(readings, lowered, f.conflict) else f
+        for f in solution.failures
+    )
+    return replace(solution, failures=failures)
+
+
+def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:
+    """The constraints that take part in a failure, or left a size no way but to change much."""
+    found = {i for failure in solution.failures for i in failure.conflict}
+    for stage in solution.stages:
+        for unknown in stage.gave.unknowns if stage.gave is not None else ():
+            was, now = lowered.problem.initial[unknown], solution.values[unknown]
+            if lowered.problem.kept[unknown] and abs(now - was) > _MUCH * abs(was):
+                assert stage.gave is not None
+                found.update(stage.gave.constraints)
+    return found
+
+
+# --- What is said of it ----------------------------------------------------------------------------
+
+
+def elsewhere_notes(
+    model: Model, lowered: Lowered, solution: Solution, other: Otherwise | None, trials: Trials
+) -> Iterator[Diagnostic]:
+    """A note on what was not taken, or not found, as the first guesses have it, with first guesses that
+    do.
+    """
+    if solution.status is not Status.SOLVED:
+        return
+    if other is not None:
+        spans = [span for span, _ in other.calls]
+        moved = [c for c in lowered.stated if c is not None and any(map(c.span.overlaps, spans))]
+        names = listed([f"`{span.one_line}`" for span in spans])
+        are = "are" if len(spans) > 1 else "is"
+        yield Diagnostic(
+            "N0604",
+            f"{names} {are} not taken as the first guesses have it, for which no position was found",
+            spans[0],
+            other.calls[0][1],
+            tuple(Label(span, text) for span, text in other.calls[1:]),
+            (_LOOK,),
+            _guesses(model, lowered, solution, moved, trials),
+        )
+    for stage in solution.stages:
+        despite = [c for i in stage.despite if (c := lowered.stated[i]) is not None]
+        if despite:
+            names = listed(list(dict.fromkeys(f"`{c.text}`" for c in despite)))
+            hold = "hold" if len(despite) > 1 else "holds"
+            first, *rest = dict.fromkeys(c.span for c in despite)
+            yield Diagnostic(
+                "N0604",
+                f"near the first guesses no position was found in which {names} {hold}; another one was",
+                first,
+                "holds elsewhere",
+                tuple(Label(span, "takes part") for span in rest),
+                (_LOOK,),
+                _guesses(model, lowered, solution, despite, trials),
+            )
+
+
+def _guesses(
+    model: Model, lowered: Lowered, solution: Solution, stated: Sequence[Constraint], trials: Trials
+) -> Fix | None:
+    """Writes first guesses near to where things are now, from which the program solves as it is written; None
+    if none were found.
+    """
+    places = dict(zip(lowered.unknowns, solution.values.tolist(), strict=True))
+    was = dict(zip(lowered.unknowns, lowered.problem.initial.tolist(), strict=True))
+    mentioned = set(unknowns(e for c in stated for part in c.comparisons for e in (part.left, part.right)))
+    everything = {u for u in places if abs(places[u] - was[u]) > _STILL}
+    evaluate = Evaluator(places)
+    for moved, digits in itertools.product((everything & mentioned, everything), _DIGITS):
+        edits: dict[Span, set[str]] = {}
+        for literal in model.literals:
+            if isinstance(literal.became.payload, Unknown) and literal.became.payload in moved:
+                text = _text(literal.node, evaluate(literal.became), digits)
+                edits.setdefault(literal.node.span, set()).add(text)
+        written = tuple(Edit(span, text) for span, (text, *more) in edits.items() if not more)
+        if written and trials.settles(written):
+            return Fix("write first guesses that are near to it", written)
+    return None
+
+
+def _text(node: ast.Expression, value: float, digits: int) -> str:
+    number = node.operand if isinstance(node, ast.Unary) else node
+    unit = number.unit if isinstance(number, ast.Number) and number.unit else ""
+    return f"{short(float(f'{value / (UNITS[unit][0] if unit else 1.0):.{digits}g}'))}{unit}"

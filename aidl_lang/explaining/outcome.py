@@ -1,0 +1,225 @@
+"""What there is to say of a solved model: conflicts, sizes that had to change, assertions that fail."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from aidl_lang.building.arithmetic import differences, givens
+from aidl_lang.building.boxes import SIDES
+from aidl_lang.building.conditions import RELATIONS, holds
+from aidl_lang.building.expression import Evaluator, nodes
+from aidl_lang.building.lower import Lowered
+from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Measurement, Model, Structure
+from aidl_lang.building.wording import Wording
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.source import Span
+from aidl_lang.geometry.alone import all_geometry, region_alone
+from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.evaluate import bounds, inward
+from aidl_lang.geometry.measures import area, perimeter
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.solved import SolvedModel
+from aidl_lang.solver.analysis import Freedom
+from aidl_lang.solver.solution import Solution, Status
+
+if TYPE_CHECKING:
+    from aidl_lang.explaining.failures import Explanation
+    from aidl_lang.explaining.giving import GaveWay
+
+_TOLERANCE = 1e-6
+"""How far an assertion may be off, relative to what it compares (and never less than this in mm)."""
+_WORD = "assert"
+
+
+def solution_notes(
+    lowered: Lowered,
+    solution: Solution,
+    freedom: Freedom,
+    model: SolvedModel,
+    given: Sequence[GaveWay],
+    failures: Sequence[Explanation],
+) -> list[Diagnostic]:
+    """Failures as errors; for a model that solved, what gave way and redundant constraints."""
+    found = [failure.diagnostic for failure in failures]
+    if solution.status is not Status.SOLVED:
+        return found
+    if given:
+        from aidl_lang.explaining.giving import giving_notes
+
+        found += giving_notes(given, model)
+    found += _wishes(lowered, solution)
+    if freedom.redundant or freedom.undecided or freedom.unclear:
+        from aidl_lang.explaining.repetitions import repetition_notes
+
+        found += repetition_notes(lowered, solution, freedom)
+    return found
+
+
+def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
+    """A note for each wish that is not met."""
+    for stated, off, is_met in zip(lowered.stated, solution.residuals, solution.satisfied, strict=True):
+        if stated is None or stated.weight is None or is_met:
+            continue
+        from aidl_lang.explaining.failures import measured_in
+
+        where = f" [{stated.label}]" if stated.label else ""
+        yield Diagnostic(
+            "N0605",
+            f"the wish `{stated.text}`{where} is not met",
+            stated.span,
+            f"off by {measured_in(off, stated)}" if math.isfinite(off) else "it has no value here",
+            hints=(
+                "a wish gives way to every constraint; without `prefer` it is told what stands against it",
+            ),
+        )
+
+
+# --- Assertions ----------------------------------------------------------------------------------
+
+
+def assertion_notes(
+    model: Model, solved: SolvedModel, drawing: Drawing, evaluator: Evaluator, *, solved_fully: bool
+) -> list[Diagnostic]:
+    """Assertions that do not hold on the solved model; nothing when it did not solve."""
+    if not solved_fully:
+        return []
+    evaluator.measure = _Measure(solved, drawing)
+    return [d for a in model.assertions if (d := assertion_note(a, evaluator)) is not None]
+
+
+def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | None:
+    """An assertion that does not hold at the values of the evaluator, with the numbers; None if it does."""
+    if holds(assertion.condition, evaluate, _TOLERANCE):
+        return None
+    message = assertion.message or f"`{assertion.text}` does not hold"
+    where = f" [{assertion.label}]" if assertion.label else ""
+    false = list(_false_parts(assertion.condition, evaluate))
+    wording = assertion.wording
+    shown = differences(wording, evaluate, _TOLERANCE) if isinstance(wording, Wording) else []
+    places = givens(wording) if isinstance(wording, Wording) and not false and not assertion.shape else ()
+    return Diagnostic(
+        "E0604",
+        f"assertion failed: {message}{where}",
+        assertion.span,
+        "; ".join(shown or [_compared(c, evaluate) for c in false]) or "false as written",
+        places,
+        (_hint(assertion, false, places),),
+        _stated(assertion),
+    )
+
+
+def _hint(assertion: Assertion, false: Sequence[Comparison], places: Sequence[Label]) -> str:
+    """What is true of an assertion that does not hold, and nothing that would be an error in its turn."""
+    if assertion.shape:
+        return f"`{assertion.shape}` asks this of its arguments: see `aidl doc {assertion.shape}`"
+    if not false and isinstance(assertion.condition, bool):
+        change = "change one of these, or" if places else "change a number, or"
+        return f"nothing in it moves, so `constrain` would not help: {change} what the `assert` asks"
+    if _is_measured(false):
+        return (
+            "this is measured on what is drawn, which `constrain` cannot steer: change the sizes that it "
+            "follows from, or what the `assert` asks"
+        )
+    return "an `assert` steers nothing: it is looked at once everything is solved"
+
+
+def _stated(assertion: Assertion) -> Fix | None:
+    """Constrains what an assertion asks, before it; None where no `assert` of the author stands, or where it
+    is nothing that constrains.
+    """
+    span, wording = assertion.span, assertion.wording
+    before = span.source.text[: span.start].rstrip()
+    is_own = isinstance(wording, Wording) and wording.node.span == span
+    if not is_own or not before.endswith(_WORD) or not _can_be_stated(assertion.condition):
+        return None
+    start = len(before) - len(_WORD)
+    indent = before[before.rfind("\n") + 1 : start]
+    beside = "; " if indent.strip() else f"\n{indent}"
+    edit = Edit(Span(span.source, start, start), f"constrain {span.text}{beside}")
+    return Fix("state it with `constrain` as well", (edit,))
+
+
+def _is_measured(comparisons: Sequence[Comparison]) -> bool:
+    sides = (side for c in comparisons for side in (c.left, c.right) if side.is_open)
+    return any(isinstance(node.payload, Measurement) for node in nodes(sides, only_open=True))
+
+
+def _can_be_stated(condition: Condition | bool) -> bool:
+    """Whether `constrain` takes it: comparisons that all hold, by relations that a solver knows, of what is
+    known before everything is solved.
+    """
+    if not isinstance(condition, Condition) or condition.operator != "and":
+        return False
+    parts = [part for part in condition.parts if isinstance(part, Comparison) and part.relation in RELATIONS]
+    return len(parts) == len(condition.parts) and not _is_measured(parts)
+
+
+def _false_parts(
+    condition: Condition | Comparison | bool, evaluate: Callable[..., float]
+) -> Iterator[Comparison]:
+    if isinstance(condition, Comparison):
+        if not holds(condition, evaluate, _TOLERANCE):
+            yield condition
+    elif isinstance(condition, Condition) and condition.operator != "not":
+        for part in condition.parts:
+            yield from _false_parts(part, evaluate)
+
+
+def _compared(comparison: Comparison, evaluate: Callable[..., float]) -> str:
+    from aidl_lang.explaining.remedies import short
+
+    left, right = evaluate(comparison.left), evaluate(comparison.right)
+    return f"{short(left)} is not {comparison.relation} {short(right)}"
+
+
+def measured(kind: str, regions: Sequence[Region], size: float) -> float:
+    """A measurement of what is drawn; `size` is that of the drawing."""
+    from aidl_lang.geometry.boolean import clearance, overlap_area
+
+    match kind:
+        case "area":
+            return area(regions[0])
+        case "perimeter":
+            return perimeter(regions[0])
+        case "clearance":
+            return clearance(*regions)
+        case _:
+            return float(overlap_area(*regions) > _TOLERANCE * size)
+
+
+class _Measure:
+    """Answers what only the drawing can: areas, perimeters, clearances, overlaps."""
+
+    def __init__(self, model: SolvedModel, drawing: Drawing) -> None:
+        self.model = model
+        self.drawing = drawing
+
+    def __call__(self, payload: object) -> float:
+        assert isinstance(payload, Measurement)
+        if payload.kind in SIDES:
+            return self._side(payload)
+        return measured(payload.kind, [self._region(thing) for thing in payload.of], self.drawing.size)
+
+    def _side(self, payload: Measurement) -> float:
+        """A side of the box of an outline that was worked out after solving, as a structure sees it."""
+        assert payload.here is not None
+        found = [g for g in all_geometry(self.model.root) if g.path == payload.of[0].path]
+        curves = [c for g in found for c in replace(g, construction=False).curves()]
+        frames, here = [], self.model.root
+        while here.path != payload.here.path:
+            here = next(s for s in here.structures if f"{payload.here.path}.".startswith(f"{s.path}."))
+            frames.append(here.frame)
+        for frame in frames:
+            curves = [inward(c, (frame.x, frame.y), frame.rotation, frame.mirrored) for c in curves]
+        left, bottom, right, top = union_bounds([bounds(c) for c in curves])
+        return {"left": left, "bottom": bottom, "right": right, "top": top}[payload.kind]
+
+    def _region(self, thing: Structure | Geometry) -> Region:
+        """What a structure covers in the drawing; what a geometry would cover as a solid of its own."""
+        if isinstance(thing, Structure):
+            return self.drawing.regions.get(thing.path, Region(()))
+        return region_alone(self.model, thing.path)

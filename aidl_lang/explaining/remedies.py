@@ -1,0 +1,418 @@
+"""What else a number would have to be for constraints that conflict to hold, and the edits that say so.
+
+A number of the text is turned a little and the program built again; from how much nearer that brings the
+constraints follows where the number would have to be. It is told only if the program, with just what is
+printed in its place, then solves and nothing gives way.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from aidl_lang.building.model import Constraint
+from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.explaining.givens import Dial
+from aidl_lang.explaining.trials import Trials
+from aidl_lang.solver.solution import GroupFailure
+
+_NUDGE = 1e-3
+"""How far a number is turned to see what it does, as a share of itself."""
+_ABREAST = 6
+"""Numbers of which it is first asked how far they would have to change."""
+_FIXED = 2.0
+"""How much dearer it is to change what is `fixed` than another number by the same part."""
+_LONG = 2.0
+"""How much dearer it is to write a number of many digits."""
+_STEPS = 4
+"""Times that the place of a number is sought anew where what it does is not even."""
+_NOTHING = 1e-9
+"""A change of what is lacking, relatively, that is none."""
+_VANISHES = 1e-4
+"""A number so near to nothing, relatively, is 0."""
+_ARRIVED = 1e-7
+"""Part of what is lacking that is left by rounding where a number fits."""
+_FAR = 20.0
+"""A number so many times as large is not what anyone means."""
+_NEAR, _MEANT = 1e-9, 4
+"""How near, relatively, a number lies to a shorter one that is meant, and the decimals of such a one."""
+_COARSE = 1e-2
+"""Part of a change that may be added to make a number short, where there is a choice."""
+_FURTHER = 0.25
+"""Part of a change at which it is tried whether more of it would do as well."""
+_SHARP = 0.03
+"""Part of a change that would be too little of it where it leads to an end."""
+_BEYOND = (1.0, 8.0)
+"""Parts of a change at which it is tried whether there is an end to that."""
+_LITTLE = 0.02
+"""Part of a number at which it is tried in the place of nothing."""
+_DIVISORS = range(2, 65)
+_DIGITS = (6, 9, 12)
+_PLAIN, _ROUGH = 3, 5
+"""Digits of a number that is easily written, and of one that is worth telling where any point would do."""
+_WHOLE = (-1.0, 1.0, -2.0, 2.0)
+"""Changes that are tried of a number that must be whole."""
+
+
+@record()
+class Remedy:
+    """
+    dial   the number that would have to be another one
+    value  what it would have to be
+    fix    writes that
+    shown  that it would fit, as it is told: `exactly 76 / 3 (about 25.33)`, `at most 50`, `10 to 70`
+    share  by how much it changes, relative to what it is
+    plain  whether it is a number of few digits
+    counts whether it is a number of things
+    """
+
+    dial: Dial
+    value: float
+    fix: Fix
+    shown: str
+    share: float
+    plain: bool
+    counts: bool = False
+
+    def would_fit(self, numbers: int = 1) -> str:
+        """What is said where so many `numbers` are written, of which this is one."""
+        instead = f" instead of `{self.dial.place.text}`" if numbers > 1 else ""
+        return f"{self.shown}{instead} would fit"
+
+    @property
+    def written(self) -> str:
+        """The text that is put in its place."""
+        return self.fix.edits[0].replacement
+
+
+def short(value: float) -> str:
+    """A number to six digits."""
+    return f"{round(value, 6) + 0.0:.6g}"
+
+
+def dear(dial: Dial, share: float, plain: bool) -> float:
+    """How dear it is to change a number by a share of itself, to one of few digits if that is `plain`."""
+    return share * (_FIXED if dial.is_exact and not dial.name else 1.0) * (1.0 if plain else _LONG)
+
+
+def remedies(searches: Iterable[Search]) -> Iterator[Remedy]:
+    """What would fit in place of numbers, one for each place; nothing for those for which no number was found
+    that would, or for which there was no time: a first one of few digits is worth more of that. Of each few,
+    those are sought first that would change least.
+    """
+    found, is_enough = set[Span](), False
+    waiting = iter(searches)
+    for first in waiting:
+        if first.trials.is_late:
+            return
+        few = [first, *itertools.islice(waiting, _ABREAST - 1)]
+        for search in sorted(few, key=lambda search: search.reach):
+            if is_enough and search.trials.is_late:
+                return
+            if search.place not in found and (remedy := search.remedy()) is not None:
+                found.add(search.place)
+                is_enough = is_enough or remedy.plain
+                yield remedy
+
+
+@record()
+class _Written:
+    """A number as it is written and as it is told."""
+
+    value: float
+    text: str
+    shown: str
+
+
+class Search:
+    """For what would fit in place of a number. If it stands in one member of the failure alone, that is the
+    `member`. What is found for one of several numbers at a `place` is enough.
+    """
+
+    def __init__(
+        self, dial: Dial, failure: GroupFailure, trials: Trials, place: Span, member: int | None = None
+    ) -> None:
+        self.dial, self.failure, self.trials, self.place = dial, failure, trials, place
+        self._member = member if failure.is_curved else None
+
+    @cached_property
+    def reach(self) -> float:
+        """By what part of itself a small turn says that the number would have to change, weighed by how dear
+        that is; infinite if that says nothing.
+        """
+        value = self.dial.value
+        if self.trials.is_late:
+            return np.inf
+        target = self._pinned_target if self._member is not None else None
+        target = self._even_target if target is None else target
+        if target is None:
+            return np.inf
+        plain = _is_plain(float(f"{target:.{_DIGITS[0]}g}"), _PLAIN)
+        return dear(self.dial, abs(target - value) / max(abs(value), 1.0), plain)
+
+    def remedy(self) -> Remedy | None:
+        if (opposite := self.turned()) is not None:
+            return opposite
+        if (pinned := self._pinned()) is None:
+            return self._found()
+        value = self.dial.value
+        change = pinned.value - value
+        is_range = any(self._lack(value + part * change) == 0.0 for part in (0.5, 1.0 + _FURTHER))
+        return (self._found() if is_range else None) or self._remedy(pinned, pinned.shown)
+
+    def turned(self) -> Remedy | None:
+        """A negative number without its sign."""
+        opposite = self._plain(-self.dial.value)
+        fits = self.dial.value < 0.0 and self._fits(opposite)
+        return self._remedy(opposite, opposite.shown) if fits else None
+
+    def _found(self) -> Remedy | None:
+        if self._even_target is None:
+            return self._whole()
+        return self._near(self._even_target)
+
+    @cached_property
+    def _even_target(self) -> float | None:
+        """What the number would have to be if what is lacking fell evenly with it."""
+        value = self.dial.value
+        if not (off := self._lack(value)):
+            return None
+        for step in (self._step, -self._step):
+            if (nudged := self._lack(value + step)) is None:
+                return None
+            if abs(nudged - off) > _NOTHING * off:
+                return value - off * step / (nudged - off)
+        return None
+
+    @cached_property
+    def _pinned_target(self) -> float | None:
+        """What the number would have to be where the other members hold."""
+        value, step = self.dial.value, self._step
+        now, nudged = self._residual(value), self._residual(value + step)
+        if not now or nudged is None or nudged == now:
+            return None
+        return value - now * step / (nudged - now)
+
+    @property
+    def _step(self) -> float:
+        return _NUDGE * max(abs(self.dial.value), 1.0)
+
+    def _pinned(self) -> _Written | None:
+        """What fits where the other members hold."""
+        if self._member is None or self._pinned_target is None:
+            return None
+        target = self._rounded(self._pinned_target)
+        return self._fitting(self._spelled(target, 0.0)) if self._may_be(target) else None
+
+    def _rounded(self, target: float) -> float:
+        return 0.0 if abs(target) <= _VANISHES * max(abs(self.dial.value), 1.0) else target
+
+    def _may_be(self, target: float) -> bool:
+        """Whether the author can have meant a number."""
+        value = self.dial.value
+        return self.dial.may_be(target) and abs(target - value) <= _FAR * max(abs(value), 10.0)
+
+    def _near(self, target: float) -> Remedy | None:
+        """What fits at about a number, or where that leads."""
+        value = self.dial.value
+        if not (off := self._lack(value)):
+            return None
+        before, target = (value, off), self._rounded(target)
+        for _ in range(_STEPS):
+            if self.trials.is_over or not self._may_be(target) or abs(target - value) <= self._step:
+                return None
+            change = target - value
+            if (now := self._lack(target)) is None:
+                return None
+            if now <= _ARRIVED * off:
+                is_end = self._lack(value + (1.0 + _FURTHER) * change) == 0.0
+                written = self._fitting(self._spelled(target, change if is_end else 0.0))
+                if written is None:
+                    return None
+                if not is_end:
+                    return self._remedy(written, written.shown)
+                return self._range(written, target, change)
+            if now >= before[1]:
+                return None
+            slope = (now - before[1]) / (target - before[0])
+            before, target = (target, now), target - now / slope
+        return None
+
+    def _whole(self) -> Remedy | None:
+        """What fits in place of a number that cannot be turned a little, as one that counts things."""
+        value = self.dial.value
+        if value != round(value) or self.dial.unit or self._lack(value + self._step) is not None:
+            return None
+        for change in _WHOLE:
+            written = self._plain(value + change)
+            if value + change > 0.0 and self._fits(written):
+                return replace(self._remedy(written, written.shown), counts=True)
+        return None
+
+    # -- what is said
+
+    def _range(self, end: _Written, target: float, change: float) -> Remedy:
+        """What is told of numbers that fit from an `end` onward, which was sought at a `target`."""
+        end = self._ending(end, target, change)
+        further = self._plain(_neat(end.value, change, _FURTHER * abs(change)))
+        if not self._is_sharp(end, change) or not self._fits(further):
+            return self._remedy(end, end.shown)
+        if (other := self._other_end(end.value, change)) is not None:
+            least, most = sorted((end, other), key=lambda each: each.value)
+            return self._remedy(end, f"{least.shown} to {most.shown}")
+        return self._remedy(end, f"{'at least' if change > 0.0 else 'at most'} {end.shown}")
+
+    def _other_end(self, end: float, change: float) -> _Written | None:
+        """Where the numbers that fit end on the other side; None if no such end was found."""
+        inside = end
+        for part in _BEYOND:
+            outside = end + part * change
+            if end > 0.0 >= outside:  # what turns round is another matter
+                outside = _LITTLE * end
+            if off := self._lack(outside):
+                step = _NUDGE * (inside - outside)
+                nudged = self._lack(outside + step)
+                if nudged is None or nudged >= off:
+                    return None
+                onward = -off * step / (nudged - off)
+                written = self._fitting(self._spelled(outside + onward, end - outside))
+                written = written and self._ending(written, outside + onward, onward)
+                return written if written and self._is_sharp(written, onward) else None
+            inside = outside
+        return None
+
+    def _ending(self, written: _Written, target: float, onward: float) -> _Written:
+        """The short number at a `target` that was found by going `onward`, if it fits and is an end; else the
+        one `written`.
+        """
+        limits = (self._plain(round(target, digits)) for digits in range(_PLAIN))
+        near = 0.1 * _NUDGE * max(abs(target), 1.0)
+        limit = next((limit for limit in limits if abs(limit.value - target) <= near), written)
+        beyond = limit.value - math.copysign(10.0 * near, onward)
+        return limit if limit is not written and self._lack(beyond) and self._fits(limit) else written
+
+    def _is_sharp(self, end: _Written, onward: float) -> bool:
+        """Whether a number that lies hardly less far `onward` than an end does not fit."""
+        aside = max(_SHARP * abs(onward), _NUDGE * abs(end.value))
+        return bool(self._lack(end.value - math.copysign(aside, onward)))
+
+    def _remedy(self, written: _Written, shown: str) -> Remedy:
+        dial = self.dial
+        title = f"make `{dial.name}` {written.text}" if dial.name else f"write `{written.text}`"
+        share = abs(written.value - dial.value) / max(abs(dial.value), abs(written.value))
+        plain = _is_plain(written.value, _PLAIN)
+        return Remedy(dial, written.value, Fix(title, self._edits(written.text)), shown, share, plain)
+
+    # -- trying
+
+    def _edits(self, text: str) -> tuple[Edit, ...]:
+        return (Edit(self.dial.place, text),)
+
+    def _at(self, value: float) -> tuple[Edit, ...]:
+        """The number turned to a value, with all its digits."""
+        return self._edits(f"{value + 0.0:.15g}{self.dial.unit}")
+
+    def _lack(self, value: float) -> float | None:
+        return self.trials.lack(self._at(value), self.failure)
+
+    def _fitting(self, spelled: Iterable[_Written]) -> _Written | None:
+        """The first way to write a number that fits. Where one does not for other reasons than its digits, no
+        other will.
+        """
+        for written in spelled:
+            if self._fits(written):
+                return written
+            if not self.dial.is_rough and self._lack(written.value) == 0.0:
+                return None
+        return None
+
+    def _residual(self, value: float) -> float | None:
+        assert self._member is not None
+        return self.trials.residual(self._at(value), self.failure, self._member)
+
+    def _fits(self, written: _Written) -> bool:
+        if self.dial.is_rough and not _is_plain(written.value, _ROUGH):
+            return False
+        return self.dial.may_be(written.value) and self.trials.mends(self._edits(written.text), self.failure)
+
+    # -- digits
+
+    def _spelled(self, target: float, onward: float) -> Iterator[_Written]:
+        """Ways to write a number, the shortest first. If `onward` is not 0, what lies a little further that
+        way will do as well.
+        """
+        for digits in range(_MEANT + 1):
+            if abs(round(target, digits) - target) <= _NEAR * max(1.0, abs(target)):
+                yield self._plain(round(target, digits) + 0.0)
+                break
+        if onward:
+            yield self._plain(_neat(target, onward, _COARSE * abs(target - self.dial.value)))
+        else:
+            yield from self._fraction(target)
+        for digits in _DIGITS:
+            yield self._plain(float(f"{target:.{digits}g}"))
+
+    def _fraction(self, target: float) -> Iterator[_Written]:
+        for divisor in _DIVISORS:
+            whole = round(target * divisor, 2)
+            if abs(whole / divisor - target) <= _NEAR * max(1.0, abs(target)):
+                text = f"{short(whole)}{self.dial.unit} / {divisor}"
+                about = f"{target:.4g}{self.dial.unit}"
+                yield _Written(
+                    target, f"({text})" if self.dial.is_factor else text, f"exactly {text} (about {about})"
+                )
+                return
+
+    def _plain(self, value: float) -> _Written:
+        text = f"{value + 0.0:.13g}{self.dial.unit}"
+        return _Written(value, text, text)
+
+
+def _is_plain(value: float, digits: int) -> bool:
+    return value == float(f"{value:.{digits}g}")
+
+
+def _neat(target: float, onward: float, slack: float) -> float:
+    """A short number at `target` or, by no more than `slack`, onward from it."""
+    for digits in range(8):
+        step = 10.0**-digits
+        rounded = round((math.floor if onward < 0.0 else math.ceil)(target / step) * step, digits)
+        if abs(rounded - target) <= slack:
+            return rounded
+    return target
+
+
+# --- Other edits -----------------------------------------------------------------------------------
+
+
+def left_out(constraint: Constraint) -> Fix | None:
+    """Removes a statement that has a line for itself, or stands between semicolons."""
+    span, text = constraint.span, constraint.span.source.text
+    line = text.rfind("\n", 0, span.start) + 1
+    end = text.find("\n", span.end) + 1 or len(text)
+    before, after = text[line : span.start], text[span.end : end]
+    if before.strip() in ("", "constrain") and not after.strip():
+        where = Span(span.source, line, end)
+    elif before.rstrip().endswith(";"):
+        where = Span(span.source, line + len(before.rstrip()) - 1, span.end)
+    elif after.lstrip().startswith(";") and not before.rstrip().endswith("constrain"):
+        where = Span(span.source, span.start, span.end + after.index(";") + 1)
+    else:
+        return None
+    return Fix("leave it out", (Edit(where, ""),))
+
+
+def wished(constraint: Constraint) -> Fix:
+    """Makes a statement a preference."""
+    span = constraint.span
+    before = span.source.text[: span.start].rstrip(" ")
+    if before.endswith("constrain"):
+        return Fix("make it a wish", (Edit(Span(span.source, len(before) - 9, len(before)), "prefer"),))
+    return Fix("make it a wish", (Edit(replace(span, end=span.start), "prefer "),))

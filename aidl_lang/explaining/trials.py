@@ -1,0 +1,265 @@
+"""The program with edits: built again, and held against what could not hold in it before.
+
+What a message says would help is first tried here, as it is printed.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import field, replace
+from functools import cached_property
+
+import numpy as np
+
+from aidl_lang.building.lower import Lowered
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, apply_fixes, has_errors
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile
+from aidl_lang.solver import Settings, Solution, solve
+from aidl_lang.solver.lacking import lack, residual, settled
+from aidl_lang.solver.newton import Clock
+from aidl_lang.solver.solution import GroupFailure
+
+SECONDS, LONGEST = 1.5, 3.0
+"""Time after which nothing more is begun of all that is tried for the messages of one run, and after which
+nothing is tried at all: some programs take long to build.
+"""
+GAVE_WAY = frozenset({"N0601", "W0601", "W0602"})
+"""Codes of what is said where something gave way."""
+_TOLD = GAVE_WAY | {"N0604"}
+"""The same, or where a program was solved from elsewhere."""
+_LONGEST = 0.5
+"""Seconds for one solve."""
+_MOVED = 1e-6
+"""What moved by less, in mm or degrees, did not give way."""
+
+
+@record(frozen=False)
+class Trials:
+    """
+    source   the program as it is
+    build    makes the problem of another text; None where that is wrong
+    compile  what there is to say of another text
+    lowered  the problem of the program as it is, and what came of it
+    """
+
+    source: SourceFile
+    build: Callable[[SourceFile], Lowered | None]
+    compile: Callable[[SourceFile], Sequence[Diagnostic]]
+    lowered: Lowered
+    solution: Solution
+    settings: Settings
+    _built: dict[str, Lowered | None] = field(default_factory=dict, repr=False)
+    _said: dict[str, Sequence[Diagnostic]] = field(default_factory=dict, repr=False)
+    _lacks: dict[tuple[int, tuple[int, ...]], float] = field(default_factory=dict, repr=False)
+    """By the problem, which `_built` keeps, and the constraints of the failure."""
+    _mended: dict[tuple[int, tuple[int, ...]], bool] = field(default_factory=dict, repr=False)
+    _places: dict[tuple[tuple[int, ...], int], dict[int, float] | None] = field(
+        default_factory=dict, repr=False
+    )
+    """Where the constraints of a failure hold without one of them, which may be in several failures."""
+
+    @cached_property
+    def _clock(self) -> Clock:
+        """Runs from the first trial."""
+        return Clock(LONGEST)
+
+    @property
+    def is_late(self) -> bool:
+        """Whether nothing more should be begun."""
+        return self._clock.left < LONGEST - SECONDS
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the time is spent: nothing more is tried then, and so nothing more is said."""
+        return self._clock.expired
+
+    def can_edit(self, edits: Iterable[Edit]) -> bool:
+        """Whether edits are of the program itself, and not of what it imports."""
+        return all(edit.span.source is self.source for edit in edits)
+
+    def lack(self, edits: Sequence[Edit], failure: GroupFailure) -> float | None:
+        """How far the constraints of a failure are from holding with no kept size changed, after the edits
+        (see `solver.lacking`); None where the program is another one then, or wrong.
+        """
+        found = self._counterpart(edits, failure)
+        if found is None:
+            return None
+        other, matched, numbered = found
+        if (known := self._lacks.get((id(other), failure.conflict))) is not None:
+            return known
+        start = {numbered[u]: value for u, value in self._free(failure).items()}
+        members = [matched[index] for index in failure.conflict]
+        within = [matched[index] for index in self._together(failure)]
+        off = lack(other.problem, self._quick, members, within, start)
+        self._lacks[id(other), failure.conflict] = off
+        return off
+
+    def _together(self, failure: GroupFailure) -> list[int]:
+        """The constraints of a failure and those that took part in the search, but for what other failures
+        are about.
+        """
+        others = self._others(failure)
+        hard = np.isnan(self.lowered.problem.weight)
+        return [i for i in failure.within if hard[i] and i not in others]
+
+    def _others(self, failure: GroupFailure) -> set[int]:
+        """The constraints that only other failures are about."""
+        others = {i for f in self.solution.failures if f is not failure for i in f.conflict}
+        return others.difference(failure.conflict)
+
+    def residual(self, edits: Sequence[Edit], failure: GroupFailure, member: int) -> float | None:
+        """How far a member of a failure is from holding after the edits, with its sign, where its other
+        members hold; None where they were not found to.
+        """
+        if (place := self._without(failure, member)) is None:
+            return None
+        found = self._counterpart(edits, failure)
+        if found is None:
+            return None
+        other, matched, numbered = found
+        there = {numbered[u]: value for u, value in place.items()}
+        return residual(other.problem, self._quick, matched[member], there)
+
+    def _without(self, failure: GroupFailure, member: int) -> dict[int, float] | None:
+        key = failure.conflict, member
+        if key not in self._places:
+            rest = [index for index in self._together(failure) if index != member]
+            self._places[key] = settled(self.lowered.problem, self._quick, rest, self._free(failure))
+        return self._places[key]
+
+    def _free(self, failure: GroupFailure) -> dict[int, float]:
+        """The unknowns that may move where nothing is to give way, and where the search came nearest."""
+        unknowns = self.lowered.unknowns
+        return {
+            u: value
+            for u, value in failure.nearest
+            if not unknowns[u].kept or unknowns[u].implied or u in failure.sizes
+        }
+
+    def _counterpart(
+        self, edits: Sequence[Edit], failure: GroupFailure
+    ) -> tuple[Lowered, dict[int, int], dict[int, int]] | None:
+        """The problem after the edits, with the constraints and unknowns that have other numbers there; None
+        where it is wrong, or not one of the same kind.
+        """
+        if self.is_over or (other := self._with(edits)) is None:
+            return None
+        if (matched := _matched(self.lowered, other)) is None:
+            return None
+        names, keys = {key: u for u, key in enumerate(_keys(other))}, self._own_keys
+        numbered = {u: names[keys[u]] for u, _ in failure.nearest if keys[u] in names}
+        return (other, matched, numbered) if len(numbered) == len(failure.nearest) else None
+
+    def mends(self, edits: Sequence[Edit], failure: GroupFailure) -> bool:
+        """Whether after the edits all holds but what other failures are about, and nothing gives way but what
+        did before and sizes that the constraints are about.
+        """
+        if self.is_over or (other := self._with(edits)) is None:
+            return False
+        key = id(other), failure.conflict
+        if key not in self._mended:
+            self._mended[key] = self._is_mended(failure, other)
+        return self._mended[key]
+
+    def _is_mended(self, failure: GroupFailure, other: Lowered) -> bool:
+        others = self._others(failure)
+        found = solve(other.problem, replace(self._quick, explain=bool(others)))
+        unmet = [i for i in np.flatnonzero(np.isnan(other.problem.weight)).tolist() if not found.satisfied[i]]
+        if unmet:
+            matched = _matched(self.lowered, other) or _by_text(self.lowered, other)
+            if not {matched.get(i, -1) for i in others}.issuperset(unmet):
+                return False
+        asked = {self.lowered.problem.names[u] for u in failure.sizes}
+        return _gave_way(other, found) <= _gave_way(self.lowered, self.solution) | asked
+
+    def finishes(self, edits: Sequence[Edit]) -> bool:
+        """Whether edits that mend a failure leave no errors, as another failure or an assertion that
+        fails.
+        """
+        return not has_errors(self.found(edits))
+
+    def settles(self, edits: Sequence[Edit]) -> bool:
+        """Whether after the edits the program solves from its first guesses, and nothing gives way."""
+        if self.is_over or not self.can_edit(edits):
+            return False
+        found = self.found(edits)
+        return not has_errors(found) and not any(d.code in _TOLD for d in found)
+
+    def found(self, edits: Sequence[Edit]) -> Sequence[Diagnostic]:
+        """What there is to say of the program after edits."""
+        changed = self.edited(edits)
+        if changed.text not in self._said:
+            self._said[changed.text] = self.compile(changed)
+        return self._said[changed.text]
+
+    @cached_property
+    def _own_keys(self) -> list[tuple[str, int]]:
+        return _keys(self.lowered)
+
+    @property
+    def _quick(self) -> Settings:
+        return replace(self.settings, explain=False, seconds=min(self.settings.seconds, _LONGEST))
+
+    def edited(self, edits: Sequence[Edit]) -> SourceFile:
+        """The program after edits."""
+        text, _ = apply_fixes(self.source, [Diagnostic("E0601", "", fix=Fix("", tuple(edits)))])
+        return SourceFile(self.source.name, text)
+
+    def _with(self, edits: Sequence[Edit]) -> Lowered | None:
+        if not self.can_edit(edits):
+            return None
+        changed = self.edited(edits)
+        if changed.text not in self._built:
+            self._built[changed.text] = self.build(changed)
+        return self._built[changed.text]
+
+
+def _matched(one: Lowered, other: Lowered) -> dict[int, int] | None:
+    """The constraints of another problem by those of one, which must be stated in the same order."""
+    pairs = list(zip(_in_order(one), _in_order(other), strict=False))
+    if len(one.stated) != len(other.stated) or any(_label(one, a) != _label(other, b) for a, b in pairs):
+        return None
+    return dict(pairs)
+
+
+def _by_text(one: Lowered, other: Lowered) -> dict[int, int]:
+    """The same where constraints were left out, for those that read the same."""
+    found = {(c.text, c.label, c.holder.path): i for i, c in enumerate(other.stated) if c is not None}
+    keys = ((i, (c.text, c.label, c.holder.path)) for i, c in enumerate(one.stated) if c is not None)
+    return {i: found[key] for i, key in keys if key in found}
+
+
+def _in_order(lowered: Lowered) -> list[int]:
+    """The constraints as they stand in the text; what nobody stated comes last."""
+
+    def place(index: int) -> tuple[bool, str, int, str, int]:
+        stated = lowered.stated[index]
+        if stated is None:
+            return True, "", 0, "", index
+        return False, stated.span.source.name, stated.span.start, stated.label, index
+
+    return sorted(range(len(lowered.stated)), key=place)
+
+
+def _label(lowered: Lowered, index: int) -> str | None:
+    stated = lowered.stated[index]
+    return None if stated is None else stated.label
+
+
+def _keys(lowered: Lowered) -> list[tuple[str, int]]:
+    """A name for each unknown that it has in another problem, too: its path, and how many had that before."""
+    met: Counter[str] = Counter()
+    found = []
+    for path in lowered.problem.names:
+        found.append((path, met[path]))
+        met[path] += 1
+    return found
+
+
+def _gave_way(lowered: Lowered, solution: Solution) -> set[str]:
+    """The paths of what gave way unasked."""
+    moved = np.abs(solution.values - lowered.problem.initial) > _MOVED
+    gave = {u for stage in solution.stages if stage.gave is not None for u in stage.gave.unknowns}
+    return {lowered.problem.names[u] for u in gave if moved[u] and not lowered.unknowns[u].implied}

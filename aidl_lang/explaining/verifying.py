@@ -1,0 +1,61 @@
+"""Fixes for what is found after solving, each tried: one that does not mend what it is for is not offered."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.explaining.trials import GAVE_WAY, Trials
+
+_TRIED = frozenset({"E0601", "E0602", "E0603", "E0605", "N0604"})
+"""Findings that come with fixes that were tried already."""
+
+
+def verified(
+    found: Sequence[Diagnostic], everything: Sequence[Diagnostic], trials: Trials
+) -> list[Diagnostic]:
+    """Findings among everything that is said of a program, without the fixes after which it still has the
+    finding, has another error or something else gives way, and without the hints that say the same as these.
+    """
+    return [_verified(d, everything, trials) for d in found]
+
+
+def mends(found: Diagnostic, fix: Fix, before: Sequence[Diagnostic], trials: Trials) -> bool:
+    """Whether a program of which `before` is said no longer has a finding after a fix, and nothing worse."""
+    if trials.is_over or not trials.can_edit(fix.edits):
+        return False
+    after = trials.found(fix.edits)
+    worse = _errors(after) - _errors(before) or _gave_way(after) - _gave_way(before)
+    return not worse and not any(_is_same(d, found, fix.edits) for d in after)
+
+
+def _verified(d: Diagnostic, before: Sequence[Diagnostic], trials: Trials) -> Diagnostic:
+    if d.fix is None or d.code in _TRIED or mends(d, d.fix, before, trials):
+        return d
+    written = "\n".join(edit.replacement for edit in d.fix.edits)
+    hints = tuple(h for h in d.hints if not any(q in written for q in re.findall(r"`([^`]+)`", h)))
+    return replace(d, fix=None, hints=hints)
+
+
+def _errors(found: Sequence[Diagnostic]) -> Counter[str]:
+    return Counter(d.code for d in found if d.is_error)
+
+
+def _gave_way(found: Sequence[Diagnostic]) -> Counter[str]:
+    return Counter(d.code for d in found if d.code in GAVE_WAY)
+
+
+def _is_same(one: Diagnostic, before: Diagnostic, edits: Sequence[Edit]) -> bool:
+    """Whether a finding in the program after some edits is one that was in it before."""
+    if one.code != before.code or one.span is None or before.span is None:
+        return one.code == before.code and one.message == before.message
+    span = before.span
+    earlier = [e for e in edits if e.span.end <= span.start]
+    shift = sum(len(e.replacement) - (e.span.end - e.span.start) for e in earlier)
+    if one.span.start != span.start + shift:
+        return False
+    is_rewritten = any(e.span.start <= span.start and span.end <= e.span.end for e in edits)
+    return one.message == before.message or not is_rewritten

@@ -1,0 +1,125 @@
+"""What a comparison finds, as data. Lengths in mm, areas in mm², angles in degrees, in the root frame.
+
+Of two values the first is from before, the second from after; None stands for nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import field
+from typing import Literal, TypeAlias
+
+from aidl_lang.common.records import record
+from aidl_lang.export.comparison.move import Move
+from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.solved import Scalar, SolvedModel
+
+Value: TypeAlias = Scalar | Vec | tuple[Scalar, ...] | None
+Fields: TypeAlias = Mapping[str, tuple[Value, Value]]
+Sort: TypeAlias = Literal["changed", "appeared", "vanished"]
+
+
+@record()
+class Version:
+    """One side of a comparison."""
+
+    model: SolvedModel
+    drawing: Drawing
+
+
+@record()
+class GeometryChange:
+    """A named geometry. `is_outline_changed` if it did not move as a whole; `fields` then differ."""
+
+    name: str
+    type: str
+    sort: Sort = "changed"
+    was: str | None = None
+    move: Move | None = None
+    fields: Fields = field(default_factory=dict)
+    is_outline_changed: bool = False
+
+
+@record()
+class StructureChange:
+    """A structure.
+
+    path      after; before for one that vanished
+    was       its path before, if it was found by its shape under another name or elsewhere in the tree
+    move      where it went as a whole; None if it stayed, or went with what is around it
+    middle    the middle of its box before; after for one that appeared
+    sizes     width and height of its box; area, perimeter and centroid of its region
+    settings  attributes as `@name`, finished corners as `fillet of NAME`, and `kind`
+    """
+
+    path: str
+    kind: str
+    sort: Sort = "changed"
+    was: str | None = None
+    move: Move | None = None
+    middle: Vec | None = None
+    sizes: Fields = field(default_factory=dict)
+    params: Fields = field(default_factory=dict)
+    settings: Fields = field(default_factory=dict)
+    geometry: tuple[GeometryChange, ...] = ()
+
+    @property
+    def is_one(self) -> bool:
+        """Whether there is anything to tell."""
+        told = (self.was, self.move, self.sizes, self.params, self.settings, self.geometry)
+        return self.sort != "changed" or any(told)
+
+
+@record()
+class ContactChange:
+    """Two bodies of both versions, by their paths after. A contact that is None is not listed: far apart."""
+
+    a: str
+    b: str
+    before: Contact | None
+    after: Contact | None
+
+
+@record()
+class Comparison:
+    """What differs between two versions, in order of writing.
+
+    freed, held  parameters that can move now and could not before, and the reverse, by their paths
+    size         of the larger drawing, mm; `tolerance` is 1e-6 of it
+    """
+
+    before: Version
+    after: Version
+    structures: tuple[StructureChange, ...]
+    contacts: tuple[ContactChange, ...]
+    freed: tuple[str, ...]
+    held: tuple[str, ...]
+    size: float
+
+    @property
+    def status(self) -> tuple[str, str]:
+        return self.before.model.status, self.after.model.status
+
+    @property
+    def degrees(self) -> tuple[int | None, int | None]:
+        """Degrees of freedom."""
+        return self.before.model.degrees, self.after.model.degrees
+
+    @property
+    def is_equal(self) -> bool:
+        """Whether there is nothing to tell."""
+        same = self.status[0] == self.status[1] and self.degrees[0] == self.degrees[1]
+        return same and not (self.structures or self.contacts or self.freed or self.held)
+
+    def __str__(self) -> str:
+        from aidl_lang.export.comparison.wording import text
+
+        return text(self)
+
+    def to_dict(self) -> dict[str, object]:
+        """The same as plain dicts and lists, numbers to 12 digits."""
+        from aidl_lang.export.comparison.data import to_dict
+
+        return to_dict(self)

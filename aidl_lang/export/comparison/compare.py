@@ -1,0 +1,189 @@
+"""Down both trees at once: what is to tell of each structure, given where what is around it went."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.records import record
+from aidl_lang.export.comparison import fields
+from aidl_lang.export.comparison.changes import (
+    Comparison,
+    ContactChange,
+    Fields,
+    GeometryChange,
+    StructureChange,
+    Version,
+)
+from aidl_lang.export.comparison.matching import GeometryPair, StructurePair, match
+from aidl_lang.export.comparison.move import STILL, Move
+from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.geometry.solved import SolvedStructure
+
+TOLERANCE = 1e-6
+_CANDIDATES = 3
+"""Motions tried for a structure of which not everything went the same way."""
+
+
+def compare(before: Version, after: Version) -> Comparison:
+    """What differs between two versions."""
+    size = max(_extent(before), _extent(after))
+    with np.errstate(all="ignore"):  # a model that did not solve may hold numbers that are none
+        root = match(before.model.root, after.model.root, TOLERANCE * size)
+        structures = tuple(_Walk(before, after, TOLERANCE * size).changes(root, STILL, is_root=True))
+    names = {pair.before.path: pair.after.path for pair in root.walk()}
+    free = {_renamed(path, names): None for path in before.model.free}
+    still_free = set(after.model.free)
+    return Comparison(
+        before,
+        after,
+        structures,
+        tuple(_contact_changes(before, after, names, TOLERANCE * size)),
+        tuple(path for path in after.model.free if path not in free),
+        tuple(path for path in free if path not in still_free),
+        size,
+    )
+
+
+def _extent(version: Version) -> float:
+    box = version.model.root.box
+    return max([version.drawing.size, *([] if box is None else [box.width, box.height])])
+
+
+def _renamed(path: str, names: Mapping[str, str]) -> str:
+    """A path before as it is after: its longest beginning that is a structure decides."""
+    beginning = path
+    while beginning not in names and "." in beginning:
+        beginning = beginning.rpartition(".")[0]
+    return names.get(beginning, beginning) + path[len(beginning) :]
+
+
+def _contact_changes(
+    before: Version, after: Version, names: Mapping[str, str], tolerance: float
+) -> Iterator[ContactChange]:
+    """Bodies of both versions that lie to each other in another way."""
+    bodies = {names.get(b.path, "") for b in before.drawing.bodies} & {b.path for b in after.drawing.bodies}
+    first = {
+        frozenset((names[c.a], names[c.b])): c for c in before.drawing.pairs if {c.a, c.b} <= names.keys()
+    }
+    last = {frozenset((c.a, c.b)): c for c in after.drawing.pairs}
+    for pair in dict.fromkeys([*last, *first]):
+        a, b = first.get(pair), last.get(pair)
+        if not pair <= bodies or _is_same(a, b, tolerance):
+            continue
+        ends = (b.a, b.b) if b else (names[a.a], names[a.b]) if a else ("", "")
+        yield ContactChange(*ends, a, b)
+
+
+def _is_same(a: Contact | None, b: Contact | None, tolerance: float) -> bool:
+    """Pairs that are not listed are apart."""
+    if a is None or b is None:
+        return all(c is None or c.relation == "apart" for c in (a, b))
+    if a.gap is not None and b.gap is not None:
+        return abs(a.gap - b.gap) <= tolerance
+    return a.relation == b.relation and fields.is_same(a.area, b.area)
+
+
+@record()
+class _Walk:
+    before: Version
+    after: Version
+    tolerance: float
+
+    def changes(
+        self, pair: StructurePair, expected: Move, *, is_root: bool = False, settled: bool = False
+    ) -> Iterator[StructureChange]:
+        """What is to tell of a structure and all in it.
+
+        `expected` is where what is around it went; `settled` says that all in it is known to have gone there.
+        """
+        checkpoint()
+        whole = expected if settled else pair.pose.move(expected)
+        move = whole or self._majority(pair, expected, is_root) or expected
+        a, b = pair.before, pair.after
+        geometry = tuple(self._geometry(pair, move, whole is not None))
+        is_turned = bool(move.turn) or any(g.move is not None and g.move.turn for g in geometry)
+        told = StructureChange(
+            b.path,
+            b.kind,
+            was=pair.was,
+            move=None if move == expected else move,
+            middle=_middle(a),
+            sizes={} if whole and not pair.is_altered else self._sizes(pair, move, is_root, is_turned),
+            params=fields.changed(a.params, b.params),
+            settings=fields.changed(fields.settings(a), fields.settings(b)),
+            geometry=geometry,
+        )
+        if told.is_one:
+            yield told
+        for child in pair.structures:
+            yield from self.changes(child, move, settled=whole is not None)
+        for vanished in pair.gone:
+            yield replace(_alone(vanished), sort="vanished", sizes=self._sizes_alone(vanished, 0))
+        for appeared in pair.new:
+            yield replace(_alone(appeared), sort="appeared", sizes=self._sizes_alone(appeared, 1))
+
+    def _majority(self, pair: StructurePair, expected: Move, is_root: bool) -> Move | None:
+        """Where most of what is in a structure went; of the root, nothing may have stayed."""
+        if pair.follows(expected) or (is_root and any(item.follows(STILL) for item in pair.items)):
+            return None
+        return next((move for move in self._candidates(pair) if pair.follows(move)), None)
+
+    def _candidates(self, pair: StructurePair) -> list[Move]:
+        """The most frequent motions of single things; turns get a place, for circles show only shifts."""
+        votes: dict[tuple[int, ...], list[Move]] = {}
+        for move in (leaf.pose.shift() for leaf in pair.leaves()):
+            if move is not None and np.isfinite([move.dx, move.dy, move.turn]).all():
+                steps = (move.dx / self.tolerance, move.dy / self.tolerance, 1e5 * move.turn)
+                votes.setdefault((*(round(s / 100) for s in steps), move.mirrored), []).append(move)
+        ranked = [same[0] for same in sorted(votes.values(), key=lambda same: -len(same))]
+        turns = [move for move in ranked if move.turn or move.mirrored]
+        return ranked[:_CANDIDATES] + turns[:_CANDIDATES]
+
+    def _sizes(self, pair: StructurePair, move: Move, is_root: bool, is_turned: bool) -> Fields:
+        a, b = pair.before, pair.after
+        if b.kind == "assembly" and not (is_root or pair.geometry):
+            return {}  # that of its parts is told there
+        first = fields.sizes(a, self.before.drawing.regions.get(a.path))
+        last = fields.sizes(b, self.after.drawing.regions.get(b.path))
+        if is_turned:  # the box of a turned thing is another one
+            first, last = (
+                {n: v for n, v in f.items() if n not in ("width", "height")} for f in (first, last)
+            )
+        return fields.changed(first, last, move, self.tolerance)
+
+    def _sizes_alone(self, s: SolvedStructure, side: int) -> Fields:
+        drawing = (self.before, self.after)[side].drawing
+        measured = fields.sizes(s, drawing.regions.get(s.path))
+        return fields.changed({}, measured) if side else fields.changed(measured, {})
+
+    def _geometry(self, pair: StructurePair, expected: Move, settled: bool) -> Iterator[GeometryChange]:
+        for g in pair.geometry:
+            told = self._one_geometry(g, expected, settled)
+            if told.was or told.move or told.fields or told.is_outline_changed:
+                yield told
+        for vanished in pair.gone_geometry:
+            yield GeometryChange(vanished.name, vanished.type, "vanished")
+        for appeared in pair.new_geometry:
+            yield GeometryChange(appeared.name, appeared.type, "appeared")
+
+    def _one_geometry(self, g: GeometryPair, expected: Move, settled: bool) -> GeometryChange:
+        a, b = g.before, g.after
+        whole = expected if settled else g.pose.move(expected)
+        found = fields.changed({"construction": a.construction}, {"construction": b.construction})
+        if whole is None:
+            found = fields.of_geometry(a, b, expected, self.tolerance) | found
+        move = None if whole == expected else whole
+        return GeometryChange(b.name, b.type, "changed", g.was, move, found, is_outline_changed=whole is None)
+
+
+def _alone(s: SolvedStructure) -> StructureChange:
+    return StructureChange(s.path, s.kind, middle=_middle(s))
+
+
+def _middle(s: SolvedStructure) -> Vec | None:
+    return None if s.box is None else ((s.box.left + s.box.right) / 2, (s.box.bottom + s.box.top) / 2)

@@ -1,0 +1,284 @@
+"""A comparison as text, one block for each structure."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import groupby
+from typing import TypeVar
+
+from aidl_lang.common.render import escape
+from aidl_lang.export.comparison.changes import (
+    Comparison,
+    ContactChange,
+    Fields,
+    GeometryChange,
+    Sort,
+    StructureChange,
+    Value,
+)
+from aidl_lang.export.comparison.move import Move
+from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.curves import Vec
+
+EQUAL = "no difference"
+_T = TypeVar("_T", StructureChange, GeometryChange)
+_MARKS: dict[Sort, str] = {"changed": " ", "appeared": "+", "vanished": "-"}
+_WIDEST = 32
+"""Columns that paths get at most."""
+_MOST_CONTACTS = 12
+_MOST = 6
+"""Fields of one geometry, and names of a list, that are told."""
+_DIGITS = (5, 7, 9, 12)
+_ROUNDING, _NOTHING, _HARDLY = 1e-7, 1e-9, 1e-6
+"""What is shown as 0: of a point relative to its larger coordinate, of any number, of a shift relative to the
+drawing.
+"""
+_MAIN_SIZES = ("width", "height", "area")
+_MEMBER = re.compile(r"(.*)\[(-?\d+)\]")
+
+
+def text(comparison: Comparison) -> str:
+    """The whole, without a line break at its end."""
+    if comparison.is_equal:
+        return EQUAL
+    root = comparison.after.model.root.path
+    blocks = [
+        (_MARKS[sort], path, lines)
+        for sort, path, lines in _gathered(
+            comparison.structures, lambda s: s.path, lambda s: _structure(s, comparison.size)
+        )
+    ]
+    contacts = list(_contacts(comparison.contacts, root))
+    others = [("contacts", contacts), ("free to move", list(_freedom(comparison, root)))]
+    if comparison.status[0] != comparison.status[1]:
+        others.append(("status", ["{} → {}".format(*comparison.status)]))
+    blocks += [(" ", name, lines) for name, lines in others if lines]
+    width = min(max(len(path) for _, path, _ in blocks), _WIDEST)
+    return escape("\n".join(line for block in blocks for line in _laid_out(*block, width)))
+
+
+def _laid_out(mark: str, path: str, lines: Sequence[str], width: int) -> Iterator[str]:
+    for i, line in enumerate(lines):
+        beginning = f"{mark} {path:<{width}}" if i == 0 else " " * (width + 2)
+        yield f"{beginning}  {line}"
+
+
+def _gathered(
+    changes: Iterable[_T], name: Callable[[_T], str], lines: Callable[[_T], list[str]]
+) -> Iterator[tuple[Sort, str, list[str]]]:
+    """Each change with its lines; members of an array of which the same is to be told as one."""
+    told = [(c, name(c), lines(c)) for c in changes]
+
+    def alike(entry: tuple[_T, str, list[str]]) -> object:
+        change, path, lines = entry
+        member = _MEMBER.fullmatch(path)
+        if member is None:
+            return path
+        return change.sort, member[1], "moved" if _is_shift(change) else lines
+
+    for _, group in groupby(told, alike):
+        same = list(group)
+        change, first, words = same[0]
+        if len(same) > 1:
+            array, numbers = first.rpartition("[")[0], [path.rpartition("[")[2][:-1] for _, path, _ in same]
+            first = f"{array}[{_ranges(list(map(int, numbers)))}]"
+            if words != same[-1][2]:
+                words = [f"{words[0]} … {same[-1][2][0].removeprefix('moved by ')}"]
+        yield change.sort, first, words
+
+
+def _ranges(numbers: list[int]) -> str:
+    """`0..3, 7` for 0, 1, 2, 3, 7."""
+    runs: list[list[int]] = []
+    for n in numbers:
+        if runs and n == runs[-1][-1] + 1:
+            runs[-1].append(n)
+        else:
+            runs.append([n])
+    return ", ".join(str(r[0]) if len(r) == 1 else f"{r[0]}..{r[-1]}" for r in runs)
+
+
+def _is_shift(change: StructureChange | GeometryChange) -> bool:
+    """Whether a shift is all there is to tell."""
+    move = change.move
+    if move is None or move.turn or move.mirrored or change.was:
+        return False
+    if isinstance(change, GeometryChange):
+        return not change.fields
+    return not (change.sizes or change.params or change.settings or change.geometry)
+
+
+# --- Structures ------------------------------------------------------------------------------------
+
+
+def _structure(s: StructureChange, size: float) -> list[str]:
+    if s.sort != "changed":
+        return [f"{s.sort}: {s.kind}{_dimensions(s.sizes, 1 if s.sort == 'appeared' else 0)}"]
+    lines = []
+    if s.was:
+        lines.append(f"was {s.was}, in the same shape")
+    if s.move:
+        lines.append(_move(s.move, s.middle, size))
+    if s.sizes:
+        lines.append(_sizes(s.sizes))
+    if s.params:
+        lines.append(f"params: {_fields(s.params)}")
+    lines += [_setting(*field) for field in s.settings.items()]
+    for sort, name, words in _gathered(s.geometry, lambda g: g.name, lambda g: [_geometry(g, s, size)]):
+        lines.append(f"{name}{':' if sort == 'changed' else ''} {words[0]}")
+    return lines
+
+
+def _dimensions(sizes: Fields, side: int) -> str:
+    values = {name: pair[side] for name, pair in sizes.items()}
+    said = f", {_value(values['width'])} × {_value(values['height'])}" if "width" in values else ""
+    return said + (f", area {_value(values['area'])} mm²" if "area" in values else "")
+
+
+def _sizes(sizes: Fields) -> str:
+    """Width, height and area; perimeter and centroid only where they alone differ."""
+    words = []
+    main = {name: pair for name, pair in sizes.items() if name in _MAIN_SIZES}
+    for name, (a, b) in (main or sizes).items():
+        if isinstance(a, float) and isinstance(b, float):
+            sign, by = "+" if b > a else "−", abs(b - a)
+            more = f" ({sign}{_number(by)})" if name in ("width", "height") else ""
+            if name == "area":
+                more = f" mm² ({sign}{100 * by / abs(a):.3g} %)" if a else " mm²"
+            words.append(f"{name} {_pair(a, b)}{more}")
+        else:
+            words.append(_field(name, a, b))
+    return f"{_verdict(sizes)}: {', '.join(words)}"
+
+
+def _verdict(sizes: Fields) -> str:
+    signs = {
+        b > a
+        for name, (a, b) in sizes.items()
+        if name in _MAIN_SIZES and isinstance(a, float) and isinstance(b, float)
+    }
+    return "grew" if signs == {True} else "shrank" if signs == {False} else "changed"
+
+
+def _setting(name: str, pair: tuple[Value, Value]) -> str:
+    a, b = pair
+    if name == "kind":
+        return f"a {b} now, was a {a}"
+    if b is None:
+        return f"no {name} any more" if a is True else f"no {name} any more, was {_value(a)}"
+    if a is None:
+        return f"{name} added" if b is True else f"{name} added: {_value(b)}"
+    return f"{name} {_pair(a, b)}"
+
+
+# --- Geometry --------------------------------------------------------------------------------------
+
+
+def _geometry(g: GeometryChange, around: StructureChange, size: float) -> str:
+    if g.sort != "changed":
+        return f"{g.sort}: {g.type}"
+    words = [f"was {g.was}, in the same shape"] if g.was else []
+    if g.move:
+        words.append(_move(g.move, around.middle, size))
+    if g.fields:
+        words.append(_fields(g.fields))
+    elif g.is_outline_changed:
+        words.append("outline changed")
+    return ", ".join(words) or "stayed"
+
+
+def _fields(fields: Fields) -> str:
+    words = [_field(name, a, b) for name, (a, b) in fields.items()]
+    more = len(words) - _MOST
+    return ", ".join(words if more <= 1 else [*words[:_MOST], f"and {more} more"])
+
+
+def _field(name: str, a: Value, b: Value) -> str:
+    if a is None:
+        return f"{name} {_value(b)} (new)"
+    return f"{name} {_value(a)} (gone)" if b is None else f"{name} {_pair(a, b)}"
+
+
+# --- Motions ---------------------------------------------------------------------------------------
+
+
+def _move(move: Move, middle: Vec | None, size: float) -> str:
+    """About a point that is not far away a turn is told alone, else with the shift of the middle."""
+    at = middle or (0.0, 0.0)
+    to = move(at)
+    steps = (to[0] - at[0], to[1] - at[1])
+    shift = _value(tuple(0.0 if abs(step) <= _HARDLY * size else step for step in steps))
+    if move.mirrored:
+        line = (move.turn / 2 + 90) % 180
+        return f"mirrored about a line at {_number(line)}°, its middle moved by {shift}"
+    if not move.turn:
+        return "stayed" if not (move.dx or move.dy) else f"moved by {shift}"
+    about = move.fixed_point
+    if about is None or max(abs(about[0] - at[0]), abs(about[1] - at[1])) > size:
+        return f"turned by {_number(move.turn)}°, its middle moved by {shift}"
+    return f"turned by {_number(move.turn)}° about {_value(about)}"
+
+
+# --- The whole -------------------------------------------------------------------------------------
+
+
+def _contacts(changes: Sequence[ContactChange], root: str) -> Iterator[str]:
+    """Those first that are of another kind now; gaps that became others only as far as there is room."""
+    kinds = {id(c): len({lie.relation if lie else "apart" for lie in (c.before, c.after)}) for c in changes}
+    ranked = sorted(changes, key=lambda c: -kinds[id(c)])
+    most = max(_MOST_CONTACTS, sum(kind > 1 for kind in kinds.values()))
+    for change in ranked[:most]:
+        yield _contact(change, root)
+    if len(ranked) > most:
+        yield f"and {len(ranked) - most} more gaps"
+
+
+def _contact(change: ContactChange, root: str) -> str:
+    a, b = (path.removeprefix(f"{root}.") for path in (change.a, change.b))
+    return f"{a} and {b}: {_lie(change.before)} → {_lie(change.after)}"
+
+
+def _lie(contact: Contact | None) -> str:
+    if contact is None:
+        return "far apart"
+    if contact.gap is not None and contact.relation == "apart":
+        return f"{_number(contact.gap)} apart"
+    return f"overlapping by {_number(contact.area)} mm²" if contact.area is not None else contact.relation
+
+
+def _freedom(comparison: Comparison, root: str) -> Iterator[str]:
+    a, b = comparison.degrees
+    if a != b:
+        yield f"{_value(a)} → {_value(b)} degrees of freedom"
+    for name, paths in (("now", comparison.freed), ("no longer", comparison.held)):
+        short = [path.removeprefix(f"{root}.") for path in paths]
+        if short:
+            more = [f"and {len(short) - _MOST} more"] if len(short) > _MOST else []
+            yield f"{name}: {', '.join(short[:_MOST] + more)}"
+
+
+# --- Numbers ---------------------------------------------------------------------------------------
+
+
+def _pair(a: Value, b: Value) -> str:
+    """Both values, with as many digits as tell them apart."""
+    shown = [(_value(a, digits), _value(b, digits)) for digits in _DIGITS]
+    return " → ".join(next((p for p in shown if p[0] != p[1]), shown[-1]))
+
+
+def _value(value: Value, digits: int = _DIGITS[0]) -> str:
+    if isinstance(value, tuple):
+        numbers = [abs(v) for v in value if isinstance(v, float)]
+        rounding = _ROUNDING * max(numbers, default=0.0)
+        shown = (0.0 if isinstance(v, float) and abs(v) <= rounding else v for v in value)
+        return f"({', '.join(_value(v, digits) for v in shown)})"
+    if value is None:
+        return "none"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f'"{value}"' if isinstance(value, str) else _number(value, digits)
+
+
+def _number(value: float, digits: int = _DIGITS[0]) -> str:
+    return "0" if abs(value) < _NOTHING else f"{float(f'{value:.{digits}g}'):.12g}"

@@ -1,0 +1,365 @@
+"""Lengths and angles that constraints state: `distance(a, b) == 18`, `plate.width == 80`,
+`hole.left == plate.left + 5`, `above(a, b, gap: 2)`.
+
+A statement is read by its words; its two ends are then found on what is drawn. What does not measure as
+stated (a constraint that does not hold) gives no dimension.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from aidl_lang.building.boxes import Box, spelled_out
+from aidl_lang.building.expression import ZERO, Evaluator, Expression, constant
+from aidl_lang.building.model import Constraint, Geometry, Model, Structure, convert, convert_angle
+from aidl_lang.building.values import Array, ListVal, Num, PointVal, Value, members
+from aidl_lang.building.wording import Wording
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.records import record
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.dimensions.features import (
+    angle_of,
+    dot,
+    extreme,
+    foot,
+    length_along,
+    length_between,
+    length_of_line,
+)
+from aidl_lang.geometry.dimensions.fields import Sized, level_angle, round_dimension
+from aidl_lang.geometry.solved import (
+    Dimension,
+    Length,
+    Roundness,
+    SolvedGeometry,
+    SolvedModel,
+    SolvedStructure,
+)
+from aidl_lang.syntax import ast
+
+_AXIS = {"left": 0, "right": 0, "center_x": 0, "x": 0, "bottom": 1, "top": 1, "center_y": 1, "y": 1}
+_FACING = {
+    "above": ("bottom", "top"),
+    "below": ("top", "bottom"),
+    "left_of": ("right", "left"),
+    "right_of": ("left", "right"),
+}
+_MEASURES = frozenset(
+    {"distance", "horizontal_distance", "vertical_distance", "angle", "length", "radius", "diameter"}
+)
+_SIZES = frozenset({"length", "radius", "diameter", "width", "height", "angle"})
+_SLACK = 1e-6
+
+
+def stated_lengths(
+    model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
+) -> Iterator[Dimension]:
+    """What the constraints of the author measure, in order of writing."""
+    scene = Scene(model, solved, evaluate, names)
+    for constraint in model.constraints:
+        checkpoint()
+        if constraint.weight is None and isinstance(constraint.wording, Wording):
+            yield from _Statement(scene, constraint, constraint.wording).dimensions()
+
+
+class Scene:
+    """The solved structures and geometry by path."""
+
+    def __init__(
+        self, model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
+    ) -> None:
+        self.root, self.evaluate, self.names = model.root, evaluate, names
+        self.structures: dict[str, SolvedStructure] = {s.path: s for s in solved.root.walk()}
+        self.geometry: dict[str, SolvedGeometry] = {
+            g.path: g for s in self.structures.values() for own in s.geometry for g in own.walk()
+        }
+
+    def curves(self, value: object) -> list[Piece | Vec]:
+        """What the box of a value is around, in coordinates of the root."""
+        match value:
+            case Geometry(type="point") if value.path in self.geometry:
+                return [at for at in [self.geometry[value.path].values["at"]] if isinstance(at, tuple)]  # type: ignore[misc]
+            case Geometry() if value.path in self.geometry:
+                return list(self.geometry[value.path].curves())
+            case Structure() if value.path in self.structures:
+                return list(_outlines(self.structures[value.path]))
+            case Box():
+                return [c for source in value.sources for c in self.curves(source)]
+            case ListVal() | Array():
+                return [c for item in members(value) or () for c in self.curves(item)]
+            case _:
+                return []
+
+
+def _outlines(structure: SolvedStructure) -> Iterator[Piece]:
+    """What the box of a structure is around: holes in it do not count."""
+    for geometry in structure.geometry:
+        yield from geometry.curves()
+    for child in structure.structures:
+        if child.kind != "hole":
+            yield from _outlines(child)
+
+
+@record()
+class _Statement:
+    scene: Scene
+    constraint: Constraint
+    wording: Wording
+
+    def dimensions(self) -> Iterator[Dimension]:
+        for k, (found, value) in enumerate(self._read()):
+            if _agrees(found, abs(value.value)):
+                yield replace(
+                    found,
+                    origin="constraint",
+                    of=self.constraint.text,
+                    name=self.scene.names.get(value.expression),
+                    group=(self.constraint.span, k),
+                )
+
+    def _read(self) -> Iterator[tuple[Dimension, Num]]:
+        """Dimensions with the values that are stated for them."""
+        match self.wording.node:
+            case ast.Comparison(operands=(left, right), operators=("==",)):
+                for node, other in ((left, right), (right, left)):
+                    value = self._constant(other)
+                    measured = list(self._measured(node, value)) if isinstance(value, Num) else []
+                    if isinstance(value, Num) and measured:
+                        yield from ((d, value) for d in measured)
+                        return
+                yield from self._offset(left, right)
+            case ast.Call() as call:
+                yield from self._call(call)
+
+    # --- Measures ----------------------------------------------------------------------------------
+
+    def _measured(self, node: ast.Expression, value: Num) -> Iterator[Dimension]:
+        """What `node == value` measures."""
+        match node:
+            case ast.Call() if (name := self._callee(node)) in _MEASURES:
+                given = self._positional(node)
+                if all(a.name is None for a in node.arguments):
+                    yield from self._by_call(name, given, abs(value.value))
+            case ast.Member(value=of, name=word) if word.text in _SIZES:
+                yield from self._size(of, word.text, abs(value.value))
+
+    def _call(self, call: ast.Call) -> Iterator[tuple[Dimension, Num]]:
+        """A relation, or a measure that is called with its value."""
+        name, given = self._callee(call), self._positional(call)
+        named = {a.name.text: a.value for a in call.arguments if a.name is not None}
+        if name in _FACING and len(given) == 2 and "gap" in named:
+            gap = self._constant(named["gap"])
+            sides = [self._side(n, side) for n, side in zip(given, _FACING[name], strict=True)]
+            if isinstance(gap, Num) and all(sides):
+                yield length_between(sides[0], sides[1], self._way(_AXIS[_FACING[name][0]])), gap
+        elif name in _MEASURES and given:
+            said = named.get("value") or given[-1]
+            value = self._constant(said)
+            if isinstance(value, Num) and set(named) <= {"value", "ccw"}:
+                rest = given if "value" in named else given[:-1]
+                yield from ((d, value) for d in self._by_call(name, rest, abs(value.value)))
+
+    def _by_call(self, name: str, given: Sequence[ast.Expression], value: float) -> Iterator[Dimension]:
+        if name == "angle":
+            yield from self._angle(given, value)
+        elif name in ("length", "radius", "diameter") and len(given) == 1:
+            yield from self._size(given[0], name, value)
+        elif len(given) == 2:
+            found = self._distance(name, *given)
+            yield from [found] if found is not None else []
+
+    def _distance(self, name: str, a: ast.Expression, b: ast.Expression) -> Length | None:
+        if name != "distance":
+            p, q = self._point(a), self._point(b)
+            along = self._way(int(name.startswith("vertical")))
+            return length_between([p], [q], along) if p and q else None
+        line_a, line_b = self._line(a), self._line(b)
+        line = line_a or line_b
+        if line is None:
+            p, q = self._point(a), self._point(b)
+        else:
+            p = self._point(b if line_a else a) if not (line_a and line_b) else _middle(line_b or line)
+            q = foot(p, line) if p is not None else None
+        return length_of_line(p, q) if p is not None and q is not None else None
+
+    def _angle(self, given: Sequence[ast.Expression], value: float) -> Iterator[Dimension]:
+        lines = [self._line(n) for n in given]
+        if len(given) == 3:
+            a, corner, b = (self._point(n) for n in given)
+            lines = [Line(corner, a), Line(corner, b)] if a and corner and b else []
+        if len(lines) == 2 and lines[0] and lines[1]:
+            found = angle_of(lines[0], lines[1], min(value % 360, -value % 360))
+            yield from [found] if found is not None else []
+        elif len(lines) == 1 and lines[0]:
+            yield from level_angle(lines[0], self._turned())
+
+    def _size(self, node: ast.Expression, name: str, value: float) -> Iterator[Dimension]:
+        thing = self.wording.value(node)
+        solved = self.scene.geometry.get(thing.path) if isinstance(thing, Geometry) else None
+        curve = solved.curve if solved is not None else None
+        if isinstance(curve, Circle | Arc) and name in ("radius", "diameter"):
+            yield round_dimension(curve)
+        elif isinstance(curve, Line) and name == "length":
+            line = length_of_line(curve.start, curve.end)
+            yield from [line] if line else []
+        elif isinstance(curve, Line) and name == "angle":
+            yield from level_angle(curve, self._turned())
+        elif solved is not None and isinstance(thing, Geometry) and thing.is_compound and name != "angle":
+            sized = Sized(thing, solved, self._turned(), self.scene.evaluate, self.scene.names)
+            yield from list(sized.length(name, value))[:1]
+        elif name in ("width", "height") and (curves := self.scene.curves(thing)):
+            yield length_along(curves, self._way(int(name == "height")))
+
+    # --- Offsets -----------------------------------------------------------------------------------
+
+    def _offset(self, left: ast.Expression, right: ast.Expression) -> Iterator[tuple[Dimension, Num]]:
+        """`a.left == b.right + 5`, `a.center == b.center + (3, 4)`: from one place to another."""
+        terms = [*self._terms(left, 1), *self._terms(right, -1)]
+        places = [(sign, node) for sign, node, value in terms if value is None]
+        if len(places) != 2 or places[0][0] == places[1][0]:
+            return
+        offsets = [(-sign, value) for sign, _, value in terms if value is not None]
+        if len(offsets) != 1:
+            # Of several numbers none is stated; their sum is what is measured.
+            offsets = [(1, total)] if (total := _total(offsets)) is not None else []
+        for _, offset in offsets:
+            yield from self._between(places[0][1], places[1][1], offset)
+
+    def _between(
+        self, a: ast.Expression, b: ast.Expression, offset: Num | PointVal
+    ) -> Iterator[tuple[Dimension, Num]]:
+        if isinstance(offset, PointVal):
+            p, q = self._point(a), self._point(b)
+            if p and q:
+                for axis, number in enumerate((offset.x, offset.y)):
+                    yield length_between([p], [q], self._way(axis)), number
+            return
+        one, other = self._coordinate(a), self._coordinate(b)
+        if one is not None and other is not None and one[0] == other[0]:
+            yield length_between(one[1], other[1], self._way(one[0])), offset
+
+    def _terms(
+        self, node: ast.Expression, sign: int
+    ) -> Iterator[tuple[int, ast.Expression, Num | PointVal | None]]:
+        """The signed terms of a sum, with their values where these are constant."""
+        match node:
+            case ast.Binary(operator="+" | "-" as operator, left=left, right=right):
+                yield from self._terms(left, sign)
+                yield from self._terms(right, sign if operator == "+" else -sign)
+            case _:
+                yield sign, node, None if self._is_place(node) else self._constant(node)
+
+    def _is_place(self, node: ast.Expression) -> bool:
+        """Whether a term is a point or coordinate of something, which may well be fixed."""
+        if not isinstance(node, ast.Member):
+            return False
+        is_of_thing = isinstance(self.wording.value(node.value), Geometry | Structure | Box)
+        return (is_of_thing and node.name.text not in _SIZES) or self._is_place(node.value)
+
+    def _coordinate(self, node: ast.Expression) -> tuple[int, tuple[Vec, ...]] | None:
+        """A place along an axis of the holder: the axis, and points that are there."""
+        match node:
+            case ast.Member(value=of, name=word) if word.text in _AXIS:
+                points = self._side(of, word.text)
+                return (_AXIS[word.text], points) if points else None
+        line = self._line(node)
+        if line is None:
+            return None
+        way = self._way(0)
+        is_upright = abs((line.end[0] - line.start[0]) * way[0] + (line.end[1] - line.start[1]) * way[1])
+        return int(is_upright > 1e-6 * math.dist(line.start, line.end)), (line.start, line.end)
+
+    def _side(self, node: ast.Expression, side: str) -> tuple[Vec, ...]:
+        """The points of a thing on one side of its box, or its middle."""
+        curves = self.scene.curves(self.wording.value(node))
+        u, v = self._way(_AXIS[side])
+        if side in ("x", "y", "center_x", "center_y"):
+            p = self._point(node)
+            if p is None:
+                return ()
+            # Rather the tip of a thing than its middle, where there is nothing to be seen.
+            tips = [*extreme(curves, (-v, u)), *extreme(curves, (v, -u))] if curves else []
+            return (
+                *(q for q in tips if abs(dot((q[0] - p[0], q[1] - p[1]), (u, v))) < 1e-9 * math.hypot(*p)),
+                p,
+            )
+        return extreme(curves, (u, v) if side in ("right", "top") else (-u, -v)) if curves else ()
+
+    # --- Values ------------------------------------------------------------------------------------
+
+    def _constant(self, node: ast.Expression) -> Num | PointVal | None:
+        """The value of what does not depend on the solver."""
+        value = self.wording.value(node)
+        match value:
+            case Num(expression=e) if e.is_constant:
+                return value
+            case PointVal(x, y) if x.expression.is_constant and y.expression.is_constant:
+                return value
+            case _:
+                return None
+
+    def _point(self, node: ast.Expression) -> Vec | None:
+        """A point, or the middle of a thing, in coordinates of the root."""
+        value: Value | None = self.wording.value(node)
+        if isinstance(value, Geometry) and value.type == "point":
+            value = value.fields["at"]
+        elif isinstance(value, Geometry | Structure | Box):
+            if isinstance(value, Geometry) and value.type == "line":
+                return None
+            center = ast.Identifier("center", span=node.span)
+            value = self.wording.value(ast.Member(node, center, span=node.span))
+        return self._at(value) if isinstance(value, PointVal) else None
+
+    def _at(self, p: PointVal) -> Vec:
+        here = self.constraint.holder
+        x, y = spelled_out(*convert(p.x.expression, p.y.expression, here, self.scene.root))
+        return self.scene.evaluate(x), self.scene.evaluate(y)
+
+    def _line(self, node: ast.Expression) -> Line | None:
+        value = self.wording.value(node)
+        solved = self.scene.geometry.get(value.path) if isinstance(value, Geometry) else None
+        return solved.curve if solved is not None and isinstance(solved.curve, Line) else None
+
+    def _turned(self) -> float:
+        return self.scene.evaluate(convert_angle(ZERO, self.constraint.holder, self.scene.root))
+
+    def _way(self, axis: int) -> Vec:
+        """The direction of an axis of the holder in coordinates of the root."""
+        here, root = self.constraint.holder, self.scene.root
+        unit = (constant(1.0), ZERO) if axis == 0 else (ZERO, constant(1.0))
+        (x0, y0), (x1, y1) = (map(self.scene.evaluate, convert(*p, here, root)) for p in ((ZERO, ZERO), unit))
+        return x1 - x0, y1 - y0
+
+    def _callee(self, call: ast.Call) -> str:
+        return self.wording.it.program.resolution.canonical.get(call.callee, call.callee.text)
+
+    def _positional(self, call: ast.Call) -> list[ast.Expression]:
+        receiver = [call.receiver] if call.receiver is not None else []
+        return [*receiver, *(a.value for a in call.arguments if a.name is None)]
+
+
+def _agrees(found: Dimension, value: float) -> bool:
+    """Whether a dimension is what was stated; of what is round either the radius or the diameter."""
+    sizes = [found.value]
+    if isinstance(found, Roundness):
+        sizes = [found.curve.radius, 2 * found.curve.radius]
+    return any(abs(size - value) <= _SLACK * max(1.0, value) for size in sizes)
+
+
+def _middle(line: Line) -> Vec:
+    return (line.start[0] + line.end[0]) / 2, (line.start[1] + line.end[1]) / 2
+
+
+def _total(offsets: Sequence[tuple[int, Num | PointVal]]) -> Num | PointVal | None:
+    """The sum of signed constants."""
+    numbers = [(sign, v) for sign, v in offsets if isinstance(v, Num)]
+    if len(numbers) == len(offsets) and numbers:
+        total = sum(sign * v.value for sign, v in numbers)
+        return Num(constant(total), numbers[0][1].dimension)
+    points = [(sign, v) for sign, v in offsets if isinstance(v, PointVal)]
+    if len(points) == len(offsets) and points:
+        x, y = (_total([(sign, getattr(v, axis)) for sign, v in points]) for axis in "xy")
+        return PointVal(x, y) if isinstance(x, Num) and isinstance(y, Num) else None
+    return None

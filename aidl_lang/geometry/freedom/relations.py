@@ -1,0 +1,93 @@
+"""Against what a thing moves: what constraints relate it to, and what stands beside it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from aidl_lang.building.model import Constraint, Model
+from aidl_lang.building.wording import Wording
+from aidl_lang.geometry.freedom.scene import WHOLE, Ints, Scene
+
+_INDEX = re.compile(r"\[\d+\]")
+
+
+class Relations:
+    """What is related in a model, as `scene` shows it."""
+
+    def __init__(self, model: Model, scene: Scene) -> None:
+        self.scene = scene
+        stated = sorted((c for c in model.constraints if not c.is_inherent), key=lambda c: c.span.start)
+        self.related = [found for c in stated if len(found := _related(c)) > 1]
+        self.beside = {
+            child.path: [other.path for other in s.children if other.kind not in ("hole", "drawing")]
+            for s in model.root.walk()
+            for child in s.children
+        }
+
+    def against(self, things: Sequence[str], moving: Ints) -> str:
+        """The path of what is related to things and does not go along where these observables move, be it
+        free itself or held: by the constraint that stands first, one of another array if there is one; for
+        structures without such, the part beside them. "" if there is nothing.
+        """
+        flags = np.zeros(len(self.scene.places), dtype=np.bool_)
+        flags[moving] = True
+        found = dict.fromkeys(path for path in self._neighbours(things) if self._stays(path, flags))
+        own = {pattern(thing) for thing in things}
+        for path in found:
+            if pattern(path) not in own:
+                return path
+        return next(iter(found), "")
+
+    def _neighbours(self, things: Sequence[str]) -> Iterator[str]:
+        for paths in self.related:
+            inside = [path for path in paths if any(_is_in(path, thing) for thing in things)]
+            for path in paths if inside else ():
+                if not any(_is_in(path, thing) or _is_in(thing, path) for thing in things):
+                    yield _beside(path, inside[0])
+        if all(self._is_structure(thing) for thing in things):
+            yield from (path for path in self.beside.get(things[0], ()) if path not in things)
+
+    def _is_structure(self, path: str) -> bool:
+        thing = self.scene.known.get(path)
+        return thing is not None and thing.rank == WHOLE
+
+    def _stays(self, path: str, moving: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> bool:
+        thing = self.scene.known.get(path)
+        return thing is not None and not moving[self.scene.own(thing)].any()
+
+
+def _related(constraint: Constraint) -> tuple[str, ...]:
+    """Paths of what a constraint relates: structures by their boxes, else what its unknowns belong to; where
+    these are of one thing only, also what else it names, which has none.
+    """
+    boxes = {s.path for c in constraint.comparisons for s in c.boxes}
+    mentioned = {u.holder.path for c in constraint.comparisons for u in c.spoken_of}
+    # A frame is mentioned beside what lies in it.
+    others = {
+        path
+        for path in mentioned
+        if not any(_is_in(other, path) for other in mentioned | boxes if other != path)
+    }
+    found = boxes | others
+    if len(found) < 2 and isinstance(constraint.wording, Wording):
+        found |= {thing.path for thing in constraint.wording.named()}
+    return tuple(sorted(found))
+
+
+def _is_in(path: str, around: str) -> bool:
+    return f"{path}.".startswith(f"{around}.")
+
+
+def _beside(path: str, other: str) -> str:
+    """What holds a path and stands beside what holds the other: both lie in the same."""
+    ends, others = path.split("."), other.split(".")
+    common = next((i for i, (a, b) in enumerate(zip(ends, others, strict=False)) if a != b), len(ends))
+    return ".".join(ends[: common + 1])
+
+
+def pattern(path: str) -> str:
+    """A path without its indices: the members of an array have the same."""
+    return _INDEX.sub("[]", path)

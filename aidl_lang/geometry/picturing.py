@@ -1,0 +1,73 @@
+"""Solution → Drawing: places put back into names, regions worked out, and what there is to say of them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+from aidl_lang.building.model import Model
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.drawing_time import blaming
+from aidl_lang.common.running import Stopwatch, working
+from aidl_lang.common.source import Span
+
+if TYPE_CHECKING:
+    from aidl_lang.building.expression import Evaluator
+    from aidl_lang.building.lower import Lowered
+    from aidl_lang.geometry.drawing import Drawing
+    from aidl_lang.geometry.solved import Dimension, SolvedModel
+    from aidl_lang.solver.analysis import Freedom
+    from aidl_lang.solver.solution import Solution
+
+_HEAVY = "most of its curves are made here"
+
+
+def pictured(
+    built: Model, lowered: Lowered, solution: Solution, freedom: Freedom, watch: Stopwatch
+) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic]]:
+    """A solution put back into names and coordinates, its drawing, and what there is to say of that."""
+    from aidl_lang.geometry.drawing import draw
+    from aidl_lang.geometry.placeless import with_places
+    from aidl_lang.geometry.readout import read_out
+
+    with watch("read out"):
+        model, evaluator = read_out(built, lowered, solution, freedom)
+    with watch("regions"), blaming(partial(_most_drawn, model), _HEAVY):
+        model, placeless = with_places(replace(model, size_up=_sizes(built, evaluator)))
+        model, wrong = _completed(model)
+        drawing, notes = draw(model)
+    return model, evaluator, drawing, [*placeless, *wrong, *notes]
+
+
+def _completed(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
+    """The model with its derived outlines and finished corners; few programs have any to load code for."""
+    if not model.is_unfinished:
+        return model, []
+    from aidl_lang.geometry.outlines import complete
+
+    return complete(model)
+
+
+def _sizes(built: Model, evaluator: Evaluator) -> Callable[[SolvedModel], tuple[Dimension, ...]]:
+    """What tells the sizes of a solved model, loaded when they are asked for."""
+
+    def sizes(solved: SolvedModel) -> tuple[Dimension, ...]:
+        from aidl_lang.geometry.dimensions import sizes
+
+        with working:
+            return sizes(built, solved, evaluator)
+
+    return sizes
+
+
+def _most_drawn(model: SolvedModel) -> Span | None:
+    """The statement of the program that makes more curves than any other."""
+    made: Counter[Span] = Counter()
+    for structure in model.root.walk():
+        for geometry in structure.geometry:
+            if geometry.span is not None:
+                made[geometry.span] += sum(1 for each in geometry.walk() if each.curve is not None)
+    return max(made, key=lambda span: made[span], default=None)

@@ -1,0 +1,393 @@
+"""Model + Solution → SolvedModel: every number read off at the solved values, in the frame of the root."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property, partial
+from typing import TypeAlias
+
+from aidl_lang.building import expression as ex
+from aidl_lang.building.expression import DEGREE, Evaluator, Unknown
+from aidl_lang.building.lower import Lowered
+from aidl_lang.building.model import (
+    Constraint,
+    Finish,
+    Geometry,
+    Model,
+    Recipe,
+    Structure,
+    own_geometry,
+)
+from aidl_lang.building.primitives import clockwise, number, translate, xy
+from aidl_lang.building.root_frame import FLOATS, Placing
+from aidl_lang.building.scopes import ParamBinding, PassedBinding, Scope, VarBinding
+from aidl_lang.building.values import Num, PointVal, Text, Value
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.drawing_time import blaming
+from aidl_lang.common.records import record
+from aidl_lang.geometry import curves
+from aidl_lang.geometry.curves import Curve, Vec
+from aidl_lang.geometry.evaluate import bounds
+from aidl_lang.geometry.solved import (
+    Box,
+    Change,
+    ConstraintReport,
+    Frame,
+    Motion,
+    Reading,
+    Scalar,
+    SolvedGeometry,
+    SolvedModel,
+    SolvedStructure,
+)
+from aidl_lang.geometry.solved import Finish as SolvedFinish
+from aidl_lang.geometry.solved import Recipe as SolvedRecipe
+from aidl_lang.solver.analysis import Freedom
+from aidl_lang.solver.solution import Solution
+from aidl_lang.syntax import ast
+
+_FULL_TURN = 2 * math.pi
+Values: TypeAlias = dict[str, Scalar | Vec | tuple[Vec, ...]]
+
+
+def read_out(
+    model: Model, lowered: Lowered, solution: Solution, freedom: Freedom
+) -> tuple[SolvedModel, Evaluator]:
+    """The solved model, and the evaluator of its values for what is checked afterwards."""
+    values: dict[Unknown, float] = {
+        u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)
+    }
+    evaluator = Evaluator(values)
+    counts = dict(zip(model.root.walk(), freedom.group_degrees, strict=True))
+    states = dict(zip(counts, freedom.states, strict=True))
+    reader = _Reader(model, evaluator, counts, states)
+    changed = tuple(_changes(lowered, solution))
+    free = tuple(lowered.unknowns[i].path for i in freedom.free)
+    reports = tuple(_reports(model, lowered, solution))
+    root = reader.structure(model.root)
+    readings = tuple(dict.fromkeys(Reading(span, text) for span, text in model.readings))
+    describe = partial(_motions, model, lowered, solution, freedom)
+    floating = tuple(_floating(lowered, freedom))
+    solved = SolvedModel(
+        solution.status.value, root, reports, freedom.degrees, free, changed, readings, floating, describe
+    )
+    return solved, evaluator
+
+
+def _literal(model: Model, finish: Finish) -> ast.Number | None:
+    """The number in the call that is the size of a fillet or chamfer, where no constraint speaks of it."""
+    size, *more = finish.sizes
+    rows = (c for constraint in model.constraints for c in constraint.comparisons)
+    if more or size.expression.payload in set(ex.unknowns(side for c in rows for side in (c.left, c.right))):
+        return None
+    node = next((each.node for each in model.literals if each.became is size.expression), None)
+    return node if isinstance(node, ast.Number) and finish.span.overlaps(node.span) else None
+
+
+def _motions(model: Model, lowered: Lowered, solution: Solution, freedom: Freedom) -> tuple[Motion, ...]:
+    """What can still move, by code that is loaded when it is asked for."""
+    from aidl_lang.geometry.freedom import motions
+
+    return motions(model, lowered, solution, freedom)
+
+
+def _floating(lowered: Lowered, freedom: Freedom) -> Iterator[str]:
+    """Structures that no constraint ties to what is around them, and that hold what was guessed."""
+    guessed: set[tuple[int, int]] = set()
+    problem = lowered.problem
+    if problem.axis is not None:
+        guessed.update(zip(problem.group.tolist(), problem.axis.tolist(), strict=True))
+    for group in freedom.loose:
+        if (group, 0) in guessed and (group, 1) in guessed:
+            yield lowered.groups[group]
+
+
+def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:
+    for index in solution.changed:
+        unknown = lowered.unknowns[index]
+        solved, span = float(solution.values[index]), unknown.holder.span
+        yield Change(unknown.path, unknown.guess, solved, span, unknown.told, unknown.is_size)
+
+
+def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[ConstraintReport]:
+    """How well each constraint holds, in order of writing."""
+    number = {stated: index for index, stated in enumerate(lowered.stated)}
+    for stated in model.constraints:
+        if (index := number.get(stated)) is not None:
+            yield report_of(stated, solution.residuals[index], solution.satisfied[index])
+
+
+def report_of(stated: Constraint, residual: float, satisfied: bool) -> ConstraintReport:
+    text = f"{stated.text} [{stated.label}]" if stated.label else stated.text
+    return ConstraintReport(
+        stated.holder.path,
+        text,
+        stated.span,
+        residual,
+        satisfied,
+        stated,
+        stated.weight is not None,
+        all(comparison.relation == "==" for comparison in stated.comparisons),
+    )
+
+
+@record(frozen=False)
+class _Reader:
+    model: Model
+    evaluate: Evaluator
+    degrees: Mapping[Structure, int | None]
+    states: Mapping[Structure, str]
+
+    @cached_property
+    def place(self) -> Placing[float]:
+        """Converts points to the frame of the root."""
+        return Placing(self.evaluate, FLOATS)
+
+    def structure(self, s: Structure) -> SolvedStructure:
+        geometry = tuple(map(self._named, s.own()))
+        children = tuple(self.structure(child) for child in s.children)
+        frame = s.frame
+        return SolvedStructure(
+            name=s.name,
+            path=s.path,
+            kind=s.kind,
+            orientation=self._orientation(s),
+            frame=Frame(
+                self.evaluate(frame.x), self.evaluate(frame.y), self.evaluate(frame.rotation), frame.mirrored
+            ),
+            attributes=self._attributes(s),
+            params=dict(self._params(s)),
+            geometry=geometry,
+            structures=children,
+            box=self._box(s, geometry, children),
+            is_empty=s.is_empty,
+            degrees=self.degrees[s],
+            state=str(self.states[s]),
+            span=s.span,
+            finishes=tuple(self._finish(s, f) for f in s.finishes),
+            doc=s.doc,
+        )
+
+    def _params(self, s: Structure) -> Iterator[tuple[str, Scalar]]:
+        """Every named number of a structure itself: its params, variables and arguments."""
+        assert isinstance(s.scope, Scope)
+        # The root shows the params of the file, too.
+        scopes = list(s.scope.chain()) if s is self.model.root else [s.scope]
+        for scope in reversed(scopes):
+            for name, binding in scope.values.items():
+                value: Value | None = None
+                match binding:
+                    case ParamBinding(known=known):
+                        value = known
+                    case VarBinding(value=known) if scope is s.scope:
+                        value = known
+                    case PassedBinding(tied=tied):
+                        # A copy shares those of its source.
+                        value = tied.get(s) or tied.get(binding.instance, binding.value)
+                    case Text() | bool() if scope is s.scope:
+                        value = binding
+                if isinstance(value, Num | Text | bool):
+                    yield name, self._scalar(value)
+
+    def _orientation(self, s: Structure) -> str:
+        """Its own, else that of what is around it."""
+        match s.attributes.get("orientation"):
+            case (Text(word, _),):
+                return word
+            case _:
+                return self._orientation(s.parent) if s.parent is not None else "top"
+
+    def _attributes(self, of: Structure | Geometry) -> dict[str, tuple[Scalar, ...]]:
+        return {name: tuple(map(self._scalar, values)) for name, values in of.attributes.items()}
+
+    def _scalar(self, value: Value) -> Scalar:
+        match value:
+            case Num(expression, _, _):
+                return self.evaluate(expression)
+            case Text(text, _):
+                return text
+            case bool():
+                return value
+            case _:
+                return str(value)
+
+    def _box(
+        self, s: Structure, geometry: Iterable[SolvedGeometry], children: Iterable[SolvedStructure]
+    ) -> Box | None:
+        boxes: list[tuple[float, float, float, float]] = []
+        if s.plan:
+            left, bottom, width, height = s.plan
+            for corner in ((left, bottom), (ex.add(left, width), ex.add(bottom, height))):
+                x, y = self.place(self.evaluate(corner[0]), self.evaluate(corner[1]), s)
+                boxes.append((x, y, x, y))
+        boxes += [bounds(curve) for g in geometry for curve in g.curves()]
+        boxes += [
+            (c.box.left, c.box.bottom, c.box.right, c.box.top) for c in children if c.box and c.kind != "hole"
+        ]
+        if not boxes:
+            return None
+        return Box(
+            min(b[0] for b in boxes),
+            min(b[1] for b in boxes),
+            max(b[2] for b in boxes),
+            max(b[3] for b in boxes),
+        )
+
+    # --- Geometry ------------------------------------------------------------------------------
+
+    def _named(self, g: Geometry) -> SolvedGeometry:
+        with blaming(lambda: g.span, "it came as far as this"):
+            checkpoint()
+            return self.geometry(g)
+
+    def geometry(self, g: Geometry) -> SolvedGeometry:
+        if g.type == "glyphs":
+            return self._text(g)
+        recipe = self._recipe(g.recipe) if g.recipe is not None else None
+        is_plain = not g.is_compound and not g.is_drawn_later and g.type != "point"
+        curve = self._curve(g) if is_plain else None
+        return SolvedGeometry(
+            name=g.name or g.type,
+            path=g.path,
+            type=g.type,
+            values=self._own_values(g, curve),
+            curve=curve,
+            parts=tuple(self.geometry(part) for part in own_geometry(g.parts, g)),
+            construction=g.construction,
+            span=g.span,
+            recipe=recipe,
+            source=g.source.path if g.source is not None else None,
+            attributes=self._attributes(g),
+        )
+
+    def _recipe(self, recipe: Recipe) -> SolvedRecipe:
+        return SolvedRecipe(
+            recipe.kind,
+            tuple(tuple(self.geometry(g) for g in group) for group in recipe.operands),
+            {name: self._number(value) for name, value in recipe.numbers.items()},
+            recipe.words,
+        )
+
+    def _finish(self, s: Structure, finish: Finish) -> SolvedFinish:
+        at = None
+        if finish.at is not None:
+            at = self._at(finish.at, s)
+        of = tuple(g.path for g in finish.of)
+        sizes = tuple(map(self._number, finish.sizes))
+        literal = partial(_literal, self.model, finish)
+        return SolvedFinish(finish.kind, of, at, sizes, finish.text, finish.span, literal=literal)
+
+    def _text(self, g: Geometry) -> SolvedGeometry:
+        """A text with its characters as parts, and the curves of each as theirs."""
+        (x, y), height = self._at(g.fields["start"], g.owner), self._number(g.fields["height"])
+        c, s = ex.exact_turn(self._direction(g))
+        up = -1.0 if clockwise(g, self.model.root) else 1.0
+
+        def at(p: Vec) -> Vec:
+            u, v = height * p[0], up * height * p[1]
+            return x + u * c - v * s, y + u * s + v * c
+
+        glyphs = tuple(_glyph(g, f"glyph[{i}]", glyph.curves, at) for i, glyph in enumerate(g.glyphs))
+        values: Values = {"start": (x, y), "height": height, "angle": math.degrees(math.atan2(s, c))}
+        whole = SolvedGeometry(g.name or g.type, g.path, g.type, values, None, glyphs, g.construction, g.span)
+        source = g.source.path if g.source is not None else None
+        return replace(whole, source=source, attributes=self._attributes(g))
+
+    def _at(self, value: Value, owner: Structure) -> Vec:
+        """A point of `owner` in the frame of the root."""
+        x, y = xy(value)
+        return self.place(self.evaluate(x), self.evaluate(y), owner)
+
+    def _direction(self, g: Geometry) -> float:
+        """The angle of an ellipse or a text in the frame of the root, in degrees."""
+        return self._number(translate("angle", g.fields["angle"], g.owner, self.model.root))
+
+    def _number(self, value: Value) -> float:
+        return self.evaluate(number(value))
+
+    def _own_values(self, g: Geometry, curve: Curve | None) -> Values:
+        if g.is_compound:
+            return self._shape_values(g)
+        if g.recipe is not None and g.is_drawn_later:
+            return {name: self._number(value) for name, value in g.recipe.numbers.items()}
+        return self._values(g, curve)
+
+    def _shape_values(self, g: Geometry) -> Values:
+        """The number and point arguments of a compound shape."""
+        from aidl_lang.building.scopes import Scope
+
+        assert isinstance(g.scope, Scope)
+        found: Values = {}
+        for name in g.arguments:
+            value = g.scope.values[name]
+            if isinstance(value, PointVal):
+                found[name] = self._at(value, g.owner)
+            elif isinstance(value, Num):
+                found[name] = self._number(translate(name, value, g.owner, self.model.root))
+        return found
+
+    def _values(self, g: Geometry, curve: Curve | None) -> Values:
+        match curve:
+            case curves.Line(start, end):
+                return {"start": start, "end": end}
+            case curves.Circle(center, radius):
+                return {"center": center, "radius": radius}
+            case curves.Arc(center, radius, start, end, sweep):
+                ends: Values = {"start": start, "end": end}
+                return {"center": center, "radius": radius, **ends, "clockwise": sweep < 0}
+            case curves.Bezier(p0, p1, p2, p3):
+                return {"points": (p0, p1, p2, p3)}
+            case curves.Ellipse(center, rx, ry, angle):
+                return {"center": center, "rx": rx, "ry": ry, "angle": angle / DEGREE}
+            case _:
+                return {"at": self._at(g.fields["at"], g.owner)}
+
+    def _curve(self, g: Geometry) -> Curve:
+        core, at = g.fields, partial(self._at, owner=g.owner)
+        match g.type:
+            case "line":
+                return curves.Line(at(core["start"]), at(core["end"]))
+            case "circle":
+                return curves.Circle(at(core["center"]), self._number(core["radius"]))
+            case "bezier":
+                return curves.Bezier(*(at(core[p]) for p in ("p0", "p1", "p2", "p3")))
+            case "ellipse":
+                rx, ry = self._number(core["rx"]), self._number(core["ry"])
+                return curves.Ellipse(at(core["center"]), rx, ry, self._direction(g) * DEGREE)
+            case _:
+                return self._arc(g)
+
+    def _arc(self, g: Geometry) -> Curve:
+        center, start, end = (self._at(g.fields[n], g.owner) for n in ("center", "start", "end"))
+        first, last = (math.atan2(p[1] - center[1], p[0] - center[0]) for p in (start, end))
+        is_clockwise = clockwise(g, self.model.root)
+        sweep = (first - last if is_clockwise else last - first) % _FULL_TURN
+        if sweep < 1e-12:
+            sweep = _FULL_TURN
+        return curves.Arc(
+            center, self._number(g.fields["radius"]), start, end, -sweep if is_clockwise else sweep
+        )
+
+
+def _glyph(
+    text: Geometry, name: str, outline: Sequence[Sequence[Vec]], at: Callable[[Vec], Vec]
+) -> SolvedGeometry:
+    """One character of a text, with its curves as parts."""
+    checkpoint()
+    edges = tuple(_edge(text, f"{name}.edge[{i}]", [at(p) for p in c]) for i, c in enumerate(outline))
+    return SolvedGeometry(name, f"{text.path}.{name}", "glyph", {}, None, edges, text.construction, text.span)
+
+
+def _edge(text: Geometry, path: str, points: Sequence[Vec]) -> SolvedGeometry:
+    """One curve of a character, by its path in the text."""
+    curve: Curve
+    if len(points) == 2:
+        curve, kind = curves.Line(*points), "line"
+        values: Values = {"start": curve.start, "end": curve.end}
+    else:
+        curve, kind = curves.Bezier(*points), "bezier"
+        values = {"points": tuple(points)}
+    name, whole = path.rpartition(".")[2], f"{text.path}.{path}"
+    return SolvedGeometry(name, whole, kind, values, curve, (), text.construction, text.span)

@@ -1,0 +1,333 @@
+"""The solved model in numbers: what regions, exporters and readers of the API see.
+
+Coordinates are in the root frame, lengths in mm, angles in degrees counter-clockwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import field
+from functools import cached_property
+from typing import Protocol, TypeAlias
+
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.geometry.curves import Arc, Circle, Piece, Vec
+from aidl_lang.syntax import ast
+
+Scalar: TypeAlias = float | int | bool | str
+
+
+@record()
+class Box:
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+    @property
+    def width(self) -> float:
+        return self.right - self.left
+
+    @property
+    def height(self) -> float:
+        return self.top - self.bottom
+
+
+@record()
+class Frame:
+    """Position and rotation relative to the parent; a mirrored frame reflects x before it turns."""
+
+    x: float
+    y: float
+    rotation: float
+    mirrored: bool = False
+
+
+@record()
+class Recipe:
+    """How the curves of an outline come from others (see `model.Recipe`); `outlines` works them out."""
+
+    kind: str
+    operands: tuple[tuple[SolvedGeometry, ...], ...]
+    numbers: Mapping[str, float]
+    words: Mapping[str, str]
+
+
+@record()
+class Finish:
+    """A fillet or chamfer: of the corner `at`, or of all corners of the geometry at the paths `of`.
+
+    `corners` are the places where it was carried out, `literal` tells the number that its size is written as,
+    where nothing else depends on it.
+    """
+
+    kind: str
+    of: tuple[str, ...]
+    at: Vec | None
+    sizes: tuple[float, ...]
+    text: str
+    span: Span
+    corners: tuple[Vec, ...] = ()
+    literal: Callable[[], ast.Number | None] = field(default=lambda: None, compare=False, repr=False)
+
+
+@record()
+class SolvedGeometry:
+    """A named geometry. `name` carries its index (`dot[3]`), `path` is the dotted path from the root.
+
+    values  the fields of section 11 for a primitive (`start`, `end`, `center`, `radius`, `at`, `points`, …),
+            the number and point parameters for a compound shape
+    curve   the curve of a primitive; None for points and compound shapes
+    parts   the named parts of a compound shape
+    recipe  how the curves of an outline come from others
+    source  the path of what it is a copy of
+    attributes  name → argument values as written: `note`, and in a drawing `color`
+    """
+
+    name: str
+    path: str
+    type: str
+    values: dict[str, Scalar | Vec | tuple[Vec, ...]]
+    curve: Piece | None
+    parts: tuple[SolvedGeometry, ...]
+    construction: bool
+    span: Span | None
+    recipe: Recipe | None = None
+    source: str | None = None
+    attributes: dict[str, tuple[Scalar, ...]] = field(default_factory=dict)
+
+    def walk(self) -> Iterator[SolvedGeometry]:
+        """This geometry and all its parts."""
+        yield self
+        for part in self.parts:
+            yield from part.walk()
+
+    def curves(self) -> Iterator[Piece]:
+        """The drawn curves in order of writing; none of construction geometry."""
+        if self.construction:
+            return
+        if self.curve is not None:
+            yield self.curve
+        for part in self.parts:
+            yield from part.curves()
+
+
+@record()
+class SolvedStructure:
+    """`box` is None where there is nothing to bound. `orientation` is its own, or that of what is around it.
+    `attributes`: name → argument values as written (`color`, `layer`, `thickness`, `elevation`, `material`,
+    `detached`, `note`, `orientation`). `degrees` is None where they could not be counted. `is_empty`: no
+    geometry of its own and no children, so that `box` is that of the plan. `state` says how it is
+    constrained: `fully`, `under`, `over`, `contradictory` or `unknown`.
+    """
+
+    name: str
+    path: str
+    kind: str
+    orientation: str
+    frame: Frame
+    attributes: dict[str, tuple[Scalar, ...]]
+    params: dict[str, Scalar]
+    geometry: tuple[SolvedGeometry, ...]
+    structures: tuple[SolvedStructure, ...]
+    box: Box | None
+    is_empty: bool
+    degrees: int | None
+    span: Span | None
+    doc: str | None = None
+    state: str = "unknown"
+    finishes: tuple[Finish, ...] = ()
+    finished: tuple[SolvedGeometry, ...] | None = None
+
+    @property
+    def drawn(self) -> tuple[SolvedGeometry, ...]:
+        """The geometry as it is drawn: with its corners finished."""
+        return self.geometry if self.finished is None else self.finished
+
+    def walk(self) -> Iterator[SolvedStructure]:
+        """This structure and all below it, parents first, in order of writing."""
+        yield self
+        for child in self.structures:
+            yield from child.walk()
+
+    def walk_geometry(self) -> Iterator[SolvedGeometry]:
+        """The geometry of this structure and of all below it, each followed by its parts."""
+        return (part for s in self.walk() for geometry in s.geometry for part in geometry.walk())
+
+    def find(self, path: str) -> SolvedStructure | None:
+        return next((s for s in self.walk() if s.path == path), None)
+
+
+class Relating(Protocol):
+    """What relates some geometry and structures."""
+
+    @property
+    def mentions(self) -> tuple[str, ...]: ...
+
+
+@record()
+class ConstraintReport:
+    """A constraint as written, the structure that holds it, and how well it holds. `stated`: what tells what
+    it speaks of; `exact`: it is made of equations alone.
+    """
+
+    path: str
+    text: str
+    span: Span
+    residual: float
+    satisfied: bool
+    stated: Relating = field(repr=False, compare=False)
+    soft: bool = False
+    exact: bool = False
+
+    @property
+    def mentions(self) -> tuple[str, ...]:
+        """Paths of the geometry and structures whose unknowns it relates."""
+        return self.stated.mentions
+
+
+@record()
+class Change:
+    """A kept size that had to change. `told`: what it is, for people; `is_size`: no angle or offset;
+    `because`: the constraints, as written, that ask for it.
+    """
+
+    path: str
+    written: float
+    solved: float
+    span: Span | None
+    told: str = ""
+    is_size: bool = True
+    because: tuple[str, ...] = ()
+
+
+@record()
+class Motion:
+    """A way in which something can still move.
+
+    kind    `slide`, `turn`, `grow`, `change` (a single parameter) or `together` (anything else); `place`
+            where the whole drawing does it
+    things  paths of what moves, the outermost that move as a whole
+    words   what they can do, as `slide along x`
+    moves   parameters that take part, by path: how much each changes, relative to one another
+    against the path of what is related to the things and does not go along; "" for nothing
+    """
+
+    kind: str
+    things: tuple[str, ...]
+    words: str
+    moves: Mapping[str, float] = field(repr=False)
+    against: str = ""
+
+
+@record()
+class Reading:
+    """Which of its meanings an ambiguous call was taken in, by what was written."""
+
+    span: Span
+    text: str
+
+
+@record()
+class Dimension:
+    """A measure that a drawing of the model should state.
+
+    value   mm or degrees, as it came out
+    origin  where it comes from: `param` for an exact size (through a param or `fixed`), `constraint`, `size`
+            for one written as a number, `overall`, `pattern` for how equal holes stand to each other
+    of      the path of what it is a size of, or the constraint as written
+    name    the param that it is, where it is one and nothing else
+    group   equal dimensions of one group are shown once, with their number
+    """
+
+    value: float
+    origin: str
+    of: str = ""
+    name: str | None = None
+    group: object = None
+
+    @property
+    def kind(self) -> str:
+        """`horizontal`, `vertical`, `aligned`, `radius`, `diameter` or `angle`."""
+        raise NotImplementedError
+
+
+@record()
+class Length(Dimension):
+    """A length along `along` (a unit vector) from any of the points `start` to any of the points `end`."""
+
+    start: tuple[Vec, ...] = ()
+    end: tuple[Vec, ...] = ()
+    along: Vec = (1.0, 0.0)
+
+    @property
+    def kind(self) -> str:
+        return {(1.0, 0.0): "horizontal", (0.0, 1.0): "vertical"}.get(self.along, "aligned")
+
+
+@record()
+class Roundness(Dimension):
+    """The diameter of a circle, or the radius of an arc."""
+
+    curve: Circle | Arc = field(default_factory=lambda: Circle((0.0, 0.0), 0.0))
+
+    @property
+    def kind(self) -> str:
+        return "diameter" if isinstance(self.curve, Circle) else "radius"
+
+
+@record()
+class Opening(Dimension):
+    """An angle at `corner`, counter-clockwise from the direction `first` by `value` degrees. The arms are
+    there from and to these distances from the corner.
+    """
+
+    corner: Vec = (0.0, 0.0)
+    first: float = 0.0
+    arms: tuple[tuple[float, float], tuple[float, float]] = ((0.0, 0.0), (0.0, 0.0))
+
+    @property
+    def kind(self) -> str:
+        return "angle"
+
+
+@record()
+class SolvedModel:
+    status: str
+    root: SolvedStructure
+    constraints: tuple[ConstraintReport, ...]
+    degrees: int | None
+    free: tuple[str, ...]
+    changed: tuple[Change, ...]
+    readings: tuple[Reading, ...] = ()
+    floating: tuple[str, ...] = ()
+    """structures that no constraint ties to what is around them, and that are where they were guessed"""
+    describe: Callable[[], tuple[Motion, ...]] = field(default=tuple, repr=False, compare=False)
+    """what `ways` is made by, when it is asked for"""
+    size_up: Callable[[SolvedModel], tuple[Dimension, ...]] = field(
+        default=lambda _: (), repr=False, compare=False
+    )
+    """what `sizes` is made by"""
+
+    @property
+    def is_unfinished(self) -> bool:
+        """Whether outlines are to be made of others, or corners to be finished (see `geometry.outlines`)."""
+        return any(s.finishes for s in self.root.walk()) or any(g.recipe for g in self.root.walk_geometry())
+
+    @cached_property
+    def ways(self) -> tuple[Motion, ...]:
+        """Independent ways to move, the simplest that were found; the first hundreds of a large model. Last
+        come those in which the whole drawing moves as one.
+        """
+        return self.describe()
+
+    @cached_property
+    def motions(self) -> tuple[Motion, ...]:
+        """The ways in which something moves against the rest, the most interesting first."""
+        return tuple(way for way in self.ways if way.kind != "place")
+
+    @cached_property
+    def sizes(self) -> tuple[Dimension, ...]:
+        """What the program states the size of, the more important first (see `dimensions`)."""
+        return self.size_up(self)

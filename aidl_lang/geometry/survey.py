@@ -1,0 +1,333 @@
+"""What a solved drawing measures: areas, inertia, thin places and masses of the whole and of its parts, and
+how the bodies lie to each other. Lengths in mm, volumes in mm³, masses in g, coordinates in the root's frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.materials import density, similar
+from aidl_lang.common.names import find, nearest
+from aidl_lang.common.records import record
+from aidl_lang.geometry.alone import region_alone
+from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.geometry.distance import region_distance
+from aidl_lang.geometry.drawing import Body, Drawing
+from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.geometry.measures import measure
+from aidl_lang.geometry.moments import Inertia, inertia
+from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.solved import SolvedModel
+from aidl_lang.geometry.walls import widths
+
+ALL_PAIRS = 100
+"""Bodies up to which every two of them are compared."""
+_NAMED = 6
+"""Paths that a list names."""
+
+
+@record()
+class Width:
+    """A wall or a gap: its length, its two ends, and the part that it is in."""
+
+    length: float
+    a: Vec
+    b: Vec
+    part: str
+
+    def to_dict(self) -> dict[str, object]:
+        """The form in JSON."""
+        return {"length": self.length, "from": self.a, "to": self.b, "part": self.part}
+
+
+@record()
+class Part:
+    """What one thing measures.
+
+    kind       `body`; `bodies` for what holds several; `solid` for one that is united with what is around it;
+               `hole`; `geometry` for an outline as a solid of its own
+    pieces, holes   connected areas, and holes in them
+    bodies     how many there are in it; 0 for what is no body
+    wall, gap  the thinnest wall and the narrowest gap (see `geometry.walls`); of several bodies the least
+    volume, mass    None where a thickness or a density is not known; of several bodies the sum
+    """
+
+    path: str
+    kind: str
+    area: float
+    perimeter: float
+    centroid: Vec
+    inertia: Inertia
+    box: Bounds
+    pieces: int
+    holes: int
+    bodies: int = 0
+    wall: Width | None = None
+    gap: Width | None = None
+    material: str | None = None
+    density: float | None = None
+    thickness: float | None = None
+    volume: float | None = None
+    mass: float | None = None
+
+    def to_dict(self) -> dict[str, object]:
+        """The form in JSON."""
+        left, bottom, right, top = self.box
+        squares = self.inertia
+        return {
+            "path": self.path,
+            "kind": self.kind,
+            "bodies": self.bodies,
+            "area": self.area,
+            "perimeter": self.perimeter,
+            "centroid": self.centroid,
+            "box": {"left": left, "right": right, "top": top, "bottom": bottom},
+            "width": right - left,
+            "height": top - bottom,
+            "pieces": self.pieces,
+            "holes": self.holes,
+            "inertia": {
+                "xx": squares.xx,
+                "yy": squares.yy,
+                "xy": squares.xy,
+                "polar": squares.polar,
+                "principal": squares.principal,
+                "angle": squares.angle,
+            },
+            "wall": self.wall and self.wall.to_dict(),
+            "gap": self.gap and self.gap.to_dict(),
+            "thickness": self.thickness,
+            "material": self.material,
+            "density": self.density,
+            "volume": self.volume,
+            "mass": self.mass,
+        }
+
+
+@record()
+class Survey:
+    """The whole, the parts asked for or else all bodies, and the pairs of bodies, overlaps first, then by
+    gap. `alone` are the bodies that touch no other; `is_partial` says that far pairs are not listed.
+    """
+
+    whole: Part
+    parts: tuple[Part, ...]
+    pairs: tuple[Contact, ...]
+    alone: tuple[str, ...]
+    is_partial: bool
+    notes: tuple[Diagnostic, ...]
+
+
+class NothingThereError(KeyError):
+    """There is nothing to measure at a path. `known` is what there is, `near` what may have been meant."""
+
+    def __init__(self, path: str, reason: str, near: Sequence[str], known: Sequence[str]) -> None:
+        super().__init__(path)
+        self.reason = reason
+        self.near = tuple(near)
+        self.known = tuple(known)
+
+    @property
+    def diagnostic(self) -> Diagnostic:
+        path = self.args[0]
+        what = f"`{path}` {self.reason}" if self.reason else f"there is no `{path}` in the drawing"
+        hints = [f"did you mean {' or '.join(f'`{name}`' for name in self.near)}?"] if self.near else []
+        if self.known:
+            hints.append(f"there is {listed(self.known)}")
+        return Diagnostic("E0919", what, hints=tuple(hints))
+
+
+def listed(names: Sequence[str]) -> str:
+    """The first of them as a sentence has them, and how many more there are."""
+    shown = ", ".join(f"`{name}`" for name in names[:_NAMED])
+    more = len(names) - _NAMED
+    return f"{shown} and {more} more" if more > 0 else shown
+
+
+def survey(
+    model: SolvedModel,
+    drawing: Drawing,
+    paths: Sequence[str] = (),
+    own_densities: Mapping[str, float] | None = None,
+) -> Survey:
+    """Measure the whole, and the parts at some paths or else each body.
+
+    Raises NothingThereError for a path at which there is nothing that covers an area.
+    """
+    surveyor = _Surveyor(model, drawing, own_densities or {})
+    parts = [surveyor.part(path) for path in paths]
+    whole = surveyor.of_bodies(model.root.path, drawing.bodies)
+    if not paths:
+        parts = [surveyor.body(b) for b in drawing.bodies]
+    names = [b.path for b in drawing.bodies]
+    pairs = (*drawing.pairs, *(_far_pairs(drawing) if len(names) <= ALL_PAIRS else ()))
+    held = {path for pair in pairs if pair.relation != "apart" for path in (pair.a, pair.b)}
+    return Survey(
+        whole,
+        tuple(parts),
+        tuple(sorted(pairs, key=_nearness)),
+        tuple(path for path in names if path not in held) if len(names) > 1 else (),
+        len(pairs) < len(names) * (len(names) - 1) // 2,
+        tuple(surveyor.notes()),
+    )
+
+
+def _far_pairs(drawing: Drawing) -> Iterator[Contact]:
+    """The pairs of bodies that the drawing leaves out, since their boxes are far from each other."""
+    compared = {(pair.a, pair.b) for pair in drawing.pairs}
+    for one, other in combinations(drawing.bodies, 2):
+        if (one.path, other.path) not in compared:
+            closest = region_distance(one.region, other.region)
+            yield Contact(one.path, other.path, "apart", gap=closest[0] if closest else None)
+
+
+def measured(
+    model: SolvedModel,
+    drawing: Drawing,
+    path: str | None = None,
+    own_densities: Mapping[str, float] | None = None,
+) -> Part:
+    """The part at a path, or the whole. Raises NothingThereError as `survey` does."""
+    surveyor = _Surveyor(model, drawing, own_densities or {})
+    return surveyor.part(path) if path else surveyor.of_bodies(model.root.path, drawing.bodies)
+
+
+def _nearness(pair: Contact) -> tuple[float, float]:
+    return pair.gap or 0.0, -(pair.area or 0.0)
+
+
+class _Surveyor:
+    """Measures parts of a drawing, each body once."""
+
+    def __init__(self, model: SolvedModel, drawing: Drawing, own_densities: Mapping[str, float]) -> None:
+        self.model = model
+        self.drawing = drawing
+        self.own_densities = own_densities
+        self._bodies: dict[str, Part] = {}
+        self._unknown: dict[str, str] = {}
+
+    def part(self, written: str) -> Part:
+        """What a path means, with or without the name of the root."""
+        path, kind = self._find(written)
+        if kind == "geometry":
+            region = region_alone(self.model, path)
+            if not region:
+                raise self._missing(written, "encloses no area: its curves do not close")
+            return _measured(path, kind, region)
+        inside = [b for b in self.drawing.bodies if b.path == path or b.path.startswith(f"{path}.")]
+        if len(inside) == 1 and inside[0].path == path:
+            return self.body(inside[0])
+        if inside and (len(inside) > 1 or path not in self.drawing.regions):
+            return self.of_bodies(path, inside)
+        region = self.drawing.regions.get(path, Region())
+        if not region:
+            raise self._missing(
+                written, f"is {'an' if kind[0] in 'aeiou' else 'a'} {kind} that covers no area"
+            )
+        return _measured(path, kind, region)
+
+    def body(self, body: Body) -> Part:
+        if body.path not in self._bodies:
+            self._bodies[body.path] = self._with_mass(_measured(body.path, "body", body.region), body)
+        return self._bodies[body.path]
+
+    def of_bodies(self, path: str, bodies: Sequence[Body]) -> Part:
+        """Several bodies as one; where they overlap, both count."""
+        if len(bodies) == 1 and bodies[0].path == path:
+            return self.body(bodies[0])
+        parts = [self.body(b) for b in bodies]
+        together = _part(path, "bodies", Region(tuple(face for b in bodies for face in b.region.faces)))
+        return replace(
+            together,
+            bodies=len(bodies),
+            box=together.box if bodies else self.drawing.box,
+            wall=min((p.wall for p in parts if p.wall), key=lambda w: w.length, default=None),
+            gap=min((p.gap for p in parts if p.gap), key=lambda w: w.length, default=None),
+            volume=_total([p.volume for p in parts]),
+            mass=_total([p.mass for p in parts]),
+        )
+
+    def _with_mass(self, part: Part, body: Body) -> Part:
+        thickness, material = body.style.thickness, body.style.material
+        volume = None if thickness is None else part.area * thickness
+        known = None if material is None else density(material, self.own_densities)
+        if material is not None and known is None and volume is not None:
+            self._unknown.setdefault(material, part.path)
+        mass = None if volume is None or known is None else volume * known * 1e-6  # kg/m³ is 1e-6 g/mm³
+        return replace(
+            part, bodies=1, material=material, density=known, thickness=thickness, volume=volume, mass=mass
+        )
+
+    def notes(self) -> Iterator[Diagnostic]:
+        """One for each material whose density is not known."""
+        for material, path in self._unknown.items():
+            near = similar(material)
+            structure = self.model.root.find(path)
+            yield Diagnostic(
+                "N0731",
+                f"the density of `{material}` is not known, so `{path}` has no mass",
+                structure.span if structure else None,
+                "made of it",
+                hints=(
+                    *([f"did you mean {' or '.join(f'`{name}`' for name in near)}?"] if near else []),
+                    f'say it in kg/m³: `--density "{material}=1200"`',
+                ),
+            )
+
+    def _find(self, written: str) -> tuple[str, str]:
+        """The full path of what is meant, and its kind."""
+        known = self._known()
+        root = self.model.root.path
+        for path in (written, f"{root}.{written}"):
+            if (found := find(path, known)) is not None:
+                return found, known[found]
+        raise self._missing(written, "")
+
+    def _known(self) -> dict[str, str]:
+        """Kinds of all that has a name."""
+        structures = list(self.model.root.walk())
+        known = {g.path: "geometry" for s in structures for top in s.drawn for g in top.walk()}
+        return known | {s.path: s.kind for s in structures}
+
+    def _missing(self, written: str, reason: str) -> NothingThereError:
+        known = self._known()
+        root = f"{self.model.root.path}."
+        names = {name: path for path in known for name in (path.rpartition(".")[2], path.removeprefix(root))}
+        near = [] if reason else [names.get(name, name) for name in nearest(written, [*known, *names], 3)]
+        covering = [b.path for b in self.drawing.bodies]
+        covering += [path for path, region in self.drawing.regions.items() if region]
+        return NothingThereError(written, reason, list(dict.fromkeys(near)), list(dict.fromkeys(covering)))
+
+
+def _total(values: Sequence[float | None]) -> float | None:
+    known = [value for value in values if value is not None]
+    return sum(known) if known and len(known) == len(values) else None
+
+
+def _measured(path: str, kind: str, region: Region) -> Part:
+    """A region with its thin places."""
+    checkpoint()
+    wall, gap = (Width(c.length, c.a, c.b, path) if c else None for c in widths(region))
+    return replace(_part(path, kind, region), wall=wall, gap=gap)
+
+
+def _part(path: str, kind: str, region: Region) -> Part:
+    found = measure(region)
+    faces = len(region.faces)
+    squares = inertia(region, found.centroid)
+    return Part(
+        path,
+        kind,
+        found.area,
+        found.perimeter,
+        found.centroid,
+        squares,
+        found.box,
+        faces,
+        found.loops - faces,
+    )

@@ -1,6 +1,0 @@
-"""Completion: what may be written at a place, the likeliest first."""
-
-from aidl_lang.ide.completion.complete import complete
-from aidl_lang.ide.completion.item import MOST, Completion
-
-__all__ = ["MOST", "Completion", "complete"]

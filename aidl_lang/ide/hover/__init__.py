@@ -1,5 +1,0 @@
-"""Hover: what a word means, its type, and what it came out as."""
-
-from aidl_lang.ide.hover.hover import Hover, hover
-
-__all__ = ["Hover", "hover"]

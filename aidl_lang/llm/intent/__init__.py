@@ -1,8 +1,0 @@
-"""What a conversation meant and lost: noticed, named, and put back where it fits."""
-
-from aidl_lang.llm.intent.inventory import Kind
-from aidl_lang.llm.intent.ledger import Ledger, Restored
-from aidl_lang.llm.intent.loss import Loss
-from aidl_lang.llm.intent.wording import request
-
-__all__ = ["Kind", "Ledger", "Loss", "Restored", "request"]

@@ -1,1 +1,0 @@
-"""The language server: what `aidl_lang.ide` knows, over the Language Server Protocol."""

@@ -1,0 +1,476 @@
+"""The syntax tree: frozen nodes with spans.
+
+Nodes compare and hash by identity, so that passes can keep tables keyed by node; `same` compares two
+trees by content, leaving places and comments aside.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import field
+from typing import TypeAlias
+
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile, Span
+
+
+@record(eq=False, repr=False, kw_only=True)
+class Node:
+    span: Span = field(repr=False)
+
+    def __repr__(self) -> str:
+        """As dataclasses have it, without the span; one for all, as making one for each slows the start."""
+        shown = (f"{f.name}={getattr(self, f.name)!r}" for f in dataclasses.fields(self) if f.repr)
+        return f"{type(self).__name__}({', '.join(shown)})"
+
+
+@record(eq=False, repr=False)
+class Identifier(Node):
+    """A name at the place where it is written (a definition, a member, an argument's name)."""
+
+    text: str
+
+
+# --- Expressions ---------------------------------------------------------------------------------
+
+
+@record(eq=False, repr=False)
+class Number(Node):
+    """`value` is the number as written, without its unit applied; `text` its digits, for the printer."""
+
+    value: float
+    unit: str | None
+    text: str
+
+
+@record(eq=False, repr=False)
+class String(Node):
+    value: str
+
+
+@record(eq=False, repr=False)
+class Boolean(Node):
+    value: bool
+
+
+@record(eq=False, repr=False)
+class Name(Node):
+    text: str
+
+
+@record(eq=False, repr=False)
+class Member(Node):
+    """`value.name`"""
+
+    value: Expression
+    name: Identifier
+
+
+@record(eq=False, repr=False)
+class Index(Node):
+    """`value[index]`"""
+
+    value: Expression
+    index: Expression
+
+
+@record(eq=False, repr=False)
+class Argument(Node):
+    name: Identifier | None
+    value: Expression
+
+
+@record(eq=False, repr=False)
+class Call(Node):
+    """`callee(…)`, or `receiver.callee(…)`, which is the same call with the receiver as first argument."""
+
+    callee: Identifier
+    receiver: Expression | None
+    arguments: tuple[Argument, ...]
+
+
+@record(eq=False, repr=False)
+class Point(Node):
+    """`(x, y)`"""
+
+    x: Expression
+    y: Expression
+
+
+@record(eq=False, repr=False)
+class List(Node):
+    """`[a, b, …]`; with two numbers where a point is expected it is a point."""
+
+    items: tuple[Expression, ...]
+
+
+@record(eq=False, repr=False)
+class Comprehension(Node):
+    """`[element for variable in iterable if condition]`"""
+
+    element: Expression
+    variables: tuple[Identifier, ...]
+    iterable: Expression
+    condition: Expression | None
+
+
+@record(eq=False, repr=False)
+class Unary(Node):
+    """`operator` is `-`, `+` or `not`."""
+
+    operator: str
+    operand: Expression
+
+
+@record(eq=False, repr=False)
+class Binary(Node):
+    """`operator` is one of `+ - * / % ^ and or`."""
+
+    operator: str
+    left: Expression
+    right: Expression
+
+
+@record(eq=False, repr=False)
+class Comparison(Node):
+    """A chain `a <= b < c`: one operand more than operators (`== != <= >= < >`)."""
+
+    operands: tuple[Expression, ...]
+    operators: tuple[str, ...]
+
+
+@record(eq=False, repr=False)
+class Membership(Node):
+    """`value in range`"""
+
+    value: Expression
+    container: Expression
+
+
+@record(eq=False, repr=False)
+class Range(Node):
+    """`start..end` (both ends) or `start..<end` (without the last); what is run through may have a `step`."""
+
+    start: Expression
+    end: Expression
+    exclusive: bool
+    step: Expression | None = None
+
+
+@record(eq=False, repr=False)
+class Conditional(Node):
+    """`if test then a else b`, also written `a if test else b`."""
+
+    test: Expression
+    then: Expression
+    otherwise: Expression
+
+
+Expression: TypeAlias = (
+    Number
+    | String
+    | Boolean
+    | Name
+    | Member
+    | Index
+    | Call
+    | Point
+    | List
+    | Comprehension
+    | Unary
+    | Binary
+    | Comparison
+    | Membership
+    | Range
+    | Conditional
+)
+
+
+# --- Statements ----------------------------------------------------------------------------------
+
+
+@record(eq=False, repr=False)
+class Parameter(Node):
+    """A parameter of a template, shape, constraint or function: `name: type = default`."""
+
+    name: Identifier
+    type: Identifier | None
+    default: Expression | None
+
+
+@record(eq=False, repr=False)
+class Placement(Node):
+    """`at POINT` and `rotated ANGLE`, each at most once."""
+
+    at: Expression | None
+    rotated: Expression | None
+
+
+@record(eq=False, repr=False)
+class Attribute(Node):
+    """`@name(arguments)`"""
+
+    name: Identifier
+    arguments: tuple[Argument, ...]
+
+
+@record(eq=False, repr=False)
+class Block(Node):
+    """`{ statements }`"""
+
+    statements: tuple[Statement, ...]
+
+
+@record(eq=False, repr=False)
+class Structure(Node):
+    """`KIND NAME[index] { … }`; with `parameters` (even an empty list) it is a template.
+
+    `kind` is canonical (assembly, solid, hole, drawing), `kind_word` as written (`part`, `cut`, …).
+    """
+
+    kind: str
+    kind_word: Identifier
+    name: Identifier
+    indices: tuple[Expression, ...]
+    parameters: tuple[Parameter, ...] | None
+    placement: Placement | None
+    attributes: tuple[Attribute, ...]
+    body: Block
+    doc: str | None
+
+
+@record(eq=False, repr=False)
+class Param(Node):
+    """`param name = value in domain step step`"""
+
+    name: Identifier
+    value: Expression
+    domain: Expression | None
+    step: Expression | None
+    doc: str | None
+
+
+@record(eq=False, repr=False)
+class Var(Node):
+    name: Identifier
+    value: Expression
+    doc: str | None
+
+
+@record(eq=False, repr=False)
+class Let(Node):
+    name: Identifier
+    value: Expression
+    doc: str | None
+
+
+@record(eq=False, repr=False)
+class Assign(Node):
+    """`name[index] = value at … rotated …`, or `construction name = value`."""
+
+    name: Identifier
+    indices: tuple[Expression, ...]
+    value: Expression
+    placement: Placement | None
+    construction: bool
+    attributes: tuple[Attribute, ...]
+    doc: str | None
+
+
+@record(eq=False, repr=False)
+class ExpressionStatement(Node):
+    """A bare expression: a constraint without its keyword, or an operation such as `rotate(r, 30deg)`."""
+
+    value: Expression
+
+
+@record(eq=False, repr=False)
+class Constrain(Node):
+    """`constrain EXPR` (one item, no block) or `constrain { … }`.
+
+    Items are ExpressionStatement, Equation (`a.x = b`, understood as `==`), Assign, For, If, Let, Prefer.
+    """
+
+    items: Block
+    braces: bool
+
+
+@record(eq=False, repr=False)
+class Equation(Node):
+    """`left = right` inside `constrain`, which means `==`."""
+
+    left: Expression
+    right: Expression
+
+    @property
+    def meant(self) -> Comparison:
+        return Comparison((self.left, self.right), ("==",), span=self.span)
+
+
+@record(eq=False, repr=False)
+class Prefer(Node):
+    value: Expression
+    weight: Expression | None
+
+
+@record(eq=False, repr=False)
+class Assert(Node):
+    test: Expression
+    message: Expression | None
+
+
+@record(eq=False, repr=False)
+class For(Node):
+    variables: tuple[Identifier, ...]
+    iterable: Expression
+    body: Block
+
+
+@record(eq=False, repr=False)
+class If(Node):
+    """`otherwise` is a Block; `else if` is a block that holds one If."""
+
+    test: Expression
+    then: Block
+    otherwise: Block | None
+
+
+@record(eq=False, repr=False)
+class Import(Node):
+    """`import "path"`, `import "path" as alias`, `import a, b from "path"` (`names`)."""
+
+    path: String
+    alias: Identifier | None
+    names: tuple[Identifier, ...]
+
+
+@record(eq=False, repr=False)
+class FunctionDefinition(Node):
+    """`fn name(parameters) = value`"""
+
+    name: Identifier
+    parameters: tuple[Parameter, ...]
+    value: Expression
+    doc: str | None
+
+
+@record(eq=False, repr=False)
+class ShapeDefinition(Node):
+    """`shape name(parameters) { … }`"""
+
+    name: Identifier
+    parameters: tuple[Parameter, ...]
+    body: Block
+    doc: str | None
+
+
+@record(eq=False, repr=False)
+class ConstraintDefinition(Node):
+    """`constraint name(parameters) { … }`; the items of the body are those of `constrain`."""
+
+    name: Identifier
+    parameters: tuple[Parameter, ...]
+    body: Block
+    doc: str | None
+
+
+@record(eq=False, repr=False)
+class Alias(Node):
+    """`alias name = target`"""
+
+    name: Identifier
+    target: Identifier
+    doc: str | None
+
+
+@record(eq=False, repr=False)
+class Todo(Node):
+    """`todo`: this body is to be filled in later, and its author knows."""
+
+
+Statement: TypeAlias = (
+    Structure
+    | Param
+    | Var
+    | Let
+    | Assign
+    | ExpressionStatement
+    | Constrain
+    | Equation
+    | Prefer
+    | Assert
+    | For
+    | If
+    | Import
+    | FunctionDefinition
+    | ShapeDefinition
+    | ConstraintDefinition
+    | Alias
+    | Todo
+)
+
+DEFINITIONS = (
+    Import,
+    Param,
+    Let,
+    Alias,
+    FunctionDefinition,
+    ShapeDefinition,
+    ConstraintDefinition,
+    Todo,
+)
+"""What may stand beside the one structure of a file without making an assembly around both."""
+
+Callable: TypeAlias = FunctionDefinition | ShapeDefinition | ConstraintDefinition | Structure
+
+
+@record()
+class Comment:
+    """A comment with its delimiters, kept for the printer."""
+
+    span: Span = field(repr=False)
+    text: str
+
+
+@record(eq=False, repr=False)
+class Module(Node):
+    """A whole file. `comments` are all comments in text order, `///` ones included."""
+
+    source: SourceFile
+    statements: tuple[Statement, ...]
+    comments: tuple[Comment, ...]
+
+
+def children(node: Node) -> Iterator[Node]:
+    """The nodes directly below one, in text order of their fields."""
+    names: tuple[str, ...] = node.__match_args__  # every field but the span
+    for name in names:
+        value = getattr(node, name)
+        if isinstance(value, Node):
+            yield value
+        elif type(value) is tuple:
+            for item in value:
+                if isinstance(item, Node):
+                    yield item
+
+
+def walk(node: Node) -> Iterator[Node]:
+    """A node and all nodes below it, parents first."""
+    stack = [node]
+    while stack:
+        yield (top := stack.pop())
+        stack.extend(reversed(list(children(top))))
+
+
+def same(a: object, b: object) -> bool:
+    """Whether two trees have the same content, spans, comments and source aside."""
+    if isinstance(a, Node) and isinstance(b, Node):
+        return type(a) is type(b) and all(
+            same(getattr(a, f.name), getattr(b, f.name))
+            for f in dataclasses.fields(a)
+            if f.name not in ("span", "comments", "source")
+        )
+    if isinstance(a, tuple) and isinstance(b, tuple):
+        return len(a) == len(b) and all(map(same, a, b))
+    return a == b

@@ -1,0 +1,240 @@
+"""Expressions in canonical form: parentheses only where they are needed, line breaks where they help.
+
+An expression becomes a `Doc`: text with groups in it, the bracketed lists that may be broken over lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
+
+WIDTH = 100
+INDENT = 4
+
+# How tightly an expression binds; an operand that binds less than its place asks for is put in parentheses.
+CHOICE, OR, AND, NOT, CONDITION, SUM, PRODUCT, SIGN, POWER, ATOM = range(10)
+
+_BINARY = {
+    "or": (OR, OR, AND),
+    "and": (AND, AND, NOT),
+    "+": (SUM, SUM, PRODUCT),
+    "-": (SUM, SUM, PRODUCT),
+    "*": (PRODUCT, PRODUCT, SIGN),
+    "/": (PRODUCT, PRODUCT, SIGN),
+    "%": (PRODUCT, PRODUCT, SIGN),
+    "^": (POWER, ATOM, SIGN),
+}  # operator: its own level, that of the left operand, that of the right
+
+
+@record()
+class Group:
+    """`opening item, item closing`: on one line, all items on one line of their own, or each on its own."""
+
+    opening: str
+    items: tuple[Doc, ...]
+    closing: str
+
+
+@record()
+class Doc:
+    """Pieces of text and groups, in order; `width` is that of the whole on one line."""
+
+    pieces: tuple[str | Group, ...]
+    width: int
+
+    def flat(self) -> str:
+        return "".join(piece if isinstance(piece, str) else _flat_group(piece) for piece in self.pieces)
+
+
+def doc(*parts: str | Group | Doc) -> Doc:
+    """The parts one after another."""
+    pieces: list[str | Group] = []
+    width = 0
+    for part in parts:
+        if isinstance(part, Doc):
+            pieces += part.pieces
+            width += part.width
+        else:
+            pieces.append(part)
+            width += len(part) if isinstance(part, str) else _group_width(part)
+    return Doc(tuple(pieces), width)
+
+
+def _flat_group(group: Group) -> str:
+    return group.opening + ", ".join(item.flat() for item in group.items) + group.closing
+
+
+def _group_width(group: Group) -> int:
+    items = sum(item.width for item in group.items) + 2 * max(0, len(group.items) - 1)
+    return len(group.opening) + items + len(group.closing)
+
+
+def render(document: Doc, indent: int, column: int | None = None, after: int = 0) -> str:
+    """The text, beginning at `column`, with `after` more characters to follow on its last line."""
+    column = indent if column is None else column
+    if column + document.width + after <= WIDTH:
+        return document.flat()
+    out: list[str] = []
+    for i, piece in enumerate(document.pieces):
+        if isinstance(piece, str):
+            out.append(piece)
+            column += len(piece)
+            continue
+        # What must follow on the same line whatever happens: the text up to the next group, and its bracket.
+        tail = 0
+        for later in document.pieces[i + 1 :]:
+            tail += len(later) if isinstance(later, str) else len(later.opening)
+            if not isinstance(later, str):
+                break
+        else:
+            tail += after
+        if not piece.items or column + _group_width(piece) + tail <= WIDTH:
+            out.append(_flat_group(piece))
+            column += _group_width(piece)
+            continue
+        inner = indent + INDENT
+        together = ", ".join(item.flat() for item in piece.items)
+        is_short = inner + len(together) <= WIDTH
+        lines = [together] if is_short else [render(item, inner, after=1) for item in piece.items]
+        pad = "\n" + " " * inner
+        out.append(piece.opening + pad + ("," + pad).join(lines) + "\n" + " " * indent + piece.closing)
+        column = indent + len(piece.closing)
+    return "".join(out)
+
+
+class ExpressionPrinter:
+    """`names` gives spellings that differ from what was written, for names, members and callees."""
+
+    def __init__(self, names: Mapping[ast.Node, str] | None = None) -> None:
+        self.names = names or {}
+
+    def name(self, node: ast.Identifier | ast.Name) -> str:
+        return self.names.get(node, node.text)
+
+    def expression(self, node: ast.Expression, level: int = CHOICE) -> Doc:
+        """A node where at least `level` is asked for."""
+        own, document = self._print(node)
+        return document if own >= level else doc("(", document, ")")
+
+    def iterable(self, node: ast.Expression) -> Doc:
+        """What may follow `in`: a range without parentheses, or a sum."""
+        return self.expression(node, CONDITION if isinstance(node, ast.Range) else SUM)
+
+    def arguments(self, opening: str, arguments: Sequence[ast.Argument]) -> Doc:
+        items = tuple(
+            doc(f"{self.name(a.name)}: ", self.expression(a.value)) if a.name else self.expression(a.value)
+            for a in arguments
+        )
+        return doc(Group(opening, items, ")"))
+
+    def _print(self, node: ast.Expression) -> tuple[int, Doc]:  # noqa: C901 (one case a node)
+        """How tightly a node binds, and its text."""
+        match node:
+            case ast.Number():
+                return ATOM, doc(node.text + (node.unit or ""))
+            case ast.Name():
+                return ATOM, doc(self.name(node))
+            case ast.String():
+                return ATOM, doc(string_text(node.value))
+            case ast.Boolean():
+                return ATOM, doc("true" if node.value else "false")
+            case ast.Member():
+                return ATOM, doc(self._owner(node.value), f".{self.name(node.name)}")
+            case ast.Index():
+                return ATOM, doc(self._owner(node.value), "[", self.expression(node.index), "]")
+            case ast.Call():
+                owner = doc(self._owner(node.receiver), ".") if node.receiver else doc()
+                return ATOM, doc(owner, self.arguments(self.name(node.callee) + "(", node.arguments))
+            case ast.Point():
+                return ATOM, doc("(", self.expression(node.x), ", ", self.expression(node.y), ")")
+            case ast.List():
+                return ATOM, doc(Group("[", tuple(map(self.expression, node.items)), "]"))
+            case ast.Comprehension():
+                variables = ", ".join(map(self.name, node.variables))
+                test = doc(" if ", self.expression(node.condition, OR)) if node.condition else doc()
+                element, iterable = self.expression(node.element), self.iterable(node.iterable)
+                return ATOM, doc("[", element, f" for {variables} in ", iterable, test, "]")
+            case ast.Unary(operator="not"):
+                return NOT, doc("not ", self.expression(node.operand, NOT))
+            case ast.Unary():
+                return SIGN, doc(node.operator, self.expression(node.operand, SIGN))
+            case ast.Binary():
+                own, left, right = _BINARY[node.operator]
+                operands = self.expression(node.left, left), self.expression(node.right, right)
+                return own, doc(operands[0], f" {node.operator} ", operands[1])
+            case ast.Comparison():
+                parts = [self.expression(node.operands[0], SUM)]
+                for operator, operand in zip(node.operators, node.operands[1:], strict=True):
+                    parts.append(doc(f" {operator} ", self.expression(operand, SUM)))
+                return CONDITION, doc(*parts)
+            case ast.Membership():
+                return CONDITION, doc(self.expression(node.value, SUM), " in ", self.iterable(node.container))
+            case ast.Range():
+                start, end = self.expression(node.start, SUM), self.expression(node.end, SUM)
+                dots = "..<" if node.exclusive else ".."
+                step = doc(" step ", self.expression(node.step, SUM)) if node.step else doc()
+                return CONDITION, doc(start, dots + (" " if end.flat().startswith(".") else ""), end, step)
+            case ast.Conditional():
+                then, otherwise = self.expression(node.then), self.expression(node.otherwise)
+                return CHOICE, doc("if ", self.expression(node.test, OR), " then ", then, " else ", otherwise)
+
+    def _owner(self, node: ast.Expression) -> Doc:
+        """What stands before `.` or `[`; a number would swallow the point."""
+        document = self.expression(node, ATOM)
+        return doc("(", document, ")") if isinstance(node, ast.Number) else document
+
+
+_ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r", "\0": "\\0"})
+
+
+def string_text(value: str) -> str:
+    """A text with its quotes."""
+    return '"' + value.translate(_ESCAPES) + '"'
+
+
+def begins_statement(node: ast.Expression) -> bool:
+    """Whether an expression, as printed, may stand as a statement of its own."""
+    match node:
+        case ast.Binary(operator="and" | "or"):
+            left = _BINARY[node.operator][1]
+            needs_parentheses = isinstance(node.left, ast.Conditional) or (
+                isinstance(node.left, ast.Binary) and _BINARY[node.left.operator][0] < left
+            )
+            return needs_parentheses or begins_statement(node.left)
+        case ast.Comparison():
+            return _begins(node.operands[0], SUM)
+        case ast.Membership():
+            return _begins(node.value, SUM)
+        case ast.Call():
+            return node.receiver is None or _begins(node.receiver, ATOM)
+    return False
+
+
+def _begins(node: ast.Expression, level: int) -> bool:
+    """Whether the text of an operand begins with what may begin a statement; parentheses may."""
+    match node:
+        case ast.Name() | ast.Number() | ast.Point():
+            return True
+        case ast.Member() | ast.Index():
+            return _begins(node.value, ATOM)
+        case ast.Call():
+            return node.receiver is None or _begins(node.receiver, ATOM)
+        case ast.Binary():
+            own, left, _ = _BINARY[node.operator]
+            return own < level or _begins(node.left, left)
+        case ast.Unary(operator="not"):
+            return level > NOT
+        case ast.Unary():
+            return level > SIGN
+        case ast.Comparison() | ast.Membership() | ast.Range():
+            return level > CONDITION
+        case ast.Conditional():
+            return level > CHOICE
+    return False
+
+
+def format_expression(node: ast.Expression, names: Mapping[ast.Node, str] | None = None) -> str:
+    """The canonical text of an expression, on one line."""
+    return ExpressionPrinter(names).expression(node).flat()

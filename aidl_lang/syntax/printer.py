@@ -1,0 +1,376 @@
+"""The canonical form of a program: `aidl fmt`.
+
+Formatting twice gives what formatting once gave; all comments stay, and at most one blank line between
+statements. Synonyms of the syntax become one spelling; numbers stay as they were written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+
+from aidl_lang.common.records import record
+from aidl_lang.parser import Parsed
+from aidl_lang.syntax import ast
+from aidl_lang.syntax.expression_printer import (
+    CONDITION,
+    INDENT,
+    OR,
+    SUM,
+    WIDTH,
+    Doc,
+    ExpressionPrinter,
+    Group,
+    begins_statement,
+    doc,
+    format_expression,
+    render,
+    string_text,
+)
+
+__all__ = ["format_expression", "format_module", "format_statement"]
+
+
+def format_module(
+    parsed: Parsed | ast.Module,
+    names: Mapping[ast.Node, str] | None = None,
+    stated: Collection[ast.Node] = (),
+    declaring: Collection[ast.Node] = (),
+) -> str:
+    """The text of a program in canonical form.
+
+    `stated` are calls known to state a constraint, which get the keyword where they stand alone, `declaring`
+    equations that mean nothing as such and stay as they are.
+    `names` maps nodes (names, identifiers of members and callees) to the spelling to print in their place.
+    What could not be parsed is not in the tree: do not write the text back over a program with syntax errors.
+    """
+    module = parsed if isinstance(parsed, ast.Module) else parsed.module
+    printer = _Printer(module, names, stated, declaring)
+    printer.statements(module.statements, 0, len(module.source.text), 0, constraints=False)
+    return printer.text()
+
+
+def format_statement(statement: ast.Statement, names: Mapping[ast.Node, str] | None = None) -> str:
+    """The text of one statement, without comments."""
+    module = ast.Module(statement.span.source, (statement,), (), span=statement.span)
+    return format_module(module, names).rstrip("\n")
+
+
+@record(frozen=False)
+class _Line:
+    """A line of output; `comment` follows it, aligned with those of the lines around it."""
+
+    text: str
+    comment: str = ""
+
+
+class _Printer:
+    def __init__(
+        self,
+        module: ast.Module,
+        names: Mapping[ast.Node, str] | None,
+        stated: Collection[ast.Node],
+        declaring: Collection[ast.Node],
+    ) -> None:
+        self.stated = stated
+        self.declaring = declaring
+        self.source = module.source.text
+        self.comments = module.comments
+        self.next_comment = 0
+        self.lines: list[_Line] = []
+        self.expressions = ExpressionPrinter(names)
+
+    def text(self) -> str:
+        """All lines, the trailing comments of neighbouring lines in one column."""
+        out: list[str] = []
+        run: list[_Line] = []
+        for line in [*self.lines, _Line("")]:
+            if line.comment:
+                run.append(line)
+                continue
+            column = max((len(one.text) for one in run if len(one.text) <= WIDTH), default=0)
+            out += [f"{one.text.ljust(column)}  {one.comment}" for one in run]
+            run = []
+            out.append(line.text)
+        out.pop()
+        return "".join(line.rstrip() + "\n" for line in out)
+
+    # --- Lists of statements and the comments between them ---
+
+    def statements(
+        self, statements: Sequence[ast.Statement], start: int, end: int, indent: int, constraints: bool
+    ) -> None:
+        """The statements and comments of the range `start:end`, each on its own lines."""
+        place, first = start, True
+        for statement in statements:
+            place, first = self._comments_before(statement.span.start, place, indent, first)
+            self._blank_line(place, statement.span.start, first)
+            first = False
+            mark = len(self.lines)
+            self._statement(statement, indent, constraints)
+            self._comments_inside(statement, indent, mark)
+            place = self._trailing_comment(max(place, statement.span.end))
+        self._comments_before(end, place, indent, first)
+
+    def _comments_before(self, offset: int, place: int, indent: int, first: bool) -> tuple[int, bool]:
+        """Print the comments up to an offset on lines of their own."""
+        while (comment := self._peek(offset)) is not None:
+            self._blank_line(place, comment.span.start, first)
+            first = False
+            self.lines.append(_Line(" " * indent + comment.text.rstrip()))
+            self.next_comment += 1
+            place = comment.span.end
+        return place, first
+
+    def _peek(self, before: int) -> ast.Comment | None:
+        """The next comment, if it begins before an offset."""
+        if self.next_comment < len(self.comments) and self.comments[self.next_comment].span.start < before:
+            return self.comments[self.next_comment]
+        return None
+
+    def _blank_line(self, place: int, start: int, first: bool) -> None:
+        if not first and self.source.count("\n", place, start) > 1:
+            self.lines.append(_Line(""))
+
+    def _comments_inside(self, statement: ast.Statement, indent: int, mark: int) -> None:
+        """Comments in the middle of a statement move in front of it."""
+        moved = []
+        while (comment := self._peek(statement.span.end)) is not None:
+            moved.append(_Line(" " * indent + comment.text.rstrip()))
+            self.next_comment += 1
+        self.lines[mark:mark] = moved
+
+    def _trailing_comment(self, place: int) -> int:
+        """Put the comment that follows on the same line behind the last line; where reading goes on."""
+        comment = self._peek(len(self.source) + 1)
+        if comment is None or comment.span.start < place or "\n" in comment.text:
+            return place
+        between = self.source[place : comment.span.start]
+        if between.strip(" \t,;") or self.lines[-1].comment:
+            return place
+        self.lines[-1].comment = comment.text.rstrip()
+        self.next_comment += 1
+        return comment.span.end
+
+    def _has_comment(self, start: int, end: int) -> bool:
+        comment = self._peek(end)
+        return comment is not None and comment.span.end > start
+
+    # --- One statement ---
+
+    def _statement(self, node: ast.Statement, indent: int, constraints: bool) -> None:
+        if isinstance(node, ast.Structure | ast.Assign):
+            for attribute in node.attributes:
+                self._leaf(self._attribute(attribute), indent)
+        if not self._blocks(node):
+            document = self._head(node, constraints)
+            if isinstance(node, ast.Assert) and node.message and indent + document.width > WIDTH:
+                self._long_assert(node, node.message, indent)
+            elif isinstance(node, ast.FunctionDefinition) and indent + document.width > WIDTH:
+                self._long_function(node, document, indent)
+            else:
+                self._leaf(document, indent)
+            return
+        short = self._one_line(node, constraints)
+        if short is not None and indent + len(short) <= WIDTH:
+            self.lines.append(_Line(" " * indent + short))
+            return
+        self._long(node, indent, constraints)
+
+    def _leaf(self, document: Doc, indent: int) -> None:
+        text = render(document, indent)
+        self.lines += [_Line(line) for line in (" " * indent + text).split("\n")]
+
+    def _long_assert(self, node: ast.Assert, message: ast.Expression, indent: int) -> None:
+        """The reason on a line of its own, before the test is broken up."""
+        test = doc("assert ", self.expressions.expression(node.test, OR), ",")
+        self._leaf(test, indent)
+        self._leaf(self.expressions.expression(message, OR), indent + INDENT)
+
+    def _long_function(self, node: ast.FunctionDefinition, document: Doc, indent: int) -> None:
+        """The value on a line of its own if that is enough."""
+        head = doc("fn ", self._parameters(node.name, node.parameters), " =")
+        value = self.expressions.expression(node.value)
+        if indent + head.width <= WIDTH and indent + INDENT + value.width <= WIDTH:
+            self._leaf(head, indent)
+            self._leaf(value, indent + INDENT)
+        else:
+            self._leaf(document, indent)
+
+    def _long(self, node: ast.Statement, indent: int, constraints: bool) -> None:
+        """A statement whose blocks stand on lines of their own."""
+        head = render(doc(self._head(node, constraints), " {"), indent)
+        self.lines += [_Line(line) for line in (" " * indent + head).split("\n")]
+        block, *others = self._blocks(node)
+        inner = constraints or isinstance(node, ast.Constrain | ast.ConstraintDefinition)
+        self._block(block, indent, inner)
+        while others:
+            block = others[0]
+            chained = block.statements[0] if len(block.statements) == 1 else None
+            if isinstance(chained, ast.If) and chained.span == block.span:
+                test = self.expressions.expression(chained.test, OR)
+                self._continue(render(doc("} else if ", test, " {"), indent), indent)
+                block, *others = self._blocks(chained)
+            else:
+                self._continue("} else {", indent)
+                others = []
+            self._block(block, indent, inner)
+        self.lines.append(_Line(" " * indent + "}"))
+
+    def _continue(self, text: str, indent: int) -> None:
+        self.lines += [_Line(line) for line in (" " * indent + text).split("\n")]
+
+    def _block(self, block: ast.Block, indent: int, constraints: bool) -> None:
+        """What stands between the braces."""
+        start, end = block.span.start + 1, max(block.span.end - 1, block.span.start + 1)
+        # Comments of the head stand before its brace in the text; they move into the block.
+        place = self._trailing_comment(start) if self._first_line_comment(start, end) else start
+        self.statements(block.statements, place, end, indent + INDENT, constraints)
+
+    def _first_line_comment(self, start: int, end: int) -> bool:
+        comment = self._peek(end)
+        return comment is not None and comment.span.start >= start
+
+    def _one_line(self, node: ast.Statement, constraints: bool) -> str | None:
+        """The statement on one line, if its blocks were written so; attributes aside."""
+        for block in self._blocks(node):
+            if "\n" in block.span.text or self._has_comment(node.span.start, block.span.end):
+                return None
+        return self._flat(node, constraints)
+
+    def _flat(self, node: ast.Statement, constraints: bool) -> str:
+        head = self._head(node, constraints).flat()
+        blocks = self._blocks(node)
+        if not blocks:
+            return head
+        inner = constraints or isinstance(node, ast.Constrain | ast.ConstraintDefinition)
+        text = f"{head} {self._flat_block(blocks[0], inner)}"
+        if len(blocks) == 2:
+            chained = blocks[1].statements[0] if len(blocks[1].statements) == 1 else None
+            if isinstance(chained, ast.If) and chained.span == blocks[1].span:
+                text += f" else {self._flat(chained, inner)}"
+            else:
+                text += f" else {self._flat_block(blocks[1], inner)}"
+        return text
+
+    def _flat_block(self, block: ast.Block, constraints: bool) -> str:
+        parts = []
+        for statement in block.statements:
+            attributes: tuple[str, ...] = ()
+            if isinstance(statement, ast.Structure | ast.Assign):
+                attributes = tuple(self._attribute(a).flat() + " " for a in statement.attributes)
+            parts.append("".join(attributes) + self._flat(statement, constraints))
+        return "{ " + "; ".join(parts) + " }" if parts else "{}"
+
+    def _blocks(self, node: ast.Statement) -> list[ast.Block]:
+        """The blocks of a statement, in order."""
+        match node:
+            case ast.Structure() | ast.For() | ast.ShapeDefinition() | ast.ConstraintDefinition():
+                return [node.body]
+            case ast.If():
+                return [node.then] + ([node.otherwise] if node.otherwise else [])
+            case ast.Constrain(braces=True):
+                return [node.items]
+        return []
+
+    # --- The text of a statement up to its block ---
+
+    def _head(self, node: ast.Statement, constraints: bool) -> Doc:  # noqa: C901 (one case a node)
+        name, expression = self.expressions.name, self.expressions.expression
+        match node:
+            case ast.Structure():
+                return self._structure_head(node)
+            case ast.Assign():
+                level = OR if node.placement else 0
+                word = "construction " if node.construction else ""
+                target = doc(word, name(node.name), *self._indices(node.indices))
+                return doc(target, " = ", expression(node.value, level), *self._placement(node.placement))
+            case ast.Param():
+                level = CONDITION if isinstance(node.value, ast.Comparison) else SUM
+                domain = doc(" in ", self.expressions.iterable(node.domain)) if node.domain else doc()
+                step = doc(" step ", expression(node.step, SUM)) if node.step else doc()
+                return doc(f"param {name(node.name)} = ", expression(node.value, level), domain, step)
+            case ast.Var():
+                return doc(f"var {name(node.name)} = ", expression(node.value))
+            case ast.Let():
+                return doc(f"let {name(node.name)} = ", expression(node.value))
+            case ast.ExpressionStatement():
+                is_call = isinstance(node.value, ast.Call) and node.value not in self.stated
+                bare = begins_statement(node.value) and (constraints or is_call)
+                return doc("" if bare else "constrain ", expression(node.value))
+            case ast.Equation():
+                return doc("" if begins_statement(node.meant) else "constrain ", self._equation(node))
+            case ast.Constrain():
+                return doc("constrain") if node.braces else self._constrain(node)
+            case ast.Prefer():
+                weight = doc(" weight ", expression(node.weight, SUM)) if node.weight else doc()
+                return doc("prefer ", expression(node.value, OR), weight)
+            case ast.Assert():
+                message = doc(", ", expression(node.message, OR)) if node.message else doc()
+                return doc("assert ", expression(node.test, OR), message)
+            case ast.For():
+                variables = ", ".join(map(name, node.variables))
+                return doc(f"for {variables} in ", self.expressions.iterable(node.iterable))
+            case ast.If():
+                return doc("if ", expression(node.test, OR))
+            case ast.Import():
+                return self._import(node)
+            case ast.FunctionDefinition():
+                return doc("fn ", self._parameters(node.name, node.parameters), " = ", expression(node.value))
+            case ast.ShapeDefinition():
+                return doc("shape ", self._parameters(node.name, node.parameters))
+            case ast.ConstraintDefinition():
+                return doc("constraint ", self._parameters(node.name, node.parameters))
+            case ast.Alias():
+                return doc(f"alias {name(node.name)} = {name(node.target)}")
+            case ast.Todo():
+                return doc("todo")
+
+    def _structure_head(self, node: ast.Structure) -> Doc:
+        if node.parameters is None:
+            target = doc(self.expressions.name(node.name), *self._indices(node.indices))
+        else:
+            target = self._parameters(node.name, node.parameters)
+        return doc(f"{node.kind} ", target, *self._placement(node.placement))
+
+    def _parameters(self, name: ast.Identifier, parameters: Sequence[ast.Parameter]) -> Doc:
+        items = []
+        for p in parameters:
+            kind = f": {self.expressions.name(p.type)}" if p.type else ""
+            default = doc(" = ", self.expressions.expression(p.default)) if p.default else doc()
+            items.append(doc(self.expressions.name(p.name) + kind, default))
+        return doc(Group(self.expressions.name(name) + "(", tuple(items), ")"))
+
+    def _indices(self, indices: Sequence[ast.Expression]) -> list[Doc]:
+        return [doc("[", self.expressions.expression(index), "]") for index in indices]
+
+    def _placement(self, placement: ast.Placement | None) -> list[Doc]:
+        if placement is None:
+            return []
+        at = [doc(" at ", self.expressions.expression(placement.at, SUM))] if placement.at else []
+        rotated = placement.rotated
+        return at + ([doc(" rotated ", self.expressions.expression(rotated, SUM))] if rotated else [])
+
+    def _attribute(self, node: ast.Attribute) -> Doc:
+        name = "@" + self.expressions.name(node.name)
+        return self.expressions.arguments(name + "(", node.arguments) if node.arguments else doc(name)
+
+    def _constrain(self, node: ast.Constrain) -> Doc:
+        """`constrain` with its one item."""
+        item = node.items.statements[0]
+        if isinstance(item, ast.Equation):
+            return doc("constrain ", self._equation(item))
+        assert isinstance(item, ast.ExpressionStatement)
+        return doc("constrain ", self.expressions.expression(item.value))
+
+    def _equation(self, node: ast.Equation) -> Doc:
+        expression = self.expressions.expression
+        if node in self.declaring:
+            return doc(expression(node.left, SUM), " = ", expression(node.right, OR))
+        return expression(node.meant)
+
+    def _import(self, node: ast.Import) -> Doc:
+        path = string_text(node.path.value)
+        if node.names:
+            return doc(f"import {', '.join(map(self.expressions.name, node.names))} from {path}")
+        alias = f" as {self.expressions.name(node.alias)}" if node.alias else ""
+        return doc(f"import {path}{alias}")

@@ -1,0 +1,125 @@
+"""Finding what fits a query among the names of the library and the pages on diagnostics.
+
+A document counts for the words of the query that it has: more in its name than in its text, and more for
+words that few documents have (the inverse document frequency of text retrieval), and more if it has all of
+them.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from functools import cache
+
+from aidl_lang.common import pages
+from aidl_lang.common.records import record
+from aidl_lang.tools.agents.results import Hit
+from aidl_lang.tools.reference.collect import Entry, reference
+from aidl_lang.tools.reference.pages import forms
+
+_WORD = re.compile(r"[^\W_]+")
+_MENDED = re.compile(r"^## Mended\n+```aidl[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_ENDINGS = ("ings", "ing", "ies", "es", "ed", "s", "ly", "y")
+_SHORTEST = 3
+"""Letters of a word that are left when its ending goes."""
+_NAME, _SUMMARY, _TEXT = 6.0, 3.0, 1.0
+_IS_THE_NAME = 40.0
+_MOST_FORMS = 4
+_LONGEST_EXAMPLE = 1_200
+_STOP = frozenset(
+    _WORD.findall(
+        "a an and another are as at be by can do each for from how i in is it make of on one or other put "
+        "that the this to two want with"
+    )
+)
+
+
+@record()
+class _Document:
+    """What is searched, and how much each of its words counts."""
+
+    hit: Hit
+    names: frozenset[str]
+    weights: Mapping[str, float]
+
+
+def search(query: str, most: int) -> list[Hit]:
+    """The best fits, best first; documents that fit alike in their order."""
+    words = list(dict.fromkeys(_stems(query)))
+    documents = _documents()
+    wanted = "".join(_WORD.findall(query)).casefold()
+    scored = []
+    for number, document in enumerate(documents):
+        score = sum(_rarity(word) * document.weights.get(word, 0.0) for word in words)
+        score *= sum(word in document.weights for word in words) / max(1, len(words))
+        if wanted in document.names:
+            score += _IS_THE_NAME
+        if score:
+            scored.append((-score, number))
+    found = [documents[number].hit for _, number in sorted(scored)[:most]]
+    return found or _misspelt(query)
+
+
+def _misspelt(query: str) -> list[Hit]:
+    entry = reference().misspelt(query.strip())
+    return [_hit(entry)] if entry is not None else []
+
+
+@cache
+def _documents() -> tuple[_Document, ...]:
+    return (*map(_of_entry, reference().entries.values()), *map(_of_code, pages.codes()))
+
+
+@cache
+def _rarity(word: str) -> float:
+    documents = _documents()
+    having = sum(word in document.weights for document in documents)
+    return math.log(1.0 + len(documents) / (1 + having))
+
+
+def _of_entry(entry: Entry) -> _Document:
+    weights = _weighed(
+        *((_NAME / len(list(_stems(name)) or "1"), name) for name in (entry.name, *entry.synonyms)),
+        (_SUMMARY, f"{entry.doc.line} {entry.topic}"),
+        (_TEXT, f"{entry.doc.text} {' '.join(overload.doc.line for overload in entry.overloads)}"),
+    )
+    names = {"".join(_WORD.findall(name)).casefold() for name in (entry.name, *entry.synonyms)}
+    return _Document(_hit(entry), frozenset(names), weights)
+
+
+def _hit(entry: Entry) -> Hit:
+    return Hit(entry.name, entry.sort, entry.doc.line, forms(entry)[:_MOST_FORMS], _short(entry.doc.example))
+
+
+def _of_code(code: str) -> _Document:
+    title, page = pages.title(code), pages.page(code)
+    mended = _MENDED.search(page)
+    prose = page.partition("\n## ")[0].partition("\n")[2]
+    hit = Hit(code, "diagnostic", title, [], _short(mended[1] if mended else ""))
+    return _Document(hit, frozenset({code.casefold()}), _weighed((_SUMMARY, title), (_TEXT, prose)))
+
+
+def _weighed(*parts: tuple[float, str]) -> dict[str, float]:
+    """The words of some texts, each with the weight of the text that counts most; repetition adds little."""
+    weights: dict[str, float] = {}
+    for weight, text in parts:
+        for word, times in Counter(_stems(text)).items():
+            weights[word] = max(weights.get(word, 0.0), weight * (1.0 + 0.1 * math.log(times)))
+    return weights
+
+
+def _stems(text: str) -> Iterator[str]:
+    """The words of a text, folded, without their endings."""
+    for word in _WORD.findall(text.casefold()):
+        if word in _STOP:
+            continue
+        ending = next((e for e in _ENDINGS if word.endswith(e) and len(word) - len(e) >= _SHORTEST), "")
+        yield word.removesuffix(ending)
+
+
+def _short(example: str) -> str:
+    if len(example) <= _LONGEST_EXAMPLE:
+        return example
+    return example[:_LONGEST_EXAMPLE].rpartition("\n")[0] + "\n// … `explain` has the rest\n"

@@ -1,0 +1,53 @@
+"""Calls in processes of their own, so that a program that hangs, crashes or devours memory harms nothing
+else.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from concurrent.futures import TimeoutError
+
+from aidl_lang.common import processes
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.render import compact
+from aidl_lang.tools.agents.calling import Answer, answer
+from aidl_lang.tools.agents.tools import Tools
+
+SECONDS = 45.0
+"""A call may take; clients wait for a minute."""
+_WORKERS = 2
+
+
+class Workers:
+    """A few processes that answer calls one after the other; one that was ended is replaced."""
+
+    def __init__(self, workshop: Tools, seconds: float = SECONDS) -> None:
+        self.workshop, self.seconds = workshop, seconds
+        self.pool = processes.pool(_WORKERS, "aidl_lang.tools.agents.calling")
+
+    async def answer(self, name: str, arguments: Mapping[str, object]) -> Answer:
+        """The answer of a tool. Cancelling this ends the process that works on it."""
+        from pebble import ProcessExpired
+
+        future = self.pool.schedule(answer, (self.workshop, name, arguments), timeout=self.seconds)
+        try:
+            return await asyncio.wrap_future(future)
+        except TimeoutError:
+            return _given_up(f"took longer than {self.seconds:g} s")
+        except ProcessExpired:
+            return _given_up("ended the process that worked on it")
+        except MemoryError:
+            return _given_up("needs more memory than there is for it")
+
+    def close(self) -> None:
+        processes.stop(self.pool)
+
+
+def _given_up(why: str) -> Answer:
+    diagnostic = Diagnostic(
+        "E0943",
+        f"the call {why} and was given up",
+        hints=("ask for less: fewer parts, smaller arrays, no outlines worked out of many others",),
+    )
+    return Answer(compact([diagnostic]), {}, is_error=True)

@@ -1,0 +1,114 @@
+"""The command `aidl`: one module per verb, and here what they share at the door.
+
+Only the verb that is asked for is loaded, and what costs time to import is imported inside it where it is
+needed, so that `aidl --help` is quick.
+Exit codes: 0 done, 1 the program is wrong or does not solve, 2 wrong use, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import atexit
+import gc
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from io import TextIOWrapper
+
+from aidl_lang.common.drawing_time import TooLongError
+from aidl_lang.tools.cli import report
+from aidl_lang.version import __version__
+
+INTERRUPTED = 130
+BROKEN_PIPE = 141
+_BETWEEN_SEARCHES = 100_000
+"""Objects made before cycles among them are sought."""
+
+_VERBS = {
+    "compile": "draw a program",
+    "check": "find mistakes, write nothing",
+    "show": "show the drawing in the terminal",
+    "measure": "tell areas, walls, gaps and masses",
+    "diff": "tell what differs between two versions",
+    "fmt": "format programs",
+    "params": "list what -D can set",
+    "doc": "tell what a name is, with an example",
+    "guide": "print the language on a few pages",
+    "grammar": "write the grammar for constrained decoding",
+    "explain": "tell what a code means",
+    "watch": "draw again on every save",
+    "preview": "show a program in the browser, and change it there",
+    "new": "write a starter program",
+    "generate": "have a model write a program",
+    "lsp": "serve editors",
+    "mcp": "serve the tools to agents",
+    "tool-schema": "print the tools for agents as JSON",
+    "eval": "measure how models do, over prompts and runs",
+}
+"""In the order of the help; the options of a verb are in the module of its name."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code; wrong use of options raises `SystemExit(2)`."""
+    # Threads cost more than they bring for matrices of the size of a part; numpy asks when it is loaded.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    _keep_writing()
+    _seldom_search()
+    try:
+        words = sys.argv[1:] if argv is None else argv
+        arguments = _parser(words).parse_args(words)
+        code: int = arguments.run(arguments)
+        sys.stdout.flush()
+    except report.UseError as reason:
+        report.show([reason.diagnostic])
+        return 2
+    except TooLongError as reason:
+        report.show([reason.diagnostic])
+        return report.exit_code([reason.diagnostic])
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:
+        _forget_output()
+        return BROKEN_PIPE
+    return code
+
+
+def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
+    """The parser for a command line; it has the options of the verb that is in it."""
+    parser = argparse.ArgumentParser(
+        prog="aidl",
+        description="AIDL: a text language for 2D CAD. Say relationships, get a constraint-solved drawing.",
+        epilog="`aidl VERB --help` tells more. Exit codes: 0 done, 1 the program is wrong or does not solve, "
+        "2 wrong use.",
+    )
+    parser.add_argument("--version", action="version", version=f"aidl {__version__}")
+    verbs = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
+    for verb in words[:1] if words and words[0] in _VERBS else _VERBS:
+        own = verbs.add_parser(verb, help=_VERBS[verb])
+        if verb in words:
+            module = import_module(f"aidl_lang.tools.cli.{verb.replace('-', '_')}")
+            own.description = module.__doc__
+            module.register(own)
+    return parser
+
+
+def _seldom_search() -> None:
+    """What is loaded and made is mostly needed until the command ends: it is seldom searched for cycles that
+    nothing refers to, which bounds what they take in a verb that goes on, and not once more at the end.
+    """
+    gc.set_threshold(_BETWEEN_SEARCHES)
+    atexit.unregister(gc.freeze)
+    atexit.register(gc.freeze)
+
+
+def _keep_writing() -> None:
+    """Characters that the terminal's encoding lacks are written as escapes instead of raising."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _forget_output() -> None:
+    """The reader has gone: let the flush at exit write to nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,0 +1,167 @@
+"""From a program to written files: what `compile` does once and `watch` again and again."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aidl_lang.common.records import record
+from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.report import UseError, exit_code
+
+if TYPE_CHECKING:
+    from aidl_lang.common.diagnostics import Diagnostic
+    from aidl_lang.export import Options
+    from aidl_lang.pipeline import Compiled
+    from aidl_lang.solver.memory import Memory
+
+
+_DEFAULT_FORMAT = ".svg"
+
+
+@record()
+class Target:
+    """A file to write and the format of its content."""
+
+    name: str
+    suffix: str
+
+
+@record()
+class Outcome:
+    """What came of one run."""
+
+    compiled: Compiled
+    written: tuple[str, ...]
+    notes: tuple[Diagnostic, ...]
+    seconds: float
+
+    @property
+    def code(self) -> int:
+        return exit_code(self.compiled.diagnostics) or (0 if self.compiled.ok else 1)
+
+    def motions(self, most: int) -> list[str]:
+        """What can still move, one sentence a line."""
+        from aidl_lang.geometry.freedom import report
+
+        model = self.compiled.model
+        return [] if model is None or not self.compiled.ok else report(model, most)
+
+    def line(self, program: str) -> str:
+        """The outcome in a line."""
+        model = self.compiled.model
+        freedom = ""
+        if model is not None and model.degrees is not None and self.compiled.ok:
+            freedom = f", {_count(model.degrees, 'degree')} of freedom"
+        place, remark = (", ".join(self.written), "") if self.written else (program, ", nothing written")
+        status = self.compiled.status
+        if status == "solved" and not self.compiled.ok:
+            status = "errors after solving"
+        return f"{place}: {status}{freedom}{remark}, {self.seconds:.2f} s"
+
+
+def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
+    """The outputs asked for, refused here if their format or directory does not exist."""
+    names = arguments.output or [_default_output(arguments.file)]
+    found = tuple(Target(name, _suffix(name, arguments.format)) for name in names)
+    for target in found:
+        files.require_directory(target.name)
+        if target.name != files.STANDARD and Path(target.name).resolve() == Path(arguments.file).resolve():
+            raise UseError("E0908", f"`{target.name}` is the program itself and is not overwritten")
+    return found
+
+
+def build(arguments: argparse.Namespace, memory: Memory | None = None) -> Outcome:
+    """Compile and write. Nothing is written unless every output could be made.
+
+    With a `memory` of the last run, only what has changed since then is solved again.
+    """
+    from aidl_lang import pipeline
+
+    start = time.perf_counter()
+    source = files.read(arguments.file)
+    outputs = targets(arguments)
+    world = files.world(arguments.file)
+    params, show = dict(arguments.params), tuple(sorted(arguments.show))
+    settings = pipeline.Settings(variant=arguments.variant, strict=arguments.strict)
+    compiled = pipeline.compile(source, world, params, settings, show, memory)
+    written: tuple[str, ...] = ()
+    notes: tuple[Diagnostic, ...] = ()
+    if compiled.ok or (arguments.best_effort and compiled.drawing is not None):
+        written, notes = _write(compiled, outputs, _options(arguments, compiled))
+    return Outcome(compiled, written, notes, time.perf_counter() - start)
+
+
+def _options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
+    from aidl_lang.export import Options
+
+    return Options(
+        show=arguments.show,
+        dimension=arguments.dimension,
+        cut=arguments.cut,
+        pixels=arguments.pixels,
+        thickness=arguments.thickness,
+        timings=compiled.timings if arguments.timings else None,
+        sheet=arguments.sheet,
+        spacing=arguments.spacing,
+        kerf=arguments.kerf,
+        tile=arguments.tile,
+        overlap=arguments.overlap,
+    )
+
+
+def _write(
+    compiled: Compiled, outputs: Sequence[Target], options: Options
+) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
+    """Write all outputs once all could be made: their names, and what there is to say of them."""
+    from aidl_lang.export import ExportError
+
+    try:
+        made = [(target, compiled.exported(target.suffix, options)) for target in outputs]
+    except ExportError as reason:
+        raise UseError.of(reason.diagnostic) from None
+    contents = [
+        (name, data)
+        for target, result in made
+        for name, data in zip(
+            _names(target, len(result.further)), (result.data, *result.further), strict=True
+        )
+    ]
+    for name, data in contents:
+        files.write(name, data)
+    notes = dict.fromkeys(note for _, result in made for note in result.notes)
+    return tuple(name for name, _ in contents), tuple(notes)
+
+
+def _names(target: Target, further: int) -> list[str]:
+    """The name of the output, and those of further files: `part.svg`, `part-2.svg`, …"""
+    if further and target.name == files.STANDARD:
+        raise UseError("E0914", f"{further + 1} files do not fit on standard output", "name a file with -o")
+    path = Path(target.name)
+    more = [str(path.with_name(f"{path.stem}-{k}{path.suffix}")) for k in range(2, further + 2)]
+    return [target.name, *more]
+
+
+def _default_output(program: str) -> str:
+    return files.STANDARD if program == files.STANDARD else str(Path(program).with_suffix(_DEFAULT_FORMAT))
+
+
+def _suffix(name: str, fallback: str | None) -> str:
+    """The format of an output: its own suffix, else `--format`, else SVG on standard output."""
+    from aidl_lang.export import FORMATS
+
+    own = "" if name == files.STANDARD else Path(name).suffix.lower()
+    said = f".{fallback.lower().lstrip('.')}" if fallback else _DEFAULT_FORMAT * (name == files.STANDARD)
+    for suffix in (own, said):
+        if suffix in FORMATS:
+            return suffix
+    asked = (said or own).lstrip(".")
+    message = f"there is no format `{asked}`" if asked else f"the name `{name}` does not tell a format"
+    raise UseError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in FORMATS))}")
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"

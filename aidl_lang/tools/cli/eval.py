@@ -1,0 +1,168 @@
+"""`aidl eval`: how well a model does with the language and with subsets of it, over prompts and runs."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aidl_lang.tools.cli.options import add_provider, count_to, provider, sampling
+from aidl_lang.tools.cli.report import UseError, say, show
+
+if TYPE_CHECKING:
+    from aidl_lang.tools.evaluation.plan import Plan
+    from aidl_lang.tools.evaluation.requirements import Prompt
+    from aidl_lang.tools.evaluation.run import Done
+    from aidl_lang.tools.evaluation.store import Store
+
+_VARIANTS = ("full", "no-hierarchy", "no-constraints", "openscad")
+_OPENSCAD = "openscad"
+
+
+def register(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--out", default="evaluation", metavar="DIR", help="folder of the results (default: evaluation)"
+    )
+    parser.add_argument("--prompts", nargs="+", metavar="NAME", help="those of that name (default: all)")
+    parser.add_argument(
+        "--prompt-folder", metavar="DIR", help="where prompts are read from (default: those that come along)"
+    )
+    parser.add_argument(
+        "--variants", nargs="+", choices=_VARIANTS, default=list(_VARIANTS), help="default: all"
+    )
+    parser.add_argument(
+        "--runs",
+        type=count_to(10_000),
+        default=3,
+        metavar="N",
+        help="of each prompt in each variant (default: 3)",
+    )
+    parser.add_argument(
+        "--attempts",
+        type=count_to(10_000),
+        default=5,
+        metavar="N",
+        help="replies in a conversation (default: 5)",
+    )
+    parser.add_argument(
+        "--jobs", type=count_to(10_000), default=4, metavar="N", help="at a time (default: 4)"
+    )
+    parser.add_argument(
+        "--time-limit",
+        type=count_to(10_000),
+        default=60,
+        metavar="SECONDS",
+        help="for judging a program, for drawing and for editing it (default: 60)",
+    )
+    parser.add_argument(
+        "--clip-weights", metavar="FILE", help="weights of CLIP (default: $AIDL_CLIP_WEIGHTS)"
+    )
+    parser.add_argument(
+        "--clip-model",
+        default="ViT-B-32-quickgelu",
+        metavar="NAME",
+        help="what they are weights of, as open_clip names it (default: ViT-B-32-quickgelu)",
+    )
+    parser.add_argument(
+        "--report", action="store_true", help="ask nothing: report on the runs that are there"
+    )
+    add_provider(parser)
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    from aidl_lang.tools.evaluation.report import report
+    from aidl_lang.tools.evaluation.store import Store, StoreError
+
+    try:
+        store = Store(Path(arguments.out))
+        left = _run(arguments, store)
+        print(report(store, arguments.clip_weights, arguments.clip_model), end="")
+    except StoreError as reason:
+        raise UseError.of(reason.diagnostic) from None
+    say(f"{store.folder / 'index.html'}: the gallery; evaluation.md, .csv and .json beside it: the tables")
+    return 1 if left else 0
+
+
+def _run(arguments: argparse.Namespace, store: Store) -> int:
+    """Do what is left to do, and return how many jobs are still left."""
+    from aidl_lang.tools.evaluation.run import run
+
+    asked = None if arguments.report else provider(arguments)
+    plan = _plan(arguments, asked is not None and asked.takes_seeds)
+    if asked is not None:
+        store.begin(plan, asked.name)
+    outcome = run(plan, asked, store, arguments.jobs, float(arguments.time_limit), _progress)
+    if outcome.failure is not None:
+        show([outcome.failure])
+        say(f"{outcome.left} conversations are left to be had: the same command goes on with them")
+    return outcome.left
+
+
+def _plan(arguments: argparse.Namespace, takes_seeds: bool) -> Plan:
+    from dataclasses import replace
+
+    from aidl_lang.tools.evaluation.plan import Plan
+    from aidl_lang.tools.llm.generation import Settings
+
+    asked = sampling(arguments)
+    if asked.seed is None and takes_seeds:
+        asked = replace(asked, seed=1)
+    settings = Settings(arguments.attempts, asked)
+    return Plan(_prompts(arguments), _variants(arguments), arguments.runs, settings)
+
+
+def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
+    from difflib import get_close_matches
+
+    from aidl_lang.tools.evaluation.requirements import PromptError, load
+
+    folder = arguments.prompt_folder
+    try:
+        known = {prompt.name: prompt for prompt in load(Path(folder) if folder else None)}
+    except (PromptError, OSError) as error:
+        raise UseError("E0947", f"the prompts cannot be read: {error}") from None
+    if not known:
+        raise UseError("E0947", f"there are no prompts in `{folder}`", "a prompt is a file `NAME.aidl`")
+    for name in arguments.prompts or ():
+        if name not in known:
+            near = get_close_matches(name, known, n=1)
+            hint = f"did you mean `{near[0]}`?" if near else f"there are {', '.join(known)}"
+            raise UseError("E0947", f"there is no prompt `{name}`", hint)
+    return tuple(known[name] for name in dict.fromkeys(arguments.prompts or known))
+
+
+def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
+    from aidl_lang.tools.evaluation.openscad import OpenScad
+
+    wanted = [name for name in _VARIANTS if name in arguments.variants]
+    if _OPENSCAD in wanted and not OpenScad().is_installed:
+        wanted.remove(_OPENSCAD)
+        if not wanted:
+            raise UseError("E0949", "`openscad` is not installed", "leave out `--variants openscad`")
+        say("openscad is left out: it is not installed")
+    if _OPENSCAD in wanted and arguments.constrain:
+        wanted.remove(_OPENSCAD)
+        if not wanted:
+            raise UseError("E0950", "--constrain has no grammar for `openscad`", "leave --constrain out")
+        say("openscad is left out: --constrain has the grammar of AIDL alone")
+    return tuple(wanted)
+
+
+def _progress(done: Done) -> None:
+    say(
+        f"{done.number}/{done.count} {done.job.prompt}, {done.job.variant}, run {done.job.run}: {_came(done)}"
+    )
+
+
+def _came(done: Done) -> str:
+    if done.failure is not None:
+        return f"broke off: {done.failure.message}"
+    count = len(done.record["attempts"])
+    after = f"after {count} attempt{'s' if count != 1 else ''}"
+    if not done.record["ok"]:
+        return f"not valid {after}"
+    lost = f", {len(done.record['missing'])} lost" if done.record["missing"] else ""
+    results = done.record.get("requirements", ())
+    met = sum(result["status"] == "met" for result in results)
+    return f"valid {after}{lost}" + (f", {met}/{len(results)} requirements" if results else "")

@@ -1,0 +1,131 @@
+"""Reading programs and writing results: whole or not at all, and every mishap in one clear line."""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aidl_lang.common.source import SourceFile
+from aidl_lang.tools.cli.report import UseError
+
+if TYPE_CHECKING:
+    from aidl_lang.common.world import DiskWorld
+
+STANDARD = "-"
+"""As a file name: standard input or output."""
+
+
+def read(name: str) -> SourceFile:
+    """The program in a file, or on standard input for `-`."""
+    if name == STANDARD:
+        return SourceFile("<stdin>", _decode(sys.stdin.buffer.read(), "standard input"))
+    try:
+        data = Path(name).read_bytes()
+    except FileNotFoundError:
+        raise UseError("E0901", f"there is no file `{name}`", *_neighbours(Path(name))) from None
+    except IsADirectoryError:
+        raise UseError("E0902", f"`{name}` is a directory, not a program") from None
+    except OSError as error:
+        raise UseError("E0902", f"`{name}` cannot be read: {_reason(error)}") from None
+    return SourceFile(name, _decode(data, f"`{name}`"))
+
+
+def world(name: str) -> DiskWorld:
+    """The world whose imports are read beside the program."""
+    from aidl_lang.common.world import DiskWorld
+
+    return DiskWorld(Path.cwd() if name == STANDARD else Path(name).resolve().parent)
+
+
+def require_directory(name: str) -> None:
+    """Refuse an output whose directory is missing before any work is done for it."""
+    parent = Path(name).parent
+    if name != STANDARD and not parent.is_dir():
+        raise UseError("E0904", f"`{name}` cannot be written: there is no directory `{parent}`")
+
+
+def write(name: str, data: bytes) -> None:
+    """Replace a file by its new content in one step; `-` is standard output."""
+    if name == STANDARD:
+        if sys.stdout.isatty() and b"\0" in data:
+            raise UseError(
+                "E0920",
+                "a terminal cannot show this format",
+                "name a file with -o",
+                "`aidl show` draws in the terminal",
+            )
+        sys.stdout.flush()
+        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
+        return
+    path = Path(os.path.realpath(name))
+    try:
+        if path.exists() and not path.is_file():
+            path.write_bytes(data)
+        else:
+            _replace(path, data)
+    except OSError as error:
+        raise UseError("E0904", f"`{name}` cannot be written: {_reason(error)}") from None
+
+
+def create(name: str, data: bytes) -> None:
+    """Write a file that must not exist yet."""
+    try:
+        with open(name, "xb") as file:
+            file.write(data)
+    except FileExistsError:
+        raise UseError("E0906", f"`{name}` exists already; it is left as it is") from None
+    except OSError as error:
+        raise UseError("E0904", f"`{name}` cannot be written: {_reason(error)}") from None
+
+
+def _replace(path: Path, data: bytes) -> None:
+    import tempfile
+
+    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    try:
+        with open(handle, "wb") as file:
+            file.write(data)
+        os.chmod(temporary, path.stat().st_mode if path.exists() else 0o666 & ~_umask())
+        os.replace(temporary, path)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(temporary)
+        raise
+
+
+def _umask() -> int:
+    """The process's file mode mask, which can only be read by setting it."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _decode(data: bytes, what: str) -> str:
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise UseError("E0903", f"{what} is not UTF-8 text (line {line})", "save it as UTF-8") from None
+    if "\0" in text:
+        raise UseError("E0903", f"{what} is not text: it holds zero bytes")
+    return text
+
+
+def _neighbours(path: Path) -> list[str]:
+    """Programs beside a missing one that may have been meant."""
+    from difflib import get_close_matches
+
+    with suppress(OSError):
+        beside = [entry.name for entry in path.parent.glob("*.aidl")]
+        near = get_close_matches(path.name.removesuffix(".aidl") + ".aidl", beside, n=1)
+        return [f"did you mean `{path.with_name(name)}`?" for name in near]
+    return []
+
+
+def _reason(error: OSError) -> str:
+    text = error.strerror or str(error)
+    return text[:1].lower() + text[1:]

@@ -1,0 +1,306 @@
+"""`aidl generate`: from a sentence to a program that is right, by a language model."""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import os
+import re
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aidl_lang.common.records import record
+from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.options import add_provider, count_to, provider, sampling
+from aidl_lang.tools.cli.report import UseError, say, show
+
+if TYPE_CHECKING:
+    from aidl_lang.tools.llm.generation import Generation, Task
+    from aidl_lang.tools.llm.language import Language
+    from aidl_lang.tools.llm.messages import Provider
+
+_PROGRAM = ".aidl"
+_CODES = 4
+"""Codes of errors that the line of an attempt names."""
+
+
+def register(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("request", metavar="REQUEST", help="what to draw, or with --edit what to change")
+    parser.add_argument(
+        "-o",
+        "--output",
+        action="append",
+        default=[],
+        metavar="OUT",
+        help="where to write: the program (.aidl) and drawings of it (.svg, .png, …); may be given several "
+        "times (default: the program, or with --edit the change, on standard output)",
+    )
+    parser.add_argument("--edit", metavar="FILE", help="change this program instead of writing a new one")
+    parser.add_argument("--image", metavar="FILE", help="a picture of what is meant (PNG, JPEG, WebP, GIF)")
+    parser.add_argument(
+        "--attempts",
+        type=count_to(100),
+        default=5,
+        metavar="N",
+        help="replies to ask for at most (default: 5)",
+    )
+    parser.add_argument(
+        "--runs", type=count_to(100), default=1, metavar="N", help="conversations to have; the best is kept"
+    )
+    parser.add_argument(
+        "--transcript", metavar="FILE", help="where to write the conversation (default: beside the program)"
+    )
+    add_provider(parser)
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    places = _places(arguments)
+    task = _task(arguments)
+    asked = provider(arguments)
+    language = _language(arguments)
+    runs = [_Run(arguments, places, task, asked, language, k) for k in range(arguments.runs)]
+    done = [run.generation() for run in runs]
+    best = min(range(len(done)), key=lambda k: _weight(done[k]))
+    return _deliver(arguments, places, done[best], f"run {best + 1}: " if len(done) > 1 else "")
+
+
+def _weight(generation: Generation) -> tuple[int, ...]:
+    return generation.verdict.weight if generation.verdict is not None else (2,)
+
+
+@record()
+class _Places:
+    """Where the program goes (None: standard output), where drawings go, and where the transcript."""
+
+    program: str | None
+    drawings: tuple[str, ...]
+    transcript: str | None
+
+
+def _of_run(name: str, number: int) -> str:
+    """`phone.run-3.aidl` beside `phone.aidl`"""
+    path = Path(name)
+    stem, dot, rest = path.name.partition(".")
+    return str(path.with_name(f"{stem}.run-{number}{dot}{rest}"))
+
+
+def _places(arguments: argparse.Namespace) -> _Places:
+    from aidl_lang.export import FORMATS
+
+    programs = [name for name in arguments.output if Path(name).suffix.lower() == _PROGRAM]
+    drawings = tuple(name for name in arguments.output if name not in programs)
+    for name in drawings:
+        if name == files.STANDARD or Path(name).suffix.lower() not in FORMATS:
+            known = ", ".join(sorted(s.lstrip(".") for s in (_PROGRAM, *FORMATS)))
+            raise UseError("E0905", f"the name `{name}` does not tell a format", f"formats: {known}")
+    if len(programs) > 1:
+        raise UseError("E0914", "the program can be written to one file alone", f"name one {_PROGRAM} file")
+    if programs or drawings:
+        program = programs[0] if programs else str(Path(drawings[0]).with_suffix(_PROGRAM))
+    else:
+        program = None
+    beside = str(Path(program).with_suffix(".transcript.json")) if program else None
+    places = _Places(program, drawings, arguments.transcript or beside)
+    for place in (places.program, places.transcript, *drawings):
+        if place:
+            files.require_directory(place)
+    return places
+
+
+def _task(arguments: argparse.Namespace) -> Task:
+    from aidl_lang.tools.llm.generation import Task
+    from aidl_lang.tools.llm.images import ImageError, read_image
+
+    try:
+        image = read_image(arguments.image) if arguments.image else None
+    except ImageError as reason:
+        raise UseError.of(reason.diagnostic) from None
+    return Task(arguments.request, image, files.read(arguments.edit).text if arguments.edit else None)
+
+
+def _language(arguments: argparse.Namespace) -> Language:
+    from aidl_lang.tools.llm.aidl import Aidl
+
+    if not arguments.edit:
+        return Aidl()
+    language = Aidl(world=files.world(arguments.edit))
+    return language if arguments.edit == files.STANDARD else replace(language, file=Path(arguments.edit).name)
+
+
+class _Run:
+    """One conversation, with what is shown while it goes on."""
+
+    def __init__(
+        self,
+        arguments: argparse.Namespace,
+        places: _Places,
+        task: Task,
+        provider: Provider,
+        language: Language,
+        number: int,
+    ) -> None:
+        self.arguments, self.task, self.provider, self.language = arguments, task, provider, language
+        self.places, self.number = places, number
+        self.heard = self.shown = 0
+        self.is_watched = sys.stderr.isatty()
+
+    def generation(self) -> Generation:
+        """Raises UseError when not one reply could be had."""
+        from aidl_lang.tools.llm.generation import Settings, generate
+
+        asked = sampling(self.arguments)
+        if asked.seed is not None:
+            asked = replace(asked, seed=asked.seed + self.number)
+        settings = Settings(self.arguments.attempts, asked)
+        start = time.perf_counter()
+        done = generate(self.task, self.provider, self.language, settings, self._hear, self._listen)
+        self._erase()
+        if done.failure is not None and done.verdict is None:
+            raise UseError.of(done.failure)
+        if done.failure is not None:
+            show([done.failure])
+        self._save(done)
+        say(f"{self._name}{_outcome(done, time.perf_counter() - start)}")
+        if self.arguments.runs > 1 and self.places.program and done.verdict is not None:
+            name = _of_run(self.places.program, self.number + 1)
+            files.write(name, done.verdict.program.encode())
+        return done
+
+    @property
+    def _name(self) -> str:
+        return f"run {self.number + 1}: " if self.arguments.runs > 1 else ""
+
+    def _hear(self, attempt: int, text: str) -> None:
+        self.heard += len(text)
+        if self.is_watched and self.heard >= self.shown + 50:
+            self.shown = self.heard
+            say(f"\r{self._name}attempt {attempt}: {self.heard:,} characters …", end="")
+
+    def _listen(self, generation: Generation) -> None:
+        self._erase()
+        say(f"{self._name}{_attempt_line(generation)}")
+        self._save(generation)
+
+    def _erase(self) -> None:
+        if self.is_watched and self.shown:
+            say("\r\x1b[K", end="")
+        self.heard = self.shown = 0
+
+    def _save(self, generation: Generation) -> None:
+        import json
+
+        from aidl_lang.tools.llm.transcript import to_dict
+
+        if self.places.transcript is None:
+            return
+        name = self.places.transcript
+        if self.arguments.runs > 1:
+            name = _of_run(name, self.number + 1)
+        document = to_dict(generation, self.provider.name, self.language.name)
+        files.write(name, json.dumps(document, indent=1, ensure_ascii=False).encode() + b"\n")
+
+
+def _attempt_line(generation: Generation) -> str:
+    attempt = generation.attempts[-1]
+    verdict = attempt.verdict
+    if verdict is None:
+        return f"attempt {attempt.number}: no whole program ({attempt.reply.finish})"
+    codes = list(dict.fromkeys(verdict.codes))
+    named = ", ".join(codes[:_CODES]) + (" …" if len(codes) > _CODES else "")
+    parts = [
+        "valid" if verdict.ok else "a plan" if verdict.is_partial else f"wrong in {verdict.stage} ({named})"
+    ]
+    parts += [f"{len(verdict.fixes)} fixed by machine"] * bool(verdict.fixes)
+    parts += [f"{len(verdict.missing)} lost"] * bool(verdict.missing)
+    return f"attempt {attempt.number}: {', '.join(parts)}"
+
+
+def _outcome(generation: Generation, seconds: float) -> str:
+    usage = generation.usage
+    count = len(generation.attempts)
+    parts = [
+        f"{'valid' if generation.ok else 'not valid'} after {count} attempt{'s' * (count != 1)}",
+        f"{_number(usage.input)} tokens in, {_number(usage.output)} out",
+        "cost unknown" if usage.cost is None else f"${usage.cost:.4f}",
+        f"{seconds:.1f} s",
+    ]
+    return ", ".join(parts)
+
+
+def _number(value: int | None) -> str:
+    return "?" if value is None else f"{value:,}"
+
+
+def _deliver(arguments: argparse.Namespace, places: _Places, generation: Generation, name: str) -> int:
+    """Write what is kept and say what is still missing in it."""
+    verdict = generation.verdict
+    if verdict is None:
+        last = generation.attempts[-1].reply
+        say(f"{name}no reply held a program; the last one begins: {_beginning(last.text)}")
+        return 1
+    program = verdict.program
+    if arguments.edit:
+        from aidl_lang.tools.llm.merging import merge
+
+        assert generation.task.program is not None
+        program = merge(generation.task.program, program)
+    for title in verdict.fixes:
+        say(f"{name}fixed: {title}")
+    for phrase in verdict.missing:
+        say(f"{name}still missing: {phrase}")
+    _write_program(arguments, places, generation, program)
+    if not verdict.ok:
+        if verdict.compiled is not None:
+            show(verdict.compiled.diagnostics)
+        say(f"{name}the program is not valid" + (", nothing drawn" if places.drawings else ""))
+        return 1
+    _draw(places, program, arguments)
+    return 0
+
+
+def _write_program(
+    arguments: argparse.Namespace, places: _Places, generation: Generation, program: str
+) -> None:
+    before = generation.task.program
+    if places.program is not None:
+        files.write(places.program, program.encode())
+    elif before is None:
+        print(program, end="")
+    if before is not None:
+        lines = list(
+            difflib.unified_diff(
+                before.splitlines(), program.splitlines(), arguments.edit, arguments.edit, lineterm=""
+            )
+        )
+        changed = sum(line.startswith(("+", "-")) for line in lines[2:])
+        if places.program is None:
+            print("".join(f"{line}\n" for line in lines), end="")
+        say(f"{places.program or arguments.edit}: {changed} lines of the program differ")
+
+
+def _draw(places: _Places, program: str, arguments: argparse.Namespace) -> None:
+    """The drawings of the program as it was written."""
+    from aidl_lang import pipeline
+    from aidl_lang.common.source import SourceFile
+    from aidl_lang.export import ExportError
+
+    if not places.drawings:
+        return
+    assert places.program is not None
+    world = files.world(arguments.edit) if arguments.edit else None
+    compiled = pipeline.compile(SourceFile(os.path.basename(places.program), program), world)
+    try:
+        made = [(name, compiled.export(Path(name).suffix.lower())) for name in places.drawings]
+    except ExportError as reason:
+        raise UseError.of(reason.diagnostic) from None
+    for name, data in made:
+        files.write(name, data)
+
+
+def _beginning(text: str) -> str:
+    line = re.sub(r"\s+", " ", text.strip())
+    return repr(line if len(line) <= 80 else line[:79] + "…")

@@ -1,0 +1,58 @@
+"""Ports of this machine that verbs serve on."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import socket
+
+from aidl_lang.tools.cli.report import UseError
+
+LOCALHOST = "127.0.0.1"
+
+
+def port(text: str) -> int:
+    """The port that an option gives."""
+    if not (text.isascii() and text.isdecimal()) or int(text) > 65535:
+        raise argparse.ArgumentTypeError(f"expected a port from 0 to 65535, not `{text}`")
+    return int(text)
+
+
+def address(text: str) -> str:
+    """The address that an option gives: one that no other machine can reach."""
+    from ipaddress import ip_address
+
+    if text.lower() == "localhost":
+        return LOCALHOST
+    try:
+        is_here = ip_address(text).is_loopback
+    except ValueError:
+        is_here = False
+    if not is_here:
+        raise argparse.ArgumentTypeError(
+            f"expected an address of this machine alone, as {LOCALHOST} or ::1, not `{text}`"
+        )
+    return text
+
+
+def listener(host: str, port: int, code: str, hint: str) -> socket.socket:
+    """A socket that takes connections already. Raises UseError of a code where there can be none."""
+    try:
+        family, kind, protocol, _, at = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        found = socket.socket(family, kind, protocol)
+    except OSError as error:
+        raise _refused(host, port, error, code, hint) from None
+    if os.name == "posix":  # elsewhere this would let two servers have one port
+        found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        found.bind(at)
+        found.listen()  # so that who reads the address can connect at once
+    except OSError as error:
+        found.close()
+        raise _refused(host, port, error, code, hint) from None
+    return found
+
+
+def _refused(host: str, port: int, error: OSError, code: str, hint: str) -> UseError:
+    where = f"port {port}" if host == LOCALHOST else f"{host}:{port}"
+    return UseError(code, f"{where} cannot be served: {(error.strerror or str(error)).lower()}", hint)

@@ -1,0 +1,294 @@
+"""Options that several verbs have in common."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from aidl_lang.tools.cli import sizes
+from aidl_lang.tools.cli.report import UseError
+
+if TYPE_CHECKING:
+    from aidl_lang.checking.variants import Variant
+    from aidl_lang.tools.llm.messages import Sampling
+    from aidl_lang.tools.llm.providers import Closable, Price
+
+
+def add_program(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", help="the program; - reads standard input")
+
+
+def add_variant(parser: argparse._ActionsContainer) -> None:
+    parser.add_argument(
+        "--variant",
+        type=_variant,
+        default="full",
+        metavar="NAME",
+        help="the language, or a subset of it: full (the default), no-hierarchy, no-constraints",
+    )
+
+
+def add_strict(parser: argparse._ActionsContainer) -> None:
+    parser.add_argument(
+        "--strict",
+        action="store_true",
+        help="refuse what the constraints could only hold by changing what was written",
+    )
+
+
+def add_params(
+    parser: argparse.ArgumentParser,
+    option: str = "-D",
+    name: str = "params",
+    help: str = "set a param, by name or by path (part.bolt.size=4)",
+) -> None:
+    parser.add_argument(
+        option, dest=name, action="append", default=[], type=_definition, metavar="NAME=VALUE", help=help
+    )
+
+
+def add_pixels(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--pixels", type=_pixels, default=1600, metavar="N", help="larger side of a PNG (default: 1600)"
+    )
+
+
+def add_look(parser: argparse.ArgumentParser) -> None:
+    """The options that say what is seen in a picture."""
+    parser.add_argument(
+        "--show",
+        type=_layers,
+        default=frozenset(),
+        metavar="LAYERS",
+        help="draw these over the picture, separated by commas: names, points, bbox, constraints, dof, plan",
+    )
+    parser.add_argument("--dimension", action="store_true", help="draw dimensions of what is sized")
+    parser.add_argument(
+        "--cut", action="store_true", help="the outlines alone, as hairlines: what a cutter follows"
+    )
+    parser.add_argument(
+        "--best-effort", action="store_true", help="draw how far the solver came even if it did not solve"
+    )
+
+
+def add_drawing(parser: argparse.ArgumentParser) -> None:
+    """The options that say what to draw and where to put it."""
+    parser.add_argument(
+        "-o",
+        "--output",
+        action="append",
+        default=[],
+        metavar="OUT",
+        help="where to write; the suffix tells the format; may be given several times; - is standard output "
+        "(default: FILE with .svg)",
+    )
+    parser.add_argument("--format", metavar="SUFFIX", help="format of outputs whose name does not tell it")
+    add_params(parser)
+    add_look(parser)
+    add_pixels(parser)
+    parser.add_argument(
+        "--thickness",
+        type=_thickness,
+        metavar="MM",
+        help="thickness of parts without `@thickness`, for STEP, STL and 3MF",
+    )
+    _add_cutting(parser)
+
+
+def _add_cutting(parser: argparse.ArgumentParser) -> None:
+    """The options for cutters and for printing 1:1."""
+    parser.add_argument(
+        "--sheet",
+        type=sizes.size,
+        metavar="SIZE",
+        help="lay the parts apart on sheets to cut them from: 600x400, 60x40cm, 24x18in, a3, letter",
+    )
+    parser.add_argument(
+        "--spacing",
+        type=sizes.length,
+        default=3.0,
+        metavar="MM",
+        help="between parts on a sheet, and to its edge (default: 3)",
+    )
+    parser.add_argument(
+        "--kerf",
+        type=sizes.length,
+        default=0.0,
+        metavar="MM",
+        help="width of the cut: outlines grow by half of it, so that parts keep their size",
+    )
+    parser.add_argument(
+        "--tile",
+        type=sizes.size,
+        metavar="SIZE",
+        help="print 1:1 over several pages of this size: a4, letter",
+    )
+    parser.add_argument(
+        "--overlap",
+        type=sizes.length,
+        default=10.0,
+        metavar="MM",
+        help="of neighbouring pages (default: 10)",
+    )
+
+
+def add_provider(parser: argparse.ArgumentParser) -> None:
+    """The options that say which language model is asked, and how; see `provider` and `sampling`."""
+    group = parser.add_argument_group("the model")
+    group.add_argument(
+        "--provider",
+        default="",
+        metavar="NAME",
+        help="openai (or any server that speaks its protocol), anthropic, or exec:COMMAND "
+        "(default: what the environment says)",
+    )
+    group.add_argument("--model", default="", metavar="NAME", help="the model (default: $AIDL_MODEL)")
+    group.add_argument(
+        "--base-url", default="", metavar="URL", help="of the server, as in http://localhost:11434/v1"
+    )
+    group.add_argument("--seed", type=int, metavar="N", help="of the reply, for servers that have one")
+    group.add_argument("--temperature", type=_temperature, metavar="T", help="0 is the least random")
+    group.add_argument("--max-tokens", type=count_to(1_000_000), metavar="N", help="of one reply")
+    group.add_argument(
+        "--constrain",
+        type=_server,
+        metavar="SERVER",
+        help="keep the model to the grammar, at a server of this kind: llama.cpp, sglang or vllm, "
+        "or as in vllm:llguidance where that engine decodes",
+    )
+    group.add_argument(
+        "--timeout",
+        type=_seconds,
+        default=600.0,
+        metavar="SECONDS",
+        help="how long the model may be silent (default: 600)",
+    )
+    group.add_argument(
+        "--price",
+        type=_price,
+        metavar="IN/OUT",
+        help="dollars per million tokens, where the server does not tell the cost (default: $AIDL_PRICE)",
+    )
+
+
+def provider(arguments: argparse.Namespace) -> Closable:
+    """The model that the options of `add_provider` name. Raises UseError."""
+    from aidl_lang.tools.llm.messages import ProviderError
+    from aidl_lang.tools.llm.providers import Connection, connect
+
+    said = Connection(
+        provider=arguments.provider,
+        model=arguments.model,
+        base_url=arguments.base_url,
+        timeout=arguments.timeout,
+        price=arguments.price,
+    )
+    try:
+        connected = connect(said)
+        if not arguments.constrain:
+            return connected
+        from aidl_lang.tools.llm.decoding import Constrained
+
+        return Constrained(connected, arguments.constrain)
+    except ProviderError as reason:
+        raise UseError.of(reason.diagnostic) from None
+
+
+def sampling(arguments: argparse.Namespace) -> Sampling:
+    from aidl_lang.tools.llm.messages import Sampling
+
+    return Sampling(arguments.seed, arguments.temperature, arguments.max_tokens)
+
+
+def _definition(text: str) -> tuple[str, str]:
+    name, equals, value = (part.strip() for part in text.partition("="))
+    if not (name and equals and value):
+        raise argparse.ArgumentTypeError(f"expected NAME=VALUE, as in width=200, not `{text}`")
+    return name, value
+
+
+def _variant(text: str) -> Variant:
+    from aidl_lang.checking.variants import Variant
+
+    try:
+        return Variant(text)
+    except ValueError:
+        known = ", ".join(Variant)
+        raise argparse.ArgumentTypeError(f"there is no `{text}`; there are {known}") from None
+
+
+def _pixels(text: str) -> int:
+    if not text.isdecimal() or not 16 <= int(text) <= 20_000:
+        raise argparse.ArgumentTypeError(f"expected a number from 16 to 20000, not `{text}`")
+    return int(text)
+
+
+def _thickness(text: str) -> float:
+    try:
+        value = float(text.removesuffix("mm"))
+    except ValueError:
+        value = 0.0
+    if not 0 < value < 1e9:
+        raise argparse.ArgumentTypeError(f"expected millimetres above 0, as in 3, not `{text}`")
+    return value
+
+
+def _layers(text: str) -> frozenset[str]:
+    from aidl_lang.export import SHOW
+
+    layers = [layer.strip() for layer in text.split(",") if layer.strip()]
+    for layer in layers:
+        if layer not in SHOW:
+            raise argparse.ArgumentTypeError(f"there is no `{layer}`; there are {', '.join(SHOW)}")
+    return frozenset(layers)
+
+
+def _temperature(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value <= 2:
+        raise argparse.ArgumentTypeError(f"expected a number from 0 to 2, not `{text}`")
+    return value
+
+
+def count_to(most: int) -> Callable[[str], int]:
+    """Reads a whole number from 1 to `most`."""
+
+    def read(text: str) -> int:
+        if not text.isdecimal() or not 1 <= int(text) <= most:
+            raise argparse.ArgumentTypeError(f"expected a number from 1 to {most}, not `{text}`")
+        return int(text)
+
+    return read
+
+
+def _seconds(text: str) -> float:
+    try:
+        value = float(text.removesuffix("s"))
+    except ValueError:
+        value = 0.0
+    if not 0 < value <= 86_400:
+        raise argparse.ArgumentTypeError(f"expected seconds above 0 and up to a day, not `{text}`")
+    return value
+
+
+def _server(text: str) -> str:
+    from aidl_lang.tools.llm.decoding import SERVERS
+
+    if text not in SERVERS:
+        raise argparse.ArgumentTypeError(f"there is no `{text}`; there are {', '.join(SERVERS)}")
+    return text
+
+
+def _price(text: str) -> Price:
+    from aidl_lang.tools.llm.providers import Price
+
+    try:
+        return Price.parse(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"expected dollars per million tokens in and out, as in 2.5/10, not `{text}`"
+        ) from None

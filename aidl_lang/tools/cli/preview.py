@@ -1,0 +1,76 @@
+"""`aidl preview`: a program drawn in the browser beside any editor, again on every save."""
+
+from __future__ import annotations
+
+import argparse
+from importlib.util import find_spec
+from pathlib import Path
+
+from aidl_lang.tools.cli import files, listening
+from aidl_lang.tools.cli.options import add_program
+from aidl_lang.tools.cli.report import UseError, say
+
+_NEEDED = ("starlette", "uvicorn", "websockets")
+
+
+def register(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = (
+        "Sliders and points that are dragged change the text of the file. Only this machine, and who has the "
+        "address that is printed, can see it."
+    )
+    add_program(parser)
+    parser.add_argument(
+        "--port", type=listening.port, default=0, metavar="N", help="the port (default: one that is free)"
+    )
+    parser.add_argument(
+        "--host",
+        type=listening.address,
+        default=listening.LOCALHOST,
+        metavar="ADDRESS",
+        help=f"an address of this machine alone (default: {listening.LOCALHOST})",
+    )
+    parser.add_argument("--no-open", action="store_true", help="do not open the browser")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Runs until interrupted."""
+    _require_packages()
+    if arguments.file == files.STANDARD:
+        raise UseError("E0902", "standard input cannot be watched", "name a file")
+    files.read(arguments.file)
+    hint = "without `--port` a free one is taken"
+    listener = listening.listener(arguments.host, arguments.port, "E0953", hint)
+
+    from aidl_lang.tools.preview.serving import Served
+
+    served = Served(Path(arguments.file).resolve(), _write, listener)
+    say(f"{arguments.file}: {served.url} (stop with Ctrl-C)")
+    if not arguments.no_open:
+        _open(served.url)
+    served.run()
+    return 0
+
+
+def _open(url: str) -> None:
+    """In the browser. Some of those for terminals return only when they are closed."""
+    import threading
+    import webbrowser
+
+    threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+
+
+def _write(path: Path, data: bytes) -> None:
+    try:
+        files.write(str(path), data)
+    except UseError as reason:
+        raise OSError(reason.diagnostic.message) from None
+
+
+def _require_packages() -> None:
+    missing = [name for name in _NEEDED if find_spec(name) is None]
+    if missing:
+        names = ", ".join(f"`{name}`" for name in missing)
+        raise UseError(
+            "E0952", f"the preview needs {names}, not installed here", "pip install 'aidl-lang[editor]'"
+        )

@@ -1,0 +1,137 @@
+"""`aidl show`: a preview of the drawing in the terminal."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import sys
+from typing import TYPE_CHECKING
+
+from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.options import add_look, add_params, add_program
+from aidl_lang.tools.cli.report import exit_code, show
+from aidl_lang.tools.terminal.protocols import GRAPHICS, PROTOCOLS, has_true_colour, protocol
+from aidl_lang.tools.terminal.screen import Extent, Screen, cell_size, fit
+
+if TYPE_CHECKING:
+    from aidl_lang.export.marks import Picture, Text
+    from aidl_lang.tools.terminal.letters import Label
+
+_PROMPT = 2
+"""Rows left free: for the command, and for the prompt after it."""
+_MOST_COLUMNS = 1000
+_SAMPLES = 4
+"""Pixels drawn for each that is shown, across and down."""
+
+
+def register(parser: argparse.ArgumentParser) -> None:
+    add_program(parser)
+    add_params(parser)
+    add_look(parser)
+    parser.add_argument(
+        "--width", type=_columns, metavar="COLUMNS", help="columns to fill at most (default: the terminal)"
+    )
+    parser.add_argument(
+        "--protocol",
+        choices=("auto", *PROTOCOLS),
+        default="auto",
+        help="how to show it (default: auto, the best that the terminal is known for)",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    from aidl_lang import pipeline
+    from aidl_lang.export import Job, Options
+    from aidl_lang.export.picture import picture
+
+    source, world = files.read(arguments.file), files.world(arguments.file)
+    layers = tuple(sorted(arguments.show))
+    compiled = pipeline.compile(source, world, params=dict(arguments.params), show=layers)
+    show(compiled.diagnostics)
+    may_be_shown = compiled.ok or arguments.best_effort
+    if may_be_shown and compiled.model is not None and compiled.drawing is not None:
+        options = Options(show=arguments.show, dimension=arguments.dimension, cut=arguments.cut)
+        drawn = picture(Job(compiled.model, compiled.drawing, tuple(compiled.diagnostics), options))
+        name = _protocol() if arguments.protocol == "auto" else arguments.protocol
+        files.write(files.STANDARD, _shown(drawn, name, _screen(arguments.width)))
+    return exit_code(compiled.diagnostics) or int(not compiled.ok)
+
+
+def _columns(text: str) -> int:
+    if not text.isdecimal() or not 1 <= int(text) <= _MOST_COLUMNS:
+        raise argparse.ArgumentTypeError(f"expected a number from 1 to {_MOST_COLUMNS}, not `{text}`")
+    return int(text)
+
+
+def _protocol() -> str:
+    from aidl_lang.common.render import wants_colour
+
+    return protocol(
+        os.environ,
+        sys.stdout.encoding,
+        is_terminal=sys.stdout.isatty(),
+        has_colour=wants_colour(sys.stdout, os.environ),
+    )
+
+
+def _screen(width: int | None) -> Screen:
+    """What there is room for. In a file there is, for a picture up to twice as high as `width`."""
+    size = shutil.get_terminal_size()
+    rows = max(1, size.lines - _PROMPT)
+    if sys.stdout.isatty():
+        return Screen(min(width or size.columns, size.columns), rows, cell_size(sys.stdout.fileno()))
+    return Screen(width or size.columns, width or rows)
+
+
+def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
+    """The picture in a protocol."""
+    from aidl_lang.export.coarse import coarse, framed
+
+    extent = fit(picture.width, picture.height, screen)
+    across, down = extent.pixels
+    picture = framed(picture, across / down)
+    if name not in GRAPHICS:
+        return _characters(picture, name, extent)
+    from aidl_lang.tools.terminal.inline import iterm, kitty
+    from aidl_lang.tools.terminal.sixel import sixel
+
+    png = _png(coarse(picture, picture.width / across), max(across, down))
+    if name == "sixel":
+        return f"{sixel(png)}\n".encode()
+    return f"{(kitty if name == 'kitty' else iterm)(png, extent.columns, extent.rows)}\n".encode()
+
+
+def _characters(picture: Picture, name: str, extent: Extent) -> bytes:
+    from aidl_lang.export.coarse import coarse, outlined, separated
+    from aidl_lang.tools.terminal.characters import PIXELS, cells
+    from aidl_lang.tools.terminal.letters import text, written
+
+    across, down = extent.columns * PIXELS[name][0], extent.rows * PIXELS[name][1]
+    picture, texts = separated(picture if name == "blocks" else outlined(picture))
+    png = _png(coarse(picture, picture.width / across), _SAMPLES * max(across, down))
+    grid = cells(name, png, extent.columns, extent.rows)
+    labels = [_label(mark, picture, extent) for mark in texts]
+    grid = written(grid, labels, only_ascii=name == "ascii")
+    lines = text(grid, true_colour=has_true_colour(os.environ))
+    return lines.encode(sys.stdout.encoding, "replace")
+
+
+def _label(mark: Text, picture: Picture, extent: Extent) -> Label:
+    """A text of the picture in cells. One that is turned is written level, about its middle."""
+    from aidl_lang.geometry.colors import rgb
+    from aidl_lang.tools.terminal.letters import Label
+
+    left, bottom, right, top = mark.box
+    edge = {"start": left, "middle": (left + right) / 2, "end": right}
+    anchor = "middle" if mark.angle else mark.anchor
+    column = (edge[anchor] - picture.box[0]) / picture.width * extent.columns
+    row = (picture.box[3] - (bottom + top) / 2) / picture.height * extent.rows
+    return Label(mark.text, column, row, anchor, rgb(mark.color))
+
+
+def _png(picture: Picture, pixels: int) -> bytes:
+    from aidl_lang.export import Options, render
+
+    return render(picture, ".png", Options(pixels=pixels))

@@ -1,0 +1,59 @@
+"""Lengths and sizes of paper and sheets as they are given on the command line."""
+
+from __future__ import annotations
+
+import math
+import re
+from argparse import ArgumentTypeError
+
+PAPERS = {
+    "a0": (841.0, 1189.0),
+    "a1": (594.0, 841.0),
+    "a2": (420.0, 594.0),
+    "a3": (297.0, 420.0),
+    "a4": (210.0, 297.0),
+    "a5": (148.0, 210.0),
+    "letter": (215.9, 279.4),
+    "legal": (215.9, 355.6),
+    "tabloid": (279.4, 431.8),
+}
+"""Width and height in mm, upright."""
+LARGEST = 1e5
+"""Of a sheet, mm."""
+
+_SIZE = re.compile(r"(?P<width>[\d.]+)\s*[x×*]\s*(?P<height>[\d.]+)\s*(?P<unit>[a-z]*)")
+_LENGTH = re.compile(r"(?P<number>[\d.]+)\s*(?P<unit>[a-z]*)")
+
+
+def size(text: str) -> tuple[float, float]:
+    """Width and height in mm: of a paper by its name, or as in `600x400`, `60x40cm`."""
+    wanted = text.strip().lower()
+    if wanted in PAPERS:
+        return PAPERS[wanted]
+    if found := _SIZE.fullmatch(wanted):
+        sides = [_millimetres(found[side], found["unit"]) for side in ("width", "height")]
+        if all(0 < side <= LARGEST for side in sides):
+            return sides[0], sides[1]
+    raise ArgumentTypeError(
+        f"expected a size such as 600x400, 60x40cm or 24x18in, or one of {', '.join(PAPERS)}, not `{text}`"
+    )
+
+
+def length(text: str) -> float:
+    """Millimetres, 0 or more: `3`, `0.15mm`, `0.1in`."""
+    found = _LENGTH.fullmatch(text.strip().lower())
+    value = _millimetres(found["number"], found["unit"]) if found else math.nan
+    if not 0 <= value <= LARGEST:
+        raise ArgumentTypeError(f"expected a length such as 3, 0.15mm or 0.1in, not `{text}`")
+    return value
+
+
+def _millimetres(number: str, unit: str) -> float:
+    """NaN for what is no length."""
+    from aidl_lang.checking.units import LENGTH, UNITS
+
+    factor, dimension = UNITS.get(unit or "mm", (math.nan, LENGTH))
+    try:
+        return float(number) * factor if dimension == LENGTH else math.nan
+    except ValueError:
+        return math.nan

@@ -1,0 +1,59 @@
+"""`aidl watch`: draw a program again whenever it, or a program beside it, is saved."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from aidl_lang.tools.cli import files
+from aidl_lang.tools.cli.build import build, targets
+from aidl_lang.tools.cli.options import add_drawing, add_program, add_strict, add_variant
+from aidl_lang.tools.cli.report import UseError, say
+
+if TYPE_CHECKING:
+    from aidl_lang.solver.memory import Memory
+
+
+def register(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = (
+        "All programs in its folder and below are watched, so that a change to an import counts too."
+    )
+    add_program(parser)
+    add_drawing(parser)
+    add_variant(parser)
+    add_strict(parser)
+    parser.set_defaults(run=run, timings=False)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Runs until interrupted."""
+    from watchfiles import watch
+
+    if arguments.file == files.STANDARD:
+        raise UseError("E0902", "standard input cannot be watched", "name a file")
+    files.read(arguments.file)
+    targets(arguments)
+    from aidl_lang.solver.memory import Memory
+
+    folder, memory = Path(arguments.file).resolve().parent, Memory()
+    _once(arguments, memory)
+    for _ in watch(folder, watch_filter=lambda _, path: path.endswith(".aidl")):
+        _once(arguments, memory)
+    return 0
+
+
+def _once(arguments: argparse.Namespace, memory: Memory) -> None:
+    """One run, told in one line. A file that is gone for a moment does not end the watch."""
+    from aidl_lang.common.render import one_line
+
+    clock = time.strftime("%H:%M:%S")
+    try:
+        outcome = build(arguments, memory)
+    except UseError as reason:
+        say(f"{clock} {one_line(reason.diagnostic)}")
+        return
+    errors = [d for d in outcome.compiled.diagnostics if d.is_error]
+    more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
+    say(f"{clock} {one_line(errors[0])}{more}" if errors else f"{clock} {outcome.line(arguments.file)}")

@@ -1,0 +1,150 @@
+"""Both ends of each param, and how far it may be turned where one of them fails: many compiles at a time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Generator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, TimeoutError, wait
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeAlias
+
+from aidl_lang.building.model import Knob
+from aidl_lang.common import processes
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.tools.ends.told import Fault, Sweep, Tried, Turned
+from aidl_lang.tools.ends.trying import Job, fault, tried
+from aidl_lang.tools.ends.values import Value, ends, limit
+
+if TYPE_CHECKING:
+    from pebble import ProcessPool
+
+LONGEST = 300.0
+"""Seconds for all of it; what is not done by then is left, and counted."""
+_MOST = 200
+"""Ends that are tried."""
+_PATIENCE = 15.0
+"""Seconds for one compile, beyond which it is not looked for where the failing begins."""
+_PAUSE = 0.1
+
+Asking: TypeAlias = tuple[Value, bool]
+"""A value to be tried, and whether what is wrong with it is wanted in words."""
+Course: TypeAlias = Generator[Asking, Tried, Turned]
+
+
+def sweep(
+    job: Job,
+    knobs: Sequence[Knob],
+    known: Sequence[Diagnostic],
+    progress: Callable[[int, int], None] = lambda done, count: None,
+    seconds: float = LONGEST,
+) -> Sweep:
+    """What becomes of a program that works at the ends of its params. `known` is what is said of it as it is
+    written; `progress` is told how many ends are done, of how many.
+
+    Raises Cancelled where nobody waits for it any more (see `cancelling`).
+    """
+    start = time.monotonic()
+    wanted = [(knob, end) for knob in knobs for end in ends(knob)]
+    places = frozenset(fault(d).place for d in known)
+    courses = [_course(knob, end, places) for knob, end in wanted[:_MOST]]
+    if not courses:
+        return Sweep((), _rangeless(knobs), 0, 0, 0.0)
+    run = _Run(job, [knob for knob, _ in wanted], courses, progress, start + seconds)
+    turned = run.turned()
+    left = len(wanted) - len(turned)
+    return Sweep(turned, _rangeless(knobs), left, run.compiled, time.monotonic() - start)
+
+
+def _rangeless(knobs: Sequence[Knob]) -> tuple[Knob, ...]:
+    return tuple(k for k in knobs if not k.choices and k.low is None and not isinstance(k.value, bool))
+
+
+def _course(knob: Knob, end: Value, known: frozenset[tuple[str, str | None, int | None]]) -> Course:
+    """The value at an end; where it fails, the way to the last value that does not."""
+    last = yield end, True
+    if last.ok:
+        return Turned(knob, end, replace(last, faults=_new(last.faults, known)))
+    if isinstance(end, str | bool) or knob.choices or last.was_given_up or last.seconds > _PATIENCE:
+        return Turned(knob, end, last)
+    search = limit(knob, end)
+    try:
+        value = next(search)
+        while True:
+            found = yield value, False
+            if found.was_given_up:
+                return Turned(knob, end, last)
+            value = search.send(found.ok)
+    except StopIteration as done:
+        works, fails = done.value
+    beyond = last if fails == end else (yield fails, True)
+    return Turned(knob, end, last, works, (fails, beyond))
+
+
+def _new(faults: Sequence[Fault], known: frozenset[tuple[str, str | None, int | None]]) -> tuple[Fault, ...]:
+    return tuple(each for each in faults if each.place not in known)
+
+
+class _Run:
+    """Courses that are followed side by side, each a compile after the other."""
+
+    def __init__(
+        self,
+        job: Job,
+        knobs: Sequence[Knob],
+        courses: Sequence[Course],
+        progress: Callable[[int, int], None],
+        until: float,
+    ) -> None:
+        self.job, self.knobs, self.courses = job, knobs, courses
+        self.progress, self.until = progress, until
+        self.compiled = 0
+        self._results: dict[int, Turned] = {}
+        self._waiting: dict[Future[Tried], int] = {}
+
+    def turned(self) -> tuple[Turned, ...]:
+        """What the courses found, in their order, as far as there was time."""
+        workers = processes.pool(min(processes.count(), len(self.courses)), "aidl_lang.tools.ends.trying")
+        try:
+            self.progress(0, len(self.courses))
+            for number, course in enumerate(self.courses):
+                self._ask(workers, number, next(course))
+            while self._waiting and time.monotonic() < self.until:
+                checkpoint()
+                done, _ = wait(self._waiting, _PAUSE, FIRST_COMPLETED)
+                for future in done:
+                    self._go_on(workers, self._waiting.pop(future), _came(future))
+        finally:
+            processes.stop(workers)
+        return tuple(self._results[number] for number in sorted(self._results))
+
+    def _ask(self, workers: ProcessPool, number: int, asking: Asking) -> None:
+        value, explained = asking
+        arguments = (self.job, self.knobs[number].path, value, explained)
+        self._waiting[workers.schedule(tried, arguments, timeout=self.job.seconds)] = number
+
+    def _go_on(self, workers: ProcessPool, number: int, found: Tried) -> None:
+        self.compiled += 1
+        try:
+            self._ask(workers, number, self.courses[number].send(found))
+        except StopIteration as done:
+            self._results[number] = done.value
+            self.progress(len(self._results), len(self.courses))
+
+
+def _came(future: Future[Tried]) -> Tried:
+    """What a process found, or how it ended."""
+    from pebble import ProcessExpired
+
+    try:
+        return future.result()
+    except TimeoutError:
+        return _given_up("takes longer than a compile may")
+    except ProcessExpired:
+        return _given_up("ends the process that compiles it")
+    except MemoryError:
+        return _given_up("needs more memory than there is for it")
+
+
+def _given_up(why: str) -> Tried:
+    return Tried(False, (Fault("E0603", f"the program {why}"),), was_given_up=True)

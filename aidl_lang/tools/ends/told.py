@@ -1,0 +1,81 @@
+"""What was found at the ends of params."""
+
+from __future__ import annotations
+
+from aidl_lang.building.model import Knob
+from aidl_lang.common.records import record
+from aidl_lang.tools.ends.values import Value
+
+
+@record()
+class Fault:
+    """Something that a compile found: a diagnostic without its sources.
+
+    text   what is written in its place, in one line
+    file   where that is, with its line; None for what has no place
+    """
+
+    code: str
+    message: str
+    label: str = ""
+    text: str = ""
+    file: str | None = None
+    line: int | None = None
+
+    @property
+    def is_error(self) -> bool:
+        return self.code.startswith("E")
+
+    @property
+    def place(self) -> tuple[str, str | None, int | None]:
+        """By what it is known again at another value."""
+        return self.code, self.file, self.line
+
+
+@record()
+class Tried:
+    """What came of one value. `faults` has errors, or else the warnings that there are."""
+
+    ok: bool
+    faults: tuple[Fault, ...] = ()
+    seconds: float = 0.0
+    was_given_up: bool = False
+
+
+@record()
+class Turned:
+    """A param at one end of its range, or with another choice.
+
+    works     the last value on the way there with which all was well, compiled as it is told here
+    beyond    the next value, and what is wrong with it; None for what has no values in between
+    """
+
+    knob: Knob
+    value: Value
+    tried: Tried
+    works: float | None = None
+    beyond: tuple[float, Tried] | None = None
+
+    @property
+    def ok(self) -> bool:
+        return self.tried.ok
+
+
+@record()
+class Sweep:
+    """
+    turned     in the order of the params, the lower end before the upper
+    rangeless  params without a range or choices, of which nothing can be tried
+    left       ends that were not tried, for want of time or because there are too many
+    compiled   programs that were compiled for it
+    """
+
+    turned: tuple[Turned, ...]
+    rangeless: tuple[Knob, ...]
+    left: int
+    compiled: int
+    seconds: float
+
+    @property
+    def ok(self) -> bool:
+        return not self.left and all(each.ok for each in self.turned)

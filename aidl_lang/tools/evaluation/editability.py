@@ -1,0 +1,120 @@
+"""Whether a program can be changed where it says so: knobs are turned, and what comes of it is counted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from enum import StrEnum
+
+from aidl_lang import pipeline
+from aidl_lang.building.model import Knob
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile
+from aidl_lang.pipeline import Compiled
+from aidl_lang.tools.ends.values import Value, allowed, rounded
+from aidl_lang.tools.evaluation import openscad
+
+SHARES = (-0.3, -0.1, 0.1, 0.3)
+"""How far a number is turned, of its value."""
+_KNOBS = 25
+"""Of a program that are turned at most."""
+_ASSERTION = "E0604"
+
+
+class Outcome(StrEnum):
+    """What came of an edit."""
+
+    KEPT = "kept"
+    ASSERTION = "assertion"  # all solves, but an assert of the program speaks against the value
+    CHANGED = "changed"  # a size that is written elsewhere had to give way
+    BROKEN = "broken"  # it does not solve, or is wrong
+    EMPTY = "empty"  # nothing is drawn any more
+
+
+@record()
+class Edit:
+    knob: str
+    value: Value
+    outcome: Outcome
+
+
+@record()
+class Edits:
+    """`narrowed` counts edits cut short by a range or a step, `skipped` the knobs without an edit."""
+
+    knobs: int
+    edits: tuple[Edit, ...]
+    narrowed: int = 0
+    skipped: int = 0
+
+
+def of_aidl(source: SourceFile) -> Edits:
+    """Turn the `param`s of a program that is valid."""
+    before = pipeline.compile(source)
+    changed = _changed(before)
+    edits, narrowed, skipped = list[Edit](), 0, max(0, len(before.knobs) - _KNOBS)
+    for knob in before.knobs[:_KNOBS]:
+        values, cut = turned(knob)
+        narrowed += cut
+        skipped += not values
+        for value in values:
+            after = pipeline.compile(source, params={knob.path: value})
+            edits.append(Edit(knob.path, value, _outcome(after, changed)))
+    return Edits(len(before.knobs), tuple(edits), narrowed, skipped)
+
+
+def of_openscad(program: str) -> Edits:
+    """Turn the variables of the top level that are numbers."""
+    knobs = openscad.knobs(program)
+    edits = [
+        Edit(name, value, Outcome.KEPT if openscad.render(program, {name: value}).ok else Outcome.EMPTY)
+        for name, written in list(knobs.items())[:_KNOBS]
+        for value in dict.fromkeys(_whole(aim, written) for aim in _numbers(written))
+        if value != written
+    ]
+    return Edits(len(knobs), tuple(edits), 0, max(0, len(knobs) - _KNOBS))
+
+
+def turned(knob: Knob) -> tuple[list[Value], int]:
+    """The values to try, and how many of those aimed at the range, the step or the choices cut short.
+
+    Of a text without choices there is nothing to try.
+    """
+    if knob.choices:
+        others: list[Value] = [choice for choice in knob.choices if choice != knob.value][: len(SHARES)]
+        return others, 0
+    if isinstance(knob.value, bool):
+        return [not knob.value], 0
+    if isinstance(knob.value, str):
+        return [], 0
+    aims = list(_numbers(float(knob.value)))
+    values = [allowed(knob, _whole(aim, float(knob.value)) if knob.unit == "" else aim) for aim in aims]
+    cut = sum(abs(value - aim) > 1e-9 * abs(aim) for value, aim in zip(values, aims, strict=True))
+    return [value for value in dict.fromkeys(values) if value != knob.value], cut
+
+
+def _numbers(value: float) -> Iterator[float]:
+    """Values around one; a zero has no share of itself and is left alone."""
+    if value:
+        yield from (rounded(value * (1 + share)) for share in SHARES)
+
+
+def _whole(aim: float, written: float) -> float:
+    """What was written as a whole number, and may be a count, stays whole."""
+    return float(round(aim)) if written.is_integer() else aim
+
+
+def _outcome(after: Compiled, before: Sequence[str]) -> Outcome:
+    errors = {d.code for d in after.diagnostics if d.is_error}
+    if after.status != "solved" or errors - {_ASSERTION} or after.model is None or after.drawing is None:
+        return Outcome.BROKEN
+    if not all(report.satisfied or report.soft for report in after.model.constraints):
+        return Outcome.BROKEN
+    if set(_changed(after)) - set(before):
+        return Outcome.CHANGED
+    if not (after.drawing.bodies or after.drawing.strokes):
+        return Outcome.EMPTY
+    return Outcome.ASSERTION if errors else Outcome.KEPT
+
+
+def _changed(compiled: Compiled) -> tuple[str, ...]:
+    return tuple(change.path for change in compiled.model.changed) if compiled.model else ()

@@ -1,0 +1,58 @@
+"""What is to be run: every prompt in every language variant, several times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from aidl_lang.checking.variants import Variant
+from aidl_lang.common.records import record
+from aidl_lang.tools.evaluation.openscad import OpenScad
+from aidl_lang.tools.evaluation.requirements import Prompt
+from aidl_lang.tools.llm.aidl import Aidl
+from aidl_lang.tools.llm.generation import Settings
+from aidl_lang.tools.llm.language import Language
+
+VARIANTS: dict[str, Language] = {
+    **{str(variant): Aidl(variant) for variant in Variant},
+    "openscad": OpenScad(),
+}
+
+
+@dataclass(frozen=True, order=True)
+class Job:
+    """One conversation: prompt and variant by name, runs counted from 1."""
+
+    prompt: str
+    variant: str
+    run: int
+
+    @property
+    def key(self) -> str:
+        return f"{self.prompt}/{self.variant}/{self.run}"
+
+
+@record()
+class Plan:
+    """`settings.sampling.seed` is that of the first run; each further one counts up from it."""
+
+    prompts: tuple[Prompt, ...]
+    variants: tuple[str, ...]
+    runs: int
+    settings: Settings
+
+    def jobs(self) -> Iterator[Job]:
+        """All of them, the first run of everything first."""
+        for run in range(1, self.runs + 1):
+            for prompt in self.prompts:
+                for variant in self.variants:
+                    yield Job(prompt.name, variant, run)
+
+    def prompt(self, job: Job) -> Prompt:
+        return next(prompt for prompt in self.prompts if prompt.name == job.prompt)
+
+    def sampled(self, job: Job) -> Settings:
+        """The settings of a job, with its own seed."""
+        first = self.settings.sampling.seed
+        seed = None if first is None else first + job.run - 1
+        return replace(self.settings, sampling=replace(self.settings.sampling, seed=seed))

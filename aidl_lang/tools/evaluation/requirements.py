@@ -1,0 +1,287 @@
+"""Prompts and what a drawing of the thing must have, as asserts of the language itself.
+
+A prompt is an AIDL program: its root's comment is what the model is asked, its empty structures are roles
+with the words they go by (`@note`), its asserts are the requirements. To examine a program, its solved parts
+lend their boxes and regions to the roles that they answer, and the asserts are evaluated there by the
+language's own checker and evaluator. The two programs share no scope, so their names do not meet. See
+`eval/README.md`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from enum import StrEnum
+from functools import cached_property
+from pathlib import Path
+
+from aidl_lang import parser
+from aidl_lang.building.expression import Evaluator, Unknown
+from aidl_lang.building.model import Assertion, Condition, Measurement, Model, Structure
+from aidl_lang.building.values import Text
+from aidl_lang.common.diagnostics import has_errors
+from aidl_lang.common.records import record
+from aidl_lang.common.resources import resource
+from aidl_lang.common.source import SourceFile
+from aidl_lang.explaining.outcome import assertion_note, measured
+from aidl_lang.geometry.boolean import united
+from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.solved import Box, SolvedModel
+from aidl_lang.interp import interpret
+from aidl_lang.pipeline import Compiled, front
+from aidl_lang.syntax import ast
+from aidl_lang.tools.evaluation.roles import Role, bind
+from aidl_lang.tools.evaluation.things import Thing, origins
+from aidl_lang.tools.evaluation.whole import MEASURES
+
+WHOLE = "whole"
+"""The role that is all that is drawn."""
+
+_COUNT = "_count"
+"""A role of many has a param `NAME_count`: how many there are; its range says how few and many may be."""
+
+
+class Status(StrEnum):
+    MET = "met"
+    FAILED = "failed"
+    UNMEASURABLE = "unmeasurable"  # counts as failed
+
+
+@record()
+class Requirement:
+    """`text` says it in words, `condition` as it is checked; `roles` are those it speaks of."""
+
+    text: str
+    condition: str
+    roles: tuple[str, ...]
+    start: int
+    """where the condition stands in the prompt"""
+
+
+@record()
+class Prompt:
+    """`text` is what the model is asked."""
+
+    name: str
+    text: str
+    requirements: tuple[Requirement, ...]
+    roles: tuple[Role, ...]
+    ranges: Mapping[str, tuple[int, int]]
+    """How many there may be, of the roles of many."""
+    source: SourceFile
+
+
+@record()
+class Result:
+    text: str
+    status: Status
+    detail: str = ""
+
+
+class PromptError(Exception):
+    """A file in a folder of prompts is none."""
+
+
+def load(folder: Path | None = None) -> tuple[Prompt, ...]:
+    """The prompts of a folder in the order of their file names; those of the project without one.
+
+    Raises PromptError for a file that is no prompt, OSError for a folder that cannot be read.
+    """
+    folder = resource("eval/prompts") if folder is None else folder
+    files = sorted(path for path in folder.iterdir() if path.suffix == ".aidl")
+    return tuple(read(SourceFile(path.name, path.read_text(encoding="utf-8"))) for path in files)
+
+
+def read(source: SourceFile) -> Prompt:
+    """A prompt from its program. Raises PromptError."""
+    built, module = _built(source, {})
+    if not built.root.doc:
+        raise PromptError(f"{source.name}: the comment before the root is to say what is asked for")
+    ranges = {
+        knob.path.removesuffix(_COUNT): (int(knob.low), int(knob.high))
+        for knob in built.knobs
+        if knob.path.endswith(_COUNT) and knob.low is not None and knob.high is not None
+    }
+    names = {child.name.partition("[")[0]: child for child in reversed(built.root.children)}
+    if strays := sorted(ranges.keys() - names.keys()):
+        raise PromptError(f"{source.name}: `{strays[0]}{_COUNT}` counts no role, or is 0 as written")
+    roles = tuple(
+        _role(child, name, source, many=name in ranges)
+        for name, child in reversed(names.items())
+        if name != WHOLE
+    )
+    known = frozenset(role.name for role in roles)
+    requirements = tuple(_requirements(module.statements, known, (), source))
+    name = Path(source.name).stem.lstrip("0123456789").lstrip("-_")
+    return Prompt(name, built.root.doc, requirements, roles, ranges, source)
+
+
+def _built(source: SourceFile, counts: Mapping[str, float]) -> tuple[Model, ast.Module]:
+    """The model of a prompt with so many of each role, and its statements."""
+    program, found = front(source)
+    if not has_errors(found):
+        built = interpret(program, counts)
+        found = [*found, *built.diagnostics]
+    if errors := [d for d in found if d.is_error]:
+        place = f":{errors[0].span.line}" if errors[0].span else ""
+        raise PromptError(f"{source.name}{place}: {errors[0].message}")
+    return built.model, parser.parse(source).module
+
+
+def _role(role: Structure, name: str, source: SourceFile, *, many: bool) -> Role:
+    match role.attributes.get("note"):
+        case (Text(words, _),):
+            try:
+                return Role.read(name, words, many=many)
+            except ValueError as reason:
+                raise PromptError(f"{source.name}: in the `@note` of `{name}`, {reason}") from None
+        case _:
+            raise PromptError(f"{source.name}: `{role.name}` has no `@note` of the words it goes by")
+
+
+def _requirements(
+    statements: Sequence[ast.Node], known: frozenset[str], loops: tuple[ast.Node, ...], source: SourceFile
+) -> Iterator[Requirement]:
+    for node in statements:
+        match node:
+            case ast.Structure():
+                yield from _requirements(node.body.statements, known, loops, source)
+            case ast.For():
+                yield from _requirements(node.body.statements, known, (*loops, node.iterable), source)
+            case ast.Assert(test=test, message=ast.String(value=text)):
+                names = [n.text for of in (*loops, test) for n in ast.walk(of) if isinstance(n, ast.Name)]
+                roles = tuple(dict.fromkeys(name for name in names if name in known))
+                yield Requirement(text, test.span.one_line, roles, test.span.start)
+            case ast.Assert():
+                raise PromptError(f"{source.name}:{node.span.line}: the assert does not say what it asks for")
+
+
+# --- Examining -----------------------------------------------------------------------------------
+
+
+def examine(prompt: Prompt, source: SourceFile, compiled: Compiled) -> tuple[Result, ...]:
+    """Whether what a program draws has what the prompt requires, one result for each requirement."""
+    model, drawing = compiled.model, compiled.drawing
+    if model is None or drawing is None:
+        return _all(prompt, "the program is wrong, so nothing is drawn")
+    if compiled.status != "solved":
+        return _all(prompt, "the constraints were not solved, so nothing is in its place")
+    examination = _Examination(prompt, model, drawing, parser.parse(source).module)
+    return tuple(map(examination.result, prompt.requirements))
+
+
+def _all(prompt: Prompt, why: str) -> tuple[Result, ...]:
+    return tuple(Result(r.text, Status.UNMEASURABLE, why) for r in prompt.requirements)
+
+
+@record()
+class _MissingError(Exception):
+    """Something asked of a part that it does not have."""
+
+    why: str
+
+
+class _Examination:
+    """One program before one prompt."""
+
+    def __init__(self, prompt: Prompt, model: SolvedModel, drawing: Drawing, program: ast.Module) -> None:
+        self.prompt, self.model, self.drawing = prompt, model, drawing
+        self.bound = bind(prompt.roles, model, drawing, origins(program))
+        counts = {
+            f"{name}{_COUNT}": float(count if low <= (count := len(self.bound[name])) <= high else low)
+            for name, (low, high) in prompt.ranges.items()
+        }
+        asked, _ = _built(prompt.source, counts)
+        self.assertions: dict[int, list[Assertion]] = {}
+        for assertion in asked.assertions:
+            self.assertions.setdefault(assertion.span.start, []).append(assertion)
+        self.things = {s: thing for s in asked.root.children if (thing := self._thing(s)) is not None}
+        self.regions: dict[Structure, Region] = {}
+        self.evaluate = Evaluator(dict(self._values(asked)), self._measure)
+
+    @cached_property
+    def whole(self) -> Region:
+        """All bodies as one."""
+        return united(*(body.region for body in self.drawing.bodies))
+
+    def _thing(self, placeholder: Structure) -> Thing | None:
+        name, _, index = placeholder.name.partition("[")
+        if name == WHOLE:
+            return Thing(((self.model.root,),))
+        found, k = self.bound[name], int(index.rstrip("]") or 0)
+        return found[k] if k < len(found) else None
+
+    def _values(self, asked: Model) -> Iterator[tuple[Unknown, float]]:
+        """The boxes of what roles are bound to, and measures of the whole drawing; not a number where there
+        is none.
+        """
+        for placeholder, thing in self.things.items():
+            assert placeholder.plan is not None
+            nothing = Box(*(math.nan,) * 4)
+            box = thing.box(lambda of=placeholder: self._region(of)) or nothing  # type: ignore[misc]
+            sides = (box.left, box.bottom, box.width, box.height)
+            for side, value in zip(placeholder.plan, sides, strict=True):
+                assert isinstance(side.payload, Unknown)
+                yield side.payload, value
+        for unknown in asked.unknowns:
+            if unknown.holder is asked.root and unknown.field in MEASURES:
+                yield unknown, MEASURES[unknown.field](self.whole)
+
+    def _region(self, placeholder: Structure) -> Region:
+        if placeholder not in self.regions:
+            is_whole = placeholder.name == WHOLE
+            self.regions[placeholder] = (
+                self.whole if is_whole else self.things[placeholder].region(self.drawing)
+            )
+        return self.regions[placeholder]
+
+    def _measure(self, payload: object) -> float:
+        assert isinstance(payload, Measurement)
+        parts = [part for part in payload.of if isinstance(part, Structure)]
+        for part in parts:
+            if not self._region(part):
+                raise _MissingError(f"`{self.things[part].path}` covers no area")
+        return measured(payload.kind, [self._region(part) for part in parts], self.drawing.size)
+
+    def result(self, requirement: Requirement) -> Result:
+        if why := next(filter(None, map(self._unusable, requirement.roles)), None):
+            return Result(requirement.text, Status.UNMEASURABLE, why)
+        try:
+            told = [self._failure(a) for a in self.assertions.get(requirement.start, ())]
+        except _MissingError as missing:
+            return Result(requirement.text, Status.UNMEASURABLE, missing.why)
+        if failed := next(filter(None, told), None):
+            return Result(requirement.text, Status.FAILED, failed + self._bindings(requirement))
+        return Result(requirement.text, Status.MET)
+
+    def _unusable(self, role: str) -> str | None:
+        """Why what was found for a role cannot be measured."""
+        found, (low, high) = len(self.bound[role]), self.prompt.ranges.get(role, (1, 1))
+        if not found and low:
+            return f"no {role.replace('_', ' ')} was found"
+        if found < low:
+            return f"{found} of `{role}` were found, and {low} at least are needed"
+        if found > high:
+            return f"{found} of `{role}` were found, and {high} at most are looked at"
+        buried = next((thing for thing in self.bound[role] if thing.is_buried), None)
+        return f"`{buried.path}` is inside other material and is not to be seen" if buried else None
+
+    def _failure(self, assertion: Assertion) -> str | None:
+        comparisons = assertion.condition.comparisons() if isinstance(assertion.condition, Condition) else ()
+        for comparison in comparisons:
+            if not all(math.isfinite(self.evaluate(side)) for side in (comparison.left, comparison.right)):
+                raise _MissingError(f"nothing is drawn of which `{assertion.text}` could be asked")
+        note = assertion_note(assertion, self.evaluate)
+        if note is not None and assertion.condition is False:
+            return f"`{assertion.text}` is false"
+        return None if note is None else note.label
+
+    def _bindings(self, requirement: Requirement) -> str:
+        """What the roles of a requirement are in the program."""
+        told = []
+        for name in requirement.roles:
+            paths = [thing.path for thing in self.bound[name]]
+            more = f" and {len(paths) - 4} more" if len(paths) > 4 else ""
+            told.append(f"{name}: {', '.join(paths[:4]) or 'none'}{more}")
+        return f" ({'; '.join(told)})" if told else ""

@@ -1,0 +1,230 @@
+"""Finished work on disk: a JSON record and a picture for each job, and the settings that all have in common.
+
+Everything is written in one step, so that an interrupted run leaves whole records or none.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.tools.evaluation.plan import VARIANTS, Job, Plan
+from aidl_lang.tools.evaluation.requirements import Prompt
+from aidl_lang.tools.llm.generation import Attempt, Generation
+from aidl_lang.tools.llm.language import Verdict
+from aidl_lang.tools.llm.messages import Usage
+from aidl_lang.version import __version__
+
+Record = dict[str, Any]
+
+SETTINGS = "settings.json"
+_SHOWN = 60
+
+
+class StoreError(Exception):
+    """The folder cannot be used; the diagnostic says why and what to do."""
+
+    def __init__(self, code: str, message: str, *hints: str) -> None:
+        super().__init__(message)
+        self.diagnostic = Diagnostic(code, message, hints=hints)
+
+
+class Store:
+    """A folder of records."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    # --- settings ---------------------------------------------------------------------------------
+
+    def begin(self, plan: Plan, provider: str) -> None:
+        """Note the settings of a plan. Raises StoreError where the records come from others."""
+        known, now = self._read(self.folder / SETTINGS) or {}, _settings(plan, provider)
+        differing = [
+            f"{name}: `{_short(known[name])}` then, `{_short(now[name])}` now"
+            for name in sorted(known.keys() & now.keys())
+            if known[name] != now[name]
+        ]
+        if differing:
+            raise StoreError(
+                "E0946",
+                f"`{self.folder}` holds runs with other settings",
+                *differing,
+                "give these runs a folder of their own with --out, or use the settings of those there",
+            )
+        self.write(SETTINGS, _json(known | now))
+
+    # --- records ----------------------------------------------------------------------------------
+
+    def record(self, job: Job) -> Record | None:
+        """What is known of a job. Raises StoreError for a file that is no record."""
+        found = self._read(self.folder / _record_path(job))
+        if found is not None and not _is_record(found, job):
+            raise _damaged(self.folder / _record_path(job))
+        return found
+
+    def records(self) -> list[Record]:
+        """All of them, by prompt, variant and run."""
+        found = []
+        for path in (self.folder / "records").glob("*/*/*.json"):
+            if path.stem.isdecimal():
+                job = Job(path.parent.parent.name, path.parent.name, int(path.stem))
+                record = self.record(job)
+                found.append((job.prompt, list(VARIANTS).index(job.variant), job.run, record))
+        found.sort(key=lambda item: item[:3])
+        return [record for *_, record in found if record is not None]
+
+    def keep(self, job: Job, record: Record, png: bytes | None) -> None:
+        """Write the picture, then the record that speaks of it."""
+        if png is not None:
+            self.write(picture_path(job.key), png)
+        self.write(_record_path(job), _json(record))
+
+    # --- files ------------------------------------------------------------------------------------
+
+    def write(self, name: str, data: bytes) -> None:
+        """Write a file below the folder in one step. Raises StoreError."""
+        path = self.folder / name
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            handle, temporary = tempfile.mkstemp(prefix=".", dir=path.parent)
+            try:
+                with open(handle, "wb") as file:
+                    file.write(data)
+                os.chmod(temporary, 0o644)
+                os.replace(temporary, path)
+            except BaseException:
+                with suppress(OSError):
+                    os.unlink(temporary)
+                raise
+        except OSError as error:
+            raise StoreError("E0948", f"`{path}` cannot be written: {error.strerror or error}") from None
+
+    def _read(self, path: Path) -> dict[str, Any] | None:
+        try:
+            found = json.loads(path.read_bytes())
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError):
+            raise _damaged(path) from None
+        if not isinstance(found, dict):
+            raise _damaged(path)
+        return found
+
+
+def picture_path(key: str) -> str:
+    return f"pictures/{key}.png"
+
+
+def _record_path(job: Job) -> str:
+    return f"records/{job.key}.json"
+
+
+def _damaged(path: Path) -> StoreError:
+    return StoreError("E0948", f"`{path}` is no record of a run", "remove it: the run is made again")
+
+
+def _is_record(found: Record, job: Job) -> bool:
+    """Whether a record is about its job and has what is read of it."""
+    names = {"attempts", "ok", "program", "missing", "fixes", "usage", "request"}
+    is_about = (found.get("prompt"), found.get("variant"), found.get("run")) == (
+        job.prompt,
+        job.variant,
+        job.run,
+    )
+    return is_about and job.variant in VARIANTS and ("failure" in found or names <= found.keys())
+
+
+# --- from values to data --------------------------------------------------------------------------
+
+
+def digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def measured_with(prompt: Prompt) -> str:
+    """What measures depend on beside the program: with another value they are taken again."""
+    return digest(f"{__version__}\n{prompt.source.text}")
+
+
+def recorded(job: Job, prompt: Prompt, generation: Generation) -> Record:
+    """The record of a conversation, not yet measured."""
+    verdict = generation.verdict
+    asked = [message.text for message in generation.messages if message.role == "user"]
+    return {
+        **asdict(job),
+        "text": prompt.text,
+        "request": asked[0] if asked else "",
+        "attempts": [_attempt(attempt) for attempt in generation.attempts],
+        "ok": generation.ok,
+        "program": verdict.program if verdict else None,
+        "missing": list(verdict.missing) if verdict else [],
+        "fixes": list(verdict.fixes) if verdict else [],
+        "usage": _usage(generation.usage),
+    }
+
+
+def failed(job: Job, failure: Diagnostic) -> Record:
+    """The record of a conversation that broke off, to be had again."""
+    return {**asdict(job), "failure": {"code": failure.code, "message": failure.message}}
+
+
+def _attempt(attempt: Attempt) -> Record:
+    return {
+        "reply": attempt.reply.text,
+        "model": attempt.reply.model,
+        "finish": str(attempt.reply.finish),
+        "usage": _usage(attempt.reply.usage),
+        "program": attempt.program,
+        "verdict": None if attempt.verdict is None else _verdict(attempt.verdict),
+        "answer": attempt.answer,
+    }
+
+
+def _verdict(verdict: Verdict) -> Record:
+    return {
+        "ok": verdict.ok,
+        "stage": verdict.stage,
+        "codes": list(verdict.codes),
+        "fixes": list(verdict.fixes),
+        "missing": list(verdict.missing),
+        "numbers": dict(verdict.numbers),
+    }
+
+
+def _usage(usage: Usage) -> Record:
+    return {"input": usage.input, "output": usage.output, "cost": usage.cost}
+
+
+def _settings(plan: Plan, provider: str) -> Record:
+    """What must be the same for records to stand in one table; prompts and variants may come to it."""
+    sampling = plan.settings.sampling
+    return {
+        "provider": provider,
+        "attempts": plan.settings.attempts,
+        "seed": sampling.seed,
+        "temperature": sampling.temperature,
+        "max_tokens": sampling.max_tokens,
+        "extra": dict(sampling.extra),
+        **{f"guide of {name}": digest(VARIANTS[name].guide()) for name in plan.variants},
+        **{f"prompt {prompt.name}": prompt.text for prompt in plan.prompts},
+    }
+
+
+def _short(value: object) -> str:
+    text = " ".join(str(value).split())
+    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 1]}…"
+
+
+def _json(value: Mapping[str, Any]) -> bytes:
+    return (json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False, default=str) + "\n").encode(
+        "utf-8", "backslashreplace"
+    )

@@ -1,0 +1,184 @@
+"""Programs are compiled in processes of their own: one that hangs, or eats all memory, is a result."""
+
+from __future__ import annotations
+
+import multiprocessing
+import resource
+import signal
+from collections.abc import Callable
+from dataclasses import field, replace
+from itertools import count
+from typing import TypeVar
+
+from pebble import ProcessExpired, ProcessPool
+
+from aidl_lang.common.records import record
+from aidl_lang.tools.llm.language import Conversation, Language, Verdict
+
+T = TypeVar("T")
+
+SECONDS = 60.0
+"""For one task of a worker."""
+_MEMORY = 4 << 30
+"""Bytes of address space of a worker."""
+_LAST = 1_000_000
+"""Weight of a program that could not be judged: no other is further from right."""
+
+
+class Broken(Exception):  # noqa: N818 (what came of a program, no error of ours)
+    """A task did not end well; the message says how."""
+
+
+class Worker:
+    """A process for tasks, started anew when one breaks it. To be used by one thread."""
+
+    def __init__(self, seconds: float = SECONDS) -> None:
+        self._seconds = seconds
+        context = multiprocessing.get_context("forkserver")
+        context.set_forkserver_preload(["aidl_lang.tools.evaluation.measures"])
+        self._pool = ProcessPool(max_workers=1, initializer=_prepare, context=context)
+
+    def call(self, task: Callable[..., T], *arguments: object) -> T:
+        """What the task returns; it and its arguments can be pickled. Raises Broken."""
+        future = self._pool.schedule(task, args=arguments, timeout=self._seconds)
+        error = future.exception()
+        if error is not None:
+            raise Broken(_reason(error, self._seconds)) from error
+        return future.result()
+
+    def stop(self) -> None:
+        self._pool.stop()  # type: ignore[no-untyped-call]
+        self._pool.join()
+
+
+def _prepare() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the main process decides what an interrupt ends
+    resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
+
+
+def _reason(error: BaseException, seconds: float) -> str:
+    if isinstance(error, TimeoutError):
+        return f"it took longer than {seconds:g} s"
+    if isinstance(error, ProcessExpired):
+        return "the process that ran it came to an end"
+    if isinstance(error, MemoryError):
+        return f"it took more than {_MEMORY >> 30} GB of memory"
+    return f"it ended in {type(error).__name__}: {str(error)[:200]}"
+
+
+@record()
+class Remote:
+    """A language whose programs are judged by a worker."""
+
+    language: Language
+    worker: Worker
+
+    @property
+    def name(self) -> str:
+        return self.language.name
+
+    @property
+    def suffix(self) -> str:
+        return self.language.suffix
+
+    @property
+    def fences(self) -> tuple[str, ...]:
+        return self.language.fences
+
+    def guide(self) -> str:
+        return self.language.guide()
+
+    def reads(self, text: str) -> bool:
+        try:
+            return self.worker.call(_reads, self.language, text)
+        except Broken:
+            return False
+
+    def conversation(self, before: str | None = None) -> RemoteConversation:
+        return RemoteConversation(self.worker, self.language, before)
+
+
+_numbers = count()
+
+
+@record(frozen=False)
+class RemoteConversation:
+    """A conversation that lives in a worker; when that breaks, a new one judges again what went well."""
+
+    worker: Worker
+    language: Language
+    before: str | None
+    programs: list[str] = field(default_factory=list)
+    verdicts: list[Verdict] = field(default_factory=list)
+    number: int = field(default_factory=lambda: next(_numbers))
+
+    def judge(self, program: str) -> Verdict:
+        try:
+            verdict = self._call(_judge, program)
+        except Broken as reason:
+            return _unjudged(program, str(reason))
+        self.programs.append(program)
+        self.verdicts.append(verdict)
+        return verdict
+
+    def finish(self, verdict: Verdict) -> Verdict:
+        if verdict not in self.verdicts:  # it broke the worker
+            return verdict
+        try:
+            return self._call(_finish, self.verdicts.index(verdict))
+        except Broken:
+            return verdict
+
+    def _call(self, task: Callable[..., Verdict], argument: object) -> Verdict:
+        state = (self.number, self.language, self.before, tuple(self.programs))
+        return self.worker.call(task, *state, argument)
+
+
+def _unjudged(program: str, reason: str) -> Verdict:
+    feedback = (
+        f"The program could not be judged: {reason}. Say it in another way, smaller or simpler, without "
+        "giving up what it is to show, and answer with the whole program in one block."
+    )
+    return Verdict(False, "broken", feedback, program, codes=("broken",), weight=(_LAST,))
+
+
+@record(frozen=False)
+class _Open:
+    number: int
+    conversation: Conversation
+    verdicts: list[Verdict]
+
+
+_open: list[_Open] = []
+"""In a worker: the conversation under way."""
+
+
+def _resumed(number: int, language: Language, before: str | None, programs: tuple[str, ...]) -> _Open:
+    if not _open or _open[0].number != number or len(_open[0].verdicts) != len(programs):
+        conversation = language.conversation(before)
+        _open[:] = [_Open(number, conversation, [conversation.judge(program) for program in programs])]
+    return _open[0]
+
+
+def _judge(
+    number: int, language: Language, before: str | None, programs: tuple[str, ...], program: str
+) -> Verdict:
+    state = _resumed(number, language, before, programs)
+    try:
+        verdict = state.conversation.judge(program)
+    except BaseException:
+        _open.clear()  # it may have kept half of the program in mind
+        raise
+    state.verdicts.append(verdict)
+    return replace(verdict, compiled=None)
+
+
+def _finish(
+    number: int, language: Language, before: str | None, programs: tuple[str, ...], index: int
+) -> Verdict:
+    state = _resumed(number, language, before, programs)
+    return replace(state.conversation.finish(state.verdicts[index]), compiled=None)
+
+
+def _reads(language: Language, text: str) -> bool:
+    return language.reads(text)

@@ -1,0 +1,72 @@
+"""The formats: what each is made of."""
+
+from __future__ import annotations
+
+from aidl_lang.syntax.kinds import KINDS
+from aidl_lang.tools.grammars.descent import from_left_to_right
+from aidl_lang.tools.grammars.notation import (
+    Chars,
+    Name,
+    Node,
+    Repeat,
+    Rules,
+    Seq,
+    Text,
+    alt,
+    optional,
+    reachable,
+    seq,
+)
+from aidl_lang.tools.grammars.reader import read_source
+from aidl_lang.tools.grammars.spacing import spaced
+from aidl_lang.tools.grammars.terminals import SPACING, bounded_terminals, reading_terminals
+from aidl_lang.tools.grammars.writing import GBNF, LARK, W3C
+
+# Lines that do not hold three backticks, and the opening of a block.
+_TICKS = optional(alt(Text("`"), Text("``")))
+_LINES = optional(seq(Repeat(seq(_TICKS, Chars("^`")), 0, None), _TICKS, Chars("\\n")))
+_OPENING = seq(_LINES, Text("```aidl"), optional(Chars("\\r")), Chars("\\n"))
+
+
+def as_it_is() -> str:
+    return read_source().text
+
+
+def for_readers() -> str:
+    """W3C EBNF: the rules of the source, of which white space is no part."""
+    return W3C.definitions(read_source().rules) + "\n" + W3C.definitions(reading_terminals())
+
+
+def for_decoding(format: str, fenced: bool) -> str:
+    """Bounded terminals, white space in the rules, and no kinds of structures other than those there are."""
+    rules = spaced(_with_kinds(read_source().rules), "module") | SPACING
+    program = seq(optional(Name("heading")), Name("module"))
+    if fenced:
+        rules["start"] = seq(Name("OPENING"), program, Name("new_line"), Text("```"), optional(Name("SPACE")))
+    else:
+        rules["start"] = seq(program, optional(Name("gap")))
+    terminals = {**bounded_terminals(), "OPENING": _OPENING}
+    if format == "gbnf":
+        return GBNF.definitions(reachable(from_left_to_right(rules) | terminals, "start"))
+    used = reachable(rules | terminals, "start")
+    return "%llguidance {}\n\n" + LARK.definitions(used)
+
+
+def _with_kinds(rules: Rules) -> dict[str, Node]:
+    """The rules with the kinds of structures where they take any name; the parser refuses others."""
+    return {
+        **rules,
+        "kind": alt(*map(Text, KINDS)),
+        **{
+            name: _first_replaced(rules[name], Name("NAME"), Name("kind"))
+            for name in ("structure", "template")
+        },
+    }
+
+
+def _first_replaced(node: Node, old: Node, new: Node) -> Node:
+    """A sequence with another item in the place of the first of one sort."""
+    if not isinstance(node, Seq):
+        raise TypeError(f"not a sequence: {node}")
+    at = node.items.index(old)
+    return seq(*node.items[:at], new, *node.items[at + 1 :])

@@ -1,0 +1,48 @@
+"""The lists of words for the CodeMirror package, as a module of TypeScript."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+
+from aidl_lang.tools.highlighting.classes import called
+from aidl_lang.tools.reference.collect import reference
+from aidl_lang.tools.snippets import SNIPPETS
+from aidl_lang.tools.vocabulary import vocabulary
+
+_HEAD = "// Made by `make colours` from aidl_lang/tools/vocabulary.py; do not edit.\n"
+_LISTS = (
+    *("kinds", "attributes", "units", "types", "everywhere", "constants"),
+    *("statements", "clauses", "keywords", "reserved"),
+)
+
+
+def words() -> str:
+    """`words`: lists by class; `calls`: names by the class of their call; `about`: the names of the library
+    with what they are for; `snippets`.
+    """
+    known = vocabulary()
+    lists = {name: getattr(known, name) for name in _LISTS}
+    entries = reference().entries
+    about = {name: entry.doc.line for name, entry in entries.items() if name in known.named()}
+    snippets = [{"prefix": s.prefix, "title": s.title, "body": s.body, "place": s.place} for s in SNIPPETS]
+    parts = {
+        "words: Record<string, readonly string[]>": lists,
+        'calls: Record<string, "call.shape" | "call.constraint" | "call.function">': called(),
+        "about: Record<string, string>": about,
+        "snippets: readonly { prefix: string; title: string; body: string; place: string }[]": snippets,
+    }
+    return _HEAD + "".join(f"\nexport const {name} = {_literal(value)};\n" for name, value in parts.items())
+
+
+def _literal(value: object) -> str:
+    """A value with each of its items on a line."""
+    if isinstance(value, Mapping):
+        inside = ",\n".join(f"  {json.dumps(k)}: {_short(v)}" for k, v in value.items())
+        return f"{{\n{inside},\n}}"
+    assert isinstance(value, list)
+    return "[\n" + ",\n".join(f"  {_short(item)}" for item in value) + ",\n]"
+
+
+def _short(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False)

@@ -1,0 +1,186 @@
+"""The queries by which editors colour what the tree-sitter grammar has read.
+
+Editors have different names for the colours and one language for queries: a node is named by what stands
+around it. Where several patterns fit, the last one holds; so the general ones come first.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping
+
+from aidl_lang.tools.highlighting.classes import called, fixed_classes
+from aidl_lang.tools.vocabulary import vocabulary
+
+FOLDER = "editors/tree-sitter-aidl/queries"
+
+NEOVIM: Mapping[str, str] = {
+    "comment.line": "comment",
+    "comment.documentation": "comment.documentation",
+    "comment.block": "comment",
+    "keyword.declaration": "keyword",
+    "keyword.demand": "keyword",
+    "keyword.modifier": "keyword.modifier",
+    "keyword.control": "keyword.conditional",
+    "keyword.control for": "keyword.repeat",
+    "keyword.import": "keyword.import",
+    "keyword.clause": "keyword",
+    "keyword.operator": "keyword.operator",
+    "constant.truth": "boolean",
+    "operator.comparison": "operator",
+    "operator.arithmetic": "operator",
+    "operator.logic": "operator",
+    "operator.range": "operator",
+    "operator.assignment": "operator",
+    "bracket": "punctuation.bracket",
+    "punctuation": "punctuation.delimiter",
+    "attribute.sign": "attribute",
+    "attribute": "attribute",
+    "kind": "keyword.type",
+    "name.structure": "type",
+    "name.template": "type",
+    "name.function": "function",
+    "name.definition": "variable",
+    "name.parameter": "variable.parameter",
+    "name.argument": "variable.parameter",
+    "name.type": "type",
+    "name.member": "variable.member",
+    "name.everywhere": "variable.builtin",
+    "name.constant": "constant.builtin",
+    "name.module": "module",
+    "name": "variable",
+    "call.shape": "constructor",
+    "call.constraint": "function.builtin",
+    "call.function": "function.builtin",
+    "call.member": "function.method.call",
+    "call": "function.call",
+    "number": "number",
+    "unit": "type.builtin",
+    "string": "string",
+    "escape": "string.escape",
+    "unknown": "comment.error",
+}
+"""What Neovim calls the classes, and the command line of tree-sitter and Zed for the most part."""
+
+HELIX: Mapping[str, str] = {
+    **NEOVIM,
+    "comment.line": "comment.line",
+    "comment.documentation": "comment.line.documentation",
+    "comment.block": "comment.block",
+    "keyword.declaration": "keyword.storage.type",
+    "keyword.modifier": "keyword.storage.modifier",
+    "keyword.control": "keyword.control.conditional",
+    "keyword.control for": "keyword.control.repeat",
+    "keyword.import": "keyword.control.import",
+    "constant.truth": "constant.builtin.boolean",
+    "kind": "keyword.storage.type",
+    "name.member": "variable.other.member",
+    "name.module": "namespace",
+    "call.member": "function.method",
+    "call": "function",
+    "number": "constant.numeric",
+    "escape": "constant.character.escape",
+    "unknown": "error",
+}
+
+_PATTERNS = (
+    ("comment.line", "(line_comment) $"),
+    ("comment.documentation", "(doc_comment) $"),
+    ("comment.block", "(block_comment) $"),
+    ("number", "(number) $"),
+    ("unit", "(unit) $"),
+    ("unknown", "[(unknown_unit) (ellipsis)] $"),
+    ("string", "(string) $"),
+    ("escape", "(escape_sequence) $"),
+    ("constant.truth", "[(true) (false)] $"),
+    ("keyword.demand", "(todo_statement) $"),
+)
+"""Tokens that are nodes, with their classes; `$` stands for the name of the colour."""
+
+_NAMES = (
+    ("name.member", "(member_expression property: (identifier) $)"),
+    ("name.argument", "(named_argument name: (identifier) $)"),
+    ("call", "(call_expression function: (identifier) $)"),
+    ("call.member", "(call_expression function: (member_expression property: (identifier) $))"),
+)
+_CALLED = "(call_expression function: [(identifier) $ (member_expression property: (identifier) $)])"
+_DEFINED = (
+    ("kind", "(structure kind: (identifier) $)"),
+    ("name.structure", "(structure name: (identifier) $)"),
+    ("name.template", "(structure name: (identifier) $ parameters: (parameters))"),
+    ("attribute", "(attribute name: (identifier) $)"),
+    ("name.parameter", "(parameter name: (identifier) $)"),
+    ("name.type", "(parameter type: (identifier) $)"),
+    ("name.function", "(function_definition name: (identifier) $)"),
+    ("name.function", "(shape_definition name: (identifier) $)"),
+    ("name.function", "(constraint_definition name: (identifier) $)"),
+    ("name.definition", "(param_declaration name: (identifier) $)"),
+    ("name.definition", "(var_declaration name: (identifier) $)"),
+    ("name.definition", "(let_declaration name: (identifier) $)"),
+    ("name.definition", "(alias_declaration name: (identifier) $)"),
+    ("name.definition", "(import_statement name: (identifier) $)"),
+    ("name.definition", "(import_statement alias: (identifier) $)"),
+    ("name.definition", "(variables (identifier) $)"),
+    ("name.definition", "(assignment target: (identifier) $)"),
+    ("name.definition", "(assignment target: (index_expression object: (identifier) $))"),
+    (
+        "name.definition",
+        "(assignment target: (index_expression object: (index_expression object: (identifier) $)))",
+    ),
+)
+"""Names by where they stand, with their classes."""
+
+
+def highlights(captures: Mapping[str, str]) -> str:
+    """The query for colours, by the names that an editor has for the classes."""
+    parts = ["; Made by `make colours`; do not edit."]
+    for kind, pattern in _in_order():
+        parts.append(pattern.replace("$", f"@{captures[kind]}"))
+    return "\n\n".join(parts) + "\n"
+
+
+def queries() -> dict[str, str]:
+    """Every generated query by its path in a checkout."""
+    return {
+        f"{FOLDER}/highlights.scm": highlights(NEOVIM),
+        f"{FOLDER}/helix/highlights.scm": highlights(HELIX),
+    }
+
+
+def _in_order() -> Iterator[tuple[str, str]]:
+    words = vocabulary()
+    yield from _PATTERNS
+    yield from _tokens()
+    yield "name", "(identifier) $"
+    yield "name.everywhere", _listed("(identifier) $", words.everywhere)
+    yield "name.constant", _listed("(identifier) $", words.constants)
+    yield "name.module", _listed("(member_expression object: (identifier) $)", words.modules)
+    yield from _NAMES
+    lists: dict[str, list[str]] = {}
+    for name, kind in called().items():
+        lists.setdefault(kind, []).append(name)
+    for kind, names in lists.items():
+        yield kind, _listed(_CALLED, names)
+    yield from _DEFINED
+
+
+def _tokens() -> Iterator[tuple[str, str]]:
+    """Words and signs that are no nodes of their own, those of one class in a row."""
+    lists: dict[str, list[str]] = {}
+    for text, kind in fixed_classes().items():
+        if kind != "constant.truth" and text != "todo":
+            lists.setdefault("keyword.control for" if text == "for" else kind, []).append(text)
+    for kind, texts in lists.items():
+        yield kind, f"[{' '.join(map(json.dumps, texts))}] $"
+
+
+def _listed(pattern: str, names: Iterable[str]) -> str:
+    """A pattern whose name is one of these, in lines that can be read."""
+    lines, line = [], ""
+    for name in map(json.dumps, names):
+        if line and len(line) + len(name) > 100:
+            lines.append(line)
+            line = ""
+        line = f"{line} {name}" if line else name
+    inside = "\n    ".join([*lines, line])
+    return f"({pattern}\n  (#any-of? $\n    {inside}))"

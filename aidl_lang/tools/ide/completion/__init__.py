@@ -1,0 +1,6 @@
+"""Completion: what may be written at a place, the likeliest first."""
+
+from aidl_lang.tools.ide.completion.complete import complete
+from aidl_lang.tools.ide.completion.item import MOST, Completion
+
+__all__ = ["MOST", "Completion", "complete"]

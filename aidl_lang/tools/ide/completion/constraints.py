@@ -1,0 +1,176 @@
+"""Constraints, those first that fit the things at hand, with the names of these filled in."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+from aidl_lang.checking.resolving.symbols import SymbolKind
+from aidl_lang.checking.types import (
+    AnyType,
+    ListType,
+    NumberType,
+    Signature,
+    TextType,
+    TruthType,
+    Type,
+    accepts,
+)
+from aidl_lang.syntax import ast
+from aidl_lang.tools.ide.completion import names
+from aidl_lang.tools.ide.completion.context import Context, Known
+from aidl_lang.tools.ide.completion.draft import Draft, choice, stop
+from aidl_lang.tools.ide.completion.fitting import Form, forms, kind_of
+from aidl_lang.tools.vocabulary import vocabulary
+
+_FITS_PARTS, _FITS, _FITS_ANY, _FITS_NOT, _BARE = -0.1, 0.0, 1.0, 6.0, 0.5
+_MOST_NAMES = 8
+_FEW_PAIRS = 40
+"""Pairs of kinds that a constraint takes that is one of certain things; what takes more takes nearly all."""
+_LETTER = re.compile(r"\b([abpq]|box)\b(?!\()|(?<![\w.])(\d+)(?=deg\b|\b)")
+
+
+def constraints(context: Context, behind: float = 0.0) -> Iterator[Draft]:
+    """All that may be stated here; `behind` is added to how unlikely each is."""
+    things = _latest([known for known in context.values if known.is_unknown and not _is_self(known)])
+    for name, alias in context.callables():
+        found = context.scope.called(name)
+        if found is not None and any(s.kind is ast.ConstraintDefinition for s in found[1]):
+            yield _own(context, name, found[1], things, behind + _BARE * (alias is not None))
+    words = vocabulary()
+    table = forms()
+    for name in (*words.constraints, *words.relations, *(n for n in table if n in words.functions)):
+        found = context.scope.called(name)
+        if found is not None:
+            yield _standard(context, name, found[1], table.get(name, ()), things, behind)
+
+
+def _latest(things: Sequence[Known]) -> list[Known]:
+    """The last few things of each kind, in the order in which they are declared."""
+    counts: Counter[str] = Counter()
+    found = []
+    for known in reversed(things):
+        kind = kind_of(known.fact)
+        counts[kind] += 1
+        if counts[kind] <= _MOST_NAMES:
+            found.append(known)
+    return found[::-1]
+
+
+def _is_self(known: Known) -> bool:
+    return known.symbol.kind is SymbolKind.BUILTIN or known.symbol.scope is None
+
+
+def _standard(
+    context: Context,
+    name: str,
+    signatures: Sequence[Signature],
+    listed: Sequence[Form],
+    things: Sequence[Known],
+    behind: float,
+) -> Draft:
+    best = min(((_tier(form, things), n, form) for n, form in enumerate(listed)), default=None)
+    tier = _FITS_NOT if best is None else best[0]
+    text = f"{name}($1)" if best is None else _filled(best[2], things)
+    if context.site.following.startswith("("):
+        text = name
+    return Draft(
+        name,
+        str(SymbolKind.CONSTRAINT),
+        tier + behind,
+        text,
+        names.brief(signatures),
+        is_snippet=text != name,
+        describe=partial(names.about_call, name, tuple(signatures)),
+    )
+
+
+def _tier(form: Form, things: Sequence[Known]) -> float:
+    """How likely a form is: one of certain things that are there before one that takes anything."""
+    found = [pair for a, b in _chosen(form, things) if (pair := (kind_of(a.fact), b and kind_of(b.fact)))]
+    if not found:
+        return _FITS_NOT + len(form.pairs) / 1000
+    if "structure" in found[0] and form.name in vocabulary().relations:
+        return _FITS_PARTS
+    return (_FITS if len(form.pairs) < _FEW_PAIRS else _FITS_ANY) + len(form.pairs) / 1000
+
+
+def _chosen(form: Form, things: Sequence[Known]) -> Iterator[tuple[Known, Known | None]]:
+    """Things that a form takes, in the order in which they are declared."""
+    for number, a in enumerate(things):
+        first = kind_of(a.fact)
+        if (first, "") in form.pairs:
+            yield a, None
+        for b in (*things[number + 1 :], *things[:number]):
+            if (first, kind_of(b.fact)) in form.pairs:
+                yield a, b
+
+
+def _filled(form: Form, things: Sequence[Known]) -> str:
+    """The form as a snippet, with names of things where it takes them."""
+    pairs = list(_chosen(form, things))
+    firsts = list(dict.fromkeys(a.name for a, _ in pairs))[:_MOST_NAMES]
+    default = pairs[0][1] if pairs else None
+    seconds = [default.name] if default is not None else []
+    seconds += [b.name for _, b in pairs if b is not None]
+    letters = {"a": firsts, "b": list(dict.fromkeys(seconds))[:_MOST_NAMES]}
+    number = 0
+
+    def place(match: re.Match[str]) -> str:
+        nonlocal number
+        number += 1
+        word = match[0]
+        return choice(number, letters[word]) if letters.get(word) else stop(number, word)
+
+    head, bracket, rest = form.text.partition("(")
+    return head + bracket + _LETTER.sub(place, rest)
+
+
+# --- Definitions of the program --------------------------------------------------------------------
+
+
+def _own(
+    context: Context, name: str, signatures: Sequence[Signature], things: Sequence[Known], behind: float
+) -> Draft:
+    made = [_stated(name, signature, things) for signature in signatures]
+    text, fits = max(made, key=lambda m: m[1])
+    if context.site.following.startswith("("):
+        text = name
+    return Draft(
+        name,
+        str(SymbolKind.CONSTRAINT),
+        (_FITS if fits else _FITS_NOT) + behind,
+        text,
+        names.brief(signatures),
+        is_snippet=text != name,
+        describe=partial(names.about_call, name, tuple(signatures)),
+    )
+
+
+def _stated(name: str, signature: Signature, things: Sequence[Known]) -> tuple[str, bool]:
+    """A call with the names of things that fit; whether there are enough."""
+    items: list[str] = []
+    used: list[str] = []
+    fits = True
+    for parameter, kind, is_optional in signature.parameters:
+        if is_optional:
+            continue
+        number = len(items) + 1
+        if isinstance(kind, NumberType | TextType | TruthType):
+            items.append(f"{parameter}: {stop(number, parameter)}")
+            continue
+        fitting = [t.name for t in things if _takes(kind, t)]
+        ordered = sorted(fitting, key=used.count)[:_MOST_NAMES]
+        fits &= any(n not in used for n in fitting)
+        items.append(choice(number, ordered) if ordered else stop(number, parameter))
+        used += ordered[:1]
+    return f"{name}({', '.join(items)})", fits
+
+
+def _takes(kind: Type, thing: Known) -> bool:
+    if isinstance(kind, AnyType | ListType):
+        return True
+    distance = accepts(kind, thing.fact.type)
+    return distance is not None and not isinstance(thing.fact.type, AnyType)

@@ -1,0 +1,253 @@
+"""What is known of a place: the call around it, and which names may be used there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from enum import Enum
+from functools import cached_property
+
+from aidl_lang.checking.builtins import COPYING, DERIVING, MATH, PATTERNS
+from aidl_lang.checking.facts import Fact, Place
+from aidl_lang.checking.named import of_symbol
+from aidl_lang.checking.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind
+from aidl_lang.checking.types import ANY, ListType, NumberType, TextType, Type
+from aidl_lang.checking.units import LENGTH
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
+from aidl_lang.tools.ide.completion.wanted import Around, Wanted
+from aidl_lang.tools.ide.overloads import Reading, readings
+from aidl_lang.tools.ide.site import PLACEHOLDER, Site
+from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.vocabulary import vocabulary
+
+_ATTRIBUTES: dict[str, Type] = {"thickness": NumberType(LENGTH), "elevation": NumberType(LENGTH)}
+
+
+class Use(Enum):
+    """What an expression may read, by the statement that it stands in (language reference: validity)."""
+
+    GEOMETRY = "its own structure, above"
+    DERIVING = "whatever stands above"
+    CONSTRAINT = "what is in its structure"
+    CHECK = "everything"
+    CONSTANT = "constants"
+
+
+@record(eq=False)
+class Known:
+    """A name that may be used, and what is known of it."""
+
+    name: str
+    symbol: Symbol
+    fact: Fact
+
+    @property
+    def is_unknown(self) -> bool:
+        return bool(self.fact.reads)
+
+
+@record(eq=False)
+class Context:
+    """`call` is the call that the place is an argument of, with the number of the argument, the receiver
+    counted.
+    """
+
+    site: Site
+    view: View
+    scope: Scope
+    path: tuple[ast.Node, ...]
+    call: tuple[ast.Call, int] | None
+
+    @cached_property
+    def statement(self) -> ast.Node | None:
+        """The statement that the place is in."""
+        return next((n for n in reversed(self.path) if isinstance(n, _STATEMENTS)), None)
+
+    @cached_property
+    def home(self) -> ast.Node:
+        """The structure or other definition whose body the place is in, or the file."""
+        return self.scope.homes[-1]
+
+    @cached_property
+    def in_items(self) -> bool:
+        """Whether the place is among constraints."""
+        return any(isinstance(n, ast.Constrain | ast.ConstraintDefinition) for n in self.path)
+
+    @cached_property
+    def use(self) -> Use:
+        match self.statement:
+            case ast.Assert():
+                return Use.CHECK
+            case ast.Let() | ast.FunctionDefinition():
+                return Use.CHECK
+            case ast.Param() | ast.Parameter() | ast.If() | ast.For() if not self.in_items:
+                return Use.CONSTANT
+            case _ if self.in_items or isinstance(self.statement, _DEMANDS):
+                return Use.CONSTRAINT
+            case _:
+                return Use.DERIVING if self._derives else Use.GEOMETRY
+
+    @property
+    def _derives(self) -> bool:
+        """Whether the place is an argument of something that takes geometry from around: `mirror(…)`."""
+        if self.call is None:
+            return False
+        return self.call[0].callee.text in DERIVING | PATTERNS | COPYING
+
+    @cached_property
+    def readings(self) -> list[Reading]:
+        """The overloads of the call around that what it is given so far leaves possible."""
+        if self.call is None:
+            return []
+        found = readings(self.view.program, self.scope, self.call[0])
+        return [r for r in found if r.fits] or found
+
+    @cached_property
+    def wanted(self) -> Wanted:
+        return Around(self.view.program.inference, self._of_argument).wanted(self.path)
+
+    def _of_argument(self) -> Wanted:
+        """What the parameters want that an argument may be for, by all overloads that are possible."""
+        if self.call is None:
+            return self._of_attribute()
+        number = self.call[1]
+        kinds: dict[Type, None] = {}
+        name = ""
+        for reading in self.readings:
+            taken = reading.taken[number] if number < len(reading.taken) else None
+            kind = reading.type_of(taken) if taken is not None else None
+            if kind is None or taken is None:
+                continue
+            name = name or taken
+            positional = self.call[0].arguments[number - len(reading.taken)].name is None
+            if isinstance(kind, ListType) and positional:
+                kinds[kind.element] = None
+            kinds[kind] = None
+        return Wanted(() if ANY in kinds and len(kinds) == 1 else tuple(kinds), name)
+
+    def _of_attribute(self) -> Wanted:
+        attribute = next((n for n in reversed(self.path) if isinstance(n, ast.Attribute)), None)
+        if attribute is None:
+            return Wanted()
+        return Wanted((_ATTRIBUTES.get(attribute.name.text, TextType()),), f"@{attribute.name.text}")
+
+    @cached_property
+    def values(self) -> list[Known]:
+        """The names of values that may be used here, the nearest scope first."""
+        check = self.view.program.inference
+        check.homes = self.scope.homes
+        found = []
+        for name, symbol in self.scope.visible().items():
+            if name == PLACEHOLDER or name in MATH:
+                continue  # a module of another language is named by those who know it
+            if symbol.kind is SymbolKind.BUILTIN and not self._is_here(name):
+                continue
+            if self._is_ahead(symbol):
+                continue
+            known = Known(name, symbol, of_symbol(check, symbol))
+            if self.may_read(known):
+                found.append(known)
+        return found
+
+    def _is_here(self, name: str) -> bool:
+        """Whether a built-in name is one for programs, and one of structures stands in one."""
+        words = vocabulary()
+        in_structure = any(isinstance(home, ast.Structure) for home in self.scope.homes)
+        return name in words.constants or (name in words.everywhere and in_structure)
+
+    def _is_ahead(self, symbol: Symbol) -> bool:
+        """Whether a name is that of the statement itself, or is made below where that counts."""
+        start = self.site.spot.start
+        nodes = [n for n in symbol.nodes if n.span.source is self.view.source]
+        if symbol.kind in (SymbolKind.ARGUMENT, SymbolKind.LOOP) or symbol.scope is None or not nodes:
+            return False
+        if any(n.span.start <= start < n.span.end and not isinstance(n, ast.Structure) for n in nodes):
+            return True
+        is_ordered = self.use in (Use.GEOMETRY, Use.DERIVING)
+        if not is_ordered or symbol.kind not in UNKNOWNS or symbol.is_array:
+            return False
+        if symbol.scope.homes == self.scope.homes:
+            return start < nodes[0].span.end
+        return self.use is Use.DERIVING and start < nodes[0].span.start
+
+    def may_read(self, known: Known) -> bool:
+        """Whether what a name stands for may be read here."""
+        reads = known.fact.reads
+        match self.use:
+            case Use.CHECK:
+                return True
+            case Use.CONSTANT:
+                return not reads
+            case Use.CONSTRAINT:
+                return all(p.holder is self.home for p in reads)
+            case Use.GEOMETRY:
+                own = all(p == Place(self.home) for p in reads)
+                return own and known.name != "self" and known.symbol is not self.scope.own_name
+            case Use.DERIVING:
+                return all(p.holder in self.scope.homes for p in reads)
+
+    def callables(self) -> Iterator[tuple[str, Symbol | None]]:
+        """The names of this program, and of what it imports, that can be called here, the nearest first; with
+        the alias where it is one.
+        """
+        seen: set[str] = set()
+        outermost = self.view.resolution.library_scope
+        for scope in self.scope.chain():
+            if scope is outermost:
+                return
+            for name in (*scope.callables, *scope.aliases):
+                if name not in seen and name != PLACEHOLDER:
+                    seen.add(name)
+                    yield name, scope.aliases.get(name)
+
+
+def context_of(site: Site) -> Context | None:
+    """None where the place is in no program."""
+    if site.view is None or site.scope is None:
+        return None
+    path = site.path
+    if isinstance(path[-1], ast.Identifier) and isinstance(path[-2], ast.Member | ast.Call):
+        path = path[:-1]  # the whole is what is wanted to be something
+    return Context(site, site.view, site.scope, path, _call_around(site.view, path))
+
+
+def _call_around(view: View, path: tuple[ast.Node, ...]) -> tuple[ast.Call, int] | None:
+    """The call of whose arguments the innermost node, or an operation that ends in it, is one."""
+    for number in range(len(path) - 1, 0, -1):
+        node, above = path[number], path[number - 1]
+        if isinstance(above, ast.Argument):
+            continue
+        if isinstance(above, ast.Call) and isinstance(node, ast.Argument):
+            before = int(above.receiver is not None and not _names_file(view, above.receiver))
+            return above, before + above.arguments.index(node)
+        if not isinstance(above, ast.Unary | ast.Binary | ast.Conditional | ast.List | ast.Point):
+            return None
+    return None
+
+
+def _names_file(view: View, node: ast.Expression) -> bool:
+    symbol = view.resolution.uses.get(node)
+    return symbol is not None and symbol.kind is SymbolKind.NAMESPACE
+
+
+_DEMANDS = ast.Constrain | ast.ExpressionStatement | ast.Prefer | ast.Equation
+_STATEMENTS = (
+    ast.Structure,
+    ast.Param,
+    ast.Var,
+    ast.Let,
+    ast.Assign,
+    ast.ExpressionStatement,
+    ast.Constrain,
+    ast.Equation,
+    ast.Prefer,
+    ast.Assert,
+    ast.For,
+    ast.If,
+    ast.Import,
+    ast.FunctionDefinition,
+    ast.ShapeDefinition,
+    ast.ConstraintDefinition,
+    ast.Alias,
+    ast.Parameter,
+)

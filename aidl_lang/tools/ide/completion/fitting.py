@@ -1,0 +1,86 @@
+"""Which constraints go with which things, read off the table of all pairs that the reference has.
+
+That table is made by compiling a program for each of its cells (`aidl_lang.tools.reference.coverage`).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import cache
+
+from aidl_lang.checking.facts import Fact
+from aidl_lang.checking.types import GeometryType, ListType, NumberType, PointType, StructureType, Type
+from aidl_lang.common.records import record
+from aidl_lang.common.resources import resource
+from aidl_lang.tools.reference.coverage import KINDS
+
+_TABLE = "docs/reference/coverage.md"
+_FORM = re.compile(r"^`([^`]+)`(?:: (.*))?$")
+_ROW = re.compile(r"^\| \*\*(\w+)\*\* \|(.*)\|$")
+_MARK = "●"
+
+
+@record()
+class Form:
+    """A way to state a constraint of `a`, or of `a` and `b`, and the kinds of things that it takes, `second`
+    being "" where it takes one.
+    """
+
+    name: str
+    text: str
+    pairs: frozenset[tuple[str, str]]
+
+
+@cache
+def forms() -> Mapping[str, tuple[Form, ...]]:
+    """The forms of each constraint of the library, in the order of the reference."""
+    return read(resource(_TABLE).read_text("utf-8"))
+
+
+def read(page: str) -> Mapping[str, tuple[Form, ...]]:
+    found: dict[str, list[Form]] = {}
+    name = ""
+    for line in page.splitlines():
+        if line.startswith("## "):
+            name = line[3:].strip()
+        elif name and (form := _FORM.match(line)):
+            found.setdefault(name, []).append(Form(name, form[1], _told(form[2] or "")))
+        elif name in found and (row := _ROW.match(line)):
+            cells = [cell.strip() == _MARK for cell in row[2].split("|")]
+            more = {(row[1], kind) for kind, works in zip(KINDS, cells, strict=True) if works}
+            last = found[name][-1]
+            found[name][-1] = Form(last.name, last.text, last.pairs | more)
+    return {name: tuple(listed) for name, listed in found.items()}
+
+
+def _told(words: str) -> frozenset[tuple[str, str]]:
+    """`any two, but no number`, or the kinds that one thing may be of."""
+    if words.startswith("any two"):
+        but = {word.strip() for word in re.split(r", but no | and no ", words)[1:]}
+        kinds = [kind for kind in KINDS if kind not in but]
+        return frozenset((a, b) for a in kinds for b in kinds)
+    return frozenset((kind, "") for kind in re.split(r",\s*", words) if kind in KINDS)
+
+
+def kind_of(fact: Fact) -> str:
+    """The kind of a thing in that table; "" for what is in none."""
+    return _kind(fact.type, is_unknown=bool(fact.reads))
+
+
+def _kind(kind: Type, *, is_unknown: bool) -> str:
+    match kind:
+        case PointType():
+            return "point" if is_unknown else ""
+        case GeometryType(name) if name in KINDS:
+            return name
+        case GeometryType():
+            return "shape"
+        case StructureType():
+            return "structure"
+        case ListType():
+            return "list" if is_unknown else ""
+        case NumberType():
+            return "number" if is_unknown else ""
+        case _:
+            return ""

@@ -1,0 +1,54 @@
+"""One thing that may be written at a place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import field
+
+from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.tools.snippets import expanded
+
+MOST = 200
+"""Entries of a list. One that has so many may have left out others: it is to be asked for anew as the word
+grows.
+"""
+
+
+def nothing() -> str:
+    return ""
+
+
+@record()
+class Completion:
+    """
+    label    what is shown, and what is compared with what has been typed
+    kind     what it is: `keyword`, `kind`, `snippet`, `unit`, `attribute`, `color`, `type`, `file`, `word`,
+             `argument`, `field`, `method`, or a `SymbolKind` in its words
+    detail   its type, or how it is called, in a few words
+    text     what is written in the place of `span`; as a snippet it has places to fill in: `${1:name}`,
+             `${1|a,b|}`, `$0`
+    rank     its place in the list, 0 for the best
+    extra    edits elsewhere that it needs, as an import
+    describe makes its documentation in Markdown; not cheap for a whole list
+    """
+
+    label: str
+    kind: str
+    text: str
+    span: Span
+    detail: str = ""
+    is_snippet: bool = False
+    rank: int = 0
+    extra: tuple[Edit, ...] = ()
+    describe: Callable[[], str] = field(default=nothing, repr=False, compare=False)
+
+    @property
+    def documentation(self) -> str:
+        return self.describe()
+
+    @property
+    def plain(self) -> str:
+        """The text without places to fill in, each as it is proposed."""
+        return expanded(self.text) if self.is_snippet else self.text

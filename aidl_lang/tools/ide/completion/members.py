@@ -1,0 +1,244 @@
+"""What may stand behind a dot, and between the brackets of an index."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
+
+from aidl_lang.checking import fields
+from aidl_lang.checking.builtins import EDITS
+from aidl_lang.checking.facts import Fact
+from aidl_lang.checking.members import member_of
+from aidl_lang.checking.named import of_symbol
+from aidl_lang.checking.resolving.symbols import Scope, Symbol, SymbolKind
+from aidl_lang.checking.standard import body_of
+from aidl_lang.checking.types import (
+    AnyType,
+    BoxType,
+    GeometryType,
+    ListType,
+    NumberType,
+    PointType,
+    RecordType,
+    Signature,
+    StructureType,
+    accepts,
+)
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
+from aidl_lang.syntax import ast
+from aidl_lang.tools.ide.completion import names
+from aidl_lang.tools.ide.completion.context import Context, Known, Use
+from aidl_lang.tools.ide.completion.draft import Draft
+from aidl_lang.tools.ide.completion.fitting import forms, kind_of
+from aidl_lang.tools.ide.completion.wanted import CONDITION
+from aidl_lang.tools.ide.describing import fenced, joined
+from aidl_lang.tools.reference.signatures import parts
+from aidl_lang.tools.vocabulary import vocabulary
+
+_OWN, _FIELDS, _DEMANDS, _BOX, _METHODS, _UNFIT = 0.0, 1.0, 1.7, 2.0, 3.0, 4.0
+_MOST_INDICES = 12
+_SEEN = frozenset(
+    (SymbolKind.PARAM, SymbolKind.LET, SymbolKind.VAR, SymbolKind.GEOMETRY, SymbolKind.STRUCTURE)
+) | {SymbolKind.ARGUMENT}
+_NUMBER = re.compile(r"-?\d+")
+
+
+def members(context: Context, value: ast.Expression) -> Iterator[Draft]:
+    """The members of what stands before the dot, and the calls that take it as their first argument."""
+    check = context.view.program.inference
+    if isinstance(value, ast.Name):
+        symbol = context.view.resolution.uses.get(value)
+        if symbol is not None and symbol.kind is SymbolKind.NAMESPACE and symbol.scope is not None:
+            yield from _of_file(context, symbol.scope.spaces.get(symbol.name))
+            return
+    fact = check.fact(value)
+    if isinstance(value, ast.Number) or isinstance(fact.type, NumberType):
+        return
+    listed: set[str] = set()
+    for tier, name, describe in _names(context, fact):
+        if name not in listed:
+            listed.add(name)
+            yield _member(context, fact, name, tier, describe)
+    yield from _methods(context, fact)
+
+
+def _of_file(context: Context, scope: Scope | None) -> Iterator[Draft]:
+    """What `import … as` brings."""
+    if scope is None:
+        return
+    check = context.view.program.inference
+    for name, symbol in scope.values.items():
+        if symbol.kind in (SymbolKind.PARAM, SymbolKind.LET):
+            known = Known(name, symbol, of_symbol(check, symbol))
+            yield Draft(
+                name,
+                str(symbol.kind),
+                _OWN,
+                detail=names.detail(known),
+                describe=partial(names.about, symbol),
+            )
+    for name in (*scope.callables, *scope.aliases):
+        found = scope.called(name)
+        if found is not None:
+            yield names.call(context, name, found[1], _OWN, scope.aliases.get(name))
+
+
+_Named = Iterator[tuple[float, str, Symbol | None]]
+
+
+def _names(context: Context, fact: Fact) -> _Named:
+    """The names of members, each with how likely it is and what declares it."""
+    match fact.type:
+        case StructureType() if fact.of is not None:
+            yield from _declared(context.view.resolution.scope_of(fact.of), fact.of)
+            yield from _plain((*fields.BOX, "bb"), _BOX)
+            yield from _plain(fields.STRUCTURE, _BOX + 0.5)
+        case GeometryType(kind):
+            if fact.of is not None:
+                yield from _of_shape(context, fact.of)
+            else:
+                yield from _plain(fields.PRIMITIVE.get(kind, {}), _FIELDS)
+            yield from _plain((*fields.BOX, "bb"), _BOX)
+        case PointType():
+            yield from _plain(("x", "y"), _FIELDS)
+        case BoxType() | StructureType():
+            yield from _plain(fields.BOX, _FIELDS)
+        case ListType():
+            yield from _plain(fields.PATTERN.get(fact.pattern, {}), _OWN)
+            yield from _names(context, fact.element())
+            yield from _plain((*fields.BOX, "bb"), _BOX)
+        case _:
+            pass
+
+
+def _plain(found: Iterable[str], tier: float) -> _Named:
+    for name in found:
+        yield tier, name, None
+
+
+def _declared(scope: Scope, node: ast.Node) -> _Named:
+    for name, symbol in scope.values.items():
+        if symbol.kind in _SEEN:
+            yield _OWN + 0.5 * (symbol.kind in (SymbolKind.LET, SymbolKind.ARGUMENT)), name, symbol
+
+
+def _of_shape(context: Context, definition: ast.Node) -> _Named:
+    """The named parts of a shape, then what it was given."""
+    assert isinstance(definition, ast.ShapeDefinition)
+    scope = body_of(context.view.program.inference, definition)
+    for part in parts(definition):
+        name = part.name.partition("[")[0]
+        if name in scope.values:
+            yield _OWN, name, scope.values[name]
+    for parameter in definition.parameters:
+        if (symbol := scope.values.get(parameter.name.text)) is not None:
+            yield _FIELDS, parameter.name.text, symbol
+
+
+def _member(context: Context, base: Fact, name: str, tier: float, symbol: Symbol | None) -> Draft:
+    """A member with its type, which the checker tells."""
+    check = context.view.program.inference
+    identifier = ast.Identifier(name, span=context.path[-1].span)
+    nothing = ast.Name(name, span=context.path[-1].span)
+    fact = member_of(check, base, ast.Member(nothing, identifier, span=context.path[-1].span))
+    wanted = context.wanted
+    if wanted != CONDITION and wanted.distance(fact.type) is None:
+        tier += _UNFIT if isinstance(fact.type, NumberType | PointType) else 0.5
+    is_array = symbol is not None and symbol.is_array
+    if symbol is None:
+        return Draft(name, "field", tier, detail=str(fact.type), describe=partial(_field, name, fact))
+    kind = "field" if symbol.kind is SymbolKind.ARGUMENT else str(symbol.kind)
+    known = Known(name, symbol, fact)
+    text = names.detail(known) if not is_array else str(fact.type)
+    return Draft(name, kind, tier, detail=text, describe=partial(names.about, symbol))
+
+
+def _field(name: str, fact: Fact) -> str:
+    return joined([fenced(f"{name}: {fact.type}")])
+
+
+# --- Calls behind a dot ----------------------------------------------------------------------------
+
+
+def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
+    """`a.above(…)`: constraints where one may stand, functions elsewhere, of what stands before the dot."""
+    if isinstance(fact.type, AnyType | RecordType):
+        return
+    words = vocabulary()
+    is_demand = _is_demand(context)
+    known: list[str] = []
+    if is_demand:
+        known += [*words.relations, *words.constraints]
+        known += sorted(EDITS & {*words.operations})
+    known += words.functions
+    own = [name for name, _ in context.callables()]
+    kind = kind_of(fact)
+    for name in (*own, *known):
+        found = context.scope.called(name)
+        if found is None:
+            continue
+        distance = _first_fits(fact, found[1], name, kind)
+        if distance is None:
+            continue
+        if not is_demand and all(s.kind is ast.ConstraintDefinition for s in found[1]):
+            continue
+        tier = _DEMANDS if is_demand and found[1][0].kind is ast.ConstraintDefinition else _METHODS
+        yield _method(context, name, found[1], tier + 0.1 * distance + (name not in own) * 0.05)
+
+
+def _is_demand(context: Context) -> bool:
+    """Whether the value with the dot stands where a constraint may."""
+    above = context.site.parent(2)
+    return context.use is Use.CONSTRAINT and isinstance(
+        above, ast.ExpressionStatement | ast.Constrain | ast.Block | ast.Prefer | ast.Binary
+    )
+
+
+def _first_fits(fact: Fact, signatures: list[Signature], name: str, kind: str) -> float | None:
+    """How well the first parameter of a callable takes a thing; None if it does not."""
+    table: Mapping[str, object] = forms()
+    if name in table and all(s.standard for s in signatures):
+        pairs = [len(form.pairs) for form in forms()[name] if any(first == kind for first, _ in form.pairs)]
+        return min(pairs) / 100 if pairs else None
+    distances = [
+        d
+        for s in signatures
+        if s.parameters and (d := accepts(s.parameters[0][1], fact.type)) is not None and d < 3
+    ]
+    return min(distances) if distances else None
+
+
+def _method(context: Context, name: str, signatures: list[Signature], tier: float) -> Draft:
+    text, is_snippet = names.called(context, name, signatures, skipped=1)
+    return Draft(
+        name,
+        "method",
+        tier,
+        text,
+        names.brief(signatures),
+        is_snippet,
+        describe=partial(names.about_call, name, tuple(signatures)),
+    )
+
+
+# --- Indices ---------------------------------------------------------------------------------------
+
+
+def indices(context: Context, index: ast.Index) -> Iterator[Draft]:
+    """The indices that members of an array had when it was last drawn, the last by `-1`."""
+    drawn = context.site.original.drawn
+    if drawn is None or drawn.model is None:
+        return
+    name = index.value.span.one_line.rpartition(".")[2]
+    found: set[int] = set()
+    for structure in drawn.model.root.walk():
+        things: list[SolvedStructure | SolvedGeometry] = [*structure.structures, *structure.geometry]
+        for member in things:
+            array, _, index_text = member.name.partition("[")
+            if array == name and (number := _NUMBER.match(index_text)):
+                found.add(int(number[0]))
+    for place in sorted(found)[:_MOST_INDICES]:
+        yield Draft(str(place), "word", _FIELDS, detail=f"{name}[{place}]")
+    if found:
+        yield Draft("-1", "word", _BOX, detail=f"the last of {len(found)}")

@@ -1,0 +1,221 @@
+"""Values and callables by their names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+from aidl_lang.checking import fields
+from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
+from aidl_lang.checking.standard import result
+from aidl_lang.checking.types import (
+    ANY,
+    AnyType,
+    GeometryType,
+    ListType,
+    PointType,
+    Signature,
+    StructureType,
+    TruthType,
+    Type,
+)
+from aidl_lang.syntax import ast
+from aidl_lang.tools.ide.completion.context import Context, Known, Use
+from aidl_lang.tools.ide.completion.draft import Draft
+from aidl_lang.tools.ide.describing import joined, of_callable, of_definition, of_entry
+from aidl_lang.tools.reference.collect import reference
+from aidl_lang.tools.vocabulary import vocabulary
+
+MAKERS, OWN, MAYBE, PARTS, CALLS, OTHERS, FAR = 0.8, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0
+"""Tiers: what makes geometry where that is wanted; values that fit, that may fit, that have parts which fit;
+callables that fit; the rest of what is declared; what hardly fits.
+"""
+_STEPS = "path"
+"""The topic, and the shape, of what only the outline of a path is made of."""
+_HAVING_PARTS = (StructureType, GeometryType, PointType)
+
+
+def values(context: Context) -> Iterator[Draft]:
+    """The names that may be read here, those of a wanted type first."""
+    for known in context.values:
+        yield Draft(
+            known.name,
+            str(known.symbol.kind),
+            _tier(context, known),
+            detail=detail(known),
+            describe=partial(about, known.symbol),
+        )
+
+
+def _tier(context: Context, known: Known) -> float:
+    kind = known.fact.type
+    distance = context.wanted.distance(kind)
+    general = 0.5 * (known.symbol.kind is SymbolKind.BUILTIN)
+    if context.wanted.name and known.name == context.wanted.name:
+        general -= 0.5
+    if distance is not None and not isinstance(kind, AnyType):
+        return OWN + 0.1 * distance + general
+    if isinstance(kind, AnyType):
+        return MAYBE + general
+    return (PARTS if isinstance(kind, _HAVING_PARTS) else OTHERS) + general
+
+
+def detail(known: Known) -> str:
+    node = known.symbol.node
+    if isinstance(known.fact.of, ast.Structure) and isinstance(known.fact.type, StructureType):
+        return known.fact.of.kind
+    if isinstance(node, ast.Param):
+        return f"param {node.value.span.one_line}"
+    return str(known.symbol.kind) if isinstance(known.fact.type, AnyType) else str(known.fact.type)
+
+
+def about(symbol: Symbol) -> str:
+    """What is said of a name that is no callable."""
+    if symbol.node is not None:
+        return joined(dict.fromkeys(of_definition(node) for node in symbol.nodes[:3]))
+    entry = reference().entries.get(symbol.name)
+    return of_entry(entry) if entry is not None else ""
+
+
+# --- Callables -------------------------------------------------------------------------------------
+
+
+def calls(context: Context) -> Iterator[Draft]:
+    """What can be called to get a value."""
+    is_whole = _is_whole_value(context)
+    for name, alias in context.callables():
+        found = context.scope.called(name)
+        if found is None or all(s.kind is ast.ConstraintDefinition for s in found[1]):
+            continue
+        yield call(context, name, found[1], _call_tier(context, found[1], is_whole), alias)
+    words = vocabulary()
+    shapes = (*words.primitives, *words.shapes, *words.operations)
+    groups: list[tuple[Sequence[str], bool]] = [
+        (shapes, True),
+        (words.templates, True),
+        (words.exactness, False),
+        (words.functions, False),
+        (words.built_in, False),
+    ]
+    for names, makes in groups:
+        for name in names:
+            found = context.scope.called(name)
+            if found is None or not _belongs(context, name):
+                continue
+            if makes and not is_whole and not _takes_things(context):
+                continue
+            yield call(context, name, found[1], _call_tier(context, found[1], is_whole and makes))
+
+
+def _is_whole_value(context: Context) -> bool:
+    """Whether the place is all of what a name is given: `rim = …`."""
+    above = context.site.parent()
+    return isinstance(above, ast.Assign) and not context.in_items
+
+
+def _takes_things(context: Context) -> bool:
+    """Whether geometry may stand at the place."""
+    kinds = context.wanted.types
+    things = (GeometryType, StructureType, ListType, AnyType)
+    if context.call is None:
+        return any(isinstance(kind, things) for kind in kinds) and context.use is Use.GEOMETRY
+    return not kinds or any(isinstance(kind, things) for kind in kinds)
+
+
+def _belongs(context: Context, name: str) -> bool:
+    """Whether a name of the library is of use here: steps are so in a path alone, checks in an assert."""
+    entry = reference().entries.get(name)
+    in_path = context.call is not None and context.call[0].callee.text == _STEPS
+    if entry is not None and entry.topic == _STEPS and name != _STEPS:
+        return in_path
+    if name in ("area", "perimeter", "overlaps", "clearance"):
+        return context.use is Use.CHECK
+    return name not in ("fillet", "chamfer")
+
+
+def _call_tier(context: Context, signatures: Sequence[Signature], makes: bool) -> float:
+    if makes:
+        is_own = any(not s.standard for s in signatures)
+        is_maker = is_own or _makes(context, signatures[0])
+        return MAKERS + 0.1 * (not is_own) if is_maker else OTHERS
+    entry = reference().entries.get(signatures[0].name)
+    if entry is not None and entry.topic == _STEPS and signatures[0].standard and entry.name != _STEPS:
+        return OWN
+    kinds = {result_type(context, s) for s in signatures}
+    distances = [d for kind in kinds if (d := context.wanted.distance(kind)) is not None]
+    if not distances:
+        return FAR
+    is_own = any(not s.standard for s in signatures)
+    certain = any(not isinstance(kind, AnyType) for kind in kinds)
+    return CALLS + 0.1 * min(distances) + 0.5 * (not certain) - 0.3 * is_own
+
+
+def _makes(context: Context, signature: Signature) -> bool:
+    return isinstance(result_type(context, signature), GeometryType | StructureType) or signature.node is None
+
+
+def result_type(context: Context, signature: Signature) -> Type:
+    """What a callable gives, as far as that is the same for all arguments."""
+    if signature.kind is None:
+        return fields.RESULTS.get(signature.name, ANY)
+    if signature.kind is ast.ShapeDefinition:
+        return GeometryType(signature.name)
+    if signature.kind is ast.Structure:
+        return StructureType()
+    if signature.kind is ast.ConstraintDefinition:
+        return TruthType()
+    node = signature.node
+    if not signature.standard or not isinstance(node, ast.FunctionDefinition):
+        return ANY
+    return result(context.view.program.inference, node)[0].type
+
+
+def call(
+    context: Context, name: str, signatures: Sequence[Signature], tier: float, alias: Symbol | None = None
+) -> Draft:
+    text, is_snippet = called(context, name, signatures)
+    return Draft(
+        name,
+        str(kind_of(signatures[0])) if alias is None else str(SymbolKind.ALIAS),
+        tier,
+        text,
+        brief(signatures),
+        is_snippet,
+        describe=partial(about_call, name, tuple(signatures)),
+    )
+
+
+def called(
+    context: Context, name: str, signatures: Sequence[Signature], skipped: int = 0
+) -> tuple[str, bool]:
+    """How a call is written, and whether that is a snippet; where a `(` stands already, by the name alone."""
+    if context.site.following.startswith("("):
+        return name, False
+    if all(len(s.parameters) <= skipped and not (s.takes_any or s.gathers) for s in signatures):
+        return f"{name}()", False
+    return f"{name}($1)", True
+
+
+def brief(signatures: Sequence[Signature]) -> str:
+    """The parameters of the first overload, and how many others there are."""
+    names = [name + "?" * optional for name, _, optional in signatures[0].parameters]
+    more = f" +{len(signatures) - 1}" if len(signatures) > 1 else ""
+    return f"({', '.join(names)}){more}"
+
+
+def kind_of(signature: Signature) -> SymbolKind:
+    match signature.kind:
+        case ast.ShapeDefinition:
+            return SymbolKind.SHAPE
+        case ast.ConstraintDefinition:
+            return SymbolKind.CONSTRAINT
+        case ast.Structure:
+            return SymbolKind.TEMPLATE
+        case None if isinstance(fields.RESULTS.get(signature.name), GeometryType):
+            return SymbolKind.SHAPE
+        case _:
+            return SymbolKind.FUNCTION
+
+
+def about_call(name: str, signatures: tuple[Signature, ...]) -> str:
+    return of_callable(name, signatures)

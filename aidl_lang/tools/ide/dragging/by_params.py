@@ -1,0 +1,222 @@
+"""Points that follow a `param`: which ones do is found by turning each a little, and how far by a secant."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+
+from aidl_lang import pipeline
+from aidl_lang.building.model import Knob
+from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.names import fold
+from aidl_lang.export.numbers import shortest
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.syntax import ast
+from aidl_lang.tools.agents.knobs import edit_at
+from aidl_lang.tools.agents.workspace import RefusalError
+from aidl_lang.tools.ide.dragging.grips import Grip, grips, is_somewhere
+from aidl_lang.tools.ide.refusing import Refusal
+from aidl_lang.tools.ide.view import View, run
+
+MOST_KNOBS = 12
+_SECONDS = 0.6
+"""For trying all params once; those that are left are not dragged by."""
+_NUDGE = 1e-3
+"""How far a param is turned to see what follows, as a share of its range or value."""
+_FOLLOWS = 1e-2
+"""Millimetres for one of its units by which a point follows a param at least."""
+_LAZY = 0.1
+"""Millimetres for one of its units of a param that half as gladly is turned as one that does much."""
+_ROUNDS = 3
+_BESIDE = 0.3
+"""Sine of the angle between the ways of two params that are not the same way."""
+
+Slopes = Mapping[str, Vec]
+"""For each param by its path, the way of a point as it is turned by one unit."""
+
+
+def moved_by_params(view: View, known: Sequence[Grip]) -> dict[str, tuple[str, ...]]:
+    """The params, by name, that each point follows."""
+    ids = {grip.id for grip in known}
+    return {i: tuple(p.rpartition(".")[2] for p in s) for i, s in _slopes(view).items() if i in ids}
+
+
+def turned(view: View, grip: Grip, to: Vec, step: float) -> tuple[View, Vec, tuple[Edit, ...]] | Refusal:
+    """The program with one or two params turned so that a point comes near a place, the point, and the edits
+    of their defaults.
+    """
+    slopes = dict(_slopes(view).get(grip.id, {}))
+    values: dict[str, float] = {}
+    at = _place(view, grip.id, values)
+    for _ in range(2):
+        if at is None or not slopes or math.dist(at, to) <= step:
+            break
+        wanted = to[0] - at[0], to[1] - at[1]
+        best = max(slopes, key=lambda path: _promise(view, path, wanted, slopes[path]))
+        way = slopes.pop(best)
+        value = _value(view, grip.id, best, values, to, way, step)
+        if value is not None:
+            values[best] = value
+            at = _place(view, grip.id, values)
+        slopes = {path: other for path, other in slopes.items() if _is_beside(other, way)}
+    shown = run(view, view, params={**(view.params or {}), **values})
+    at = _place_in(shown, grip.id)
+    if at is None:
+        return Refusal("the program does not solve with the param turned that far")
+    try:
+        edits = tuple(edit for path, value in values.items() for edit in _set(view, path, value))
+    except RefusalError as refused:
+        return Refusal(refused.diagnostics[0].message)
+    return shown, at, edits
+
+
+# --- What follows a param ------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=4)
+def _slopes(view: View) -> Mapping[str, Slopes]:
+    """For each point that follows params, its ways."""
+    outcome = view.outcome
+    if outcome is None or outcome.built is None or outcome.evaluate is None or outcome.status != "solved":
+        return {}
+    before = {grip.id: grip.at(outcome.evaluate) for grip in grips(outcome.built)}
+    found: dict[str, dict[str, Vec]] = {}
+    until = time.monotonic() + _SECONDS
+    for knob in list(_numeric(view))[:MOST_KNOBS]:
+        if time.monotonic() > until:
+            break
+        nudge = _nudge(knob)
+        for name, at in _places(view, {knob.path: float(knob.value) + nudge}).items():
+            if name in before:
+                x, y = ((b - a) / nudge for a, b in zip(before[name], at, strict=True))
+                if is_somewhere((x, y)) and math.hypot(x, y) > _FOLLOWS:
+                    found.setdefault(name, {})[knob.path] = x, y
+    return found
+
+
+def _numeric(view: View) -> Iterator[Knob]:
+    """The params whose numbers are written in the text of the view, and not set from outside."""
+    assert view.outcome is not None
+    given = {fold(name.strip()) for name in view.params or ()}
+    for knob in view.outcome.knobs:
+        is_number = isinstance(knob.value, float) and not knob.choices
+        if is_number and _declaration(view, knob) is not None and fold(knob.path) not in given:
+            yield knob
+
+
+def _declaration(view: View, knob: Knob) -> ast.Param | None:
+    """Where the text says the value of a param as a number."""
+    if knob.span is None or knob.span.source is not view.source:
+        return None
+    if (node := view.params_written.get(knob.span)) is None:
+        return None
+    number = node.value.operand if isinstance(node.value, ast.Unary) else node.value
+    return node if isinstance(number, ast.Number) else None
+
+
+def _set(view: View, path: str, value: float) -> Iterator[Edit]:
+    """Raises RefusalError where the value does not fit."""
+    for knob in view.outcome.knobs if view.outcome is not None else ():
+        declared = _declaration(view, knob)
+        if knob.path == path and declared is not None:
+            yield edit_at(knob, declared, value)
+
+
+def _nudge(knob: Knob) -> float:
+    value = float(knob.value)
+    if knob.low is None or knob.high is None:
+        return _NUDGE * max(1.0, abs(value))
+    nudge = _NUDGE * (knob.high - knob.low) or _NUDGE
+    return nudge if value + nudge <= knob.high else -nudge
+
+
+def _places(view: View, values: Mapping[str, float]) -> dict[str, Vec]:
+    """Where all points are with other values of params; empty where it does not solve."""
+    found = pipeline.placed(view.program, {**(view.params or {}), **values})
+    if found is None:
+        return {}
+    model, evaluate = found
+    return {grip.id: grip.at(evaluate) for grip in grips(model)}
+
+
+def _place(view: View, grip: str, values: Mapping[str, float]) -> Vec | None:
+    return _places(view, values).get(grip) if values else _place_in(view, grip)
+
+
+def _place_in(view: View, grip: str) -> Vec | None:
+    outcome = view.outcome
+    if outcome is None or outcome.built is None or outcome.evaluate is None or outcome.status != "solved":
+        return None
+    return next((g.at(outcome.evaluate) for g in grips(outcome.built) if g.id == grip), None)
+
+
+# --- How far to turn it --------------------------------------------------------------------------
+
+
+def _value(
+    view: View, grip: str, path: str, values: Mapping[str, float], to: Vec, way: Vec, step: float
+) -> float | None:
+    """The value of a param for which a point comes nearest to a place along its way; None where nothing
+    solves but what is there.
+    """
+    assert view.outcome is not None
+    knob = next(k for k in view.outcome.knobs if k.path == path)
+    slope = math.hypot(*way)
+    value, best = float(knob.value), None
+    at = _place(view, grip, values)
+    for _ in range(_ROUNDS):
+        if at is None:
+            break
+        off = _along((to[0] - at[0], to[1] - at[1]), way)
+        if best is not None and abs(off) <= step:
+            break
+        aimed = _rounded(knob, _clamped(knob, value + off / slope), step / slope)
+        if aimed == value:
+            break
+        before, value = (value, at), aimed
+        at = _place(view, grip, {**values, path: value})
+        if at is not None:
+            best = value
+            gone = _along((at[0] - before[1][0], at[1] - before[1][1]), way)
+            slope = gone / (value - before[0]) if abs(gone) > _FOLLOWS * abs(value - before[0]) else slope
+    return best
+
+
+def _promise(view: View, path: str, wanted: Vec, way: Vec) -> float:
+    """How far of a wanted way a param could take a point within its range, the more gladly the more it does
+    for each of its units.
+    """
+    assert view.outcome is not None
+    knob = next(k for k in view.outcome.knobs if k.path == path)
+    slope, along = math.hypot(*way), _along(wanted, way)
+    value = float(knob.value)
+    room = abs(_clamped(knob, value + along / slope) - value) * slope
+    return min(abs(along), room) * slope / (slope + _LAZY)
+
+
+def _clamped(knob: Knob, value: float) -> float:
+    low = -math.inf if knob.low is None else knob.low
+    high = math.inf if knob.high is None else knob.high
+    return min(max(value, low), high)
+
+
+def _rounded(knob: Knob, value: float, tolerance: float) -> float:
+    """To the steps of a param, or to few digits; at its ends as it is."""
+    if value in (knob.low, knob.high):
+        return value
+    if knob.step:
+        start = knob.low or 0.0
+        value = start + round((value - start) / knob.step) * knob.step
+        return _clamped(knob, float(shortest(value, 1e-9)))
+    return _clamped(knob, float(shortest(value, abs(tolerance) / 2)))
+
+
+def _along(v: Vec, way: Vec) -> float:
+    """The length of a vector along a way."""
+    return (v[0] * way[0] + v[1] * way[1]) / math.hypot(*way)
+
+
+def _is_beside(a: Vec, b: Vec) -> bool:
+    return abs(a[0] * b[1] - a[1] * b[0]) > _BESIDE * math.hypot(*a) * math.hypot(*b)

@@ -1,0 +1,294 @@
+"""Taking hold of a point of the drawing: what can be moved, where everything goes when it is, and how the
+text has to change for that.
+
+A point moves by what the text leaves open, in this order: first guesses, as the points of a sketch do; the
+sizes of what it is a point of; a `param`; and the place of the drawing as a whole, by first guesses again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import field, replace
+from functools import cached_property, lru_cache
+
+from aidl_lang.building.expression import Unknown
+from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.drawing_time import TooLongError
+from aidl_lang.common.records import record
+from aidl_lang.export.numbers import shortest
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.pipeline import Compiled
+from aidl_lang.tools.ide.comparing import is_same
+from aidl_lang.tools.ide.dragging.by_params import moved_by_params, turned
+from aidl_lang.tools.ide.dragging.grips import Grip, grips, is_somewhere
+from aidl_lang.tools.ide.dragging.mobility import Ways, belongs, movable, ways
+from aidl_lang.tools.ide.dragging.pulling import Pull, pulled
+from aidl_lang.tools.ide.guesses import Guess, guesses
+from aidl_lang.tools.ide.refusing import Refusal
+from aidl_lang.tools.ide.view import View, edited
+
+STEP = 0.1
+"""Millimetres to which numbers are rounded that dragging writes."""
+MOST_HANDLES = 60
+_MOST_GRIPS = 400
+"""Points of a model that are looked at; the outermost ones of a larger model."""
+_FARTHEST = 1e6
+"""Millimetres from the origin that a point may be dragged."""
+_FINE = 1e-6
+_NAMED = 2
+"""Params that a hint names."""
+
+
+@record()
+class Handle:
+    """A point that can be dragged.
+
+    at     in the root's frame, mm
+    moves  what changes in the text: `guess`, `size` or `param`
+    """
+
+    id: str
+    path: str
+    at: Vec
+    moves: str
+    hint: str
+
+
+@record()
+class Dragged:
+    """What comes of dragging a point: `view` is the program as it is shown meanwhile, `at` where the point
+    came to. `edits` are tried, which takes longer than the rest.
+    """
+
+    view: View
+    at: Vec
+    _origin: View = field(repr=False)
+    _grip: Grip = field(repr=False)
+    _step: float = field(repr=False)
+    _settled: tuple[Edit, ...] | None = field(default=None, repr=False)
+
+    @cached_property
+    def edits(self) -> tuple[Edit, ...] | Refusal:
+        """What puts the point there for good: the numbers that changed by it, and nothing else."""
+        if self._settled is not None:
+            return self._settled
+        return _edits(self._origin, self)
+
+
+def handles(view: View, *, params: bool = True) -> list[Handle]:
+    """The points that can be dragged; without `params`, only those that take no further runs to tell."""
+    found = [*_by_numbers(view)]
+    if params and view.outcome is not None and view.outcome.built is not None:
+        taken = {handle.id for handle in found if not _is_slide(view, handle.id)}
+        known = moved_by_params(view, _grips(view))
+        by_param = [
+            Handle(grip.id, grip.path, at, "param", _by_param(grip, known[grip.id]))
+            for grip, at in _places(view)
+            if grip.id in known and grip.id not in taken
+        ]
+        found = [h for h in found if h.id not in known or h.id in taken] + by_param
+    return _outermost(view, found)
+
+
+def drag(view: View, handle: str, to: Vec, step: float = STEP) -> Dragged | Refusal:
+    """The program with a point dragged towards a place, as near as it can come."""
+    if not (is_somewhere(to) and max(abs(to[0]), abs(to[1])) <= _FARTHEST):
+        return Refusal("that place is too far away")
+    if not (math.isfinite(step) and step > 0):
+        return Refusal("the step is a length")
+    found = next((h for h in handles(view) if h.id == handle), None)
+    grip = next((g for g in _grips(view) if g.id == handle), None)
+    if found is None or grip is None:
+        return Refusal("there is nothing to drag by this name")
+    if found.moves == "param":
+        turn = turned(view, grip, to, step)
+        if isinstance(turn, Refusal):
+            return turn
+        shown, at, edits = turn
+        return Dragged(shown, at, view, grip, step, edits)
+    return _pulled(view, grip, to, step)
+
+
+# --- What can be dragged -------------------------------------------------------------------------
+
+
+def _grips_of(view: View) -> dict[str, Grip]:
+    return {grip.id: grip for grip in _grips(view)}
+
+
+@lru_cache(maxsize=4)
+def _grips(view: View) -> tuple[Grip, ...]:
+    outcome = view.outcome
+    if outcome is None or outcome.built is None or outcome.status != "solved" or view.is_stale:
+        return ()
+    written = _written(view)
+    found = [grip for grip in grips(outcome.built) if not grip.is_frame or grip.frame & written]
+    return tuple(sorted(found, key=lambda grip: grip.depth)[:_MOST_GRIPS])
+
+
+def _places(view: View) -> Iterator[tuple[Grip, Vec]]:
+    outcome = view.outcome
+    if outcome is not None and outcome.evaluate is not None:
+        for grip in _grips(view):
+            at = grip.at(outcome.evaluate)
+            if is_somewhere(at):
+                yield grip, at
+
+
+@lru_cache(maxsize=4)
+def _ways(view: View) -> Ways:
+    outcome = view.outcome
+    if outcome is None or outcome.built is None or outcome.evaluate is None:
+        return Ways()
+    found = [grip for grip, _ in _places(view)]
+    return ways(outcome.built, found, outcome.evaluate, _written(view), _movable(view))
+
+
+@lru_cache(maxsize=4)
+def _editable(view: View) -> tuple[Guess, ...]:
+    """The numbers that dragging may write."""
+    return tuple(guess for guess in guesses(view) if not guess.is_shared)
+
+
+@lru_cache(maxsize=4)
+def _written(view: View) -> frozenset[Unknown]:
+    return frozenset(u for guess in _editable(view) for u in guess.unknowns)
+
+
+@lru_cache(maxsize=4)
+def _movable(view: View) -> frozenset[Unknown]:
+    outcome = view.outcome
+    if outcome is None or outcome.built is None or outcome.evaluate is None:
+        return frozenset()
+    return movable(outcome.built, outcome.evaluate, _written(view))
+
+
+def _by_numbers(view: View) -> Iterator[Handle]:
+    known = _ways(view)
+    for grip, at in _places(view):
+        name = _name(grip)
+        if grip.id in known.own:
+            yield Handle(grip.id, grip.path, at, "guess", f"{name}: drag to move")
+        elif grip.id in known.sizes:
+            yield Handle(grip.id, grip.path, at, "size", f"{name}: drag to change its size")
+        elif grip.id in known.whole:
+            yield Handle(grip.id, grip.path, at, "guess", f"{name}: drag to move the drawing")
+
+
+def _is_slide(view: View, handle: str) -> bool:
+    """Whether a point is moved by what moves everything."""
+    known = _ways(view)
+    return handle in known.whole and handle not in known.own and handle not in known.sizes
+
+
+def _outermost(view: View, found: list[Handle]) -> list[Handle]:
+    """One for each place, those of outer things before those of inner ones, and far ones before near ones."""
+    outcome = view.outcome
+    if outcome is None or outcome.model is None:
+        return []
+    depth = {grip.id: grip.depth for grip in _grips(view)}
+    box = outcome.model.root.box
+    middle = ((box.left + box.right) / 2, (box.bottom + box.top) / 2) if box is not None else (0.0, 0.0)
+    kinds = ("guess", "size", "param")
+    slides = {handle.id for handle in found if _is_slide(view, handle.id)}
+
+    def order(handle: Handle) -> tuple[float, ...]:
+        return handle.id in slides, kinds.index(handle.moves), depth[handle.id]
+
+    places: dict[tuple[float, float], Handle] = {}
+    for handle in sorted(found, key=order):
+        places.setdefault((round(handle.at[0], 5) + 0.0, round(handle.at[1], 5) + 0.0), handle)
+    kept = sorted(places.values(), key=lambda h: (depth[h.id], -math.dist(h.at, middle)))
+    return kept[:MOST_HANDLES]
+
+
+def _name(grip: Grip) -> str:
+    path = grip.path.partition(".")[2] or grip.path
+    return f"{path}.{grip.name}" if grip.name else path
+
+
+def _by_param(grip: Grip, params: tuple[str, ...]) -> str:
+    more = " or others" if len(params) > _NAMED else ""
+    return f"{_name(grip)}: drag to change {' or '.join(f'`{name}`' for name in params[:_NAMED])}{more}"
+
+
+def _pulled(view: View, grip: Grip, to: Vec, step: float) -> Dragged | Refusal:
+    outcome, known = view.outcome, _ways(view)
+    way = known.own.get(grip.id) or known.sizes.get(grip.id) or known.whole.get(grip.id)
+    if outcome is None or way is None:
+        return Refusal("there is nothing to drag")
+    by_sizes = grip.id in known.sizes and grip.id not in known.own
+    written = _written(view)
+    sizes = frozenset(u for u in written if by_sizes and u.kept and belongs(u, grip.thing))
+    pin = _grips_of(view).get(way.pin or "")
+    try:
+        found = pulled(outcome, Pull(grip, way, pin, written, _movable(view), sizes), to)
+    except TooLongError as reason:
+        return Refusal(str(reason))
+    if found is None:
+        return Refusal(f"`{_name(grip)}` cannot go there: the constraints would not hold")
+    shown, at = found
+    return Dragged(replace(view, outcome=shown, drawn=shown), at, view, grip, step)
+
+
+# --- Writing it into the text --------------------------------------------------------------------
+
+
+def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...] | Refusal:
+    """The fewest and shortest numbers for which the point comes to lie where it was shown."""
+    shown = dragged.view.outcome
+    assert shown is not None
+    changed = _changed(view, shown)
+    if not changed:
+        return Refusal("no number of the text would change by it")
+    everything = [
+        (g, v)
+        for g in _editable(view)
+        if shown.evaluate is not None and (v := g.valued(shown.evaluate)) is not None
+    ]
+    for numbers in (changed, everything):
+        for step in (dragged._step, _FINE):
+            edits = tuple(_written_as(view, numbers, step))
+            if edits and _comes_to(view, edits, dragged, 2 * max(step, _FINE * 10)):
+                return edits
+    return Refusal("no numbers in the text would hold it there")
+
+
+def _changed(view: View, shown: Compiled) -> list[tuple[Guess, float]]:
+    """The numbers that were solved to something else by the dragging, and to what."""
+    assert view.outcome is not None
+    assert view.outcome.evaluate is not None
+    assert shown.evaluate is not None
+    found = []
+    for guess in _editable(view):
+        before, after = guess.valued(view.outcome.evaluate), guess.valued(shown.evaluate)
+        if before is not None and after is not None and abs(after - before) * guess.factor > _FINE:
+            found.append((guess, after))
+    return found
+
+
+def _written_as(view: View, numbers: list[tuple[Guess, float]], step: float) -> Iterator[Edit]:
+    for guess, value in numbers:
+        text = shortest(value, step / 2 / guess.factor) + guess.unit
+        if text != guess.span.text:
+            yield Edit(guess.span, text)
+
+
+def _comes_to(view: View, edits: tuple[Edit, ...], dragged: Dragged, tolerance: float) -> bool:
+    """Whether the edited text solves, says nothing worse, and has the point where it was shown."""
+    again = edited(view, edits)
+    assert again.outcome is not None
+    assert view.outcome is not None
+    grip = _grips_of(again).get(dragged._grip.id)
+    if grip is None or again.outcome.evaluate is None:
+        return False
+    errors = {d.code for d in again.outcome.diagnostics if d.is_error}
+    if not errors <= {d.code for d in view.outcome.diagnostics}:
+        return False
+    if math.dist(grip.at(again.outcome.evaluate), dragged.at) <= tolerance:
+        return True
+    # A drawing whose place the text does not say may come to lie elsewhere.
+    shown = dragged.view.outcome
+    is_same_shape = shown is not None and is_same(shown, again.outcome, slid=True, tolerance=tolerance)
+    return is_same_shape and not _is_slide(view, grip.id)

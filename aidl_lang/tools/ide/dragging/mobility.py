@@ -1,0 +1,284 @@
+"""Which points of a solved model can be moved, and by which of its numbers: linear algebra at the solution.
+
+A small motion is possible where no equation that holds minds it. The motions of positions alone say where a
+first guess moves a point; those of positions and sizes together, where a size would.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
+from dataclasses import field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import qr
+
+from aidl_lang.building import expression as ex
+from aidl_lang.building.expression import Evaluator, Unknown
+from aidl_lang.building.lower import Lowered, lower
+from aidl_lang.building.model import Comparison, Constraint, Geometry, Model, Structure
+from aidl_lang.checking.units import LENGTH
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.solver.components import components
+from aidl_lang.solver.gradients import linearise
+from aidl_lang.solver.problem import violations
+from aidl_lang.solver.schedule import Schedule
+from aidl_lang.tools.ide.dragging.grips import Grip
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+MOST_UNKNOWNS = 300
+"""Unknowns that hang together; a larger part of a model is not looked at."""
+_RANK = 1e-9
+_MOVES = 1e-6
+"""Velocities that count as none, where one is typical."""
+_HOLDS = 1e-6
+_NARROW = 1e-3
+"""A second direction counts if it is this much of the first."""
+AXES: tuple[Vec, Vec] = ((1.0, 0.0), (0.0, 1.0))
+_NOWHERE = Span(SourceFile("dragging", ""), 0, 0)
+
+
+@record()
+class Way:
+    """How a point can be moved: along any of some directions (unit vectors, one or two), while another point,
+    by its id, is to stay where it is, for else everything would be drawn along.
+    """
+
+    directions: tuple[Vec, ...]
+    pin: str | None = None
+
+
+@record()
+class Ways:
+    """
+    own    points that a first guess moves against others
+    sizes  points that a kept size of their own moves
+    whole  points that move as the drawing slides as a whole, by first guesses too
+    """
+
+    own: Mapping[str, Way] = field(default_factory=dict)
+    sizes: Mapping[str, Way] = field(default_factory=dict)
+    whole: Mapping[str, Way] = field(default_factory=dict)
+
+
+def pull(model: Model, grip: Grip, directions: Sequence[Vec], to: Vec, weight: float | None) -> Constraint:
+    """The wish that a point be somewhere, as far as some directions tell; without a weight, the command."""
+    rows = []
+    for u, v in directions:
+        x, y = ex.mul(ex.constant(u), grip.x), ex.mul(ex.constant(v), grip.y)
+        wanted = ex.constant(u * to[0] + v * to[1])
+        rows.append(Comparison("==", ex.add(x, y), wanted, LENGTH, frozenset()))
+    return Constraint(model.root, tuple(rows), grip.id, _NOWHERE, weight)
+
+
+def ways(
+    model: Model,
+    grips: Sequence[Grip],
+    evaluate: Evaluator,
+    written: AbstractSet[Unknown],
+    movable: AbstractSet[Unknown],
+) -> Ways:
+    """How each point can be moved; `written` are the unknowns that a number of the text stands for."""
+    wishes = {grip: pull(model, grip, AXES, grip.at(evaluate), 1.0) for grip in grips}
+    lowered = lower(replace(model, constraints=[*model.constraints, *wishes.values()]))
+    scene = _Scene(lowered, evaluate, wishes, written, movable)
+    own: dict[str, Way] = {}
+    sizes: dict[str, Way] = {}
+    whole: dict[str, Way] = {}
+    for part in scene.parts():
+        against, along = part.by_positions()
+        own |= against
+        whole |= along
+        sizes |= part.by_sizes()
+    return Ways(own, sizes, whole)
+
+
+def movable(model: Model, evaluate: Evaluator, written: AbstractSet[Unknown]) -> frozenset[Unknown]:
+    """The unknowns that may move: what numbers of the text say, and of the others those that a run of the
+    changed text moves after them. Those are frames, where a constraint mentions them, and positions that the
+    structure itself constrains; from outside, a structure is moved as a whole.
+    """
+    found = set(written)
+    found.update(u for u in evaluate.values if u.frame_of is not None)
+    for constraint in model.constraints:
+        both = (e for c in constraint.comparisons for e in (c.left, c.right))
+        found.update(u for u in ex.unknowns(both) if u.owner is constraint.holder and u in evaluate.values)
+    return frozenset(u for u in found if not u.kept or u in written)
+
+
+def values_at(lowered: Lowered, evaluate: Evaluator) -> Floats:
+    """The solved values (n,) of the unknowns of a problem."""
+    values = evaluate.values
+    return np.array([values.get(u, u.guess) for u in lowered.unknowns], dtype=np.float64)
+
+
+class _Scene:
+    """The equations that hold and the points, over the unknowns that may move, in typical units."""
+
+    def __init__(
+        self,
+        lowered: Lowered,
+        evaluate: Evaluator,
+        wishes: Mapping[Grip, Constraint],
+        written: AbstractSet[Unknown],
+        movable: AbstractSet[Unknown],
+    ) -> None:
+        problem, rows = lowered.problem, lowered.problem.rows
+        self.unknowns = lowered.unknowns
+        self.grips = list(wishes)
+        at = values_at(lowered, evaluate)
+        with np.errstate(all="ignore"):
+            far = violations(problem, Schedule(problem.tape).evaluate(at))
+        number = {stated: index for index, stated in enumerate(lowered.stated) if stated is not None}
+        of_row = rows.constraint
+        first = np.searchsorted(of_row, [number[wish] for wish in wishes.values()])
+        holding = np.isnan(problem.weight)[of_row] & ~rows.at_most & (far <= _HOLDS * rows.scale)
+        equal = np.flatnonzero(holding)
+        points = np.stack((first, first + 1), axis=1).ravel()
+        self.is_written = np.array([u in written for u in self.unknowns], dtype=np.bool_)
+        self.is_free = ~problem.kept
+        may_move = np.array([u in movable for u in self.unknowns], dtype=np.bool_)
+        with np.errstate(all="ignore"):
+            _, matrix = linearise(problem.tape, at, rows.expression[np.concatenate((equal, points))])
+        scaled = matrix.scaled(np.ones(len(matrix)), problem.scale)
+        self.matrix = scaled.only(may_move[scaled.columns])
+        self.equations = len(equal)
+
+    def parts(self) -> Iterator[_Part]:
+        """What hangs together and has points in it."""
+        count, width = len(self.matrix), len(self.unknowns)
+        x = self.equations + 2 * np.arange(len(self.grips))
+        links = np.concatenate((self.matrix.rows, x)), np.concatenate((self.matrix.columns + count, x + 1))
+        labels = components(*links, count + width)
+        for label in np.unique(labels[x]).tolist():
+            columns = np.flatnonzero(labels[count:] == label)
+            if 0 < len(columns) <= MOST_UNKNOWNS:
+                equations = np.flatnonzero(labels[: self.equations] == label)
+                yield _Part(self, columns, equations, np.flatnonzero(labels[x] == label))
+
+
+class _Part:
+    """Points that hang together, by their ids, and how they can be moved (see `Ways`)."""
+
+    def __init__(self, scene: _Scene, columns: Ints, equations: Ints, grips: Ints) -> None:
+        self.scene, self.columns = scene, columns
+        self.grips = [scene.grips[index] for index in grips.tolist()]
+        self.others = len(scene.grips) - len(self.grips)
+        rows = scene.equations + np.stack((2 * grips, 2 * grips + 1), axis=1)
+        self.velocity = np.stack([self._dense(row) for row in rows])
+        self.free, self.written = scene.is_free[columns], scene.is_written[columns]
+        jacobian = self._dense(equations)
+        self.positions = np.zeros((len(columns), 0))
+        if self.free.any():
+            null = _null_space(jacobian[:, self.free])
+            self.positions = np.zeros((len(columns), null.shape[1]))
+            self.positions[self.free] = null
+        self.everything = _null_space(jacobian)
+
+    def by_positions(self) -> tuple[dict[str, Way], dict[str, Way]]:
+        """The points that move against most others, and those that move with them."""
+        moved = self.velocity @ self.positions
+        world = _World(moved, self.others)
+        own: dict[str, Way] = {}
+        whole: dict[str, Way] = {}
+        for number, grip in enumerate(self.grips):
+            if not (_moves(moved[number]) and self._is_written(moved[number])):
+                continue
+            if _moves(against := moved[number] - world.velocity):
+                own[grip.id] = Way(_directions(against), self._pin(world))
+            else:
+                whole[grip.id] = Way(_directions(moved[number]))
+        return own, whole
+
+    def by_sizes(self) -> dict[str, Way]:
+        """The points that move against most others where a size of what they are points of changes."""
+        found: dict[str, Way] = {}
+        for thing in dict.fromkeys(grip.thing for grip in self.grips):
+            own = np.array([belongs(self.scene.unknowns[c], thing) for c in self.columns.tolist()])
+            own &= ~self.free & self.written
+            if not own.any():
+                continue
+            motions = self.everything @ _null_space(self.everything[~self.free & ~own])
+            moved = self.velocity @ motions
+            world = _World(moved, self.others)
+            for number, grip in enumerate(self.grips):
+                if grip.thing is thing and _moves(against := moved[number] - world.velocity):
+                    found[grip.id] = Way(_directions(against), self._pin(world))
+        return found
+
+    def _pin(self, world: _World) -> str | None:
+        """A point of those that are to stay, if they could be drawn along."""
+        return self.grips[world.member].id if world.member is not None else None
+
+    def _is_written(self, moved: Floats) -> bool:
+        """Whether numbers of the text take part in the shortest motions that move a point."""
+        return _moves((self.positions @ np.linalg.pinv(moved, rcond=_MOVES))[self.written])
+
+    def _dense(self, rows: Ints) -> Floats:
+        return np.asarray(self.scene.matrix.take(rows).dense(self.columns))
+
+
+class _World:
+    """The most points that keep together in all motions: what stays while something else is dragged.
+
+    velocity (2, d) of them all; `member` is one of them, if they move
+    """
+
+    def __init__(self, moved: Floats, others: int) -> None:
+        """`moved` are the velocities (g, 2, d); `others` is the number of points that none of these moves."""
+        left = np.arange(len(moved))
+        still = np.abs(moved).max(axis=(1, 2), initial=0.0) <= _MOVES
+        most = others + int(still.sum())
+        self.velocity: Floats = np.zeros(moved.shape[1:])
+        self.member: int | None = None
+        left = left[~still]
+        while len(left) > most:
+            like = np.abs(moved[left] - moved[left[0]]).max(axis=(1, 2), initial=0.0) <= _MOVES
+            if int(like.sum()) > most:
+                most, self.member = int(like.sum()), int(left[0])
+                self.velocity = moved[left[0]]
+            left = left[~like]
+
+
+def belongs(unknown: Unknown, thing: Geometry | Structure) -> bool:
+    """Whether a number is one of a geometry, or of a structure around it."""
+    holder: Geometry | Structure | None = unknown.holder
+    if isinstance(holder, Structure):
+        around = thing.owner if isinstance(thing, Geometry) else thing
+        return around.is_within(holder)
+    while isinstance(holder, Geometry):
+        if holder is thing:
+            return True
+        holder = holder.container
+    return False
+
+
+def _directions(velocity: Floats) -> tuple[Vec, ...]:
+    """The directions of the velocities (2, d) of a point; the axes where there are two."""
+    left, sizes, _ = np.linalg.svd(velocity, full_matrices=False)
+    if len(sizes) > 1 and sizes[1] > _NARROW * sizes[0]:
+        return AXES
+    return ((float(left[0, 0]), float(left[1, 0])),)
+
+
+def _moves(velocity: Floats) -> bool:
+    return bool(velocity.size) and float(np.abs(velocity).max()) > _MOVES
+
+
+def _null_space(matrix: Floats) -> Floats:
+    """The motions (n, d), orthonormal, that change no row (m, n)."""
+    width = matrix.shape[1]
+    if not matrix.size:
+        return np.eye(width)
+    lengths = np.linalg.norm(matrix, axis=1)
+    rows = matrix[lengths > _MOVES] / lengths[lengths > _MOVES, None]
+    if not len(rows):
+        return np.eye(width)
+    basis, triangle, _ = qr(rows.T, pivoting=True)
+    rank = int((np.abs(np.diag(triangle)) > _RANK * max(rows.shape)).sum())
+    return np.asarray(basis[:, rank:])

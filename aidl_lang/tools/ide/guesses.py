@@ -1,0 +1,181 @@
+"""Numbers of the text that the solver may change, first guesses and kept sizes, beside what it found."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import field
+
+from aidl_lang.building import expression as ex
+from aidl_lang.building.expression import Evaluator, Expression, Unknown
+from aidl_lang.building.model import Literal
+from aidl_lang.checking.units import ANGLE, LENGTH, PLAIN, UNITS
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
+from aidl_lang.tools.ide.meaning import chosen
+from aidl_lang.tools.ide.view import View
+
+VISIBLE = 1e-4
+"""The least difference that is worth telling, as a share of the number, or of one where it is smaller."""
+_SAME = 1e-7
+"""The same for places that share a number and count as agreeing."""
+_MEASURES = {LENGTH: "mm", ANGLE: "deg"}
+
+Value = Callable[[Expression], float]
+
+
+@record()
+class Guess:
+    """A number of the text that is a first guess or a kept size.
+
+    span      the number, with its sign
+    written   the number, and what it was `solved` to, both in the `unit` as written (empty: mm or degrees);
+              None where places that share it were solved to different numbers
+    measure   the unit to tell it in; empty for a plain number
+    path      of what it is a number of, at the first place that it is used for
+    is_kept   a size, which changes only if the constraints cannot hold otherwise
+    is_shared it stands for several things, or might: in a loop, a template, a `let` that is read twice
+    uses      what it became, place by place
+    """
+
+    span: Span
+    written: float
+    solved: float | None
+    unit: str
+    measure: str
+    path: str
+    is_kept: bool
+    is_shared: bool
+    uses: tuple[Literal, ...] = field(repr=False)
+
+    @property
+    def factor(self) -> float:
+        """Millimetres or degrees in one of its unit."""
+        return _factor(self.unit)
+
+    @property
+    def behind(self) -> str:
+        """Its measure, as it stands behind a number in a sentence."""
+        return f" {self.measure}" if self.measure else ""
+
+    @property
+    def unknowns(self) -> frozenset[Unknown]:
+        """What the solver moves where the number is another."""
+        return frozenset(ex.unknowns(use.became for use in self.uses))
+
+    def valued(self, evaluate: Value) -> float | None:
+        """What it is by other values of the unknowns, in its unit; None where its places differ."""
+        return _agreed([evaluate(use.became) / self.factor for use in self.uses])
+
+    def is_off(self, solved: float | None) -> bool:
+        """Whether a value differs visibly from what is written."""
+        return solved is not None and abs(solved - self.written) > VISIBLE * max(1.0, abs(solved))
+
+
+def guesses(view: View) -> list[Guess]:
+    """The first guesses and kept sizes of the text in order; none where it was not solved."""
+    outcome = view.outcome
+    if outcome is None or outcome.built is None or outcome.evaluate is None or outcome.status != "solved":
+        return []
+    uses: dict[ast.Number | ast.Unary, list[Literal]] = {}
+    for literal in outcome.built.literals:
+        if literal.node.span.source is view.source and _is_open(literal.became):
+            uses.setdefault(literal.node, []).append(literal)
+    named = set(_read_more_than_once(view)) if uses else set()
+    found = (_guess(node, tuple(each), node in named, outcome.evaluate) for node, each in uses.items())
+    return sorted(found, key=lambda guess: guess.span.start)
+
+
+def as_kept(view: View) -> Evaluator | None:
+    """What evaluates at the solved positions with every kept size as it is written."""
+    outcome = view.outcome
+    if outcome is None or outcome.evaluate is None:
+        return None
+    values = outcome.evaluate.values
+    return Evaluator({u: u.guess if u.kept else value for u, value in values.items()})
+
+
+def _guess(node: ast.Number | ast.Unary, uses: tuple[Literal, ...], named: bool, evaluate: Value) -> Guess:
+    number = node.operand if isinstance(node, ast.Unary) else node
+    assert isinstance(number, ast.Number)
+    unit = number.unit or ""
+    is_negative = isinstance(node, ast.Unary) and node.operator == "-"
+    return Guess(
+        span=node.span,
+        written=-number.value if is_negative else number.value,
+        solved=_agreed([evaluate(use.became) / _factor(unit) for use in uses]),
+        unit=unit,
+        measure=unit or _MEASURES.get(uses[0].dimension or PLAIN, ""),
+        path=uses[0].path,
+        is_kept=all(_is_kept(use.became) for use in uses),
+        is_shared=named or len(uses) > 1,
+        uses=uses,
+    )
+
+
+def _factor(unit: str) -> float:
+    return UNITS[unit][0] if unit else 1.0
+
+
+def _agreed(values: list[float]) -> float | None:
+    """What all of the values are; None where they differ or one is no number."""
+    first = values[0]
+    same = all(abs(value - first) <= _SAME * max(1.0, abs(first)) for value in values)
+    return first if same and math.isfinite(first) else None
+
+
+def _is_open(became: Expression) -> bool:
+    """Whether the solver may change it: a number that was read while building is a constant after all."""
+    return any(not unknown.exact for unknown in ex.unknowns([became]))
+
+
+def _is_kept(became: Expression) -> bool:
+    return isinstance(became.payload, Unknown) and became.payload.kept
+
+
+# --- Numbers with a name -------------------------------------------------------------------------
+
+
+def _read_more_than_once(view: View) -> Iterator[ast.Node]:
+    """The numbers that stand behind a name which is read more than once: another use may compute with it."""
+    uses = view.resolution.uses
+    reads = Counter(symbol for node, symbol in uses.items() if isinstance(node, ast.Name))
+    for node in ast.walk(view.module):
+        for names, value in _named(view, node):
+            if any(reads[uses[name]] > 1 for name in names if name in uses):
+                yield from (n for n in ast.walk(value) if isinstance(n, (ast.Number, ast.Unary)))
+
+
+def _named(view: View, node: ast.Node) -> Iterator[tuple[tuple[ast.Identifier, ...], ast.Expression]]:
+    """Names that read parts of an expression as it stands."""
+    match node:
+        case ast.Let(name=name, value=value):
+            yield (name,), value
+        case ast.Assign(name=name, value=ast.Number() | ast.Unary() | ast.List() as value):
+            yield (name,), value
+        case (
+            ast.For(variables=names, iterable=iterable)
+            | ast.Comprehension(variables=names, iterable=iterable)
+        ):
+            yield names, iterable
+        case ast.FunctionDefinition(parameters=parameters):
+            for parameter in parameters:
+                if parameter.default is not None:
+                    yield (parameter.name,), parameter.default
+        case ast.Call():
+            yield from _given_to_function(view, node)
+        case _:
+            pass
+
+
+def _given_to_function(
+    view: View, call: ast.Call
+) -> Iterator[tuple[tuple[ast.Identifier, ...], ast.Expression]]:
+    """What a call of a `fn` is given: any of its parameters may be read more than once."""
+    signature = chosen(view, call)
+    if signature is not None and isinstance(signature.node, ast.FunctionDefinition):
+        names = tuple(parameter.name for parameter in signature.node.parameters)
+        for argument in call.arguments:
+            yield names, argument.value

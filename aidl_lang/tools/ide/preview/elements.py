@@ -1,0 +1,203 @@
+"""What is drawn, by number: structures, their geometry, and the parts of shapes."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.explaining.remedies import short
+from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece, Vec
+from aidl_lang.geometry.evaluate import Bounds, bounds
+from aidl_lang.geometry.network import union_bounds
+from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.tools.ide.preview.places import Places
+from aidl_lang.tools.ide.preview.values import Element
+from aidl_lang.tools.ide.view import View
+
+MOST_PARTS = 40
+"""Parts beyond this are not told apart: a gear has hundreds, and a text a curve for each stroke."""
+
+
+@record()
+class Drawn:
+    """An element, what it is in the model, and the structure that it is in."""
+
+    element: Element
+    model: SolvedStructure | SolvedGeometry
+    owner: SolvedStructure
+
+
+class Elements:
+    """The elements of a picture in order of writing: a structure before what is in it."""
+
+    def __init__(self, drawn: Iterable[Drawn]) -> None:
+        self.drawn = tuple(drawn)
+        self.values = tuple(each.element for each in self.drawn)
+        self.number: Mapping[str, int] = {
+            each.element.path: k for k, each in reversed(list(enumerate(self.drawn)))
+        }
+        self._of_span: dict[tuple[SourceFile, int, int], list[int]] = defaultdict(list)
+        for k, element in enumerate(self.values):
+            if (span := element.span) is not None:
+                self._of_span[span.source, span.start, span.end].append(k)
+
+    def near(self, path: str) -> int | None:
+        """The element at a path, or the innermost one around what is there."""
+        while path:
+            if path in self.number:
+                return self.number[path]
+            path = path[: max(path.rfind("."), path.rfind("["), 0)]
+        return None
+
+    def all_near(self, paths: Iterable[str]) -> list[int]:
+        """The elements at or around these paths, each once."""
+        return list(dict.fromkeys(k for path in paths if (k := self.near(path)) is not None))
+
+    def written_at(self, span: Span) -> list[int]:
+        """The elements that are written in exactly this place, copies and turns of loops among them."""
+        return list(self._of_span.get((span.source, span.start, span.end), ()))
+
+    def around(self, span: Span) -> list[int]:
+        """The elements of the smallest place that this one lies in."""
+        places = [
+            (end - start, numbers)
+            for (source, start, end), numbers in self._of_span.items()
+            if source is span.source and start <= span.start and span.end <= end
+        ]
+        return list(min(places, key=lambda place: place[0])[1]) if places else []
+
+
+def elements(view: View) -> Elements:
+    """What is in the picture of a view; nothing where there is none."""
+    if view.drawn is None or view.drawn.model is None:
+        return Elements(())
+    return Elements(_Reading(view).all(view.drawn.model))
+
+
+class _Reading:
+    def __init__(self, view: View) -> None:
+        self.places = Places(view)
+
+    def all(self, model: SolvedModel) -> Iterator[Drawn]:
+        return self._structure(model.root, None)
+
+    def _structure(self, structure: SolvedStructure, around: Span | None) -> Iterator[Drawn]:
+        span = self.places.now(structure.span) or around
+        element = Element(structure.path, "structure", structure.kind, span, _of_structure(structure))
+        yield Drawn(element, structure, structure)
+        for geometry in structure.drawn:
+            yield from self._geometry(geometry, structure, span)
+        for child in structure.structures:
+            yield from self._structure(child, span)
+
+    def _geometry(
+        self, geometry: SolvedGeometry, owner: SolvedStructure, around: Span | None
+    ) -> Iterator[Drawn]:
+        span = self.places.now(geometry.span) or around
+        element = Element(geometry.path, "geometry", geometry.type, span, _of_geometry(geometry))
+        yield Drawn(element, geometry, owner)
+        if geometry.type == "glyphs" or sum(1 for _ in geometry.walk()) > MOST_PARTS + 1:
+            return
+        for part in geometry.parts:
+            yield from self._part(part, owner, span)
+
+    def _part(self, part: SolvedGeometry, owner: SolvedStructure, around: Span | None) -> Iterator[Drawn]:
+        span = self.places.now(part.span)
+        if span is None or (around is not None and _is_value_of(span, around)):
+            span = around  # the statement, in place of the call in it
+        element = Element(part.path, "geometry", part.type, span, _of_geometry(part))
+        yield Drawn(element, part, owner)
+        for inner in part.parts:
+            yield from self._part(inner, owner, span)
+
+
+def _is_value_of(span: Span, statement: Span) -> bool:
+    return span.source is statement.source and statement.start <= span.start and span.end == statement.end
+
+
+def curves_of(geometry: SolvedGeometry) -> Iterator[Piece]:
+    """The curves of a geometry and its parts, those of construction geometry too."""
+    for each in geometry.walk():
+        if each.curve is not None:
+            yield each.curve
+
+
+def point_of(geometry: SolvedGeometry) -> Vec | None:
+    """Where a point is; None for other geometry, and for a point that is nowhere."""
+    match geometry.values.get("at"):
+        case (float() as x, float() as y) if math.isfinite(x) and math.isfinite(y):
+            return x, y
+        case _:
+            return None
+
+
+def box_of(thing: SolvedStructure | SolvedGeometry) -> Bounds | None:
+    """The box of a structure, or of the curves of a geometry; None where there is none in finite numbers."""
+    if isinstance(thing, SolvedStructure):
+        own = thing.box
+        box = None if own is None else (own.left, own.bottom, own.right, own.top)
+    else:
+        boxes = [bounds(curve) for curve in curves_of(thing)]
+        box = union_bounds(boxes) if boxes else None
+    return box if box is not None and all(map(math.isfinite, box)) else None
+
+
+def _of_structure(structure: SolvedStructure) -> str:
+    return ", ".join(filter(None, (structure.kind, _extent(structure))))
+
+
+def _of_geometry(geometry: SolvedGeometry) -> str:
+    kind = f"construction {geometry.type}" if geometry.construction else geometry.type
+    return ", ".join(filter(None, (kind.replace("_", " "), _sizes(geometry))))
+
+
+def _sizes(geometry: SolvedGeometry) -> str:
+    match geometry.curve:
+        case Circle(radius=radius):
+            return f"radius {_mm(radius)} mm"
+        case Arc(radius=radius, sweep=sweep):
+            return f"radius {_mm(radius)} mm, {_mm(abs(math.degrees(sweep)))}°"
+        case Line(start=start, end=end):
+            return f"{_mm(math.dist(start, end))} mm"
+        case Ellipse(rx=rx, ry=ry):
+            return f"radii {_mm(rx)} and {_mm(ry)} mm"
+        case _ if (at := point_of(geometry)) is not None:
+            return f"({_mm(at[0])}, {_mm(at[1])})"
+        case _:
+            return _extent(geometry)
+
+
+def _extent(thing: SolvedStructure | SolvedGeometry) -> str:
+    """Width and height."""
+    box = box_of(thing)
+    return "" if box is None else f"{_mm(box[2] - box[0])} × {_mm(box[3] - box[1])} mm"
+
+
+def _mm(value: float) -> str:
+    """To a thousandth, as much as anybody makes."""
+    return short(round(value, 3)) if math.isfinite(value) else "?"
+
+
+def elements_at(view: View, offset: int) -> list[int]:
+    """The elements that the text at an offset is about: those that it defines, or that it constrains."""
+    found, place = elements(view), view.span(offset, offset)
+    numbers = found.around(place)
+    if any(found.values[k].kind == "geometry" for k in numbers):
+        return numbers  # what it shares with other geometry is a constraint, too
+    return _constrained(view, found, place) or numbers
+
+
+def _constrained(view: View, found: Elements, place: Span) -> list[int]:
+    """The elements that the smallest constraint around a place relates."""
+    if view.drawn is None or view.drawn.model is None:
+        return []
+    places, around = Places(view), list[tuple[int, ConstraintReport]]()
+    for report in view.drawn.model.constraints:
+        span = places.now(report.span)
+        if span is not None and span.source is place.source and span.start <= place.start <= span.end:
+            around.append((span.end - span.start, report))
+    least = min((length for length, _ in around), default=0)
+    return found.all_near(path for length, r in around if length == least for path in r.mentions)

@@ -1,0 +1,100 @@
+"""A preview of a view: the picture and all that is said of it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import replace
+
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.drawing_time import TooLongError, within
+from aidl_lang.pipeline import Compiled, Settings
+from aidl_lang.solver.memory import Memory
+from aidl_lang.tools.ide.dragging import Handle, grips, handles, is_somewhere
+from aidl_lang.tools.ide.preview.elements import Elements, elements
+from aidl_lang.tools.ide.preview.picture import svg_of
+from aidl_lang.tools.ide.preview.problems import conflicts, problems
+from aidl_lang.tools.ide.preview.sliders import sliders
+from aidl_lang.tools.ide.preview.values import FREEDOM, LAYERS, Preview, Way
+from aidl_lang.tools.ide.preview.ways import ways
+from aidl_lang.tools.ide.view import SETTINGS, View, run
+
+_NOWHERE = (0.0, 0.0, 0.0, 0.0)
+
+
+def preview(
+    view: View, show: Collection[str] = (), *, tried: bool = False, known: Iterable[Handle] = ()
+) -> Preview:
+    """What there is to see of a program that was run, with some of LAYERS over it, and FREEDOM if wanted.
+
+    A program that does not draw shows the last one that did, and its own problems. What can be dragged takes
+    longer to find out than all the rest (see `with_handles`): here are those that are `known` from another
+    picture of it, where they are now.
+    """
+    assert view.outcome is not None, "the view was not run"
+    found = elements(view)
+    drawn = view.drawn
+    has_picture = drawn is not None and _is_anything_drawn(drawn)
+    svg, unpainted = _painted(drawn, found, show) if drawn is not None and has_picture else (None, ())
+    return Preview(
+        status=view.outcome.status,
+        stale=has_picture and view.is_stale,
+        tried=tried,
+        seconds=sum(view.outcome.timings.values()),
+        svg=svg,
+        box=drawn.drawing.box if drawn is not None and drawn.drawing is not None else _NOWHERE,
+        elements=found.values,
+        knobs=tuple(sliders(view)),
+        handles=tuple(_moved(view, known)),
+        problems=tuple(problems(view, found, unpainted)),
+        conflicts=tuple(conflicts(view, found)),
+        ways=tuple(_ways(view, found)) if FREEDOM in show else (),
+        degrees=view.outcome.model.degrees if view.outcome.model is not None else None,
+    )
+
+
+def _painted(
+    drawn: Compiled, found: Elements, show: Collection[str]
+) -> tuple[str | None, tuple[Diagnostic, ...]]:
+    """The SVG; or, where painting takes too long, what there is to say of that."""
+    try:
+        with within(drawn.limit, "painting"):
+            return svg_of(drawn, found, set(show) & set(LAYERS)), ()
+    except TooLongError as reason:
+        return None, (reason.diagnostic,)
+
+
+def with_handles(made: Preview, view: View) -> Preview:
+    """The preview of a view with all that can be dragged. Raises Cancelled as `run` does."""
+    return replace(made, handles=tuple(handles(view)))
+
+
+def _moved(view: View, known: Iterable[Handle]) -> Iterator[Handle]:
+    """Those of the handles that are there, where they are now."""
+    outcome, wanted = view.outcome, {handle.id: handle for handle in known}
+    if not wanted or view.is_stale or outcome is None or outcome.built is None or outcome.evaluate is None:
+        return
+    for grip in grips(outcome.built):
+        if grip.id in wanted and is_somewhere(at := grip.at(outcome.evaluate)):
+            yield replace(wanted[grip.id], at=at)
+
+
+def _is_anything_drawn(outcome: Compiled) -> bool:
+    if outcome.model is None or outcome.drawing is None:
+        return False
+    return bool(outcome.drawing.bodies or outcome.drawing.strokes or outcome.model.root.box)
+
+
+def _ways(view: View, found: Elements) -> Iterator[Way]:
+    """What can still move; of an earlier text nobody can tell."""
+    if view.outcome is not None and not view.is_stale:
+        yield from ways(view.outcome, found)
+
+
+def tried(
+    view: View,
+    knobs: Mapping[str, float | str | bool],
+    memory: Memory | None = None,
+    settings: Settings = SETTINGS,
+) -> View:
+    """The view as it would be with other values of some params. Raises Cancelled as `run` does."""
+    return run(view, view, memory, {**(view.params or {}), **knobs}, settings)

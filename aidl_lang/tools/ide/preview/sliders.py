@@ -1,0 +1,93 @@
+"""The `param`s of a program as sliders, and writing the value of one into the text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from aidl_lang.building.model import Knob
+from aidl_lang.common.diagnostics import Edit
+from aidl_lang.syntax import ast
+from aidl_lang.tools.agents import knobs
+from aidl_lang.tools.agents.workspace import refusal
+from aidl_lang.tools.ide.preview.places import Places
+from aidl_lang.tools.ide.preview.values import Slider
+from aidl_lang.tools.ide.view import View
+
+_LITERALS = (ast.Number, ast.String, ast.Boolean)
+_SLACK = 1e-9
+"""Of a number at the end of a range, relative to it."""
+
+
+def sliders(view: View) -> Iterator[Slider]:
+    """The params of the text, in order of writing; of one that is too broken to have any, those of the
+    picture, which cannot be written.
+    """
+    outcome, places = view.outcome, Places(view)
+    known = outcome.knobs if outcome is not None else ()
+    if not known and view.is_stale and view.drawn is not None:
+        known = view.drawn.knobs
+    for knob in known:
+        declared = _declaration(view, knob)
+        span = declared.value.span if declared is not None else None
+        yield Slider(
+            knob.path,
+            knob.path.rpartition(".")[2],
+            _kind(knob),
+            knob.value,
+            knob.unit,
+            knob.low,
+            knob.high,
+            knob.step if declared is None or knob.step is not None else _step(knob, declared.value),
+            knob.choices,
+            knob.doc or "",
+            span if span is not None else places.now(knob.span),
+            declared is not None and _is_literal(declared.value),
+        )
+
+
+def set_knob(view: View, path: str, value: float | str | bool) -> list[Edit]:
+    """The edits that make a value the default of a param. Raises RefusalError where it cannot be one."""
+    knob = knobs.find(view.outcome.knobs if view.outcome is not None else (), path)
+    declared = _declaration(view, knob)
+    if declared is None or knob.span is None:
+        raise refusal("E0945", f"`{knob.path}` is declared in the library, and cannot be changed there")
+    if not _is_literal(declared.value):
+        written = declared.value.span.one_line
+        raise refusal("E0945", f"`{knob.path}` is worked out, as `{written}`; change what it is made of")
+    if not _is_allowed(knob, value):
+        raise refusal("E0945", f"`{knob.path}` cannot be `{value}`: that is outside its range")
+    return [knobs.edit_at(knob, declared, value)]
+
+
+def _declaration(view: View, knob: Knob) -> ast.Param | None:
+    """Where a param is written in the texts of the view, none of the library's."""
+    return None if knob.span is None else view.params_written.get(knob.span)
+
+
+def _is_literal(node: ast.Expression) -> bool:
+    return isinstance(node, _LITERALS) or (isinstance(node, ast.Unary) and _is_literal(node.operand))
+
+
+def _step(knob: Knob, value: ast.Expression) -> float | None:
+    """1 for what counts something: a whole number without a unit, from one to another."""
+    numbers = (knob.value, knob.low, knob.high)
+    is_whole = all(isinstance(n, float) and n.is_integer() for n in numbers)
+    return 1.0 if is_whole and not knob.unit and value.span.text.isdecimal() else None
+
+
+def _kind(knob: Knob) -> str:
+    if isinstance(knob.value, bool):
+        return "truth"
+    if knob.choices:
+        return "choice"
+    return "text" if isinstance(knob.value, str) else "number"
+
+
+def _is_allowed(knob: Knob, value: float | str | bool) -> bool:
+    if knob.choices:
+        return value in knob.choices
+    if not isinstance(value, float | int) or knob.low is None or knob.high is None:
+        return True  # what does not fit at all is told by what writes it
+    slack = _SLACK * max(1.0, abs(knob.low), abs(knob.high))
+    return math.isfinite(value) and knob.low - slack <= value <= knob.high + slack

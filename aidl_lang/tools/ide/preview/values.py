@@ -1,0 +1,133 @@
+"""What a preview is made of. Coordinates in mm in the frame of the root, y upwards; places are spans."""
+
+from __future__ import annotations
+
+from aidl_lang.common.diagnostics import Fix
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.geometry.curves import Vec
+from aidl_lang.geometry.evaluate import Bounds
+from aidl_lang.tools.ide.dragging import Handle
+
+FREEDOM = "freedom"
+"""As a layer: what can still move, which is told beside the picture and not drawn in it."""
+LAYERS = ("names", "points", "bbox", "constraints", "dof", "plan", "dimensions")
+"""What may be drawn over the picture."""
+
+
+@record()
+class Element:
+    """Something that is drawn, by the number that it has in the picture.
+
+    kind  `structure` or `geometry`; `type` says which of them
+    span  where it is written in the text as it is now; for what the library makes, where it is asked for.
+          None where an edit has taken that away
+    hint  a line about it
+    """
+
+    path: str
+    kind: str
+    type: str
+    span: Span | None
+    hint: str
+
+
+@record()
+class Slider:
+    """A `param`: `span` is the place of its value; `editable` says whether that can be written."""
+
+    path: str
+    name: str
+    kind: str
+    """`number`, `choice`, `truth` or `text`"""
+    value: float | str | bool
+    unit: str
+    low: float | None
+    high: float | None
+    step: float | None
+    choices: tuple[float | str | bool, ...]
+    doc: str
+    span: Span | None
+    editable: bool
+
+
+@record()
+class Problem:
+    """A diagnostic with the numbers of the elements that it is about, and points of the drawing."""
+
+    severity: str
+    code: str
+    message: str
+    hints: tuple[str, ...]
+    span: Span | None
+    elements: tuple[int, ...]
+    points: tuple[Vec, ...]
+    fixes: tuple[Fix, ...]
+
+
+@record()
+class Party:
+    """A constraint of a conflict; `off` by how much it is missed, None where that has no value."""
+
+    text: str
+    span: Span
+    elements: tuple[int, ...]
+    off: float | None
+
+
+@record()
+class Conflict:
+    headline: str
+    parties: tuple[Party, ...]
+
+
+@record()
+class Arrow:
+    start: Vec
+    end: Vec
+
+
+@record()
+class Turn:
+    """An arc about `center`; angles in degrees, counter-clockwise."""
+
+    center: Vec
+    radius: float
+    first: float
+    sweep: float
+
+
+@record()
+class Way:
+    """How some elements can still move: in words, and drawn."""
+
+    words: str
+    elements: tuple[int, ...]
+    arrows: tuple[Arrow, ...]
+    turns: tuple[Turn, ...]
+
+
+@record()
+class Preview:
+    """
+    status  `solved`, `partial`, `failed` or `wrong`: of the text as it is now, as are knobs and problems
+    stale   whether the picture is that of an earlier text, since this one does not draw
+    tried   whether it is of values that the text does not say
+    handles what can be dragged, as far as it is known
+    svg     None where nothing was ever drawn, or painting it takes too long
+    box     of the drawing
+    """
+
+    status: str
+    stale: bool
+    tried: bool
+    seconds: float
+    svg: str | None
+    box: Bounds
+    elements: tuple[Element, ...]
+    knobs: tuple[Slider, ...]
+    handles: tuple[Handle, ...]
+    problems: tuple[Problem, ...]
+    conflicts: tuple[Conflict, ...]
+    ways: tuple[Way, ...]
+    degrees: int | None

@@ -1,0 +1,129 @@
+"""Giving a thing another name, wherever it is named, so that the programs mean what they meant."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+from pathlib import Path
+
+from aidl_lang.checking.resolving.symbols import Symbol
+from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.common.world import FileError
+from aidl_lang.syntax.tables import load_tables
+from aidl_lang.syntax.tokens import tokenize
+from aidl_lang.tools.ide.edits import applied
+from aidl_lang.tools.ide.meaning import Mention, Place, mention_at, mentions, place_of
+from aidl_lang.tools.ide.project import Project
+from aidl_lang.tools.ide.references import Occurrence, references
+from aidl_lang.tools.ide.refusing import CannotError
+from aidl_lang.tools.ide.view import View, look
+from aidl_lang.tools.ide.workspace import Workspace
+
+
+@record()
+class Renaming:
+    """Edits by file, each to the text that the file has now."""
+
+    edits: Mapping[Path, tuple[Edit, ...]]
+
+
+def renameable(view: View, offset: int) -> Span:
+    """The name at an offset that can be changed. Raises CannotError."""
+    return _own(view, offset).span
+
+
+def rename(project: Project, view: View, offset: int, name: str) -> Renaming:
+    """The edits that give what is named at an offset another name. Raises CannotError where this is no
+    name, or where some name would mean something else then.
+    """
+    mention = _own(view, offset)
+    _require_name(name)
+    found = references(project, view, offset)
+    by_file: dict[Path, list[Edit]] = defaultdict(list)
+    for occurrence in found:
+        by_file[occurrence.path].append(Edit(occurrence.span, name))
+    edits = {path: tuple(each) for path, each in by_file.items()}
+    _require_same_meaning(project, view, mention.symbol, found, edits, name)
+    return Renaming(edits)
+
+
+def _own(view: View, offset: int) -> Mention:
+    mention = mention_at(view, offset)
+    if mention is None:
+        raise CannotError("there is no name here whose meaning is known")
+    symbol = mention.symbol
+    if not symbol.declarations:
+        raise CannotError(f"`{symbol.name}` is built in")
+    if view.is_library(symbol.declarations[0].span.source):
+        raise CannotError(f"`{symbol.name}` belongs to the standard library; `alias` gives it a second name")
+    return mention
+
+
+def _require_name(name: str) -> None:
+    tokens = tokenize(SourceFile("name", name)).tokens
+    if len(tokens) != 2 or tokens[0].text != name or not name.isidentifier():
+        raise CannotError(f"`{name}` is no name: names are made of letters, digits and `_`")
+    if tokens[0].kind != "NAME" or name in load_tables().reserved:
+        raise CannotError(f"`{name}` is a word of the language")
+
+
+def _require_same_meaning(
+    project: Project,
+    view: View,
+    symbol: Symbol,
+    found: list[Occurrence],
+    edits: Mapping[Path, tuple[Edit, ...]],
+    name: str,
+) -> None:
+    """Read the programs as they would be, and compare what every name in them means with what it meant."""
+    before = {view.path: view}
+    for known in (symbol.name, name):
+        before |= {other.path: other for other in project.views_with(known) if other.path != view.path}
+    for occurrence in found:  # a file that is imported and lies elsewhere
+        if occurrence.path not in before and (other := project.view(occurrence.path)) is not None:
+            before[occurrence.path] = other
+    changed = Workspace(open=dict(project.workspace.open))
+    for path, each in edits.items():
+        changed.open[path] = applied(before[path].source.text, each)
+    for path, old in before.items():
+        try:
+            text = changed.text(path)
+        except FileError as reason:
+            raise CannotError(str(reason)) from None
+        new = look(path, text, changed.world(path))
+        if (trouble := _difference(old, new, edits)) is not None:
+            raise CannotError(f"`{name}` cannot be the new name: {trouble}")
+
+
+def _difference(old: View, new: View, edits: Mapping[Path, tuple[Edit, ...]]) -> str | None:
+    """What a name means otherwise than before, in words."""
+    meant = _meanings(old)
+    means = _meanings(new)
+    expected = {
+        _moved((old.path, start), edits)[1]: (_moved(place, edits) if place is not None else what)
+        for start, (place, what) in meant.items()
+    }
+    found = {start: place if place is not None else what for start, (place, what) in means.items()}
+    for start in sorted(expected.keys() | found.keys()):
+        if expected.get(start) != found.get(start):
+            line, _ = new.source.position(start)
+            return f"in line {line} of {new.path.name} a name would mean something else"
+    if (more := [d for d in new.found if d.is_error])[len([d for d in old.found if d.is_error]) :]:
+        return more[0].message
+    return None
+
+
+def _meanings(view: View) -> dict[int, tuple[Place | None, str]]:
+    """By the offset of each name: where what it means is declared, or else its name."""
+    return {m.span.start: (place_of(view, m.symbol), m.symbol.name) for m in mentions(view)}
+
+
+def _moved(place: Place, edits: Mapping[Path, tuple[Edit, ...]]) -> Place:
+    """A place after the edits."""
+    path, offset = place
+    grown = sum(
+        len(e.replacement) - (e.span.end - e.span.start) for e in edits.get(path, ()) if e.span.end <= offset
+    )
+    return path, offset + grown

@@ -1,0 +1,132 @@
+"""What each word of a program is, for colours that follow its meaning.
+
+Types and modifiers are those of editors at large; a theme knows them without being told of AIDL.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from aidl_lang.checking.builtins import PATTERNS
+from aidl_lang.checking.resolving.symbols import SymbolKind
+from aidl_lang.checking.types import PRIMITIVES
+from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
+from aidl_lang.syntax import ast
+from aidl_lang.tools.ide.meaning import Mention, mentions
+from aidl_lang.tools.ide.view import View
+
+TYPES = (
+    *("comment", "keyword", "string", "number", "operator", "decorator", "namespace", "type", "class"),
+    *("function", "method", "parameter", "variable", "property", "enumMember"),
+)
+MODIFIERS = ("declaration", "readonly", "defaultLibrary")
+
+_OF_KIND = {
+    SymbolKind.PARAM: "variable",
+    SymbolKind.LET: "variable",
+    SymbolKind.VAR: "variable",
+    SymbolKind.LOOP: "variable",
+    SymbolKind.ARGUMENT: "parameter",
+    SymbolKind.GEOMETRY: "variable",
+    SymbolKind.STRUCTURE: "class",
+    SymbolKind.FUNCTION: "function",
+    SymbolKind.SHAPE: "type",
+    SymbolKind.CONSTRAINT: "function",
+    SymbolKind.TEMPLATE: "class",
+    SymbolKind.ALIAS: "function",
+    SymbolKind.NAMESPACE: "namespace",
+    SymbolKind.BUILTIN: "variable",
+    SymbolKind.WORD: "enumMember",
+    SymbolKind.FIELD: "property",
+}
+_READONLY = frozenset({SymbolKind.PARAM, SymbolKind.LET, SymbolKind.LOOP, SymbolKind.ARGUMENT})
+_WORD_SIGNS = frozenset({"and", "or", "not"})
+
+
+@record()
+class Colored:
+    """A piece of one line of the text, its type (one of TYPES) and its modifiers (of MODIFIERS)."""
+
+    span: Span
+    type: str
+    modifiers: frozenset[str] = frozenset()
+
+
+def semantic_tokens(view: View) -> list[Colored]:
+    """All of a text in its order, comments included; what is mere punctuation is left out."""
+    names = {m.span.start: _of_mention(view, m) for m in mentions(view)}
+    names |= {c.span.start: c for c in _heads(view)}
+    tokens = view.tokens
+    found = [Colored(comment.span, "comment") for comment in tokens.comments]
+    for token in tokens.tokens:
+        end = token.end - 1 if token.kind == "CALL" else token.end
+        span = view.span(token.start, end)
+        if token.start in names and names[token.start].span.end == end:
+            found.append(names[token.start])
+        elif (kind := _of_token(token.kind, token.text)) is not None:
+            found.append(Colored(span, kind))
+    found.sort(key=lambda c: c.span.start)
+    return [piece for colored in found for piece in _lines(colored)]
+
+
+def _of_token(kind: str, text: str) -> str | None:
+    match kind:
+        case "NUMBER":
+            return "number"
+        case "STRING":
+            return "string"
+        case "CALL":
+            return "function"
+        case "NAME":
+            return "variable"
+        case _ if kind.isalpha() and kind == text:
+            return "operator" if kind in _WORD_SIGNS else "keyword"
+        case _ if kind == text and not set(kind) & set("{}()[],;:.@"):
+            return "operator"
+        case _:
+            return None
+
+
+def _heads(view: View) -> Iterator[Colored]:
+    """Words before names, and behind `@`, which name nothing themselves."""
+    for node in ast.walk(view.module):
+        match node:
+            case ast.Structure():
+                yield Colored(node.kind_word.span, "keyword")
+            case ast.Attribute():
+                yield Colored(node.name.span, "decorator")
+            case ast.Parameter(type=kind) if kind is not None:
+                yield Colored(kind.span, "type")
+
+
+def _of_mention(view: View, mention: Mention) -> Colored:
+    symbol = mention.symbol
+    kind = _OF_KIND[symbol.kind]
+    modifiers = set()
+    if mention.is_declaration:
+        modifiers.add("declaration")
+    if symbol.kind in _READONLY:
+        modifiers.add("readonly")
+    declared = symbol.declarations[0].span.source if symbol.declarations else None
+    if declared is None or view.is_library(declared):
+        modifiers.add("defaultLibrary")
+    match mention.node:
+        case ast.Call(receiver=receiver):
+            if symbol.kind is SymbolKind.BUILTIN:
+                kind = "type" if symbol.name in PRIMITIVES and symbol.name not in PATTERNS else "function"
+            if kind == "function" and receiver is not None:
+                kind = "method"
+        case ast.Member() if symbol.kind is not SymbolKind.NAMESPACE:
+            kind = "class" if symbol.kind is SymbolKind.STRUCTURE else "property"
+    return Colored(mention.span, kind, frozenset(modifiers))
+
+
+def _lines(colored: Colored) -> Iterator[Colored]:
+    """A piece for each line, as editors want it."""
+    start = colored.span.start
+    for line in colored.span.text.split("\n"):
+        if text := line.rstrip("\r"):
+            span = Span(colored.span.source, start, start + len(text))
+            yield Colored(span, colored.type, colored.modifiers)
+        start += len(line) + 1

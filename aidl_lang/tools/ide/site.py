@@ -1,0 +1,247 @@
+"""A place in a text where something is being written: what stands around it, and what the grammar takes.
+
+What is being written is seldom a program. So a name is put there in its stead, in the way that leaves the
+fewest mistakes, and the program is understood with it: what became of that name tells what is wanted.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from enum import Enum
+from functools import cached_property
+
+from aidl_lang.checking.resolving.symbols import Scope
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.parser import parse, standing_before
+from aidl_lang.syntax import ast
+from aidl_lang.syntax.automaton import Automaton
+from aidl_lang.syntax.tokens import END, UNKNOWN, Token, Tokens
+from aidl_lang.tools.ide.nodes import around, scope_at
+from aidl_lang.tools.ide.view import View, look
+
+PLACEHOLDER = "_what_is_being_written_here_" + "_" * 40
+"""The name that stands for what is being written: too long to be a misspelling of another, for which many
+names would have to be compared.
+"""
+_CLOSERS = {"(": ")", "CALL": ")", "[": "]"}
+_DIGITS = re.compile(r"(\d+(\.\d+)?|\.\d+)([eE][+-]?\d+)?")
+
+
+class Where(Enum):
+    CODE = "code"
+    COMMENT = "comment"
+    STRING = "string"
+    NUMBER = "number"
+
+
+@record()
+class Spot:
+    """What an offset lies in or at the end of: a comment, string or number, or code.
+
+    start, end  what a word written here replaces: the word that is there (for a string what is in it, for a
+                number its unit), or nothing
+    token       the string or number
+    before      the last token that ends before `start`
+    """
+
+    where: Where
+    offset: int
+    start: int
+    end: int
+    before: Token | None
+    token: Token | None = None
+
+
+def spot_at(view: View, offset: int) -> Spot:
+    text = view.source.text
+    offset = max(0, min(offset, len(text)))
+    tokens = view.tokens
+    if _in_comment(tokens, text, offset):
+        return Spot(Where.COMMENT, offset, offset, offset, None)
+    before: Token | None = None
+    for token in tokens.tokens:
+        if token.start >= offset or token.kind == END:
+            break
+        name_end = _word_end(token)
+        if offset <= name_end:
+            return Spot(Where.CODE, offset, token.start, name_end, before)
+        if (found := _literal(token, before, text, offset)) is not None:
+            return found
+        before = token
+    return Spot(Where.CODE, offset, offset, offset, before)
+
+
+def _in_comment(tokens: Tokens, text: str, offset: int) -> bool:
+    """Whether an offset lies in a comment; what is written at the end of a line comment belongs to it."""
+    for comment in tokens.comments:
+        to_line_end = not comment.text.startswith("/*")
+        if comment.span.start < offset < comment.span.end + to_line_end:
+            return True
+    last = next((t for t in reversed(tokens.tokens) if t.kind != END), None)
+    return last is not None and last.kind == UNKNOWN and last.text.startswith("/*") and last.start < offset
+
+
+def _word_end(token: Token) -> int:
+    """Where the word ends that a token is, or begins with; -1 if it is none."""
+    if token.kind == "CALL":
+        return token.start + len(token.text.rstrip("( \t"))
+    return (
+        token.end if token.kind == "NAME" or (token.kind.isidentifier() and token.text == token.kind) else -1
+    )
+
+
+def _literal(token: Token, before: Token | None, text: str, offset: int) -> Spot | None:
+    """The string or number that an offset lies in."""
+    is_string = token.text[:1] in ("'", '"')
+    if is_string and (offset < token.end or (token.kind == UNKNOWN and offset == token.end)):
+        end = token.end - (token.kind == "STRING")
+        return Spot(Where.STRING, offset, token.start + 1, max(end, token.start + 1), before, token)
+    if token.kind == "NUMBER" and offset <= token.end:
+        return _number(token, before, offset)
+    unit = before is not None and before.kind == "NUMBER" and before.end == token.start
+    if unit and before is not None and token.kind == UNKNOWN and offset <= token.end:
+        number = Token("NUMBER", text[before.start : token.end], before.start, token.end)
+        return _number(number, None, offset)
+    return None
+
+
+def _number(token: Token, before: Token | None, offset: int) -> Spot:
+    digits = _DIGITS.match(token.text)
+    assert digits is not None
+    start = token.start + digits.end()
+    return Spot(Where.NUMBER, offset, start, token.end, before, token)
+
+
+# --- Code ------------------------------------------------------------------------------------------
+
+
+@record(eq=False)
+class Site:
+    """
+    original   the text as it is
+    spot       the place in it
+    automaton  what has been read before the place: what the grammar takes there
+    view       the program with the placeholder; None where no program has a name there
+    path       the nodes around the placeholder, outermost first; it is the last
+    """
+
+    original: View
+    spot: Spot
+    automaton: Automaton
+    view: View | None
+    path: tuple[ast.Node, ...]
+
+    @property
+    def node(self) -> ast.Node | None:
+        """The Name or Identifier that the placeholder is."""
+        return self.path[-1] if self.path else None
+
+    @property
+    def replaced(self) -> Span:
+        return self.original.span(self.spot.start, self.spot.end)
+
+    @property
+    def prefix(self) -> str:
+        """What is written of the word already."""
+        return self.original.source.text[self.spot.start : self.spot.offset]
+
+    @property
+    def following(self) -> str:
+        """The text behind the word."""
+        return self.original.source.text[self.spot.end :]
+
+    @cached_property
+    def scope(self) -> Scope | None:
+        """The names that are seen at the place."""
+        return None if self.view is None else scope_at(self.view, self.spot.start + 1)
+
+    @cached_property
+    def may_end(self) -> bool:
+        """Whether a statement may begin here, the one before being whole or there being none."""
+        return self.automaton.between_statements or self.automaton.accepts([";"])
+
+    @cached_property
+    def begins_statement(self) -> bool:
+        """Whether a statement may begin here, and is likely to: not behind another on the same line."""
+        if not self.may_end:
+            return False
+        before = self.spot.before
+        if before is None or before.kind in ("{", "}", ";"):
+            return True
+        between = self.original.source.text[before.end : self.spot.start]
+        return "\n" in between or (before.kind == "," and self.automaton.between_statements)
+
+    def takes(self, *kinds: str) -> bool:
+        """Whether these tokens may stand here."""
+        return self.automaton.accepts(kinds)
+
+    def parent(self, above: int = 1) -> ast.Node | None:
+        return self.path[-1 - above] if len(self.path) > above else None
+
+
+def site_at(view: View, spot: Spot) -> Site:
+    automaton = standing_before(view.source, spot.start)
+    site = Site(view, spot, automaton, None, ())
+    if not (automaton.accepts(["NAME"]) or automaton.accepts(["CALL"]) or site.may_end):
+        return site
+    text = _filled(site)
+    if text is None:
+        return site
+    filled = look(view.path, text, view.world)
+    path = around(filled.module, spot.start + 1)
+    return Site(view, spot, automaton, filled, tuple(path))
+
+
+def _filled(site: Site) -> str | None:
+    """The text with the placeholder, in the way of those tried that leaves the fewest mistakes; None if it is
+    left out of the program in all.
+    """
+    text, spot = site.original.source.text, site.spot
+    head, tail = text[: spot.start], text[spot.end :]
+    best: tuple[int, str] | None = None
+    for ending in _endings(site):
+        filled = head + PLACEHOLDER + ending + tail
+        parsed = parse(SourceFile(site.original.source.name, filled))
+        if not _has_placeholder(parsed.module, spot.start):
+            continue
+        mistakes = sum(d.is_error for d in parsed.diagnostics)
+        if best is None or mistakes < best[0]:
+            best = (mistakes, filled)
+        if not mistakes:
+            break
+    return best[1] if best is not None else None
+
+
+def _endings(site: Site) -> Iterator[str]:
+    """What may have to stand behind the placeholder to make it part of a program, the likelier first."""
+    following = site.following
+    if following.startswith("("):
+        plain = [""]
+    else:
+        space = " " if following[:1].isalnum() or following[:1] == "_" else ""
+        is_last = not following.partition("\n")[0].strip()
+        as_name, as_statement = [space, "," + space], ["()" + space, "(); "]
+        plain = [*as_statement, *as_name] if site.begins_statement and is_last else [*as_name, *as_statement]
+    yield from plain
+    closing = closers(site.automaton.open_brackets())
+    if closing:
+        yield from (closing, closing + ";", "()" + closing, "()" + closing + ";")
+    yield closing + " {}"
+
+
+def closers(opened: Sequence[Token]) -> str:
+    """What closes the brackets that were opened in the innermost block."""
+    found = ""
+    for token in reversed(opened):
+        if token.kind == "{":
+            break
+        found += _CLOSERS[token.kind]
+    return found
+
+
+def _has_placeholder(module: ast.Module, start: int) -> bool:
+    """Whether a tree has the placeholder that stands at an offset."""
+    node = around(module, start + 1)[-1]
+    return isinstance(node, ast.Name | ast.Identifier) and node.text == PLACEHOLDER

@@ -1,0 +1,76 @@
+"""The programs of a project as an editor has them: open ones from memory, all others from disk."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import field
+from pathlib import Path
+
+from aidl_lang.checking.resolving.imports import SUFFIX
+from aidl_lang.common.records import record
+from aidl_lang.common.world import DiskWorld, FileError, Reason, normalize
+
+MOST_FILES = 2_000
+"""Programs of a project that are looked through."""
+_PASSED_OVER = frozenset({"node_modules", "build", "dist", "__pycache__"})
+
+
+@record(frozen=False)
+class Workspace:
+    """`roots` are the folders that are looked through for programs; `open` maps the absolute path of an open
+    program to its text.
+    """
+
+    roots: Sequence[Path] = ()
+    open: dict[Path, str] = field(default_factory=dict)
+
+    def text(self, path: Path) -> str:
+        """The text of a file. Raises FileError."""
+        if (text := self.open.get(path)) is not None:
+            return text
+        return DiskWorld(path.parent).read(path.name)
+
+    def world(self, path: Path) -> OpenWorld:
+        """The world that a program lives in: its folder and what lies below, as for the command line."""
+        return OpenWorld(self, path.parent)
+
+    def programs(self) -> list[Path]:
+        """The programs below the roots, and the open ones; the first of very many."""
+        found = dict.fromkeys(self.open)
+        for root in self.roots:
+            for path in _below(root):
+                if len(found) >= MOST_FILES:
+                    return list(found)
+                found[path] = None
+        return list(found)
+
+
+def _below(folder: Path) -> Iterator[Path]:
+    """The programs in a folder and in those below it, hidden ones and what tools make aside."""
+    try:
+        entries = sorted(folder.iterdir())
+    except OSError:
+        return  # it may have gone since, or may not be read
+    for entry in entries:
+        if entry.name.startswith(".") or entry.name in _PASSED_OVER:
+            continue
+        if entry.is_dir() and not entry.is_symlink():
+            yield from _below(entry)
+        elif entry.suffix == SUFFIX and entry.is_file():
+            yield entry
+
+
+@record()
+class OpenWorld:
+    """The files below a folder, those that are open as they stand in the editor."""
+
+    workspace: Workspace
+    folder: Path
+
+    def read(self, path: str) -> str:
+        inside = normalize(path)
+        if (text := self.workspace.open.get(self.folder / inside)) is not None:
+            return text
+        if not self.folder.is_dir():  # of a program that was never saved
+            raise FileError(path, Reason.MISSING)
+        return DiskWorld(self.folder).read(inside)

@@ -1,0 +1,208 @@
+"""AIDL as the language of a conversation: programs are mended, compiled, compared with those before."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import field, replace
+
+from aidl_lang import parser, pipeline
+from aidl_lang.checking.variants import Variant
+from aidl_lang.common.diagnostics import has_errors
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import World
+from aidl_lang.export import Options
+from aidl_lang.geometry.solved import SolvedModel
+from aidl_lang.pipeline import Compiled
+from aidl_lang.syntax import ast
+from aidl_lang.tools.discretion import Programs, Reader
+from aidl_lang.tools.llm import feedback
+from aidl_lang.tools.llm.intent import Ledger, Loss, request
+from aidl_lang.tools.llm.language import Verdict
+from aidl_lang.tools.llm.messages import Image
+from aidl_lang.tools.mending import mend
+from aidl_lang.tools.reference.guide import guide
+
+_PIXELS = 512
+"""Larger side of the picture of a plan."""
+_ASKED = 2
+"""Times that the same lost thing is asked for, if it is clear that it was not meant."""
+
+_WRONG = (
+    "Mend this without giving up anything the program means: what an error is about is not to be left out, "
+    "but to be said in a way that holds. Answer with the whole program in one ```aidl block."
+)
+_VALID = (
+    "The program is valid. What is said above is worth another look: answer with the whole program, changed "
+    "or, where it is meant so, as it is, in one ```aidl block."
+)
+_PLANNED = (
+    "Go on: fill in what is empty or says `todo`, within these boxes or better ones. Answer with the whole "
+    "program in one ```aidl block."
+)
+
+
+@record()
+class Aidl:
+    """AIDL or a subset of it. `world` is where programs may import from, None for nowhere, and `file` what a
+    program is called there.
+    """
+
+    variant: Variant = Variant.FULL
+    world: World | None = None
+    file: str = "part.aidl"
+    suffix: str = ".aidl"
+    fences: tuple[str, ...] = ("aidl",)
+
+    @property
+    def name(self) -> str:
+        return str(self.variant)
+
+    def guide(self) -> str:
+        return guide(self.variant)
+
+    def reads(self, text: str) -> bool:
+        """Whether the parser takes a text that has a root structure."""
+        parsed = parser.parse(SourceFile(self.file, text))
+        is_rooted = any(isinstance(statement, ast.Structure) for statement in parsed.module.statements)
+        return is_rooted and not has_errors(parsed.diagnostics)
+
+    def conversation(self, before: str | None = None) -> AidlConversation:
+        conversation = AidlConversation(self)
+        if before is not None:
+            conversation.begin_with(before)
+        return conversation
+
+
+@record(frozen=False)
+class AidlConversation:
+    """Programs one after another, with what they meant and what was said of them."""
+
+    language: Aidl
+    told: set[str] = field(default_factory=set)
+    asked: Counter[tuple[str, ...]] = field(default_factory=Counter)
+
+    def __post_init__(self) -> None:
+        self.settings = pipeline.Settings(variant=self.language.variant)
+        self.world = self.language.world and Programs(self.language.world)
+        self.ledger = Ledger(self.world, self.settings)
+
+    def begin_with(self, program: str) -> None:
+        """The program that is to be changed: what it means shall stay."""
+        source = self._source(program)
+        self.ledger.note(source, self._compiled(source))
+
+    def judge(self, program: str) -> Verdict:
+        mended = mend(self._source(program), self.world, self.settings)
+        compiled = self._compiled(mended.source)
+        self.ledger.note(mended.source, compiled)
+        verdict = self._verdict(mended.source, compiled, mended.fixes)
+        repairs = feedback.mended(program, mended.source.text, mended.fixes)
+        answer = self._answer(verdict, compiled)
+        told = "\n\n".join(part for part in (repairs, answer) if part) if answer else ""
+        return replace(verdict, feedback=told)
+
+    def finish(self, verdict: Verdict) -> Verdict:
+        """The last word: what fits is put back of what was lost. A constraint that conflicts is given up by
+        nobody but the model, or who reads of it.
+        """
+        source, fixes = self._source(verdict.program), verdict.fixes
+        compiled = verdict.compiled or self._compiled(source)
+        self.ledger.note(source, compiled)
+        if compiled.ok:
+            restored = self.ledger.restore(source)
+            if restored.items:
+                source = self._source(restored.text)
+                compiled = self._compiled(source)
+                self.ledger.note(source, compiled)
+                fixes += tuple(f"put back {item}" for item in restored.items)
+        return self._verdict(source, compiled, fixes)
+
+    def _source(self, program: str) -> SourceFile:
+        return SourceFile(self.language.file, program)
+
+    def _compiled(self, source: SourceFile) -> Compiled:
+        compiled = pipeline.compile(source, self.world, settings=self.settings)
+        return Reader.of(source).compiled(compiled)
+
+    def _verdict(self, source: SourceFile, compiled: Compiled, fixes: tuple[str, ...]) -> Verdict:
+        wrong = [d for d in compiled.diagnostics if d.is_error]
+        warnings = [d for d in compiled.diagnostics if d.code.startswith("W")]
+        stage = feedback.stage_of(compiled.diagnostics)
+        missing = self.ledger.missing
+        is_partial = compiled.ok and _is_partial(source, compiled)
+        distance = (int(not compiled.ok), -feedback.STAGES.index(stage) if wrong else 0, int(is_partial))
+        picture = (Image("image/png", _picture(compiled)),) if is_partial else ()
+        return Verdict(
+            ok=compiled.ok and not is_partial,
+            stage=stage,
+            feedback="",
+            program=source.text,
+            fixes=fixes,
+            codes=tuple(d.code for d in wrong),
+            is_partial=is_partial,
+            images=picture,
+            missing=tuple(loss.phrase for loss in missing),
+            weight=(*distance, len(wrong), len(missing), len(warnings)),
+            numbers=_numbers(compiled),
+            compiled=compiled,
+        )
+
+    def _answer(self, verdict: Verdict, compiled: Compiled) -> str:
+        """What the model is told; empty when there is nothing left to ask for."""
+        losses = self._to_ask_for()
+        asked = request(losses) if losses else ""
+        if not compiled.ok:
+            return "\n\n".join(filter(None, (feedback.errors(compiled), asked, _WRONG)))
+        remarks = feedback.remarks(
+            compiled, may_constrain=self.language.variant is not Variant.NO_CONSTRAINTS
+        )
+        remarks = remarks if remarks not in self.told else ""
+        self.told.add(remarks)
+        if verdict.is_partial:
+            assert compiled.model is not None
+            return "\n\n".join(filter(None, (feedback.plan(compiled.model), remarks, asked, _PLANNED)))
+        said = "\n\n".join(filter(None, (remarks, asked)))
+        return f"{said}\n\n{_VALID}" if said else ""
+
+    def _to_ask_for(self) -> tuple[Loss, ...]:
+        """What is missing and was not asked for too often."""
+        losses = tuple(
+            loss
+            for loss in self.ledger.missing
+            if self.asked[_what(loss)] < (1 if loss.is_doubtful else _ASKED)
+        )
+        self.asked.update(map(_what, losses))
+        return losses
+
+
+def _what(loss: Loss) -> tuple[str, ...]:
+    """The same for a loss whichever attempt it was last seen in."""
+    return loss.kind, loss.path, loss.text
+
+
+def _is_partial(source: SourceFile, compiled: Compiled) -> bool:
+    """Whether a program is to be continued: it says `todo`, or has structures without anything in them."""
+    assert compiled.model is not None
+    if any(structure.is_empty for structure in compiled.model.root.walk()):
+        return True
+    return any(isinstance(node, ast.Todo) for node in ast.walk(parser.parse(source).module))
+
+
+def _picture(compiled: Compiled) -> bytes:
+    return compiled.export(".png", Options(pixels=_PIXELS, show=frozenset({"plan", "names"})))
+
+
+def _numbers(compiled: Compiled) -> dict[str, float]:
+    if compiled.model is None:
+        return {}
+    return counted(compiled.model) | {"detached": sum(d.code == "W0705" for d in compiled.diagnostics)}
+
+
+def counted(model: SolvedModel) -> dict[str, float]:
+    """How many structures and constraints a model has, and how many degrees of freedom if that is known."""
+    found: dict[str, float] = {
+        "structures": sum(1 for _ in model.root.walk()),
+        "constraints": len(model.constraints),
+    }
+    return found if model.degrees is None else found | {"degrees": model.degrees}

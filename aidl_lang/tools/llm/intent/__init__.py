@@ -1,0 +1,8 @@
+"""What a conversation meant and lost: noticed, named, and put back where it fits."""
+
+from aidl_lang.tools.llm.intent.inventory import Kind
+from aidl_lang.tools.llm.intent.ledger import Ledger, Restored
+from aidl_lang.tools.llm.intent.loss import Loss
+from aidl_lang.tools.llm.intent.wording import request
+
+__all__ = ["Kind", "Ledger", "Loss", "Restored", "request"]

@@ -1,0 +1,216 @@
+"""What became of everything one program meant to have in another that followed it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from enum import StrEnum
+
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
+from aidl_lang.tools.llm.intent.canonical import Key, Path, names_in, shape, translated
+from aidl_lang.tools.llm.intent.inventory import STATED, Inventory, Item, Kind, unnumbered
+from aidl_lang.tools.llm.intent.matching import match_things
+
+
+class Fate(StrEnum):
+    SAME = "same"
+    CHANGED = "changed"  # another number, another way to make it, or around it another loop
+    REWRITTEN = "rewritten"  # another statement about the same things
+    MOVED = "moved"  # the same name in another structure
+    RENAMED = "renamed"
+    FEWER = "fewer"  # a loop or a list makes less of them
+    WEAKENED = "weakened"  # it was asked for, and is wished for or only checked
+    GONE = "gone"
+
+
+@record()
+class Changes:
+    """
+    paths  things of the earlier program → where they are in the later one
+    fates  items of the earlier program → what became of them, and the item of the later one (None if gone)
+    """
+
+    before: Inventory
+    after: Inventory
+    paths: Mapping[Path, Path]
+    fates: Mapping[Item, tuple[Fate, Item | None]]
+
+
+def compare(before: Inventory, after: Inventory) -> Changes:
+    """Pair what one program meant to have with what the next one means to have."""
+    paths = match_things(before, after)
+    statements = _Statements(before, after, paths)
+    statements.pair()
+    fates: dict[Item, tuple[Fate, Item | None]] = {}
+    for item in before.items:
+        if item.kind in STATED:
+            fates[item] = statements.fates.get(item, (Fate.GONE, None))
+        elif item.kind is Kind.PARAM:
+            fates[item] = _of_param(item, after, paths)
+        else:
+            fates[item] = _of_thing(item, before, after, paths)
+    return Changes(before, after, paths, fates)
+
+
+def _of_thing(
+    item: Item, before: Inventory, after: Inventory, paths: Mapping[Path, Path]
+) -> tuple[Fate, Item | None]:
+    path = paths.get(item.thing)
+    if path is None:
+        return Fate.GONE, None
+    other = after.things[path]
+    if _are_fewer(item, before, other, after):
+        return Fate.FEWER, other
+    home = paths.get(item.home, item.home)
+    name = item.thing[len(item.home)]
+    if other.home != home:
+        return Fate.MOVED, other
+    if other.thing[len(other.home)] != name:
+        return Fate.RENAMED, other
+    return (Fate.SAME if other.key == translated(item.key, paths) else Fate.CHANGED), other
+
+
+def _are_fewer(item: Item, before: Inventory, other: Item, after: Inventory) -> bool:
+    """Whether there are fewer of something in each of what holds it, and no param decides over that."""
+    many, few = before.counts[unnumbered(item.thing)], after.counts[unnumbered(other.thing)]
+    if not 0 < few < many or item.thing[-1].startswith("["):
+        return False
+    homes = before.counts[unnumbered(item.home)], after.counts[unnumbered(other.home)]
+    return homes[0] <= homes[1] and not (_decides(item) & before.knobs or _decides(other) & after.knobs)
+
+
+def _decides(item: Item) -> frozenset[str]:
+    """The names in what decides how many there are of something."""
+    made: Key = ()
+    match item.node:
+        case ast.Assign(indices=(), value=ast.Comprehension()):
+            made = (item.key[1], item.key[3])
+        case ast.Assign(indices=(), value=ast.Call()):
+            made = item.key
+    return names_in((item.context, made))
+
+
+def _of_param(item: Item, after: Inventory, paths: Mapping[Path, Path]) -> tuple[Fate, Item | None]:
+    """A parameter keeps its name; under a new one it is known by its words, wherever it stands."""
+    params = [i for i in after.items if i.kind is Kind.PARAM]
+    path = (*paths.get(item.home, item.home), item.thing[-1])
+    for other in params:
+        if other.thing == path:
+            return (Fate.SAME if other.text == item.text else Fate.CHANGED), other
+    for other in params:
+        if other.thing[-1] == item.thing[-1]:
+            return Fate.MOVED, other
+    for other in params:
+        if other.home == path[:-1] and other.key[2:] == item.key[2:]:
+            return Fate.RENAMED, other
+    return Fate.GONE, None
+
+
+@record()
+class _Read:
+    """An item as it would read in the later program."""
+
+    item: Item
+    key: Key
+    home: Path
+    things: frozenset[Path]
+
+    @property
+    def text(self) -> str:
+        return self.item.text
+
+    @property
+    def context(self) -> Key:
+        return self.item.context
+
+    @property
+    def shape(self) -> Key:
+        return shape(self.key)
+
+
+_Test = Callable[[_Read, Item], bool]
+_Marks = Callable[[Item | _Read], Iterable[object]]
+
+
+class _Statements:
+    """Pairs statements, the surest pairs first. Each is taken once, but that a relation may stand for several
+    equations on the same things.
+    """
+
+    def __init__(self, before: Inventory, after: Inventory, paths: Mapping[Path, Path]) -> None:
+        self.fates: dict[Item, tuple[Fate, Item | None]] = {}
+        self.open = [self._read(i, paths) for i in before.items if i.kind in STATED]
+        self.free = [i for i in after.items if i.kind in STATED]
+
+    def _read(self, item: Item, paths: Mapping[Path, Path]) -> _Read:
+        things = frozenset(paths.get(thing, thing) for thing in item.things)
+        return _Read(item, translated(item.key, paths), paths.get(item.home, item.home), things)
+
+    def pair(self) -> None:
+        for strength, weaker in _STRENGTHS:
+            self._phase(weaker or Fate.SAME, strength, lambda one: [(one.key, one.context)])
+            self._phase(weaker or Fate.SAME, strength, lambda one: [(one.home, one.text)])
+        for strength, weaker in _STRENGTHS:
+            self._phase(weaker or Fate.CHANGED, strength, lambda one: [one.key])
+            self._phase(weaker or Fate.CHANGED, strength, lambda one: [one.shape])
+        self._phase(Fate.REWRITTEN, _not_weaker, lambda one: one.things, _says_instead)
+        self._phase(Fate.WEAKENED, _weaker, lambda one: one.things, _says_instead)
+
+    def _phase(self, fate: Fate, strength: _Test, marks: _Marks, fits: _Test = lambda *_: True) -> None:
+        """Pair what has a mark in common, and fits."""
+        marked: dict[object, list[Item]] = {}
+        for other in self.free:
+            for mark in marks(other):
+                marked.setdefault(mark, []).append(other)
+        left: list[_Read] = []
+        spent: set[Item] = set()
+        for read in self.open:
+            near = (other for mark in marks(read) for other in marked.get(mark, ()))
+            found = next((o for o in near if o not in spent and strength(read, o) and fits(read, o)), None)
+            if found is None:
+                left.append(read)
+                continue
+            self.fates[read.item] = fate, found
+            if not (fate is Fate.REWRITTEN and found.key[:1] == ("call",)):
+                spent.add(found)
+        self.open = left
+        self.free = [o for o in self.free if o not in spent]
+
+
+def strength(item: Item) -> int:
+    """What must hold is stronger than what is wished for, and that than what is only checked."""
+    return 0 if item.kind is Kind.ASSERT else 1 if item.wish else 2
+
+
+def _as_strong(read: _Read, other: Item) -> bool:
+    return strength(other) == strength(read.item)
+
+
+def _weaker(read: _Read, other: Item) -> bool:
+    return strength(other) < strength(read.item)
+
+
+def _stronger(read: _Read, other: Item) -> bool:
+    return strength(other) > strength(read.item)
+
+
+def _not_weaker(read: _Read, other: Item) -> bool:
+    return not _weaker(read, other)
+
+
+_STRENGTHS = ((_as_strong, None), (_weaker, Fate.WEAKENED), (_stronger, None))
+
+
+def _says_instead(read: _Read, other: Item) -> bool:
+    """Whether a new statement speaks of the same things, from the same structure or one around it. A
+    statement that was wrong may be replaced by one about any of them; a turn is replaced by a turn.
+    """
+    if read.item.kind is Kind.ASSERT:
+        return other.kind is Kind.ASSERT and read.things == other.things and bool(read.things)
+    if read.home[: len(other.home)] != other.home and not other.thing:
+        return False
+    if read.item.wrong:
+        return bool(read.things & other.things) and other.kind is not Kind.ASSERT
+    if read.item.kind in (Kind.ROTATION, Kind.OPERATION) and other.kind is not read.item.kind:
+        return False
+    return bool(read.things) and read.things <= other.things

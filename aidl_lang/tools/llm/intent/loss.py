@@ -1,0 +1,56 @@
+"""Something a conversation lost."""
+
+from __future__ import annotations
+
+from aidl_lang.common.records import record
+from aidl_lang.tools.llm.intent.changes import Fate
+from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind
+from aidl_lang.tools.llm.intent.placing import dotted
+from aidl_lang.tools.llm.intent.probing import UNTRIED, Finding
+
+
+@record(eq=False)
+class Loss:
+    """Something that an earlier program meant to have and the present one lacks.
+
+    item        what it was, and `inventory` that of the program that had it
+    fate        gone, fewer, weakened to a wish or a check, or rewritten to something that says less
+    now         what stands in its place, if anything does
+    finding     whether it would fit again, and with what it conflicts
+    dependents  for structures and geometry: what spoke of them and went with them
+    counts      of what is fewer now: how many there were, and how many there are
+    """
+
+    item: Item
+    inventory: Inventory
+    fate: Fate
+    now: Item | None = None
+    finding: Finding = UNTRIED
+    dependents: tuple[Item, ...] = ()
+    counts: tuple[int, int] = (0, 0)
+
+    @property
+    def kind(self) -> Kind:
+        return self.item.kind
+
+    @property
+    def is_doubtful(self) -> bool:
+        """It may well be meant: asking for it once is enough."""
+        return self.fate is Fate.FEWER
+
+    @property
+    def path(self) -> str:
+        """The dotted path of the structure that held it; empty for a structure that held all."""
+        return dotted(self.item.home)
+
+    @property
+    def text(self) -> str:
+        """The author's words, on one line; of a structure its name."""
+        return self.item.text
+
+    @property
+    def phrase(self) -> str:
+        """What is said of it."""
+        from aidl_lang.tools.llm.intent.wording import phrase
+
+        return phrase(self)

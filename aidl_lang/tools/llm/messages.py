@@ -1,0 +1,119 @@
+"""What is said to a language model and what comes back, whoever serves it."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import field
+from enum import StrEnum
+from typing import Literal, Protocol
+
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.records import record
+
+Role = Literal["system", "user", "assistant"]
+
+
+@record()
+class Image:
+    """A picture as part of a message, with its media type (`image/png`)."""
+
+    media_type: str
+    data: bytes
+
+    @property
+    def base64(self) -> str:
+        return b64encode(self.data).decode()
+
+    @property
+    def uri(self) -> str:
+        """All of it as an address."""
+        return f"data:{self.media_type};base64,{self.base64}"
+
+
+@record()
+class Message:
+    role: Role
+    text: str
+    images: tuple[Image, ...] = ()
+
+
+@record()
+class Sampling:
+    """How a reply is drawn. What is None is left to the server."""
+
+    seed: int | None = None
+    temperature: float | None = None
+    max_tokens: int | None = None
+    extra: Mapping[str, object] = field(default_factory=dict)
+    """Further members of the request, as a grammar for servers that constrain decoding."""
+
+
+@record()
+class Usage:
+    """Tokens, and dollars where they are known; None is unknown, and stays so in a sum."""
+
+    input: int | None = 0
+    output: int | None = 0
+    cost: float | None = 0.0
+
+    def __add__(self, other: Usage) -> Usage:
+        unknown = None in (self.cost, other.cost)
+        return Usage(
+            _total(self.input, other.input),
+            _total(self.output, other.output),
+            None if unknown else (self.cost or 0.0) + (other.cost or 0.0),
+        )
+
+
+def _total(a: int | None, b: int | None) -> int | None:
+    return None if a is None or b is None else a + b
+
+
+class Finish(StrEnum):
+    """Why a reply ended."""
+
+    COMPLETE = "complete"
+    CUT = "cut"  # at the limit on tokens
+    REFUSED = "refused"
+
+
+@record()
+class Reply:
+    text: str
+    usage: Usage
+    finish: Finish
+    model: str
+    """The model that answered, as the server names it."""
+
+
+class ProviderError(Exception):
+    """No reply could be had, however often it was asked for; the diagnostic says why and what to do."""
+
+    def __init__(self, code: str, message: str, *hints: str) -> None:
+        super().__init__(message)
+        self.diagnostic = Diagnostic(code, message, hints=hints)
+
+
+class Provider(Protocol):
+    """Whoever answers: a server or a command."""
+
+    @property
+    def name(self) -> str:
+        """As it is shown and recorded: `openai:gpt-5`, `exec:./reply.py`; holds no key."""
+
+    @property
+    def takes_seeds(self) -> bool:
+        """Whether a request may say from which seed its reply is drawn."""
+
+    @property
+    def takes_grammars(self) -> bool:
+        """Whether a request may hold a grammar that the reply is to keep to."""
+
+    def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
+        """Ask for the next message. `hear` gets the pieces of the text as they arrive.
+
+        A reply that breaks off is asked for again, and its pieces are heard from the beginning.
+
+        Raises ProviderError. May be called from several threads at once.
+        """

@@ -1,0 +1,143 @@
+"""Which model is to be asked, and where: from options and the environment to one decision."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from urllib.parse import urlsplit
+
+from aidl_lang.common.records import record
+from aidl_lang.tools.llm.messages import ProviderError, Usage
+
+OPENAI, ANTHROPIC, EXEC = "openai", "anthropic", "exec:"
+DEFAULT_URL = {OPENAI: "https://api.openai.com/v1", ANTHROPIC: "https://api.anthropic.com"}
+
+_WAYS = (
+    "OPENAI_API_KEY=… or ANTHROPIC_API_KEY=… in the environment, and --model NAME",
+    "--base-url http://localhost:11434/v1 --model NAME asks a server of your own (Ollama, vLLM, llama.cpp)",
+    "--provider 'exec:COMMAND' asks a command",
+    "AIDL_PROVIDER, AIDL_MODEL and OPENAI_BASE_URL say the same in the environment",
+)
+
+
+@record()
+class Price:
+    """Dollars per million tokens."""
+
+    input: float
+    output: float
+
+    @classmethod
+    def parse(cls, text: str) -> Price:
+        """From `IN/OUT`, as in `2.5/10`; raises ValueError."""
+        numbers = [float(part.strip().removeprefix("$")) for part in text.split("/")]
+        if len(numbers) != 2 or not all(0 <= number < math.inf for number in numbers):
+            raise ValueError(f"expected dollars per million tokens in and out, as in 2.5/10, not `{text}`")
+        return cls(*numbers)
+
+    def of(self, usage: Usage) -> float | None:
+        if usage.input is None or usage.output is None:
+            return None
+        return (usage.input * self.input + usage.output * self.output) / 1e6
+
+
+@record()
+class Connection:
+    """What was said about the model to ask; what is empty is left to the environment."""
+
+    provider: str = ""
+    """`openai` for every server that speaks OpenAI's protocol, `anthropic`, or `exec:COMMAND`."""
+
+    model: str = ""
+    base_url: str = ""
+    timeout: float = 600.0
+    """Seconds without a sign of life."""
+
+    retries: int = 3
+    """How often a request is repeated when the server is busy, fails, or loses the connection."""
+
+    price: Price | None = None
+    """Used where the server does not say what a reply cost."""
+
+    key: str = ""
+
+
+def decide(said: Connection, environment: Mapping[str, str]) -> Connection:
+    """The connection with everything filled in that the environment tells; only `model` may stay empty."""
+    provider = said.provider or environment.get("AIDL_PROVIDER", "") or _by_environment(said, environment)
+    if not provider.startswith(EXEC) and provider not in DEFAULT_URL:
+        raise ProviderError(
+            "E0930", f"there is no provider `{provider}`", "there are openai, anthropic and exec:COMMAND"
+        )
+    decided = replace(
+        said,
+        provider=provider,
+        model=said.model or environment.get("AIDL_MODEL", ""),
+        price=said.price or _price(environment.get("AIDL_PRICE", "")),
+    )
+    return decided if provider.startswith(EXEC) else _server(decided, environment)
+
+
+def _by_environment(said: Connection, environment: Mapping[str, str]) -> str:
+    """The provider that a base URL or a key speaks for."""
+    if said.base_url:
+        return OPENAI
+    found = [
+        kind
+        for kind in (OPENAI, ANTHROPIC)
+        if any(environment.get(f"{kind.upper()}_{what}") for what in ("API_KEY", "BASE_URL"))
+    ]
+    if not found:
+        raise ProviderError("E0930", "nothing says which language model to ask", *_WAYS)
+    if len(found) > 1:
+        raise ProviderError(
+            "E0930",
+            "the environment speaks for two providers, openai and anthropic",
+            "say --provider openai or --provider anthropic, or set AIDL_PROVIDER",
+        )
+    return found[0]
+
+
+def _server(decided: Connection, environment: Mapping[str, str]) -> Connection:
+    prefix = decided.provider.upper()
+    key = decided.key or environment.get(f"{prefix}_API_KEY", "").strip()
+    given = decided.base_url or environment.get(f"{prefix}_BASE_URL", "").strip()
+    if given and not _is_address(given):
+        raise ProviderError(
+            "E0930",
+            f"`{given}` is no base URL",
+            "it starts with http:// or https://, as http://localhost:11434/v1",
+        )
+    if not key and not given:
+        raise ProviderError(
+            "E0932",
+            f"there is no key for {decided.provider}",
+            f"set {prefix}_API_KEY",
+            "a server of your own needs no key: name it with --base-url",
+        )
+    if not key.isascii() or not key.isprintable():
+        raise ProviderError(
+            "E0932", f"{prefix}_API_KEY holds characters that no key has", "copy the key again"
+        )
+    return replace(decided, key=key, base_url=(given or DEFAULT_URL[decided.provider]).rstrip("/"))
+
+
+def _is_address(url: str) -> bool:
+    try:
+        parts = urlsplit(url)
+        _ = parts.port  # raises when it is not a number
+    except ValueError:
+        return False
+    return parts.scheme in ("http", "https") and bool(parts.hostname)
+
+
+def _price(text: str) -> Price | None:
+    if not text:
+        return None
+    try:
+        return Price.parse(text)
+    except ValueError:
+        raise ProviderError(
+            "E0930", f"AIDL_PRICE is `{text}`", "it has dollars per million tokens in and out, as in 2.5/10"
+        ) from None

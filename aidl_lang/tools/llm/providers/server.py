@@ -1,0 +1,242 @@
+"""What providers behind a server share: streams are read, asked for again when they break, and failures told.
+
+The SDKs of OpenAI and Anthropic have the same errors under the same names; `sdk` is either.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from difflib import get_close_matches
+from types import ModuleType
+from typing import Any, ClassVar
+
+import httpx2
+
+from aidl_lang.tools.llm.messages import Message, ProviderError, Reply, Sampling, Usage
+from aidl_lang.tools.llm.providers.connection import DEFAULT_URL, Connection
+from aidl_lang.tools.llm.providers.draft import UNKNOWN, Draft, dig, one_line, words
+from aidl_lang.tools.llm.providers.http import is_silence
+
+_SHOWN = 8
+_GRAMMAR = ("grammar", "ebnf", "structured_outputs")
+_TOO_LONG = ("context length", "context window", "context size", "context_length", "too long", "too large")
+
+
+class _BrokenOffError(Exception):
+    """The stream ended before the reply did."""
+
+
+class Server(ABC):
+    """A model behind a server. The connection is one that `decide` has filled in."""
+
+    kind: ClassVar[str]
+    takes_seeds = True
+    takes_grammars = True
+
+    def __init__(self, sdk: ModuleType, client: Any, connection: Connection) -> None:
+        self._sdk = sdk
+        self._client = client
+        self._connection = connection
+        self._model = connection.model
+        if not self._model:
+            self._model = self._only_model()
+
+    @property
+    def name(self) -> str:
+        return f"{self.kind}:{self._model}"
+
+    def close(self) -> None:
+        """Let go of the connections; without it they go with the object."""
+        self._client.close()
+
+    def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
+        """Ask, and ask again when the stream breaks off; what a broken one cost is unknown, so is the sum."""
+        spent = Usage()
+        for _ in range(self._connection.retries + 1):
+            draft = Draft(hear, self._model)
+            try:
+                with self._failures():
+                    stream = self._send(messages, sampling)
+                self._receive(stream, draft)
+            except _BrokenOffError:
+                spent = UNKNOWN
+            else:
+                reply = draft.reply(self._connection.price)
+                return replace(reply, usage=spent + reply.usage)
+        raise ProviderError(
+            "E0938",
+            f"the reply of {self.name} broke off, however often it was asked for",
+            "look at the server, and at what stands between you and it",
+        )
+
+    @abstractmethod
+    def _send(self, messages: Sequence[Message], sampling: Sampling) -> Any:
+        """Send the request and give the SDK's stream; raises the SDK's errors."""
+
+    @abstractmethod
+    def _read(self, document: object, draft: Draft) -> None:
+        """Take in one event of the stream, or the one document of a server that does not stream."""
+
+    def _receive(self, stream: Any, draft: Draft) -> None:
+        with stream:
+            for document in self._documents(stream):
+                self._refuse_error(document)
+                self._read(document, draft)
+        if not draft.started:
+            raise self._not_protocol(stream)
+        if draft.finish is None:
+            raise _BrokenOffError
+
+    def _documents(self, stream: Any) -> Iterator[object]:
+        """The events of a stream as JSON, with every mishap of reading them told."""
+        with self._failures():
+            try:
+                yield from _events(stream)
+            except (httpx2.TimeoutException, self._sdk.APITimeoutError):
+                raise self._silence() from None
+            except (httpx2.HTTPError, self._sdk.APIConnectionError):
+                raise _BrokenOffError from None
+            except (ValueError, RecursionError):  # of the JSON
+                raise self._not_protocol(stream) from None
+
+    def _refuse_error(self, document: object) -> None:
+        """Some servers tell an error in place of a reply, or in its middle."""
+        if error := dig(document, "error"):
+            raise self._out_of_order(self._words(error))
+
+    @contextmanager
+    def _failures(self) -> Iterator[None]:
+        """The SDK's errors as errors of the provider."""
+        sdk = self._sdk
+        try:
+            yield
+        except sdk.APIStatusError as error:
+            raise (self._silence() if is_silence(error.response) else self._refusal(error)) from None
+        except sdk.APITimeoutError:
+            raise self._silence() from None
+        except sdk.APIConnectionError as error:
+            raise ProviderError(
+                "E0936",
+                f"there is no connection to {self._connection.base_url}: {one_line(str(error.__cause__))}",
+                "is the server running, and is the base URL right?",
+            ) from None
+        except sdk.APIError as error:  # told in the middle of a stream
+            raise self._out_of_order(self._words(error.body) or self._words(error.message)) from None
+        except UnicodeEncodeError:
+            raise ProviderError("E0935", "the messages hold characters that are not Unicode text") from None
+
+    def _refusal(self, error: Any) -> ProviderError:
+        """What an HTTP status means."""
+        status: int = error.status_code
+        said = self._words(error.body)
+        because = f" ({status}): {said}" if said else f" ({status})"
+        if status in (401, 403):
+            return ProviderError(
+                "E0932",
+                f"the key was refused{because}",
+                f"look at {self.kind.upper()}_API_KEY",
+            )
+        if status in (402, 429):
+            return ProviderError(
+                "E0933",
+                f"the limit on requests is reached{because}",
+                "wait, or raise the limit at the provider",
+            )
+        if status == 404:
+            return ProviderError("E0934", f"there is no model `{self._model}`{because}", *self._models_hint())
+        if status < 400 or status >= 500:
+            # A stream that has begun well keeps its status when an error is told in its middle.
+            return self._out_of_order(said or f"status {status}")
+        return ProviderError("E0935", f"the request was refused{because}", *_remedies(said.lower()))
+
+    def _models_hint(self) -> Iterator[str]:
+        """What there is instead; a server that has no list has an address that is wrong."""
+        try:
+            known = self._models()
+        except self._sdk.APIError:
+            known = []
+        if not known:
+            yield f"is {self._connection.base_url} right? Most base URLs end in /v1"
+            return
+        near = get_close_matches(self._model, known, n=_SHOWN, cutoff=0.3) or known
+        yield f"the server has {_few(near, known)}"
+
+    def _models(self) -> list[str]:
+        """The server's list of models; raises the SDK's errors."""
+        try:
+            listed = dig(self._client.models.list().model_dump(warnings=False), "data")
+        except (ValueError, AttributeError):  # something else than a list came
+            return []
+        ids = [one_line(dig(entry, "id")) for entry in listed] if isinstance(listed, list) else []
+        return sorted(name for name in ids if name)
+
+    def _only_model(self) -> str:
+        """The model of a server of one's own that has exactly one."""
+        known: list[str] = []
+        if self._connection.base_url != DEFAULT_URL[self.kind]:
+            with self._failures(), suppress(self._sdk.NotFoundError):
+                known = self._models()
+        if len(known) == 1:
+            return known[0]
+        self.close()
+        shown = [f"{self._connection.base_url} has {_few(known, known)}"] if known else []
+        raise ProviderError("E0930", "no model is named", "say --model NAME, or set AIDL_MODEL", *shown)
+
+    def _silence(self) -> ProviderError:
+        return ProviderError(
+            "E0937",
+            f"{self._connection.base_url} was silent for {self._connection.timeout:g} seconds",
+            "--timeout SECONDS gives it longer; a model in main memory may need minutes to read the guide",
+        )
+
+    def _out_of_order(self, said: str) -> ProviderError:
+        because = f": {said}" if said else ", and does not say why"
+        return ProviderError("E0936", f"{self._connection.base_url} fails{because}", "try again later")
+
+    def _not_protocol(self, stream: Any) -> ProviderError:
+        kind = stream.response.headers.get("content-type", "nothing")
+        return ProviderError(
+            "E0938",
+            f"{self._connection.base_url} sent no reply in the protocol of {self.kind} but {one_line(kind)}",
+            "look at the base URL, and at what stands between you and the server",
+        )
+
+    def _words(self, error: object) -> str:
+        """What a server said, in one line without what controls a terminal, and without the key."""
+        places = (("error", "message"), ("message",), ("detail",), ("error",))
+        said = words(error) or next((text for place in places if (text := words(dig(error, *place)))), "")
+        if said.lstrip().startswith("<"):
+            return ""  # a page for people
+        return one_line(said, self._connection.key)
+
+
+def _events(stream: Any) -> Iterator[object]:
+    """What a stream brings, or the one document of a server that does not stream."""
+    if "json" in stream.response.headers.get("content-type", ""):
+        stream.response.read()
+        yield stream.response.json()
+        return
+    for event in stream:
+        dump = getattr(event, "model_dump", None)
+        yield dump(warnings=False) if dump else event
+
+
+def _few(names: list[str], known: list[str]) -> str:
+    """Names out of those known, not too many."""
+    shown = names[:_SHOWN]
+    return ", ".join([*shown, "…"] if len(shown) < len(known) else shown)
+
+
+def _remedies(said: str) -> Iterator[str]:
+    """What to do about a request that was refused, where the words tell the reason."""
+    if any(sign in said for sign in _TOO_LONG):
+        yield "guide and conversation are longer than the model reads: take one that reads more"
+        yield "servers of your own: OLLAMA_CONTEXT_LENGTH=16384, llama-server -c, vllm --max-model-len"
+    if "image" in said:
+        yield "take a model that sees pictures, or leave --image out"
+    if any(sign in said for sign in _GRAMMAR):
+        yield "does --constrain name the kind of server that answers? Without it no grammar is sent"
+    yield from (f"leave --{name} out" for name in ("temperature", "seed") if name in said)

@@ -1,0 +1,93 @@
+"""Between what the editor library says and what the protocol says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import field
+from pathlib import Path
+
+from lsprotocol import types
+
+from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.tools.ide.positions import Positions, Unit
+from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.lsp.documents import Documents
+
+START = types.Range(types.Position(0, 0), types.Position(0, 0))
+
+
+@record(eq=False)
+class Converter:
+    """Converts for the view of the document `own`; `versions` are those of the open files at that time."""
+
+    view: View
+    own: str
+    documents: Documents
+    unit: Unit
+    versions: Mapping[Path, int] = field(default_factory=dict)
+    _positions: dict[SourceFile, Positions] = field(default_factory=dict)
+
+    def _of(self, source: SourceFile) -> Positions:
+        if source not in self._positions:
+            self._positions[source] = Positions(source.text, self.unit)
+        return self._positions[source]
+
+    def position(self, source: SourceFile, offset: int) -> types.Position:
+        return types.Position(*self._of(source).position(offset))
+
+    def range(self, span: Span) -> types.Range:
+        of = self._of(span.source)
+        return types.Range(types.Position(*of.position(span.start)), types.Position(*of.position(span.end)))
+
+    def offset(self, position: types.Position) -> int:
+        """The offset in the text of the view."""
+        return self._of(self.view.source).offset(position.line, position.character)
+
+    def span(self, wanted: types.Range) -> Span:
+        """The span in the text of the view."""
+        start, end = sorted((self.offset(wanted.start), self.offset(wanted.end)))
+        return self.view.span(start, end)
+
+    def uri(self, source: SourceFile) -> str | None:
+        """The URI of a file; None for what is in none."""
+        path = self.view.file(source)
+        return None if path is None else self.uri_of(path)
+
+    def uri_of(self, path: Path) -> str:
+        """The URI of a file; of two that mean the file of the document, its own."""
+        return self.own if path == self.view.path else self.documents.uri_of(path)
+
+    def location(self, span: Span) -> types.Location | None:
+        uri = self.uri(span.source)
+        return None if uri is None else types.Location(uri, self.range(span))
+
+    def edit(self, edit: Edit) -> types.TextEdit:
+        return types.TextEdit(self.range(edit.span), edit.replacement)
+
+    def edits(self, edits: Iterable[Edit]) -> list[types.TextEdit]:
+        return [self.edit(edit) for edit in edits]
+
+    def by_file(self, edits: Iterable[Edit]) -> dict[Path, list[Edit]]:
+        """Edits by the file that each belongs to; what is in no file is left out."""
+        found: dict[Path, list[Edit]] = {}
+        for edit in edits:
+            if (path := self.view.file(edit.span.source)) is not None:
+                found.setdefault(path, []).append(edit)
+        return found
+
+    def changes(self, edits: Mapping[Path, Sequence[Edit]], with_versions: bool) -> types.WorkspaceEdit:
+        """Edits by file; for a client that knows of versions, each to the version that it was made for."""
+        made = {path: self.edits(each) for path, each in edits.items()}
+        if not with_versions:
+            return types.WorkspaceEdit(changes={self.uri_of(path): each for path, each in made.items()})
+        return types.WorkspaceEdit(
+            document_changes=[
+                types.TextDocumentEdit(
+                    types.OptionalVersionedTextDocumentIdentifier(self.uri_of(path), self.versions.get(path)),
+                    each,
+                )
+                for path, each in made.items()
+            ]
+        )

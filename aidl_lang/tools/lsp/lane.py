@@ -1,0 +1,137 @@
+"""Work off the message thread: a thread each, and what waits for it."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Callable, Hashable
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
+from functools import partial
+from typing import Any, Generic, TypeVar
+
+from aidl_lang.common.cancelling import Cancelled, cancelled_when
+from aidl_lang.common.records import record
+
+T = TypeVar("T")
+
+_STACK = 64 * 1024 * 1024
+"""Bytes for a thread: programs may be nested, and the interpreter follows them."""
+
+
+def _executor(name: str) -> ThreadPoolExecutor:
+    """One thread, which starts with the first piece of work."""
+    return ThreadPoolExecutor(max_workers=1, thread_name_prefix=name)
+
+
+def give_room() -> None:
+    """Threads that start from now on have room for nested programs."""
+    threading.stack_size(_STACK)
+
+
+@record(frozen=False, eq=False)
+class Job(Generic[T]):
+    """A piece of work: `work` runs in the lane's thread, `done` then on the loop with what came of it."""
+
+    key: Hashable
+    work: Callable[[], T]
+    done: Callable[[Future[T]], None]
+    dropped: Callable[[], None] = lambda: None
+    """Called instead of `done` where newer work of the same key takes its place before it has begun."""
+
+
+class Lane:
+    """Does one piece of work at a time; of what waits under one key, only the newest. All methods belong to
+    the loop's thread; `finished` is called there after each piece.
+    """
+
+    def __init__(self, name: str, loop: asyncio.AbstractEventLoop, finished: Callable[[], None]) -> None:
+        self._executor = _executor(name)
+        self._loop, self._finished = loop, finished
+        self._waiting: dict[Hashable, Job[Any]] = {}
+        self.running: Job[Any] | None = None
+        self._is_closed = False
+
+    @property
+    def is_busy(self) -> bool:
+        return self.running is not None
+
+    def waits(self, key: Hashable) -> bool:
+        return key in self._waiting
+
+    def put(self, job: Job[Any], first: bool = False) -> None:
+        """Have work done in its turn, or as the next."""
+        self.drop(job.key)
+        if self._is_closed:
+            job.dropped()
+            return
+        self._waiting = {job.key: job, **self._waiting} if first else {**self._waiting, job.key: job}
+        self._start()
+
+    def drop(self, key: Hashable) -> None:
+        """Forget what waits under a key; what runs already goes on."""
+        if (older := self._waiting.pop(key, None)) is not None:
+            older.dropped()
+
+    def close(self) -> None:
+        """Drop what waits and begin nothing more."""
+        self._is_closed = True
+        for key in list(self._waiting):
+            self.drop(key)
+        self._executor.shutdown(wait=False, cancel_futures=True)
+
+    def _start(self) -> None:
+        if self.running is None and self._waiting:
+            job = self._waiting.pop(next(iter(self._waiting)))
+            self.running = job
+            self._executor.submit(job.work).add_done_callback(partial(self._hand_over, job))
+
+    def _hand_over(self, job: Job[Any], future: Future[Any]) -> None:
+        """In the lane's thread, or in whichever cancels."""
+        with suppress(RuntimeError):  # the loop has ended: nobody waits for this any more
+            self._loop.call_soon_threadsafe(self._finish, job, future)
+
+    def _finish(self, job: Job[Any], future: Future[Any]) -> None:
+        self.running = None
+        try:
+            if not future.cancelled():
+                job.done(future)
+        finally:
+            self._start()
+            self._finished()
+
+
+class Answers:
+    """Answers questions one after the other, off the loop. A question that is taken back is not worked on
+    any further.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._executor = _executor(name)
+        self._is_closing = False
+
+    async def ask(self, answer: Callable[[], T]) -> T:
+        """Raises what `answer` raises."""
+        unwanted = threading.Event()
+
+        def work() -> T:
+            with cancelled_when(lambda: unwanted.is_set() or self._is_closing):
+                return answer()
+
+        if self._is_closing:
+            raise asyncio.CancelledError
+        try:
+            return await asyncio.wrap_future(self._executor.submit(work))
+        except asyncio.CancelledError:
+            unwanted.set()
+            raise
+
+    def close(self) -> None:
+        """Give up what is being answered, and begin nothing more."""
+        self._is_closing = True
+        self._executor.shutdown(wait=False, cancel_futures=True)
+
+
+def gave_up(future: Future[Any]) -> bool:
+    """Whether a run was cancelled by what it asked in passing."""
+    return future.cancelled() or isinstance(future.exception(), Cancelled)

@@ -1,0 +1,254 @@
+"""From texts to views and outcomes: every change is looked at, and the newest look is run.
+
+One thread looks, another runs. A run whose text has changed is given up, unless the run before was given up
+as well: under quick typing at least every second run comes to its end, if it is a short one.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable, Hashable
+from concurrent.futures import Future
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Protocol, TypeVar
+
+from aidl_lang.common import resources
+from aidl_lang.common.cancelling import Cancelled, cancelled_when, checkpoint
+from aidl_lang.common.world import MemoryWorld
+from aidl_lang.syntax import ast
+from aidl_lang.tools.ide.completion import complete
+from aidl_lang.tools.ide.hover import hover
+from aidl_lang.tools.ide.preview import preview
+from aidl_lang.tools.ide.view import SETTINGS, View, look, run
+from aidl_lang.tools.ide.workspace import Workspace
+from aidl_lang.tools.lsp.documents import Document, Documents, Known
+from aidl_lang.tools.lsp.lane import Job, Lane, gave_up
+from aidl_lang.tools.lsp.tidying import Tidier
+
+T = TypeVar("T")
+
+LIMITS = replace(
+    SETTINGS,
+    building=replace(SETTINGS.building, seconds=10.0),
+    solving=replace(SETTINGS.solving, seconds=10.0),
+    drawing=10.0,
+)
+"""Nobody looks at a text for longer without changing it."""
+GRACE = 0.25
+"""Seconds that a run may still take when its text has changed, if the run before it was given up."""
+PATIENCE = 0.2
+"""Seconds of solving after which what is known without it is told."""
+
+
+class Listener(Protocol):
+    """Who hears what comes of texts, on the loop's thread."""
+
+    def took_long(self, document: Document) -> None:
+        """What looking found is all that is known for now."""
+
+    def solved(self, document: Document) -> None:
+        """There is a new outcome."""
+
+    def crashed(self, error: BaseException) -> None:
+        """Work ended in a way that it should not."""
+
+
+class Runner:
+    """All methods belong to the loop's thread."""
+
+    def __init__(
+        self,
+        documents: Documents,
+        workspace: Workspace,
+        listener: Listener,
+        loop: asyncio.AbstractEventLoop,
+    ) -> None:
+        self.documents, self.workspace, self.listener = documents, workspace, listener
+        self.delay = 0.0
+        self.active: Document | None = None
+        """What the user is at: it goes first."""
+        self._tidier = Tidier(loop, lambda: self.looking.is_busy or self.solving.is_busy)
+        self.looking = Lane("looking", loop, self._tidier.note)
+        self.solving = Lane("solving", loop, self._tidier.note)
+        self._loop = loop
+        self._is_closing = False
+
+    def warm_up(self) -> None:
+        """Load what the first run and the first questions need while nobody waits for it."""
+        self.solving.put(Job("first run", lambda: run(_example()), lambda future: None))
+        self.solving.put(Job("first questions", _ask_something, lambda future: None))
+
+    def renew(self, document: Document, *, active: bool = False) -> None:
+        """The text of a document has changed, or one that it stands on."""
+        if active:
+            self.active = document
+        document.serial += 1
+        version, serial = document.version, document.serial
+        world = self.workspace.world(document.path)
+        self.looking.put(
+            Job(
+                document,
+                partial(look, document.path, document.text, world, LIMITS),
+                partial(self._looked, document, version, serial),
+            ),
+            first=active,
+        )
+
+    def renew_dependents(self, path: Path) -> None:
+        """A file has changed, or its text in the editor."""
+        for document in self.documents:
+            known = document.newest
+            if known is not None and document.path != path and _stands_on(known.view, path):
+                self.renew(document)
+
+    async def work(
+        self,
+        key: Hashable,
+        function: Callable[[], T],
+        is_unwanted: Callable[[], bool],
+        *,
+        first: bool = True,
+    ) -> T:
+        """Have something done in the solving thread, before what waits there or behind it. Of what is asked
+        under one key only the newest is done: the others raise Cancelled, as does what is unwanted any more.
+        """
+        found: asyncio.Future[T] = self._loop.create_future()
+
+        def work() -> T:
+            with cancelled_when(lambda: self._is_closing or is_unwanted() or self.solving.waits(key)):
+                checkpoint()
+                return function()
+
+        def done(future: Future[T]) -> None:
+            if found.done():
+                return
+            if (error := future.exception()) is not None:
+                found.set_exception(error)
+            else:
+                found.set_result(future.result())
+
+        def dropped() -> None:
+            if not found.done():
+                found.set_exception(Cancelled())
+
+        self.solving.put(Job(key, work, done, dropped), first=first)
+        return await found
+
+    def forget(self, document: Document) -> None:
+        """A document was closed."""
+        self.looking.drop(document)
+        self.solving.drop(document)
+        if self.active is document:
+            self.active = None
+
+    def close(self) -> None:
+        self._is_closing = True
+        self.looking.close()
+        self.solving.close()
+        self._tidier.close()
+
+    def _looked(self, document: Document, version: int, serial: int, future: Future[View]) -> None:
+        if not document.is_open:
+            return
+        document.seen = serial
+        if (error := future.exception()) is not None:
+            document.solved = serial  # nothing will come of this text
+            self.listener.crashed(error)
+        else:
+            drawn = document.ran.view.drawn if document.ran is not None else None
+            view = replace(future.result(), drawn=drawn)
+            document.newest = Known(view, version, serial)
+            if is_library(document.path):
+                document.solved = serial  # it is no program
+            elif self.delay:
+                self._loop.call_later(self.delay, self._solve_if_newest, document, document.newest)
+            else:
+                self._solve(document, document.newest)
+        document.tell()
+
+    def _solve_if_newest(self, document: Document, known: Known) -> None:
+        if document.is_open and document.serial == known.serial and not self._is_closing:
+            self._solve(document, known)
+
+    def _solve(self, document: Document, known: Known) -> None:
+        began = self._loop.time()
+        self.solving.put(
+            Job(
+                document,
+                partial(self._run, document, known, document.was_given_up),
+                partial(self._ran, document, known),
+            ),
+            first=document is self.active,
+        )
+        self._loop.call_at(began + PATIENCE, self._tell_what_is_known, document, known)
+
+    def _tell_what_is_known(self, document: Document, known: Known) -> None:
+        if document.is_open and document.seen == known.serial > document.solved:
+            self.listener.took_long(document)
+
+    def _run(self, document: Document, known: Known, is_patient: bool) -> View:
+        """In the solving thread."""
+        began = time.monotonic()
+
+        def is_unwanted() -> bool:
+            if self._is_closing or not document.is_open:
+                return True
+            if document.serial != known.serial:
+                return not is_patient or time.monotonic() > began + GRACE
+            return document is not self.active and self.solving.waits(self.active)
+
+        with cancelled_when(is_unwanted):
+            last = document.ran.view if document.ran is not None else None
+            return run(known.view, last, document.memory, settings=LIMITS)
+
+    def _ran(self, document: Document, known: Known, future: Future[View]) -> None:
+        if not document.is_open or self._is_closing:
+            return
+        if gave_up(future):
+            document.was_given_up = True
+            if document.serial == known.serial:  # it made way for what is more urgent
+                self._solve(document, known)
+            return
+        document.was_given_up = False
+        document.solved = known.serial
+        if (error := future.exception()) is not None:
+            self.listener.crashed(error)
+        else:
+            document.ran = replace(known, view=future.result())
+            newest = document.newest
+            if newest is None or newest.serial == known.serial:
+                document.newest = document.ran
+            else:
+                document.newest = replace(newest, view=replace(newest.view, drawn=document.ran.view.drawn))
+            self.listener.solved(document)
+        document.tell()
+
+
+def _example() -> View:
+    text = "solid example { part = circle(radius: 1) }"
+    return look(Path("example.aidl").absolute(), text, MemoryWorld({}))
+
+
+def _ask_something() -> None:
+    view = run(_example())
+    complete(view, view.source.text.index("circle"))
+    hover(view, view.source.text.index("circle"))
+    preview(view)
+
+
+def is_library(path: Path) -> bool:
+    """Whether a file belongs to the standard library."""
+    return path.is_relative_to(resources.resource("stdlib"))
+
+
+def _stands_on(view: View, path: Path) -> bool:
+    """Whether a program imports a file, directly or not; or what was missing, and may be there now."""
+    modules = view.resolution.modules
+    return any(view.file(module.source) == path for module in modules) or any(
+        isinstance(statement, ast.Import) and statement not in view.resolution.imports
+        for module in modules
+        for statement in module.statements
+    )

@@ -1,0 +1,230 @@
+"""The server: keeps what is open, has it looked at and run, and hands questions on to those who answer."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable, Coroutine
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeVar
+
+from lsprotocol import types
+from pygls import exceptions
+from pygls.capabilities import get_capability
+from pygls.lsp.server import LanguageServer
+
+from aidl_lang.common.records import record
+from aidl_lang.tools.ide.positions import Unit
+from aidl_lang.tools.ide.project import Project
+from aidl_lang.tools.ide.view import View
+from aidl_lang.tools.ide.workspace import Workspace
+from aidl_lang.tools.lsp.convert import Converter
+from aidl_lang.tools.lsp.documents import Document, Documents, Known
+from aidl_lang.tools.lsp.lane import Answers
+from aidl_lang.tools.lsp.protocol import Protocol, converter
+from aidl_lang.tools.lsp.publishing import Publisher, converted
+from aidl_lang.tools.lsp.running import Runner
+from aidl_lang.tools.lsp.settings import Settings
+from aidl_lang.version import __version__
+
+T = TypeVar("T")
+Answer = Callable[["Asked", Any], T]
+
+FAILED = -32803
+"""What the protocol says of a request that was understood and cannot be done."""
+
+log = logging.getLogger(__name__)
+
+
+@record()
+class Asked:
+    """What a question is answered from, away from the loop: nothing here changes any more."""
+
+    uri: str
+    known: Known
+    convert: Converter
+    settings: Settings
+    project: Project
+    client: types.ClientCapabilities
+
+    @property
+    def view(self) -> View:
+        return self.known.view
+
+    def can(self, capability: str) -> bool:
+        """Whether the client has a capability, as `workspace.workspace_edit.document_changes`."""
+        return bool(get_capability(self.client, capability, False))
+
+
+class Server(LanguageServer):
+    """`start` is called once, in the loop that serves it."""
+
+    protocol: Protocol
+
+    def __init__(self) -> None:
+        super().__init__("aidl", __version__, protocol_cls=Protocol, converter_factory=converter)
+        self.documents = Documents()
+        self.open_files = Workspace()
+        self.project = Project(self.open_files)
+        self.settings = Settings()
+        self.publisher = Publisher(self.text_document_publish_diagnostics)
+        self.answers = Answers("answering")
+        self.searches = Answers("searching")
+        self.sweeps = Answers("sweeping")
+        self.on_solved: list[Callable[[Document], None]] = []
+        self.on_closed: list[Callable[[Document], None]] = []
+        self.runner: Runner
+        self._has_told_of_crash = False
+        self._background: set[asyncio.Task[None]] = set()
+
+    def start(self) -> None:
+        self.runner = Runner(self.documents, self.open_files, self, asyncio.get_running_loop())
+
+    def close(self) -> None:
+        """Give up what is being worked on."""
+        self.runner.close()
+        self.answers.close()
+        self.searches.close()
+        self.sweeps.close()
+
+    @property
+    def unit(self) -> Unit:
+        return Unit(self.workspace.position_encoding or Unit.UTF_16)
+
+    def refresh_hints(self) -> None:
+        """Have the client ask anew for what stands beside the text."""
+        if get_capability(self.client_capabilities, "workspace.inlay_hint.refresh_support", False):
+            self.workspace_inlay_hint_refresh(None)
+        if get_capability(self.client_capabilities, "workspace.code_lens.refresh_support", False):
+            self.workspace_code_lens_refresh(None)
+
+    def in_background(self, work: Coroutine[Any, Any, None]) -> None:
+        """Go on with something on the loop. A crash is told as one of the threads' is."""
+        task = asyncio.get_running_loop().create_task(work)
+        self._background.add(task)
+        task.add_done_callback(self._ended)
+
+    def _ended(self, task: asyncio.Task[None]) -> None:
+        self._background.discard(task)
+        if not task.cancelled() and (error := task.exception()) is not None:
+            self.crashed(error)
+
+    # --- Documents ------------------------------------------------------------------------------
+
+    def opened(self, item: types.TextDocumentItem) -> None:
+        if (known := self.documents.get(item.uri)) is not None:
+            self.closed(known.uri)  # opened twice, against the rules; the newer text counts
+        document = self.documents.open(item)
+        self._keep_text(document.path, document.text)
+        self.runner.renew(document, active=True)
+
+    def changed(self, params: types.DidChangeTextDocumentParams) -> None:
+        document = self.documents.get(params.text_document.uri)
+        if document is None:
+            log.warning("a change of %s, which is not open", params.text_document.uri)
+            return
+        document.version = params.text_document.version
+        document.apply(params.content_changes, self.unit)
+        self._keep_text(document.path, document.text)
+        self.runner.renew(document, active=True)
+
+    def closed(self, uri: str) -> None:
+        document = self.documents.close(uri)
+        if document is None:
+            return
+        self.runner.forget(document)
+        others = self.documents.at(document.path)
+        self._keep_text(document.path, others[-1].text if others else None)
+        self.publisher.forget(document)
+        for listener in self.on_closed:
+            listener(document)
+
+    def _keep_text(self, path: Path, text: str | None) -> None:
+        """What a file says from now on; None for what it says on disk. Others may be reading the table."""
+        texts = {file: each for file, each in self.open_files.open.items() if file != path}
+        self.open_files.open = texts if text is None else {**texts, path: text}
+        self.runner.renew_dependents(path)
+
+    # --- What comes of them (see `running.Listener`) --------------------------------------------
+
+    def took_long(self, document: Document) -> None:
+        if document.newest is not None:
+            self._publish(document, document.newest)
+
+    def solved(self, document: Document) -> None:
+        if document.ran is None:
+            return
+        self._publish(document, document.ran)
+        for listener in self.on_solved:
+            listener(document)
+
+    def crashed(self, error: BaseException) -> None:
+        log.error("work on a program crashed", exc_info=error)
+        if not self._has_told_of_crash:
+            self._has_told_of_crash = True
+            message = f"aidl: something went wrong that should not ({type(error).__name__}); see the log"
+            self.window_show_message(types.ShowMessageParams(types.MessageType.Error, message))
+
+    def report_server_error(self, error: Exception, source: object) -> None:
+        if source is not exceptions.FeatureRequestError:  # of which the client hears anyway
+            self.crashed(error)
+
+    def _publish(self, document: Document, known: Known) -> None:
+        convert = self.converter(known.view, document.uri)
+        found = converted(known.view.diagnostics, convert, document.uri)
+        self.publisher.publish(document, known, list(found))
+
+    # --- Questions ------------------------------------------------------------------------------
+
+    def converter(self, view: View, own: str = "") -> Converter:
+        """For the view of a document, or of another file."""
+        versions = {document.path: document.version for document in self.documents}
+        return Converter(view, own or self.documents.uri_of(view.path), self.documents, self.unit, versions)
+
+    async def asked(self, document: Document, patience: float = 0.0) -> Asked | None:
+        """What is known of the text as it is now, or newer; with its outcome if that is there in time."""
+        serial = document.serial
+        await document.until_seen(serial)
+        if patience:
+            await document.until_solved(serial, patience)
+        if document.newest is None or not document.is_open:
+            return None
+        return self.asked_now(document, document.newest)
+
+    def asked_now(self, document: Document, known: Known) -> Asked:
+        convert = self.converter(known.view, document.uri)
+        return Asked(document.uri, known, convert, self.settings, self.project, self.client_capabilities)
+
+    def answers_to(
+        self,
+        method: str,
+        options: object = None,
+        *,
+        patience: float = 0.0,
+        edits: bool = False,
+        searches: bool = False,
+    ) -> Callable[[Answer[T]], Answer[T]]:
+        """Has a function answer a request about a document, away from the loop.
+
+        patience   seconds to wait for the outcome of the text
+        edits      whether the answer changes the text, and is of no use to a text that has changed
+        searches   whether other programs are looked at, which may take long
+        """
+        answers = self.searches if searches else self.answers
+
+        def register(function: Answer[T]) -> Answer[T]:
+            async def handler(params: Any) -> T | None:
+                document = self.documents.get(params.text_document.uri)
+                asked = await self.asked(document, patience) if document is not None else None
+                if document is None or asked is None:
+                    return None
+                answer = await answers.ask(partial(function, asked, params))
+                if edits and document.version != asked.known.version:
+                    raise exceptions.JsonRpcContentModified()
+                return answer
+
+            self.feature(method, options)(handler)
+            return function
+
+        return register

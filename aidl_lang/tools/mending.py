@@ -1,0 +1,164 @@
+"""Applying the fixes that are sure until there is nothing left to mend, and keeping what is better for it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import cache
+
+from aidl_lang import pipeline
+from aidl_lang.checking import library
+from aidl_lang.checking.resolving.foreign import IDLE
+from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.common.names import fold
+from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import World
+from aidl_lang.parser import parse
+from aidl_lang.syntax import ast
+
+_STEPS = 100
+"""Times that a program is made better, and no more."""
+_AHEAD = 6
+"""Times that fixes may bring more errors to light before they are taken back."""
+_SHARE = 0.5
+"""Of the time that building a program may take: all looks at it together, but for the first."""
+_LEAST_SECONDS = 0.05
+"""That a program is given to be looked at again."""
+_CUT_OFF = "E08"
+"""The family of findings that tell of limits: there may be more to say of the program."""
+
+
+@record()
+class Mended:
+    """A program as it stands now, the findings left in it, and the titles of the fixes made on the way."""
+
+    source: SourceFile
+    diagnostics: list[Diagnostic]
+    fixes: tuple[str, ...] = ()
+
+
+def mend(
+    source: SourceFile, world: World | None = None, settings: pipeline.Settings = pipeline.Settings()
+) -> Mended:
+    """Apply the fixes that are sure, and look again until nothing changes.
+
+    What was done is kept where the program has no more errors for it, states all that it stated, and does not
+    return to an earlier text. Where all fixes together make it worse, parts of them are tried. No look after
+    the first is begun once half the time is over that building a program may take.
+    """
+    return _Mender(world, settings).mended(source)
+
+
+class _OutOfTimeError(Exception):
+    """There is no time to look at the program again."""
+
+
+class _Mender:
+    def __init__(self, world: World | None, settings: pipeline.Settings) -> None:
+        self.world = world
+        self.settings = settings
+        self.last = 0.0
+
+    def mended(self, source: SourceFile) -> Mended:
+        self.last = time.thread_time() + _SHARE * self.settings.building.seconds
+        now = Mended(source, pipeline.check(source, self.world, self.settings))
+        seen: dict[object, Mended] = {_outlook(now): now}
+        try:
+            for _ in range(_STEPS):
+                better = self._better(now)
+                if better is None:
+                    break
+                if (before := seen.setdefault(_outlook(better), better)) is not better:
+                    return before  # what was done since undoes itself
+                now = better
+        except _OutOfTimeError:
+            pass
+        return now
+
+    def _better(self, now: Mended) -> Mended | None:
+        """The program after the largest part of its fixes that does it good."""
+        for part in _parts([d for d in now.diagnostics if d.fix is not None and d.fix.is_sure]):
+            if (after := self._after(now, part)) is not None:
+                return after
+        return None
+
+    def _after(self, now: Mended, part: Sequence[Diagnostic]) -> Mended | None:
+        """The program after some of its fixes and those that they bring to light; None if it is worse."""
+        stated, errors, after = constraining(now.source), _errors(now.diagnostics), now
+        for _ in range(_AHEAD):
+            text, applied = apply_fixes(after.source, part)
+            if not applied or text == after.source.text:
+                return None
+            titles = tuple(d.fix.title for d in part if d.fix)[:applied]
+            after = self._looked_at(SourceFile(now.source.name, text), (*after.fixes, *titles))
+            is_cut_off = any(d.code.startswith(_CUT_OFF) for d in after.diagnostics)
+            if is_cut_off or constraining(after.source) < stated:
+                return None
+            if _errors(after.diagnostics) <= errors:
+                return after
+            part = [d for d in after.diagnostics if d.fix is not None and d.fix.is_sure]
+        return None
+
+    def _looked_at(self, source: SourceFile, fixes: tuple[str, ...]) -> Mended:
+        left = self.last - time.thread_time()
+        if left < _LEAST_SECONDS:
+            raise _OutOfTimeError
+        hurried = replace(self.settings, building=replace(self.settings.building, seconds=left))
+        return Mended(source, pipeline.check(source, self.world, hurried), fixes)
+
+
+def _parts(found: Sequence[Diagnostic]) -> Iterator[Sequence[Diagnostic]]:
+    """All findings, the halves of them, the quarters, and so on down to each by itself."""
+    size = len(found)
+    while size:
+        yield from (found[start : start + size] for start in range(0, len(found), size))
+        size = -(-size // 2) if size > 1 else 0
+
+
+def _errors(found: Sequence[Diagnostic]) -> int:
+    return sum(d.is_error for d in found)
+
+
+def constraining(source: SourceFile) -> int:
+    """How many statements of a program constrain, wish or assert, as far as it can be read. A call by itself
+    does where it calls a constraint, or stands where nothing else can.
+    """
+    module = parse(source).module
+    nodes = list(ast.walk(module))
+    blocks = (node.items for node in nodes if isinstance(node, ast.Constrain))
+    demanded = {id(inner) for block in blocks for inner in ast.walk(block)}
+    known = _known_constraints() | {
+        fold(n.name.text) for n in nodes if isinstance(n, ast.ConstraintDefinition)
+    }
+
+    def constrains(node: ast.Node) -> bool:
+        match node:
+            case ast.Equation() | ast.Prefer() | ast.Assert():
+                return True
+            case ast.ExpressionStatement(ast.Call(callee)):
+                word = fold(callee.text)
+                return word in known or (id(node) in demanded and word not in IDLE)
+            case _:
+                return isinstance(node, ast.ExpressionStatement)
+
+    return sum(map(constrains, nodes))
+
+
+@cache
+def _known_constraints() -> frozenset[str]:
+    """The names of the constraints of the library, and the other names for them, folded."""
+    known = library.load()
+    names = {
+        name
+        for name, overloads in known.callables.items()
+        if all(s.kind is ast.ConstraintDefinition for s in overloads)
+    }
+    others = {name for name in known.aliases if known.aliases[name] in names}
+    return frozenset(map(fold, names | others))
+
+
+def _outlook(state: Mended) -> object:
+    """By what a state is known again: the text, blanks aside, and what there is to say of it."""
+    return "".join(state.source.text.split()), tuple(d.message for d in state.diagnostics)

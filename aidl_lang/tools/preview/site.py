@@ -1,0 +1,162 @@
+"""The pages of the preview and their WebSocket, for this machine and for who knows the token alone.
+
+A page of the web that the user has open elsewhere can send requests to localhost, too. It does not know the
+token that all addresses begin with, its requests name another `Host` once its own name is made to mean this
+machine, and its WebSockets another `Origin`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import html
+import secrets
+from collections.abc import AsyncIterator, Collection
+from contextlib import AsyncExitStack, asynccontextmanager
+from functools import cache
+from pathlib import Path
+
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.websockets import WebSocket
+
+from aidl_lang.tools.preview.host import Host, Page
+from aidl_lang.tools.preview.messages import LONGEST
+from aidl_lang.tools.preview.watching import watch
+
+PANE = Path(__file__).parent / "pane"
+MOST_PAGES = 16
+"""Pages that are served at once."""
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; "
+    "font-src 'self'"
+)
+_KINDS = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
+_HEADERS = {
+    "Cache-Control": "no-store",
+    "Content-Security-Policy": f"{POLICY}; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+}
+_TRY_AGAIN = 1013
+_NO_TEXT = 1003
+_TOO_BIG = 1009
+
+
+def site(host: Host, token: str, addresses: Collection[str]) -> ASGIApp:
+    """The application. `addresses` are the values of `Host` by which it may be called, as `localhost:80`."""
+    routes = [
+        Route("/{token}/", _index),
+        Route("/{token}/pane/{name}", _file),
+        WebSocketRoute("/{token}/socket", _socket),
+    ]
+    app = Starlette(routes=routes, lifespan=_working)
+    app.state.host, app.state.token = host, token
+    return _Guard(app, frozenset(addresses), token)
+
+
+@asynccontextmanager
+async def _working(app: Starlette) -> AsyncIterator[None]:
+    """The host works, and looks at the files, while the application runs."""
+    host: Host = app.state.host
+    async with AsyncExitStack() as stack:
+        for work in (host.run(), watch(host.program.path, host.changed, host.look)):
+            stack.push_async_callback(_end, asyncio.create_task(work))
+        yield
+
+
+async def _end(task: asyncio.Task[None]) -> None:
+    task.cancel()
+    await asyncio.wait([task])
+    if not task.cancelled():
+        task.result()
+
+
+class _Guard:
+    """Lets through who asks for this machine by its own name and knows the token."""
+
+    def __init__(self, app: ASGIApp, addresses: Collection[str], token: str) -> None:
+        self._app, self._addresses, self._token = app, addresses, token
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "lifespan":
+            await self._app(scope, receive, send)
+            return
+        refusal = self._refusal(scope)
+        if refusal is None:
+            await self._app(scope, receive, send)
+        elif scope["type"] == "websocket":
+            await WebSocket(scope, receive, send).close()  # before it was opened: 403
+        else:
+            await Response(status_code=refusal, headers=_HEADERS)(scope, receive, send)
+
+    def _refusal(self, scope: Scope) -> int | None:
+        headers = [(name.lower(), value.decode("latin-1")) for name, value in scope["headers"]]
+        hosts = [value for name, value in headers if name == b"host"]
+        if len(hosts) != 1 or hosts[0].lower() not in self._addresses:
+            return 421
+        origins = [value for name, value in headers if name == b"origin"]
+        if any(origin.lower() != f"http://{hosts[0].lower()}" for origin in origins):
+            return 403
+        given = scope["path"].removeprefix("/").partition("/")[0]
+        return None if secrets.compare_digest(given.encode(), self._token.encode()) else 404
+
+
+async def _index(request: Request) -> Response:
+    text = (PANE / "index.html").read_text("utf-8")
+    for name, value in {"csp": POLICY, "root": "pane/", "nonce": "", "socket": "socket"}.items():
+        text = text.replace(f"{{{{{name}}}}}", html.escape(value))
+    return Response(text, media_type="text/html", headers=_HEADERS)
+
+
+@cache
+def _files() -> dict[str, Path]:
+    """The files of the pane that pages may ask for, by name."""
+    return {file.name: file for file in PANE.iterdir() if file.suffix in _KINDS}
+
+
+async def _file(request: Request) -> Response:
+    file = _files().get(request.path_params["name"])
+    if file is None:
+        return Response(status_code=404, headers=_HEADERS)
+    return Response(file.read_bytes(), media_type=_KINDS[file.suffix], headers=_HEADERS)
+
+
+async def _socket(socket: WebSocket) -> None:
+    host: Host = socket.app.state.host
+    await socket.accept()
+    if len(host.pages) >= MOST_PAGES:
+        await socket.close(_TRY_AGAIN, f"{MOST_PAGES} pages show this program already: close one of them.")
+        return
+    page = host.join()
+    sending = asyncio.create_task(_send(socket, page))
+    try:
+        await _listen(socket, host, page)
+    finally:
+        host.leave(page)
+        sending.cancel()
+        await asyncio.wait([sending])
+        if not sending.cancelled():
+            sending.exception()  # it could send no more
+
+
+async def _send(socket: WebSocket, page: Page) -> None:
+    while True:
+        await socket.send_text(await page.next())
+
+
+async def _listen(socket: WebSocket, host: Host, page: Page) -> None:
+    """Until the page goes, or sends what no page sends."""
+    while (message := await socket.receive())["type"] == "websocket.receive":
+        text = message.get("text")
+        if text is None:
+            await socket.close(_NO_TEXT, "This page sent what is no text.")
+            return
+        if len(text) > LONGEST:
+            await socket.close(_TOO_BIG, "This page sent a message that is too long.")
+            return
+        host.hear(page, text)

@@ -1,0 +1,14 @@
+"""`python -m aidl_lang.tools.reference ROOT`: write what is generated (`make reference`)."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from aidl_lang.tools.reference.site import write
+
+if __name__ == "__main__":
+    try:
+        write(Path(sys.argv[1]))
+    except ValueError as reason:
+        sys.exit(str(reason))

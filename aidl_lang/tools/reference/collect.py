@@ -1,0 +1,295 @@
+"""Every public name with what is said of it: the library's `///` comments, and `stdlib/docs/*.md` for what is
+built in and for the words of the language.
+
+A name of the library is public if one of its definitions has a `///` comment. Its first sentence is the line
+that lists show; a fenced block is its example, a whole program. A definition below a plain `//` comment is a
+helper.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from difflib import get_close_matches
+
+from aidl_lang.checking import builtins, library
+from aidl_lang.common import names
+from aidl_lang.common.records import record
+from aidl_lang.common.resources import resource
+from aidl_lang.common.source import SourceFile
+from aidl_lang.syntax import ast
+from aidl_lang.tools.reference.signatures import is_refusal, made_shape, relates_boxes, written
+
+_EXAMPLE = re.compile(r"^```aidl\n(.*?)^```$\n?", re.MULTILINE | re.DOTALL)
+_SENTENCE = re.compile(r"(.+?[.!?])(?=\s+[A-Z`(]|\s*$)", re.DOTALL)
+_NAME = re.compile(r"@?\w+")
+_ALL_BUT = 0.85
+"""Likeness from which a name is taken for a misspelling of another: one letter in six or so."""
+
+
+@record()
+class Doc:
+    """A comment taken apart: its first sentence, what else it says, and its program ("" for none)."""
+
+    line: str
+    text: str
+    example: str
+
+
+@record()
+class Overload:
+    """One form of a name: how it is written, what is said of this form, where it is defined, and its
+    definition in the library if it has one.
+    """
+
+    form: str
+    doc: Doc
+    where: str
+    node: ast.Callable | ast.Let | None = None
+
+
+@record()
+class Entry:
+    """A public name. `sort` is `shape`, `relation` (of boxes), `constraint`, `function`, `template`,
+    `constant`, `builtin` or `word` (of the language); `topic` the name of the file it stands in.
+    """
+
+    name: str
+    sort: str
+    topic: str
+    doc: Doc
+    overloads: tuple[Overload, ...]
+    synonyms: tuple[str, ...] = ()
+
+    @property
+    def where(self) -> str:
+        return self.overloads[0].where
+
+    @property
+    def nodes(self) -> tuple[ast.Callable, ...]:
+        """The definitions that can be called."""
+        return tuple(o.node for o in self.overloads if o.node is not None and not isinstance(o.node, ast.Let))
+
+
+@record()
+class Topic:
+    """A file of the library or of `stdlib/docs`: its stem, and what is said at its head."""
+
+    name: str
+    title: str
+    text: str
+
+
+@record()
+class Reference:
+    """`entries` by name, in the order of the topics and, within one, in that of writing."""
+
+    topics: tuple[Topic, ...]
+    entries: Mapping[str, Entry]
+    aliases: Mapping[str, str]
+
+    def of_topic(self, topic: str) -> list[Entry]:
+        return [entry for entry in self.entries.values() if entry.topic == topic]
+
+    def find(self, name: str) -> Entry | None:
+        """The entry that a name, a synonym or another spelling of either means; `color` finds `@color`."""
+        wanted = name.strip("`").removesuffix("()")
+        known = names.find(wanted, self._known) or names.find(f"@{wanted}", self._known)
+        return self.entries[self._known[known]] if known else None
+
+    def misspelt(self, name: str) -> Entry | None:
+        """The entry whose name, or a synonym of it, is all but that of a name that there is not."""
+        spelt = {names.fold(known): entry for known, entry in self._known.items()}
+        near = get_close_matches(names.fold(name), spelt, n=1, cutoff=_ALL_BUT)
+        return self.entries[spelt[near[0]]] if near else None
+
+    def near(self, name: str) -> list[str]:
+        """Names that may have been meant: those that hold the word, then those that look like it."""
+        wanted = names.fold(name)
+        around = sorted(n for n in self._known if wanted and wanted in names.fold(n))
+        return list(dict.fromkeys([*around, *names.nearest(name, self._known, 3)]))[:6]
+
+    @functools.cached_property
+    def _known(self) -> dict[str, str]:
+        """Every name and every synonym, each with the name of its entry."""
+        return {**self.aliases, **{name: name for name in self.entries}}
+
+
+TOPICS = (
+    *("language", "geometry", "rectangles", "corners", "quadrilaterals", "triangles", "polygons", "rounds"),
+    *("arcs", "figures", "profiles", "path", "spline", "text", "outlines", "operations"),
+    *("constraints", "tangency", "symmetry", "measures", "relations", "placement", "arrangements", "sizes"),
+    *("clearance", "joints", "hardware", "mounts", "gear", "numbers", "exactness"),
+)
+"""Topics that come first, in this order; the others follow by name."""
+
+
+@functools.cache
+def reference() -> Reference:
+    """All that is public in this installation."""
+    loaded = library.load()
+    sections = list(_sections())
+    found = {entry.name: entry for section in sections for entry in section.entries}
+    for entry in _library_entries(loaded):
+        found[entry.name] = _joined(found[entry.name], entry) if entry.name in found else entry
+    aliases = {alias: _target(alias, loaded.aliases) for alias in loaded.aliases}
+    aliases |= {synonym: entry.name for entry in found.values() for synonym in entry.synonyms}
+    synonyms: dict[str, list[str]] = {}
+    for alias, target in aliases.items():
+        synonyms.setdefault(target, []).append(alias)
+    topics = _topics(sections, loaded.sources)
+    ranked = sorted(found.values(), key=lambda entry: list(topics).index(entry.topic))
+    used = {entry.topic for entry in ranked}
+    return Reference(
+        tuple(topic for name, topic in topics.items() if name in used),
+        {e.name: replace(e, synonyms=tuple(synonyms.get(e.name, ()))) for e in ranked},
+        {alias: target for alias, target in aliases.items() if target in found},
+    )
+
+
+def _topics(sections: Iterable[_Section], sources: Iterable[SourceFile]) -> dict[str, Topic]:
+    """By their names, in the order in which they are read."""
+    topics = {section.topic.name: section.topic for section in sections}
+    for source in sources:
+        name = source.name.removeprefix("stdlib/").removesuffix(".aidl")
+        topics.setdefault(name, _topic(name, source.text))
+    order = sorted(topics, key=lambda t: (TOPICS.index(t) if t in TOPICS else len(TOPICS), t))
+    return {name: topics[name] for name in order}
+
+
+def _joined(described: Entry, defined: Entry) -> Entry:
+    """What is built in and what the library adds under the same name; a shape of its own leads."""
+    if not isinstance(defined.overloads[0].node, ast.ShapeDefinition):
+        return replace(described, overloads=(*described.overloads, *defined.overloads))
+    own = (replace(overload, doc=described.doc) for overload in described.overloads)
+    return replace(defined, overloads=(*defined.overloads, *own))
+
+
+def _target(alias: str, aliases: Mapping[str, str]) -> str:
+    """What a synonym stands for, through synonyms of synonyms."""
+    seen = {alias}
+    while (alias := aliases[alias]) in aliases and alias not in seen:
+        seen.add(alias)
+    return alias
+
+
+# --- The library ---------------------------------------------------------------------------------
+
+
+def _library_entries(loaded: library.Library) -> list[Entry]:
+    nodes: dict[str, list[ast.Callable | ast.Let]] = {}
+    for name, signatures in loaded.callables.items():
+        nodes[name] = [s.node for s in signatures if s.node is not None]
+    for name, node in loaded.constants.items():
+        nodes.setdefault(name, [node])
+    entries = [entry for name, found in nodes.items() if (entry := _entry(name, found)) is not None]
+    return sorted(entries, key=lambda e: (e.topic, _start(e)))
+
+
+def _start(entry: Entry) -> int:
+    node = entry.overloads[0].node
+    return node.span.start if node is not None else 0
+
+
+def _entry(name: str, nodes: Sequence[ast.Callable | ast.Let]) -> Entry | None:
+    """The entry of a name; None for one that is not public."""
+    overloads = [Overload(written(n), doc(n.doc or ""), _where(n), n) for n in nodes if not _is_helper(n)]
+    leading = [o for o in overloads if o.doc.line]
+    if not leading:
+        return None
+    lead = next((o for o in leading if o.doc.example), leading[0])
+    node = lead.node
+    assert node is not None
+    topic = node.span.source.name.removeprefix("stdlib/").removesuffix(".aidl")
+    first = sorted(overloads, key=lambda o: o is not lead)
+    return Entry(name, _sort(node), topic, lead.doc, tuple(first))
+
+
+def _is_helper(node: ast.Callable | ast.Let) -> bool:
+    """Whether a definition is there for others: it refuses, or its paragraph has a plain comment as head."""
+    if not isinstance(node, ast.Let) and is_refusal(node):
+        return True
+    paragraph = node.span.source.text[: node.span.start].rpartition("\n\n")[2]
+    return paragraph.startswith("//") and not paragraph.startswith("///")
+
+
+def _sort(node: ast.Callable | ast.Let) -> str:
+    match node:
+        case ast.ShapeDefinition():
+            return "shape"
+        case ast.ConstraintDefinition():
+            return "relation" if relates_boxes(node, library.load().callables) else "constraint"
+        case ast.FunctionDefinition():
+            return "shape" if made_shape(node) else "function"
+        case ast.Structure():
+            return "template"
+        case _:
+            return "constant"
+
+
+def _where(node: ast.Node) -> str:
+    return f"{node.span.source.name}:{node.span.line}"
+
+
+def doc(comment: str) -> Doc:
+    """A comment, or a section of a page, taken apart."""
+    example = _EXAMPLE.search(comment)
+    text = (comment[: example.start()] + comment[example.end() :] if example else comment).strip()
+    paragraph = text.split("\n\n")[0]
+    sentence = _SENTENCE.match(paragraph)
+    line = sentence[1] if sentence else paragraph
+    return Doc(" ".join(line.split()), text[len(line) :].strip(), example[1] if example else "")
+
+
+def _topic(name: str, source: str) -> Topic:
+    """The title is what the first comment of a file begins with, up to its first colon or full stop."""
+    head = []
+    for line in source.splitlines():
+        if not line.startswith("//") or line.startswith("///"):
+            break
+        head.append(line.removeprefix("//").strip())
+    paragraphs = [" ".join(p.split()) for p in "\n".join(head).split("\n\n")]
+    title, _, text = re.sub(r"[:.](\s+|$)", "\0", "\n\n".join(paragraphs), count=1).partition("\0")
+    return Topic(name, title or name.capitalize(), text[:1].upper() + text[1:])
+
+
+# --- What is built in, and the words of the language ---------------------------------------------
+
+
+@record()
+class _Section:
+    topic: Topic
+    entries: tuple[Entry, ...]
+
+
+def _sections() -> Iterator[_Section]:
+    """The pages of `stdlib/docs`: `# title`, a paragraph, and for each name one or more headings
+    `## name(parameters)`, its forms, with a comment as in the library below the last of them. Another name
+    among them is a synonym.
+    """
+    for path in sorted(resource("stdlib").glob("docs/*.md")):
+        head, *parts = re.split(r"^(?=## )", path.read_text("utf-8"), flags=re.MULTILINE)
+        title, _, text = head.strip().partition("\n")
+        topic = Topic(path.stem, title.removeprefix("#").strip(), text.strip())
+        line = head.count("\n") + 1
+        forms: list[tuple[str, str]] = []
+        entries = []
+        for part in parts:
+            heading, _, body = part.partition("\n")
+            forms.append((heading.removeprefix("##").strip(), f"stdlib/docs/{path.name}:{line}"))
+            line += part.count("\n")
+            if body.strip():
+                entries.append(_described(path.stem, forms, doc(body)))
+                forms = []
+        yield _Section(topic, tuple(entries))
+
+
+def _described(topic: str, forms: Sequence[tuple[str, str]], about: Doc) -> Entry:
+    named = [(found[0] if (found := _NAME.match(form)) else form, form, where) for form, where in forms]
+    name = named[0][0]
+    overloads = tuple(Overload(form, Doc("", "", ""), where) for _, form, where in named)
+    others = tuple(dict.fromkeys(other for other, _, _ in named if other != name))
+    sort = "builtin" if name in builtins.SIGNATURES else "word"
+    return Entry(name, sort, topic, about, overloads, others)

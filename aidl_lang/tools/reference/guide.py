@@ -1,0 +1,158 @@
+"""The guide: the language on a few pages. Its prose stands in `guide.md`; what can drift is put in from the
+library, the grammar and the examples, where that file has a placeholder.
+
+    {{calls TOPIC …}}      how the names of those topics are called, and the parts of shapes
+    {{forms TOPIC …}}      the same without parts
+    {{names TOPIC …}}      those names alone
+    {{fields}}             what each primitive can be asked for
+    {{reserved}}           the words that cannot be names
+    {{example NAME}}       the program `examples/NAME.aidl`
+
+What stands between `{{in VARIANT …}}` and `{{end}}`, in a line or on lines of its own, is for these alone.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from itertools import groupby
+from pathlib import Path
+
+from aidl_lang.checking.builtins import CUTS
+from aidl_lang.checking.variants import Variant
+from aidl_lang.common.resources import resource
+from aidl_lang.syntax import ast
+from aidl_lang.tools.reference.collect import Entry, reference
+from aidl_lang.tools.reference.pages import entry_blocks, short_calls
+from aidl_lang.tools.reference.signatures import parts
+
+_PLACED = re.compile(r"\(center\?, (.*), angle\?, rotatable\?\)$")
+_ALTERNATIVES = re.compile(r"\b(\w+)/\w+(/\w+){2,}")
+_PLACEHOLDER = re.compile(r"\{\{(\w+) ?([^}]*)\}\}")
+_BLOCKS = (
+    re.compile(r"^\{\{in ([^}]*)\}\}\n(.*?)^\{\{end\}\}\n", re.MULTILINE | re.DOTALL),
+    re.compile(r"\{\{in ([^}]*)\}\}(.*?)\{\{end\}\}", re.DOTALL),
+)
+
+_WITHOUT: Mapping[Variant, type[ast.Callable]] = {
+    Variant.NO_HIERARCHY: ast.Structure,
+    Variant.NO_CONSTRAINTS: ast.ConstraintDefinition,
+}
+"""Definitions of the library that a variant cannot use."""
+
+_UNSAID: Mapping[Variant, tuple[str, ...]] = {Variant.NO_CONSTRAINTS: ("smooth", "rotatable")}
+"""Parameters that mean something to the solver alone."""
+
+
+@cache
+def guide(variant: Variant = Variant.FULL) -> str:
+    """The guide as Markdown. Raises KeyError for a placeholder, variant or topic that does not exist."""
+    text = template()
+    for block in _BLOCKS:
+        text = block.sub(lambda m: m[2] if variant in _variants(m[1]) else "", text)
+    return _PLACEHOLDER.sub(lambda m: _MAKERS[m[1]](variant, *m[2].split()), text)
+
+
+def _variants(names: str) -> list[Variant]:
+    known = {str(variant): variant for variant in Variant}
+    return [known[name] for name in names.split()]
+
+
+def full_guide() -> str:
+    """The guide and, after it, every entry of the reference, without pictures."""
+    blocks = [guide().strip(), "# Reference"]
+    for topic in reference().topics:
+        blocks.append(f"## {topic.title}")
+        for entry in reference().of_topic(topic.name):
+            blocks += [block for block in entry_blocks(entry, "###") if not block.startswith("<img")]
+    return "\n\n".join(blocks) + "\n"
+
+
+def template() -> str:
+    return Path(__file__).with_name("guide.md").read_text("utf-8")
+
+
+def _entries(variant: Variant, topics: tuple[str, ...]) -> list[Entry]:
+    """The names of topics, with the forms that there are in a variant."""
+    known = {topic.name for topic in reference().topics}
+    if unknown := [topic for topic in topics if topic not in known]:
+        raise KeyError(f"the guide asks for topics that do not exist: {', '.join(unknown)}")
+    absent = _WITHOUT.get(variant, ())
+    entries = [entry for topic in topics for entry in reference().of_topic(topic)]
+
+    def is_told(entry: Entry, node: object) -> bool:
+        # A cut is a hole or an outline by where it stands, and takes the same arguments.
+        return not isinstance(node, absent) and not (entry.name in CUTS and isinstance(node, ast.Structure))
+
+    kept = [tuple(o for o in entry.overloads if is_told(entry, o.node)) for entry in entries]
+    return [replace(e, overloads=forms) for e, forms in zip(entries, kept, strict=True) if forms]
+
+
+def _calls(variant: Variant, *topics: str) -> str:
+    """A line for each name, with its parts; those that an earlier shape has too are told by its name."""
+    lines, told = [], dict[str, set[str]]()
+    for entry in _entries(variant, topics):
+        named = list(dict.fromkeys(part.name for node in entry.nodes for part in parts(node)))
+        like = next((n for n, known in told.items() if len(known) > 3 and known <= set(named)), None)
+        more = [part for part in named if like is None or part not in told[like]]
+        if named:
+            told[entry.name] = set(named)
+        shown = " ".join(([f"as {like}"] if like else []) + more)
+        lines.append((entry.name, _arguments(variant, entry) + (f" → {shown}" if shown else "")))
+    return _joined(lines)
+
+
+def _forms(variant: Variant, *topics: str) -> str:
+    return _joined([(entry.name, _arguments(variant, entry)) for entry in _entries(variant, topics)])
+
+
+def _joined(lines: Sequence[tuple[str, str]]) -> str:
+    """Names that follow each other and are called alike stand in one line: `sin, cos(angle)`."""
+    groups = groupby(lines, key=lambda line: line[1])
+    return "\n".join(", ".join(name for name, _ in group) + arguments for arguments, group in groups)
+
+
+def _arguments(variant: Variant, entry: Entry) -> str:
+    """The forms of a name without the name, as short as can be: `…` for the three arguments that most shapes
+    have, `a/…` for one of several names, and a measure to compare goes without saying where it can be set.
+    """
+    calls = [call for call in short_calls(entry) if call.startswith(f"{entry.name}(")]
+    forms = [call.removeprefix(entry.name) for call in calls]
+    forms = [f for f in forms if not any(other.startswith(f[:-1] + ", value") for other in forms)]
+    forms = [_PLACED.sub(r"(…, \1)", _ALTERNATIVES.sub(r"\1/…", form)) for form in forms]
+    for name in _UNSAID.get(variant, ()):
+        forms = [re.sub(rf"(, )?\b{name}\?(?(1)|(, )?)", "", form) for form in forms]
+    return " | ".join(forms) if entry.sort != "constant" else ""
+
+
+def _names(variant: Variant, *topics: str) -> str:
+    return ", ".join(f"`{entry.name}`" for entry in _entries(variant, topics))
+
+
+def _fields(variant: Variant) -> str:
+    from aidl_lang.building.primitives import FIELDS
+    from aidl_lang.checking.types import PRIMITIVES
+
+    return "\n".join(f"{kind}: {' '.join(fields)}" for kind, fields in FIELDS.items() if kind in PRIMITIVES)
+
+
+def _reserved(variant: Variant) -> str:
+    from aidl_lang.syntax.tables import load_tables
+
+    return " ".join(sorted(load_tables().reserved))
+
+
+def _example(variant: Variant, name: str) -> str:
+    return f"```aidl\n{resource(f'examples/{name}.aidl').read_text('utf-8')}```"
+
+
+_MAKERS: Mapping[str, Callable[..., str]] = {
+    "calls": _calls,
+    "forms": _forms,
+    "names": _names,
+    "fields": _fields,
+    "reserved": _reserved,
+    "example": _example,
+}

@@ -1,0 +1,365 @@
+"""What a definition of the library asks and gives, read off its syntax tree: how it is called, its named
+parts, what a constraint holds, and whether a measure is exact or a least one.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from aidl_lang.checking import library
+from aidl_lang.checking.types import (
+    PARAMETER_TYPES,
+    PEERS,
+    PRIMITIVES,
+    NumberType,
+    Signature,
+    TextType,
+    TruthType,
+    parameter_type,
+)
+from aidl_lang.common.names import fold
+from aidl_lang.common.records import record
+from aidl_lang.syntax import ast
+
+VALUE = "value"
+"""The parameter that a measuring constraint sets: `distance(a, b, value)`."""
+
+_OPTIONS = (VALUE, "about", "axis", "margin", "inset", "by")
+"""Parameters that relate nothing even where they take a point or anything."""
+
+
+def written(node: ast.Callable | ast.Let) -> str:
+    """A definition's head in a line, as `ring(center: point = (0, 0), outer_radius: length)`."""
+    if isinstance(node, ast.Let):
+        return f"{node.name.text} = {node.value.span.one_line}"
+    items = ", ".join(" ".join(p.span.text.split()) for p in node.parameters or ())
+    return f"{node.name.text}({items})"
+
+
+# --- Parts ---------------------------------------------------------------------------------------
+
+
+@record()
+class Part:
+    """A named part of a shape or a template: `edges[i]` for an array; `type` is "" where the tree does not
+    tell.
+    """
+
+    name: str
+    type: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.type}" if self.type else self.name
+
+
+def parts(node: ast.Callable) -> list[Part]:
+    """What the body declares for its users: geometry and structures, and those `let`s that nothing in the
+    body uses, as they can be there for users only. What a function makes has the parts of that shape.
+    """
+    if isinstance(node, ast.FunctionDefinition):
+        made = made_shape(node)
+        shape = library.load().callables[made][0].node if made and made not in PRIMITIVES else None
+        return parts(shape) if isinstance(shape, ast.ShapeDefinition) else []
+    if not isinstance(node, ast.ShapeDefinition | ast.Structure):
+        return []
+    found: dict[str, Part] = {}
+    used = {n.text for n in ast.walk(node.body) if isinstance(n, ast.Name)}
+    for statement, in_loop in _statements(node.body):
+        match statement:
+            case ast.Assign(construction=True):
+                pass
+            case ast.Assign(name) | ast.Structure(name=name):
+                index = "".join(f"[{letter}]" for letter, _ in zip("ijk", statement.indices, strict=False))
+                if index or not in_loop:
+                    found.setdefault(name.text, Part(name.text + index, _type(statement)))
+            case ast.Let(name) if not in_loop and name.text not in used:
+                found.setdefault(name.text, Part(name.text))
+            case _:
+                pass
+    return list(found.values())
+
+
+def _statements(block: ast.Block, in_loop: bool = False) -> Iterator[tuple[ast.Statement, bool]]:
+    """The statements of a body and of its loops and branches; whether a loop is around."""
+    for statement in block.statements:
+        yield statement, in_loop
+        match statement:
+            case ast.For(body=body):
+                yield from _statements(body, True)
+            case ast.If(then=then, otherwise=otherwise):
+                yield from _statements(then, in_loop)
+                yield from _statements(otherwise, in_loop) if otherwise else ()
+
+
+def _type(statement: ast.Assign | ast.Structure) -> str:
+    if isinstance(statement, ast.Structure):
+        return statement.kind
+    match statement.value:
+        case ast.Point():
+            return "point"
+        case ast.Call(callee, None) if _is_shape(callee.text):
+            return callee.text
+        case _:
+            return ""
+
+
+def _is_shape(name: str) -> bool:
+    known = library.load().callables.get(name)
+    return name in PRIMITIVES or (known is not None and isinstance(known[0].node, ast.ShapeDefinition))
+
+
+def made_shape(node: ast.FunctionDefinition) -> str | None:
+    """The shape or primitive that a function is another way to make; None for one that computes."""
+    match node.value:
+        case ast.Call(callee, None) if _is_shape(callee.text):
+            return callee.text
+        case _:
+            return None
+
+
+# --- Constraints ---------------------------------------------------------------------------------
+
+
+def things(node: ast.Callable) -> list[ast.Parameter]:
+    """The parameters that take what is related; the others are options, usually given by name."""
+    return [p for p in node.parameters or () if not _is_option(p)]
+
+
+def _is_option(parameter: ast.Parameter) -> bool:
+    kind = parameter_type(parameter)
+    return (
+        parameter.default is not None
+        or isinstance(kind, NumberType | TextType | TruthType)
+        or parameter.name.text in _OPTIONS
+    )
+
+
+def gathers(node: ast.Callable) -> bool:
+    """Whether any number of things may be given, because the first parameter is a list."""
+    kind = node.parameters[0].type if node.parameters else None
+    return kind is not None and PARAMETER_TYPES.get(fold(kind.text)) == PARAMETER_TYPES["list"]
+
+
+def held(node: ast.Callable, callables: Mapping[str, Sequence[Signature]]) -> str:
+    """What is held on the first try, in words; "" for what places nothing."""
+    if not isinstance(node, ast.ConstraintDefinition):
+        return ""
+    if any(p.name.text == VALUE for p in node.parameters):
+        return "the value"
+    peers = [p.name.text for p in node.parameters if p.type is not None and fold(p.type.text) in PEERS]
+    if gathers(node) and peers:
+        if others := [p.name.text for p in things(node) if p.name.text not in peers]:
+            return f"`{others[-1]}`"
+        return f"one that is placed, else the last of `{peers[0]}`"
+    if peers:
+        return f"one that is placed, else `{peers[-1]}`" if len(peers) > 1 else ""
+    name = _held_parameter(node, callables, ())
+    return "" if name is None else f"the last of `{name}`" if gathers(node) else f"`{name}`"
+
+
+def _held_parameter(
+    node: ast.ConstraintDefinition,
+    callables: Mapping[str, Sequence[Signature]],
+    around: tuple[ast.ConstraintDefinition, ...],
+) -> str | None:
+    """The last thing it takes; what only calls another constraint holds what that one does."""
+    call, related = _delegated(node), [p.name.text for p in things(node)]
+    inner = _called(call, node, callables) if call is not None else None
+    if call is not None and inner is not None and inner not in around:
+        kept = _held_parameter(inner, callables, (*around, node))
+        given = [call.receiver] if call.receiver is not None else []
+        given += [a.value for a in call.arguments if a.name is None]
+        by_name = dict(zip((p.name.text for p in inner.parameters), given, strict=False))
+        passed = by_name.get(kept) if kept is not None else None
+        return passed.text if isinstance(passed, ast.Name) else None
+    return related[-1] if len(related) > 1 or gathers(node) else None
+
+
+def _delegated(node: ast.ConstraintDefinition) -> ast.Call | None:
+    """The call that a definition consists of: it then holds what that one holds."""
+    match node.body.statements:
+        case (ast.ExpressionStatement(value=ast.Call() as call),):
+            return call
+        case _:
+            return None
+
+
+def _called(
+    call: ast.Call, caller: ast.ConstraintDefinition, callables: Mapping[str, Sequence[Signature]]
+) -> ast.ConstraintDefinition | None:
+    """The constraint that a call means: the first but the caller that has all parameters named in it."""
+    named = {fold(a.name.text) for a in call.arguments if a.name is not None}
+    for signature in callables.get(call.callee.text, ()):
+        node = signature.node
+        meant = node is not caller and named <= signature.by_fold.keys()
+        if meant and isinstance(node, ast.ConstraintDefinition) and not is_refusal(node):
+            return node
+    return None
+
+
+def is_refusal(node: ast.Callable) -> bool:
+    """Whether a definition is there only to say why there is nothing to say."""
+    call = _delegated(node) if isinstance(node, ast.ConstraintDefinition) else None
+    value = call if call is not None else node.value if isinstance(node, ast.FunctionDefinition) else None
+    return isinstance(value, ast.Call) and value.callee.text == "refuse"
+
+
+def exactness(node: ast.Callable, callables: Mapping[str, Sequence[Signature]]) -> dict[str, str]:
+    """For the lengths and angles that a constraint takes: whether they are met `exactly`, or are bounds, `at
+    least` or, by their name, `at most`.
+    """
+    if not isinstance(node, ast.ConstraintDefinition):
+        return {}
+    measures = [p.name.text for p in node.parameters if isinstance(parameter_type(p), NumberType)]
+    found = {name: _exactness_of(name, node, callables, ()) for name in measures}
+    return {name: word for name, word in found.items() if word}
+
+
+def _exactness_of(
+    name: str,
+    node: ast.ConstraintDefinition,
+    callables: Mapping[str, Sequence[Signature]],
+    around: tuple[ast.ConstraintDefinition, ...],
+) -> str:
+    if node in around:
+        return ""
+    aliases = {name}
+    for item in ast.walk(node.body):
+        match item:
+            case ast.Let(called, value) if _mentions(value, aliases):
+                aliases.add(called.text)
+            case ast.Comparison() if _mentions(item, aliases):
+                return "exactly" if "==" in item.operators else "at most" if "most" in name else "at least"
+            case ast.Call(arguments=arguments) if (inner := _called(item, node, callables)) is not None:
+                for argument in arguments:
+                    if argument.name is not None and _mentions(argument.value, aliases):
+                        return _exactness_of(argument.name.text, inner, callables, (*around, node))
+            case _:
+                pass
+    return ""
+
+
+def _mentions(node: ast.Node, wanted: Iterable[str]) -> bool:
+    return any(isinstance(n, ast.Name) and n.text in wanted for n in ast.walk(node))
+
+
+def relates_boxes(
+    node: ast.ConstraintDefinition,
+    callables: Mapping[str, Sequence[Signature]],
+    around: tuple[ast.ConstraintDefinition, ...] = (),
+) -> bool:
+    """Whether a constraint reads the boxes of its arguments rather than their curves, by itself or by the one
+    that it calls.
+    """
+    calls = [n for n in ast.walk(node.body) if isinstance(n, ast.Call)]
+    if _takes_box(node) or any(_reads_boxes(callables.get(call.callee.text, ())) for call in calls):
+        return True
+    inner = [n for call in calls if (n := _called(call, node, callables)) is not None and n not in around]
+    return any(relates_boxes(n, callables, (*around, node)) for n in inner)
+
+
+def _reads_boxes(overloads: Sequence[Signature]) -> bool:
+    """Whether a name is that of functions of boxes."""
+    nodes = [signature.node for signature in overloads]
+    return bool(nodes) and all(isinstance(n, ast.FunctionDefinition) and _takes_box(n) for n in nodes)
+
+
+def _takes_box(node: ast.Callable) -> bool:
+    return any(p.type is not None and p.type.text == "box" for p in node.parameters or ())
+
+
+# --- Short forms ---------------------------------------------------------------------------------
+
+
+_PARAMETER = re.compile(r"(\w+)(?:\s*:\s*\w+)?(\?|\s*=.*)?$")
+
+
+def short(form: str) -> str:
+    """A head without types and defaults: `ring(center?, outer_radius, inner_radius)`; words of the language
+    stay as they are.
+    """
+    name, bracket, inside = form.partition("(")
+    if not bracket or not inside.endswith(")"):
+        return form
+    items = []
+    for item in split_items(inside[:-1]):
+        found = _PARAMETER.match(item)
+        items.append(found[1] + ("?" if found[2] else "") if found else item)
+    return f"{name}({', '.join(items)})"
+
+
+def split_items(text: str) -> list[str]:
+    """Items separated by commas outside of brackets."""
+    items, depth, start = [], 0, 0
+    for place, char in enumerate(text):
+        depth += (char in "([{") - (char in ")]}")
+        if char == "," and depth == 0:
+            items.append(text[start:place].strip())
+            start = place + 1
+    return [*items, text[start:].strip()] if text.strip() else []
+
+
+def short_forms(forms: Sequence[str], nodes: Sequence[ast.Callable]) -> list[str]:
+    """The calls of a name in as few short forms as tell them: constraints that differ in what they relate
+    or in one option are one, and so are functions that differ in types, or in the name of one argument.
+    """
+    constraints = [n for n in nodes if isinstance(n, ast.ConstraintDefinition)]
+    functions = [n for n in nodes if isinstance(n, ast.FunctionDefinition)]
+    merged = {*map(written, constraints), *map(written, functions)}
+    others = [short(form) for form in forms if form not in merged]
+    return list(dict.fromkeys([*others, *_merged_forms(constraints), *_merged_calls(functions)]))
+
+
+@record(frozen=False)
+class _Row:
+    """Forms that differ in the name of one argument: the names at that `place` are joined by `/`."""
+
+    kinds: tuple[str, ...]
+    names: list[str]
+    place: int | None = None
+
+    def takes(self, kinds: tuple[str, ...], names: Sequence[str]) -> bool:
+        """Whether a form is told by this row: other types are not told apart."""
+        if len(names) != len(self.names):
+            return False
+        differing = [i for i, name in enumerate(names) if name not in self.names[i].split("/")]
+        if kinds != self.kinds or not differing:
+            return True
+        if len(differing) > 1 or self.place not in (None, differing[0]):
+            return False
+        self.place = differing[0]
+        self.names[self.place] += f"/{names[self.place]}"
+        return True
+
+
+def _merged_calls(functions: Sequence[ast.FunctionDefinition]) -> list[str]:
+    rows: list[_Row] = []
+    for node in functions:
+        kinds = tuple(p.type.text if p.type is not None else "" for p in node.parameters)
+        names = split_items(short(written(node)).partition("(")[2].removesuffix(")"))
+        if not any(row.takes(kinds, names) for row in rows):
+            rows.append(_Row(kinds, names))
+    return [f"{functions[0].name.text}({', '.join(row.names)})" for row in rows]
+
+
+def _merged_forms(constraints: Sequence[ast.ConstraintDefinition]) -> list[str]:
+    groups: dict[object, list[ast.ConstraintDefinition]] = {}
+    for node in constraints:
+        groups.setdefault("list" if gathers(node) else len(things(node)), []).append(node)
+    if "list" in groups:
+        groups.pop(2, None)
+    return [_merged(group) for group in groups.values()]
+
+
+def _merged(group: Sequence[ast.ConstraintDefinition]) -> str:
+    related = [p.name.text for p in things(group[0])]
+    if gathers(group[0]) and "b" not in related:
+        related[0] = "a, b, …"
+    options: dict[str, int] = {}
+    for node in group:
+        for p in node.parameters:
+            if _is_option(p):
+                options[p.name.text] = options.get(p.name.text, 0) + (p.default is None)
+    words = [option + ("" if count == len(group) else "?") for option, count in options.items()]
+    return f"{group[0].name.text}({', '.join([*related, *words])})"

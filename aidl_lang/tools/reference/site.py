@@ -1,0 +1,46 @@
+"""What is generated in a checkout: the pages of `docs/reference`, their pictures, the guide, `llms.txt`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from aidl_lang.tools.reference import coverage
+from aidl_lang.tools.reference.collect import reference
+from aidl_lang.tools.reference.guide import guide
+from aidl_lang.tools.reference.llms import llms
+from aidl_lang.tools.reference.pages import MARK, pages, pictures
+
+_FOLDER = "docs/reference"
+COVERAGE = f"{_FOLDER}/coverage.md"
+
+
+def texts(root: Path) -> dict[str, str]:
+    """Every generated text by its path below the root of a checkout, but `COVERAGE`, which takes minutes."""
+    found = {f"{_FOLDER}/{path}": text for path, text in pages(reference()).items()}
+    return {**found, "docs/guide.md": guide(), "llms.txt": llms(root)}
+
+
+def drawn() -> dict[str, bytes]:
+    """Every generated picture by its path below the root."""
+    return {f"{_FOLDER}/{path}": data for path, data in pictures(reference()).items()}
+
+
+def strays(root: Path, known: set[str]) -> list[str]:
+    """Pages and pictures that were generated once and are not any more."""
+    folder = root / _FOLDER
+    files = [path for path in folder.glob("*.md") if path.read_text("utf-8").rstrip().endswith(MARK)]
+    found = (path.relative_to(root).as_posix() for path in (*files, *folder.glob("images/*")))
+    return sorted(path for path in found if path not in known)
+
+
+def write(root: Path) -> None:
+    """Bring the generated files up to date. A file that is right already is not touched."""
+    current = {path: text.encode() for path, text in texts(root).items()} | drawn()
+    current[COVERAGE] = coverage.page().encode()
+    for path, data in current.items():
+        file = root / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        if not file.exists() or file.read_bytes() != data:
+            file.write_bytes(data)
+    for stray in strays(root, set(current)):
+        (root / stray).unlink()

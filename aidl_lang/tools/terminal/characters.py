@@ -1,0 +1,134 @@
+"""From pixels to characters: half blocks in colour, dots of braille, and ASCII by shape."""
+
+from __future__ import annotations
+
+import io
+from functools import cache
+from typing import Any
+
+from aidl_lang.tools.terminal.letters import Cell, Grid
+
+PIXELS = {"blocks": (1, 2), "braille": (2, 4), "ascii": (4, 8)}
+"""Of a cell, across and down."""
+
+_DARK = 150
+"""Grey below which a dot of braille is set."""
+_DOTS = ((1, 8), (2, 16), (4, 32), (64, 128))
+"""Bits of the dots of a cell, by row and column (Unicode, Braille Patterns)."""
+
+_STROKES: tuple[tuple[str, tuple[tuple[float, ...], ...]], ...] = (
+    (" ", ()),
+    ("-", ((0, 3, 4, 3),)),
+    ("-", ((0, 4, 4, 4),)),
+    ("-", ((0, 5, 4, 5),)),
+    ("_", ((0, 6.5, 4, 6.5),)),
+    ("_", ((0, 7.5, 4, 7.5),)),
+    ('"', ((0, 0.5, 4, 0.5),)),
+    ('"', ((1.2, 0, 1.2, 2.5), (2.8, 0, 2.8, 2.5))),
+    ("|", ((0.7, 0, 0.7, 8),)),
+    ("|", ((2, 0, 2, 8),)),
+    ("|", ((3.3, 0, 3.3, 8),)),
+    ("/", ((4, 0, 0, 8),)),
+    ("\\", ((0, 0, 4, 8),)),
+    ("'", ((2, 0, 2, 2.5),)),
+    ("`", ((1, 0, 2.5, 2),)),
+    (".", ((2, 7, 2, 7),)),
+    (",", ((2, 6.5, 1.2, 8),)),
+    (":", ((2, 3, 2, 3), (2, 7, 2, 7))),
+    ("(", ((3, 0, 1.5, 2.5), (1.5, 2.5, 1.5, 5.5), (1.5, 5.5, 3, 8))),
+    (")", ((1, 0, 2.5, 2.5), (2.5, 2.5, 2.5, 5.5), (2.5, 5.5, 1, 8))),
+    ("<", ((4, 2, 0.5, 4.5), (0.5, 4.5, 4, 7))),
+    (">", ((0, 2, 3.5, 4.5), (3.5, 4.5, 0, 7))),
+    ("^", ((0.5, 3, 2, 0), (2, 0, 3.5, 3))),
+    ("v", ((0.3, 3, 2, 7.5), (2, 7.5, 3.7, 3))),
+    ("+", ((0, 4, 4, 4), (2, 2, 2, 6))),
+    ("=", ((0, 3, 4, 3), (0, 5.5, 4, 5.5))),
+    ("~", ((0, 4.5, 1.3, 3.5), (1.3, 3.5, 2.7, 4.5), (2.7, 4.5, 4, 3.5))),
+    ("x", ((0.3, 3, 3.7, 7.5), (3.7, 3, 0.3, 7.5))),
+    ("X", ((0, 0, 4, 8), (4, 0, 0, 8))),
+    ("o", ((1.2, 3, 2.8, 3), (3.6, 4, 3.6, 6.5), (2.8, 7.5, 1.2, 7.5), (0.4, 6.5, 0.4, 4))),
+    ("L", ((0.7, 0, 0.7, 7.5), (0.7, 7.5, 4, 7.5))),
+    ("J", ((3.3, 0, 3.3, 7.5), (3.3, 7.5, 0, 7.5))),
+    ("T", ((0, 0.5, 4, 0.5), (2, 0.5, 2, 8))),
+    ("#", ((0, 2.5, 4, 2.5), (0, 5.5, 4, 5.5), (1.2, 0, 1.2, 8), (2.8, 0, 2.8, 8))),
+)
+"""Where the strokes of a character run in a cell that is 4 wide and 8 high, y downwards: x, y to x, y. A
+character stands for several places of its strokes, as it is the only one of its kind.
+"""
+_SOFT = 0.8
+"""Standard deviation of the pen, and of the blur that what is compared has."""
+_DARKEST = 0.5
+"""Of a line one pixel wide after the blur."""
+
+
+def cells(protocol: str, png: bytes, columns: int, rows: int) -> Grid:
+    """The picture stretched over a grid. For braille and ASCII it is black lines on white."""
+    from PIL import Image
+
+    across, down = PIXELS[protocol]
+    with Image.open(io.BytesIO(png)) as image:
+        small = image.convert("RGB").resize((columns * across, rows * down), Image.Resampling.BOX)
+    return {"blocks": _blocks, "braille": _braille, "ascii": _ascii}[protocol](small)
+
+
+def _blocks(image: Any) -> Grid:
+    import numpy as np
+
+    pixels = np.asarray(image).tolist()
+    return [
+        [
+            Cell(" ", None, tuple(lower)) if upper == lower else Cell("▀", tuple(upper), tuple(lower))
+            for upper, lower in zip(one, other, strict=True)
+        ]
+        for one, other in zip(pixels[::2], pixels[1::2], strict=True)
+    ]
+
+
+def _braille(image: Any) -> Grid:
+    import numpy as np
+
+    dark = _tiles(np.asarray(image.convert("L")) < _DARK, 2, 4)
+    codes = (dark * np.array(_DOTS)).sum(axis=(2, 3))
+    return [[Cell(chr(0x2800 + code)) for code in row] for row in codes.tolist()]
+
+
+def _ascii(image: Any) -> Grid:
+    """Each cell is the character that looks most like it."""
+    import numpy as np
+    from PIL import ImageFilter
+
+    soft = image.convert("L").filter(ImageFilter.GaussianBlur(_SOFT))
+    tiles = _tiles(1 - np.asarray(soft) / 255, 4, 8)
+    names, shapes = _shapes()
+    apart = ((tiles[:, :, None] - shapes) ** 2).sum(axis=(3, 4))
+    return [[Cell(names[k]) for k in row] for row in apart.argmin(axis=2).tolist()]
+
+
+def _tiles(pixels: Any, across: int, down: int) -> Any:
+    """Pixels by row and column of the cell, then by row and column within it."""
+    height, width = pixels.shape
+    return pixels.reshape(height // down, down, width // across, across).swapaxes(1, 2)
+
+
+@cache
+def _shapes() -> tuple[str, Any]:
+    """The characters, and how dark each makes the pixels of its cell."""
+    import numpy as np
+
+    y, x = np.mgrid[0.5:8, 0.5:4]
+    far = np.full_like(x, np.inf)
+    apart = [
+        np.min([far, *(_distance(x, y, *stroke) for stroke in strokes)], axis=0) for _, strokes in _STROKES
+    ]
+    shapes = _DARKEST * np.exp(-(np.array(apart) ** 2) / (2 * _SOFT**2))
+    return "".join(name for name, _ in _STROKES), shapes
+
+
+def _distance(x: Any, y: Any, x0: float, y0: float, x1: float, y1: float) -> Any:
+    """From each pixel to a stroke."""
+    import numpy as np
+
+    dx, dy = x1 - x0, y1 - y0
+    along = ((x - x0) * dx + (y - y0) * dy) / (dx * dx + dy * dy or 1.0)
+    along = np.clip(along, 0, 1)
+    return np.hypot(x - x0 - along * dx, y - y0 - along * dy)
