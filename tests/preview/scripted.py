@@ -17,7 +17,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 from websockets.sync.server import Server, ServerConnection, serve
 
-PANE = Path(__file__).resolve().parents[2] / "aidl_lang" / "preview" / "pane"
+PANE = Path(__file__).resolve().parents[2] / "aidl_lang" / "tools" / "preview" / "pane"
 CSP = (
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
     "img-src 'self' data:; font-src 'self'"
