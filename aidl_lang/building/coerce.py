@@ -28,6 +28,7 @@ from aidl_lang.building.values import (
 from aidl_lang.checking import units
 from aidl_lang.checking.units import LENGTH, PLAIN
 from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.prose import ticked
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
@@ -171,7 +172,7 @@ def constant(it: Interpreter, value: Num, node: ast.Node, what: str) -> float | 
         for u in found:
             u.exact = True
         return value.value
-    names = ", ".join(f"`{u.path}`" for u in found[:2])
+    names = ", ".join(ticked(u.path for u in found[:2]))
     it.report(
         "E0501",
         f"{what} must be known before solving, and this depends on {names}",

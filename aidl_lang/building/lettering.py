@@ -13,6 +13,7 @@ from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.values import NOTHING, Num, RecordVal, Text, Value, number
 from aidl_lang.common import lettering
 from aidl_lang.common.lettering import Glyph
+from aidl_lang.common.prose import first_few
 from aidl_lang.syntax import ast
 
 Arguments = Mapping[str, Value]
@@ -58,13 +59,12 @@ def _report(it: Interpreter, code: str, message: str, node: ast.Node, hints: lis
 
 
 def _report_unknown(it: Interpreter, unknown: list[str], node: ast.Node) -> None:
-    names = ", ".join(lettering.described(c) for c in unknown[:5])
-    rest = f" and {len(unknown) - 5} more" if len(unknown) > 5 else ""
+    names = first_few(list(map(lettering.described, unknown)), 5)
     instead = [
         f"write `{other}` for `{c}`" for c in unknown[:5] if (other := lettering.replacement(c)) is not None
     ]
     has = "it has Latin, Greek and Cyrillic letters, digits, punctuation, and signs such as `±` `°` `Ø` `→`"
-    _report(it, "E0350", f"the font has no {names}{rest}", node, [*instead, has])
+    _report(it, "E0350", f"the font has no {names}", node, [*instead, has])
 
 
 def ink(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:

@@ -21,6 +21,7 @@ from aidl_lang.building.values import (
     number,
 )
 from aidl_lang.common.names import find, nearest
+from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.syntax import ast
 
 Arguments = Mapping[str, Value]
@@ -56,7 +57,7 @@ def entry(it: Interpreter, value: RecordVal, name: str, node: ast.Node) -> Value
     key = find(name, value.fields)
     if key is None:
         like = nearest(name, value.fields)
-        known = ", ".join(f"`{k}`" for k in list(value.fields)[:12])
+        known = first_few(ticked(value.fields), 12, "")
         hint = f"did you mean `{like[0]}`?" if like else f"it has {known}" if known else "it is empty"
         it.report("E0202", f"this record has no `{name}`", node, hints=[hint])
         return NOTHING

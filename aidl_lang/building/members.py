@@ -43,6 +43,7 @@ from aidl_lang.checking.synonyms import MEMBERS
 from aidl_lang.checking.units import ANGLE
 from aidl_lang.common.diagnostics import Edit, Fix, Label
 from aidl_lang.common.names import find, fold, nearest
+from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.syntax import ast
 
 
@@ -175,7 +176,7 @@ def _no_member(it: Interpreter, value: Value, name: str, node: ast.Member) -> No
     elif like:
         hint = f"did you mean `{like[0]}`?"
     elif known:
-        hint = "it has " + ", ".join(f"`{k}`" for k in known[:12])
+        hint = "it has " + first_few(ticked(known), 12, "")
     else:
         hint = "members belong to structures, geometry, boxes and points"
     what = f"`{node.value.span.text}`"

@@ -26,6 +26,7 @@ from aidl_lang.building.values import (
 from aidl_lang.checking.builtins import FINISHES, OUTLINES
 from aidl_lang.checking.units import LENGTH
 from aidl_lang.common.names import find, fold
+from aidl_lang.common.prose import ticked
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 
@@ -103,7 +104,7 @@ def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> st
     written = value.value if isinstance(value, Text) else ""
     meant = find(_SYNONYMS.get(fold(written), written), dict.fromkeys(allowed))
     if meant is None:
-        choices = ", ".join(f"`{w}`" for w in allowed)
+        choices = ", ".join(ticked(allowed))
         it.report("E0516", f'`{name}: "{written}"` is not known', node, hints=[f"it is one of {choices}"])
     return meant
 

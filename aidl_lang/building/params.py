@@ -25,6 +25,8 @@ from aidl_lang.checking import units
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import fold, nearest
+from aidl_lang.common.numbers import literal
+from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
@@ -73,12 +75,12 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
         allowed = (
             f"{low:g}..{high:g}"
             if low is not None and high is not None
-            else " or ".join(map(_shown, choices))
+            else " or ".join(map(literal, choices))
         )
         code = "E0505" if value is written else "E0909"
         it.report(
             code,
-            f"`{path}` is {_shown(_plain(value))} as {where}, outside its range {allowed}",
+            f"`{path}` is {literal(_plain(value))} as {where}, outside its range {allowed}",
             node.value if value is written else node.name,
             label=f"allowed: {allowed}",
             hints=[f"give a value in {allowed}, or widen the range of the `param`"],
@@ -129,16 +131,6 @@ def _plain(value: Value) -> float | str | bool:
             return value
         case _:
             raise TypeError(f"no plain form of {value!r}")
-
-
-def _shown(value: float | str | bool) -> str:
-    return (
-        f"{value:g}"
-        if isinstance(value, float)
-        else f'"{value}"'
-        if isinstance(value, str)
-        else str(value).lower()
-    )
 
 
 def _domain(
@@ -225,8 +217,8 @@ def report_unused(it: Interpreter) -> None:
     for key in it.overrides:
         if key not in it.used_overrides:
             like = nearest(key, paths)
-            hints = [f"did you mean `{like[0]}`?"] if like else []
-            known = ", ".join(f"`{p}`" for p in paths[:12]) or "none"
+            hints = did_you_mean(like[:1])
+            known = first_few(ticked(paths), 12, "") or "none"
             it.report(
                 "E0911",
                 f"there is no param `{key}`",

@@ -30,6 +30,7 @@ from aidl_lang.checking.types import (
 )
 from aidl_lang.checking.units import LENGTH
 from aidl_lang.common.names import fold
+from aidl_lang.common.prose import ticked
 
 Outcomes: TypeAlias = Sequence[Binding | Mismatch]
 
@@ -90,7 +91,7 @@ def _unambiguous(fits: Sequence[Binding], given: Sequence[Given]) -> list[Bindin
 
 
 def _ambiguous(signature: Signature, word: str, meant: Sequence[str], index: int) -> Mismatch:
-    names = " or ".join(f"`{name}`" for name in meant)
+    names = " or ".join(ticked(meant))
     return Mismatch(signature, f"does not tell by `{word}` whether {names} is meant", index, tuple(meant))
 
 

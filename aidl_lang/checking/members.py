@@ -27,6 +27,7 @@ from aidl_lang.checking.types import (
 from aidl_lang.checking.wording import a, shown
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import find, fold, nearest
+from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
@@ -202,8 +203,7 @@ def _no_member(check: Inference, node: ast.Member, what: str, known: Sequence[st
     if (answer := _function_or_coordinate(check, node, known)) is not None:
         return answer
     like = nearest(name, known, 2)
-    shown_names = ", ".join(f"`{n}`" for n in list(dict.fromkeys(known))[:8])
-    members = f"its members are {shown_names}, …"
+    members = f"its members are {first_few(ticked(dict.fromkeys(known)), 8, '')}, …"
     if fold(name) in ("apex", "tip", "peak") and {"a", "b", "c", "centroid"} <= set(known):
         like, members = [], "its corners are `a`, `b` and `c`, in the order in which they were given"
     return check.report(

@@ -21,6 +21,7 @@ from aidl_lang.checking.wording import shown
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.lexicon import WORDS
 from aidl_lang.common.names import fold, is_slip, nearest
+from aidl_lang.common.prose import ticked
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
@@ -105,7 +106,7 @@ def _ambiguous(check: Inference, node: ast.Call, given: Sequence[Given], misses:
     word = given[miss.argument].name or ""
     argument = next(a for a in node.arguments if a.name is not None and a.name.text == word)
     assert argument.name is not None
-    names = " or ".join(f"`{name}`" for name in miss.meanings)
+    names = " or ".join(ticked(miss.meanings))
     check.report(
         "E0344",
         f"`{word}` of `{node.callee.text}` could mean {names}",
@@ -232,7 +233,7 @@ def _not_together(
     name = node.callee.text
     check.report(
         "E0311",
-        f"`{name}` does not take {' and '.join(f'`{n.text}`' for n in written)} together",
+        f"`{name}` does not take {' and '.join(ticked(n.text for n in written))} together",
         written[-1],
         label=f"in this call of `{name}`",
         hints=_called_as([m.signature for m in misses[:5]]),

@@ -10,6 +10,7 @@ from functools import cached_property, lru_cache
 from typing import TypeAlias
 
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension, describe
+from aidl_lang.common import prose
 from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
@@ -420,11 +421,8 @@ def _fitted(
 
 
 def with_article(kind: object) -> str:
-    """`a length`, `an angle`; what has no number of its own stands as it is."""
-    word = str(kind)
-    if word in ("anything", "geometry", "text"):
-        return word
-    return f"{'an' if word[0] in 'aeiou' else 'a'} {word}"
+    """Returns `a length`, `an angle`; what has no number of its own as it is."""
+    return prose.with_article(kind, ("anything", "geometry", "text"))
 
 
 @lru_cache(maxsize=256)

@@ -11,6 +11,7 @@ from aidl_lang.checking.types import (
     StructureType,
     Type,
 )
+from aidl_lang.common.prose import with_article
 from aidl_lang.syntax import ast
 
 _LONGEST = 40
@@ -21,9 +22,7 @@ def a(kind: Type) -> str:
     word = "thing" if isinstance(kind, AnyType) else str(kind)
     if isinstance(kind, NumberType) and kind.whole:
         word = "number" if kind.dimension is None else "whole number"
-    if word == "geometry":
-        return word
-    return f"an {word}" if word[0] in "aeio" else f"a {word}"
+    return with_article(word)
 
 
 def shown(node: ast.Node) -> str:

@@ -16,11 +16,13 @@ from aidl_lang.building.values import Num
 from aidl_lang.building.wording import Wording
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.diagnostics import Diagnostic, Fix, Label
+from aidl_lang.common.numbers import short
+from aidl_lang.common.prose import listed
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.givens import Dial, behind
 from aidl_lang.explaining.givens import stated as stated_in
-from aidl_lang.explaining.remedies import Remedy, Search, dear, left_out, remedies, short, wished
+from aidl_lang.explaining.remedies import Remedy, Search, dear, left_out, remedies, wished
 from aidl_lang.explaining.trials import Trials
 from aidl_lang.solver.solution import Failure, GroupFailure, Member, Solution
 from aidl_lang.syntax import ast
@@ -31,7 +33,7 @@ _TOLERANCE = 1e-6
 """Below this a constraint is not called off, in its own units."""
 _FINISHED = 5
 """Fixes of which it is tried whether the program then compiles to the end."""
-_NAMED = 3
+NAMED = 3
 """Things that a list names."""
 _SHOWN = 12
 """Places beside the one that a message is about."""
@@ -311,8 +313,8 @@ class Explanation:
 
     def _headline(self) -> tuple[str, str]:
         failure = self.failure
-        names = listed([_name(parties) for parties in self.turns.values()])
-        names = names or listed([unknown.told for unknown in self.sizes])
+        names = listed([_name(parties) for parties in self.turns.values()], NAMED)
+        names = names or listed([unknown.told for unknown in self.sizes], NAMED)
         several = len(self.parties) > 1
         match failure.reason:
             case Failure.CONTRADICTORY:
@@ -372,8 +374,8 @@ class Explanation:
                 wordings = [w for party in self.parties if isinstance(w := party.stated.wording, Wording)]
                 held = dict.fromkeys(f"`{name}`" for wording in wordings for name in wording.held())
                 if held:
-                    moving = listed([self.lowered.unknowns[i].told for i in self.failure.moving])
-                    yield f"{listed(list(held))} cannot move, only {moving}: a `guess(…)` frees a number"
+                    moving = listed([self.lowered.unknowns[i].told for i in self.failure.moving], NAMED)
+                    yield f"{listed(held, NAMED)} cannot move, only {moving}: a `guess(…)` frees a number"
             case Failure.NOT_CONVERGED:
                 yield "the search starts from what is written: first guesses near to what is meant help it"
             case Failure.TIMED_OUT:
@@ -403,13 +405,6 @@ def _name(parties: Sequence[_Party]) -> str:
     if len(parties) > 1:
         return f"{first} ({len(parties)} times)"
     return f"{first} [{label}]" if label else first
-
-
-def listed(names: Sequence[str], most: int = _NAMED) -> str:
-    """`a`; `a and b`; `a, b and c`; `a, b and 3 more`"""
-    if len(names) > most:
-        names = [*names[: most - 1], f"{len(names) - most + 1} more"]
-    return " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
 
 
 def measured_in(value: float, stated: Constraint) -> str:

@@ -11,10 +11,11 @@ from aidl_lang.building.expression import Unknown
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Constraint, Structure
 from aidl_lang.common.diagnostics import Diagnostic, Label
+from aidl_lang.common.numbers import short
+from aidl_lang.common.prose import listed
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.explaining.failures import listed
-from aidl_lang.explaining.remedies import short
+from aidl_lang.explaining.failures import NAMED
 from aidl_lang.explaining.trials import GAVE_WAY
 from aidl_lang.geometry.solved import Change, SolvedModel
 from aidl_lang.solver import Settings, Solution
@@ -98,7 +99,7 @@ def _of_sizes(sizes: Sequence[Change], given: GaveWay) -> Diagnostic:
     message = f"{chief.told} was written {written} and became {solved}"
     if rest:
         others = [f"{c.told} {short(c.written)} → {short(c.solved)}" for c in rest]
-        message += f", and with it {listed(others)}"
+        message += f", and with it {listed(others, NAMED)}"
     labels = tuple(
         Label(c.span, f"was written {short(c.written)} and became {short(c.solved)}")
         for c in rest

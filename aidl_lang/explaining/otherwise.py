@@ -16,10 +16,11 @@ from aidl_lang.building.lower import Lowered, lower
 from aidl_lang.building.model import Constraint, Model
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.numbers import short
+from aidl_lang.common.prose import listed, named, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.explaining.failures import listed
-from aidl_lang.explaining.remedies import short
+from aidl_lang.explaining.failures import NAMED
 from aidl_lang.explaining.trials import Trials
 from aidl_lang.interp import Interpretation
 from aidl_lang.solver import Settings, Solution, Status, solve
@@ -146,7 +147,7 @@ def elsewhere_notes(
     if other is not None:
         spans = [span for span, _ in other.calls]
         moved = [c for c in lowered.stated if c is not None and any(map(c.span.overlaps, spans))]
-        names = listed([f"`{span.one_line}`" for span in spans])
+        names = listed(ticked(span.one_line for span in spans), NAMED)
         are = "are" if len(spans) > 1 else "is"
         yield Diagnostic(
             "N0604",
@@ -160,7 +161,7 @@ def elsewhere_notes(
     for stage in solution.stages:
         despite = [c for i in stage.despite if (c := lowered.stated[i]) is not None]
         if despite:
-            names = listed(list(dict.fromkeys(f"`{c.text}`" for c in despite)))
+            names = named((c.text for c in despite), NAMED)
             hold = "hold" if len(despite) > 1 else "holds"
             first, *rest = dict.fromkeys(c.span for c in despite)
             yield Diagnostic(

@@ -170,7 +170,7 @@ def _false_parts(
 
 
 def _compared(comparison: Comparison, evaluate: Callable[..., float]) -> str:
-    from aidl_lang.explaining.remedies import short
+    from aidl_lang.common.numbers import short
 
     left, right = evaluate(comparison.left), evaluate(comparison.right)
     return f"{short(left)} is not {comparison.relation} {short(right)}"

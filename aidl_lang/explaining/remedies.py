@@ -17,6 +17,7 @@ import numpy as np
 
 from aidl_lang.building.model import Constraint
 from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.numbers import short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.givens import Dial
@@ -90,11 +91,6 @@ class Remedy:
     def written(self) -> str:
         """The text that is put in its place."""
         return self.fix.edits[0].replacement
-
-
-def short(value: float) -> str:
-    """A number to six digits."""
-    return f"{round(value, 6) + 0.0:.6g}"
 
 
 def dear(dial: Dial, share: float, plain: bool) -> float:

@@ -14,6 +14,7 @@ from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Constraint
 from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Fix, Label
+from aidl_lang.common.prose import listed
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.remedies import left_out
 from aidl_lang.solver import Constraint as SolverConstraint
@@ -60,9 +61,7 @@ def _note(lowered: Lowered, found: Redundancy, can_go: bool) -> Diagnostic:
     assert stated is not None
     others = [other for i in found.follows_from if (other := lowered.stated[i]) is not None]
     names = list(dict.fromkeys(_name(other) for other in others))
-    if len(names) > _NAMED:
-        names = [*names[: _NAMED - 1], f"{len(names) - _NAMED + 1} more"]
-    reason = " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]])) or "the other constraints"
+    reason = listed(names, _NAMED) or "the other constraints"
     labels = dict.fromkeys(Label(other.span, "from this") for other in others if other.span != stated.span)
     fix = left_out(stated) if can_go else None
     return Diagnostic(

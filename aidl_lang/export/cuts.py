@@ -12,9 +12,9 @@ from itertools import groupby
 
 import numpy as np
 
+from aidl_lang.common.numbers import significant
 from aidl_lang.common.records import record
 from aidl_lang.export.chains import chains
-from aidl_lang.export.numbers import significant
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import bounds, ends, locate, point, reverse

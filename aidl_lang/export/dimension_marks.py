@@ -11,10 +11,10 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TypeAlias
 
+from aidl_lang.common.numbers import fixed
 from aidl_lang.common.records import record
 from aidl_lang.export import palette
 from aidl_lang.export.marks import Area, Curves, Ink, Mark, Text
-from aidl_lang.export.numbers import fixed
 from aidl_lang.geometry.curves import Arc, Circle, Line, Vec
 from aidl_lang.geometry.evaluate import Bounds, point
 from aidl_lang.geometry.network import union_bounds

@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import field, replace
 
+from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
 from aidl_lang.export import palette
 from aidl_lang.export.dimension_marks import HEIGHT, Pen, Placed, words_of
@@ -125,7 +126,7 @@ class _Layout:
         )
 
     def _remark(self, left: int, box: Bounds) -> Text:
-        words = f"{left} more dimension{'s' if left > 1 else ''} not shown"
+        words = f"{counted(left, 'more dimension')} not shown"
         size = 0.8 * self.pen.font
         return Text((box[0], box[1] - 1.6 * size), words, size, palette.DIMENSION)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.lettering import unknown_characters
+from aidl_lang.common.prose import first_few
 from aidl_lang.common.resources import resource
 from aidl_lang.export.marks import Picture, Text
 
@@ -25,12 +26,11 @@ def character_notes(pages: Iterable[Picture]) -> tuple[Diagnostic, ...]:
     missing = unknown_characters("".join(dict.fromkeys("".join(texts))))
     if not missing:
         return ()
-    shown = ", ".join(f"`{c}`" if c.isprintable() else f"U+{ord(c):04X}" for c in missing[:_NAMED])
-    more = f" and {len(missing) - _NAMED} more" if len(missing) > _NAMED else ""
+    shown = first_few([f"`{c}`" if c.isprintable() else f"U+{ord(c):04X}" for c in missing], _NAMED)
     return (
         Diagnostic(
             "W0733",
-            f"the font has no {shown}{more}; texts in the picture show a box in their place",
+            f"the font has no {shown}; texts in the picture show a box in their place",
             hints=("an SVG is shown with the fonts of the reader's system",),
         ),
     )

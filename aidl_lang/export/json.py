@@ -12,8 +12,8 @@ from typing import Any
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.numbers import rounded
 from aidl_lang.common.render.data import to_dict as diagnostic_dict
-from aidl_lang.export.numbers import rounded
 from aidl_lang.geometry.contacts import Contact
 from aidl_lang.geometry.described import described
 from aidl_lang.geometry.drawing import Drawing

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from aidl_lang.export.numbers import fixed
+from aidl_lang.common.numbers import fixed
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import ends, point
 from aidl_lang.geometry.region import Face, Loop

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.numbers import fixed, size_text
+from aidl_lang.common.prose import named
 from aidl_lang.export import ExportError, Job
-from aidl_lang.export.numbers import fixed, size_text
 from aidl_lang.geometry.drawing import Drawing, Stroke
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.notes import listed
 from aidl_lang.geometry.offsets import offset
 from aidl_lang.geometry.sheets import Size, laid_out
 from aidl_lang.geometry.solved import SolvedModel
@@ -61,7 +61,7 @@ def _on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[D
 
 def _oversize(parts: Sequence[tuple[str, Size]], sheet: Size, spacing: float) -> ExportError:
     path, size = max(parts, key=lambda part: max(part[1]))
-    names = listed([path for path, _ in parts])
+    names = named([path for path, _ in parts])
     needed = tuple(side + 2 * spacing for side in size)
     if len(parts) == 1:
         message = f"{names} measures {size_text(size)} and does not fit on a sheet of {size_text(sheet)}"
@@ -82,7 +82,7 @@ def _stray_note(model: SolvedModel, strays: Sequence[Stroke]) -> Diagnostic:
     names = list(dict.fromkeys(stroke.geometry for stroke in strays))
     return Diagnostic(
         "W0736",
-        f"what of {listed(names)} lies on no part is left off the sheets",
+        f"what of {named(names)} lies on no part is left off the sheets",
         spans.get(names[0]),
         hints=("a drawing inside a `solid` is laid out with it",),
     )

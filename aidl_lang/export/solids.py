@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
 from aidl_lang.export import ExportError, Job
 from aidl_lang.geometry.drawing import Body, Stroke
@@ -17,7 +16,7 @@ THINNEST = 1e-6
 """mm. A thickness below this is lost among the tolerances of those who read the file."""
 
 _REMEDIES = ("say how thick: `@thickness(3mm)` before it or what is around it", "or for all: `--thickness 3`")
-_NAMED = 5
+_NAMED = 6
 
 
 @record()
@@ -60,7 +59,7 @@ def thick_bodies(job: Job) -> tuple[list[Placed], tuple[Diagnostic, ...]]:
         )
     if not flat:
         return thick, ()
-    have = f"{_names(flat)} {'has' if len(flat) == 1 else 'have'} no thickness"
+    have = f"{named(flat, _NAMED)} {'has' if len(flat) == 1 else 'have'} no thickness"
     if not thick:
         raise ExportError("E0917", have, *_REMEDIES)
     left_out = "is left out" if len(flat) == 1 else "are left out"
@@ -83,10 +82,3 @@ def _require_place(path: str, plane: Plane) -> None:
             f"`{path}` cannot be placed in space: it lies further out than {LARGEST:g} mm",
             "look for an `@elevation` that was written in another unit, or multiplied once too often",
         )
-
-
-def _names(paths: Sequence[str]) -> str:
-    named = [f"`{path}`" for path in paths[:_NAMED]]
-    if len(paths) > _NAMED:
-        named.append(f"{len(paths) - _NAMED} more")
-    return named[0] if len(named) == 1 else f"{', '.join(named[:-1])} and {named[-1]}"

@@ -8,8 +8,8 @@ from functools import singledispatch
 from typing import Any
 
 from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.numbers import fixed
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
-from aidl_lang.export.numbers import fixed
 from aidl_lang.export.paths import face_path, open_path
 from aidl_lang.export.svg_package import svgwrite
 from aidl_lang.geometry.evaluate import Bounds

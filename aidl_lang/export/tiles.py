@@ -13,10 +13,10 @@ from dataclasses import replace
 import numpy as np
 
 from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.numbers import fixed, size_text
 from aidl_lang.common.records import record
 from aidl_lang.export import ExportError, palette
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
-from aidl_lang.export.numbers import fixed, size_text
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.sections import in_polygon

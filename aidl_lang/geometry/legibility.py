@@ -9,12 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
 from aidl_lang.geometry.colors import look_alike
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.measures import length
 from aidl_lang.geometry.network import Network, union_bounds
-from aidl_lang.geometry.notes import listed
 from aidl_lang.geometry.sections import (
     Section,
     boxes_meet,
@@ -130,7 +130,7 @@ def covered_note(drawing: SolvedStructure, names: Sequence[str], by: str) -> Dia
     name = by.rpartition(".")[2]
     return Diagnostic(
         "W0709",
-        f"{listed(names)} of drawing `{drawing.path}` cannot be seen: `{by}` is drawn over it",
+        f"{named(names)} of drawing `{drawing.path}` cannot be seen: `{by}` is drawn over it",
         drawing.span,
         "what stands further down is drawn over it",
         hints=(f"write the drawing below `{name}`, or inside it",),
@@ -144,12 +144,12 @@ def lettering_note(
     part = f"{max(1, round(100 * share))} % of the" if share < _WHOLE else "the"
     names = [path.rpartition(".")[2] for path in by]
     over = "is" if len(by) == 1 else "are"
-    order = f"write {listed(names)} before what the letters belong to"
+    order = f"write {named(names)} before what the letters belong to"
     if structure.kind == "drawing":
-        order = f"write the drawing below {listed(names)}"
+        order = f"write the drawing below {named(names)}"
     return Diagnostic(
         "W0713",
-        f"{part} lettering `{text.path}` cannot be seen: {listed(by)} {over} drawn over it",
+        f"{part} lettering `{text.path}` cannot be seen: {named(by)} {over} drawn over it",
         text.span or structure.span,
         "what stands further down is drawn over it",
         hints=(f"move one of them, or {order}",),
@@ -160,7 +160,7 @@ def unseen_note(drawing: SolvedStructure, names: Sequence[str], color: str) -> D
     """For curves of a drawing that was given the colour of what they lie on."""
     return Diagnostic(
         "W0709",
-        f"{listed(names)} of drawing `{drawing.path}` cannot be seen: {color} on what has that colour",
+        f"{named(names)} of drawing `{drawing.path}` cannot be seen: {color} on what has that colour",
         drawing.span,
         "strokes of the colour of what is below",
         hints=(

@@ -10,11 +10,13 @@ from collections.abc import Iterator, Sequence
 
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.numbers import rough
+from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.finishing import Result, TooLarge, Work, finish, largest, sized
-from aidl_lang.geometry.notes import at, listed, local, short
+from aidl_lang.geometry.notes import at, local
 from aidl_lang.geometry.solved import Finish, SolvedGeometry, SolvedStructure
 
 Leaves = Sequence[tuple[SolvedGeometry, Piece]]
@@ -122,7 +124,7 @@ class _Fault:
         corner = (
             f"`{f.text}`" if f.at is not None else f"the corner at {at(failure.work.corner.at)} of `{f.text}`"
         )
-        size = short(max(failure.work.sizes))
+        size = rough(max(failure.work.sizes))
         if failure.other is not None:
             other = self.reason_of[id(failure.other)]
             edge = local(self.told, self.leaves[failure.number][0])
@@ -132,11 +134,11 @@ class _Fault:
                 f"{self.what} {size} is too large"
             ), (a, b)
         arms = failure.work.corner.arms
-        edges = listed([local(self.told, self.leaves[arm.number][0]) for arm in arms])
+        edges = named([local(self.told, self.leaves[arm.number][0]) for arm in arms])
         if self.is_cusp:
             message = f"{corner} has no {f.kind}: {edges} meet there without an angle"
         else:
-            room = short(_floor(failure.largest * (1 + 1e-9)))
+            room = rough(_floor(failure.largest * (1 + 1e-9)))
             message = (
                 f"the {f.kind} of {corner} does not fit: {self.what} {size}, and {edges} have room for {room}"
             )
@@ -150,9 +152,9 @@ class _Fault:
             other = "the other one" if beside else "this shape"
             return f"no {self.what} fits here beside {other}: that has to change"
         if beside and self.is_equal:
-            return f"with the same {self.what} in all of them at most {short(most)} fits"
+            return f"with the same {self.what} in all of them at most {rough(most)} fits"
         where = " beside the other" if beside else " at all its corners" if len(self.own) > 1 else ""
-        return f"at most {short(most)} fits{where}"
+        return f"at most {rough(most)} fits{where}"
 
     def _fix(self, most: float) -> Fix | None:
         """The size in the statements, where each has it as a number that nothing else decides."""
@@ -188,4 +190,4 @@ def _floor(value: float) -> float:
     if value <= 0:
         return 0.0
     step = 10.0 ** (math.floor(math.log10(value)) - 3)
-    return float(short(math.floor(value / step) * step))
+    return float(rough(math.floor(value / step) * step))

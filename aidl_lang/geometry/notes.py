@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.numbers import rough
+from aidl_lang.common.prose import did_you_mean, named
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import CoveredHoles, FilledHole, Finding, IdleHole, InnerLoop, LooseCurves
 from aidl_lang.geometry.colors import similar_colors
@@ -22,22 +24,8 @@ from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedStructure
 GUIDE = "to guide other geometry only, write `construction` before it"
 
 
-def short(value: float) -> str:
-    """A length for a sentence: four significant digits, no exponent for ordinary sizes."""
-    text = f"{value:.4g}"
-    return "0" if text == "-0" else text
-
-
 def at(p: Vec) -> str:
-    return f"({short(p[0])}, {short(p[1])})"
-
-
-def listed(names: Sequence[str]) -> str:
-    """`a`, `a and b`, `a, b and c`; the tail of a long list as a number."""
-    quoted = [f"`{n}`" for n in dict.fromkeys(names)]
-    if len(quoted) > 4:
-        quoted = [*quoted[:3], f"{len(quoted) - 3} more"]
-    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
+    return f"({rough(p[0])}, {rough(p[1])})"
 
 
 def local(structure: SolvedStructure, geometry: SolvedGeometry) -> str:
@@ -65,7 +53,7 @@ def _inner_loop(finding: InnerLoop) -> Diagnostic:
     hole = f"hole {_fresh(s, names[0])} {{ {names[0]} = … }}"
     return Diagnostic(
         "W0701",
-        f"{listed(names)} {'lies' if one else 'lie'} inside {listed(around)} and "
+        f"{named(names)} {'lies' if one else 'lie'} inside {named(around)} and "
         f"{'adds' if one else 'add'} nothing to {kind}`{s.path}`",
         face.geometries[0].span or s.span,
         "faces of one structure are united",
@@ -115,14 +103,14 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
     if gap is not None and math.dist(gap[0][1], gap[1][1]) <= network.tolerance:
         return _lost(finding, names, network)
     plural = len(set(names)) > 1
-    message = f"{listed(names)} {'enclose' if plural else 'encloses'} nothing in {s.kind} `{s.path}`"
+    message = f"{named(names)} {'enclose' if plural else 'encloses'} nothing in {s.kind} `{s.path}`"
     hints = [f"to draw without filling, use a `drawing`; {GUIDE}"]
     fix: Fix | None = None
     secondary: tuple[Label, ...] = ()
     if gap is not None:
         (one, p, _), (other, q, _) = gap
         distance = math.dist(p, q)
-        message += f": the end at {at(p)} is {short(distance)} mm away from {at(q)}"
+        message += f": the end at {at(p)} is {rough(distance)} mm away from {at(q)}"
         if one is not other:
             hints.insert(0, f"join the ends: `constrain {_end(s, gap[0])} == {_end(s, gap[1])}`")
             fix = _join_fix(s, f"{_end(s, gap[0])} == {_end(s, gap[1])}")
@@ -150,8 +138,8 @@ def _lost(finding: LooseCurves, names: Sequence[str], network: Network) -> Diagn
     plural = len(set(names)) > 1
     return Diagnostic(
         "W0702",
-        f"{listed(names)} {'enclose' if plural else 'encloses'} nothing in {s.kind} `{s.path}`: "
-        f"too small beside the drawing, which measures {short(network.size)} mm",
+        f"{named(names)} {'enclose' if plural else 'encloses'} nothing in {s.kind} `{s.path}`: "
+        f"too small beside the drawing, which measures {rough(network.size)} mm",
         finding.curves[0][0].span or s.span,
         "lost in it",
         hints=("look for a size or position that was written in another unit, or changed without bounds",),
@@ -220,7 +208,7 @@ def gap_note(gap: Gap) -> Diagnostic:
     )
     return Diagnostic(
         "N0708",
-        f"a gap of {short(gap.width)} mm between `{one}` and `{other}` at {at(kept[1])} was closed "
+        f"a gap of {rough(gap.width)} mm between `{one}` and `{other}` at {at(kept[1])} was closed "
         f"in {s.kind} `{s.path}`",
         gap.moved.geometry.span or s.span,
         "its end was moved",
@@ -300,16 +288,16 @@ def _filled_hole(finding: FilledHole) -> Diagnostic:
 
 def _covered_holes(finding: CoveredHoles) -> Diagnostic:
     s, count = finding.structure, finding.count
-    face, by = listed([local(s, g) for g in finding.face.geometries]), [local(s, g) for g in finding.covers]
+    face, by = named([local(s, g) for g in finding.face.geometries]), [local(s, g) for g in finding.covers]
     holes = f"{count} holes of {face} are" if count > 1 else f"a hole of {face} is"
     return Diagnostic(
         "W0708",
-        f"{holes} filled again by {listed(by)} in {s.kind} `{s.path}`",
+        f"{holes} filled again by {named(by)} in {s.kind} `{s.path}`",
         finding.face.geometries[0].span or s.span,
         "faces of one structure are united",
         tuple(Label(g.span, "covers what it leaves open") for g in finding.covers[:2] if g.span),
         (
-            f"if {listed(by)} shall only guide other geometry, write `construction` before it",
+            f"if {named(by)} shall only guide other geometry, write `construction` before it",
             f"to cut both, unite them before: `cut(union(…, {by[0]}), …)`",
             f"or put what is cut out into a `hole` in `{s.name}`, which cuts all of it",
             "to see them as two pieces, make each a `solid` of its own in an `assembly`",
@@ -350,7 +338,7 @@ def _detached(structure: SolvedStructure, nearest: tuple[float, str] | None) -> 
     hints = ["if that is meant, say so: `@detached` before its definition"]
     if nearest is not None:
         gap, other = nearest
-        message += f"; the nearest, `{other}`, is {short(gap)} mm away"
+        message += f"; the nearest, `{other}`, is {rough(gap)} mm away"
         hints.insert(0, "to join them, let their borders meet: `gap: 0`, `touching(…)` or `on_top_of(…)`")
     span, fix = structure.span, None
     if span and re.match(r"(@|[a-z]+\s+\w+\s*(\[|\(|\{|at\b|rotated\b))", span.text):
@@ -385,9 +373,7 @@ _MEASURES = ("radius", "rx", "width", "length", "size", "diameter", "module")
 def color_note(of: SolvedStructure | SolvedGeometry, values: tuple[Scalar, ...]) -> Diagnostic:
     written = ", ".join(map(str, values))
     similar = similar_colors(str(values[0])) if len(values) == 1 else []
-    hints = ["a colour is a CSS name, `#rrggbb`, or three numbers from 0 to 255"]
-    if similar:
-        hints.insert(0, f"did you mean {' or '.join(f'`{s}`' for s in similar)}?")
+    hints = [*did_you_mean(similar), "a colour is a CSS name, `#rrggbb`, or three numbers from 0 to 255"]
     fix, span = None, of.span
     if (
         similar

@@ -6,9 +6,11 @@ import math
 from collections.abc import Iterable, Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic, Label
+from aidl_lang.common.numbers import rough
+from aidl_lang.common.prose import named
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.finishing import Corner, arms_at, corners_of
-from aidl_lang.geometry.notes import at, listed, short
+from aidl_lang.geometry.notes import at
 from aidl_lang.geometry.solved import Finish, Recipe, SolvedGeometry, SolvedStructure
 
 Leaves = Sequence[tuple[SolvedGeometry, Piece]]
@@ -29,22 +31,22 @@ def nothing_left(g: SolvedGeometry, recipe: Recipe, depth: float | None = None) 
     sources, hint = _sources(recipe), ""
     match recipe.kind:
         case "offset":
-            amount = short(abs(recipe.numbers["distance"]))
+            amount = rough(abs(recipe.numbers["distance"]))
             message = f"nothing is left of `{sources[0]}` when it is moved inwards by {amount}"
-            gone = short(depth or 0)
+            gone = rough(depth or 0)
             hint = f"less than {gone} fits: choose a smaller distance, or make the outline larger"
         case "hull":
             lie = "lie" if len(set(sources)) > 1 else "lies"
-            message = f"`{g.path}` has no area: {listed(sources)} {lie} on one line"
+            message = f"`{g.path}` has no area: {named(sources)} {lie} on one line"
             hint = "a hull goes around circles, outlines, or three points and more"
         case "thick":
-            message = f"`{g.path}` has no width: it is {short(recipe.numbers['width'])}"
+            message = f"`{g.path}` has no width: it is {rough(recipe.numbers['width'])}"
             hint = "hold it open with a constraint, or write a width above 0"
         case "difference":
             message = f"nothing is left of `{sources[0]}` in `{g.path}`: it is cut away whole"
             hint = "look at the order: `cut(a, b)` is a without b"
         case _:
-            message = f"{listed(sources)} have nothing in common, so `{g.path}` is empty"
+            message = f"{named(sources)} have nothing in common, so `{g.path}` is empty"
             hint = "place them so that they overlap, as they shall in the drawing"
     return Diagnostic("E0339", message, g.span, "no outline comes of this", hints=(hint,))
 
@@ -55,7 +57,7 @@ def not_closed(g: SolvedGeometry, recipe: Recipe, operand: Iterable[SolvedGeomet
     plural = len(names) > 1
     return Diagnostic(
         "E0338",
-        f"{listed(names)} {'enclose' if plural else 'encloses'} nothing, and `{word}` needs an outline",
+        f"{named(names)} {'enclose' if plural else 'encloses'} nothing, and `{word}` needs an outline",
         g.span,
         "the curves are not closed",
         hints=(
@@ -66,7 +68,7 @@ def not_closed(g: SolvedGeometry, recipe: Recipe, operand: Iterable[SolvedGeomet
 
 
 def splits(g: SolvedGeometry, recipe: Recipe, count: int) -> Diagnostic:
-    amount, source = short(abs(recipe.numbers["distance"])), _sources(recipe)[0]
+    amount, source = rough(abs(recipe.numbers["distance"])), _sources(recipe)[0]
     return Diagnostic(
         "W0710",
         f"`{g.path}` falls into {count} pieces: `{source}` is narrower than twice {amount} in places",
@@ -77,13 +79,13 @@ def splits(g: SolvedGeometry, recipe: Recipe, count: int) -> Diagnostic:
 
 
 def all_wall(g: SolvedGeometry, recipe: Recipe, depth: float) -> Diagnostic:
-    source, wall = _sources(recipe)[0], short(recipe.numbers["thickness"])
+    source, wall = _sources(recipe)[0], rough(recipe.numbers["thickness"])
     return Diagnostic(
         "W0711",
         f"the wall of `{g.path}` fills all of `{source}`: it is {wall} thick",
         g.span,
         "no room is left inside",
-        hints=(f"a wall below {short(depth)} leaves room",),
+        hints=(f"a wall below {rough(depth)} leaves room",),
     )
 
 

@@ -11,6 +11,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.numbers import rough
+from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
 from aidl_lang.geometry.bodies import Bodies, Mass
 from aidl_lang.geometry.contacts import UNNOTICED, Contact, Solid
@@ -19,7 +21,7 @@ from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.faces import OwnFace
 from aidl_lang.geometry.measures import region_bounds
 from aidl_lang.geometry.nearness import near_pairs
-from aidl_lang.geometry.notes import listed, marked_detached, short
+from aidl_lang.geometry.notes import marked_detached
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import (
     Section,
@@ -189,8 +191,8 @@ def _note(solid: SolvedStructure, group: Sequence[_Piece], rest: Sequence[_Piece
     touches = "touch" if len(names) > 1 else "touches"
     return Diagnostic(
         "W0712",
-        f"{listed(names)} {touches} nothing else of solid `{solid.path}`; the nearest, {listed(beside)}, "
-        f"{'are' if len(beside) > 1 else 'is'} {short(gap)} mm away",
+        f"{named(names)} {touches} nothing else of solid `{solid.path}`; the nearest, {named(beside)}, "
+        f"{'are' if len(beside) > 1 else 'is'} {rough(gap)} mm away",
         first.span or solid.span,
         "a piece of its own",
         hints=(

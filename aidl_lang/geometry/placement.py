@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.building.expression import exact_turn
 from aidl_lang.common.diagnostics import Diagnostic, ordered
+from aidl_lang.common.prose import ticked
 from aidl_lang.common.records import record
 from aidl_lang.geometry.drawing import Body, Drawing
 from aidl_lang.geometry.solved import Frame, SolvedStructure
@@ -132,7 +133,7 @@ def _united(root: SolvedStructure, drawing: Drawing) -> Iterator[Diagnostic]:
         if s.path in bodies or s.kind == "drawing":
             body = s
         elif body is not None and body.kind == "solid" and (words := _other(s, body, drawing)):
-            said = " and ".join(f"`@{word}`" for word in words)
+            said = " and ".join(ticked(words, "@"))
             counts = "counts" if len(words) == 1 else "count"
             yield Diagnostic(
                 "W0727",

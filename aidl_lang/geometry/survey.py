@@ -12,6 +12,7 @@ from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.materials import density, similar
 from aidl_lang.common.names import find, nearest
+from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.geometry.alone import region_alone
 from aidl_lang.geometry.contacts import Contact
@@ -136,17 +137,15 @@ class NothingThereError(KeyError):
     def diagnostic(self) -> Diagnostic:
         path = self.args[0]
         what = f"`{path}` {self.reason}" if self.reason else f"there is no `{path}` in the drawing"
-        hints = [f"did you mean {' or '.join(f'`{name}`' for name in self.near)}?"] if self.near else []
+        hints = did_you_mean(self.near)
         if self.known:
-            hints.append(f"there is {listed(self.known)}")
+            hints.append(f"there is {some_of(self.known)}")
         return Diagnostic("E0919", what, hints=tuple(hints))
 
 
-def listed(names: Sequence[str]) -> str:
+def some_of(names: Sequence[str]) -> str:
     """The first of them as a sentence has them, and how many more there are."""
-    shown = ", ".join(f"`{name}`" for name in names[:_NAMED])
-    more = len(names) - _NAMED
-    return f"{shown} and {more} more" if more > 0 else shown
+    return first_few(ticked(names), _NAMED)
 
 
 def survey(
@@ -274,7 +273,7 @@ class _Surveyor:
                 structure.span if structure else None,
                 "made of it",
                 hints=(
-                    *([f"did you mean {' or '.join(f'`{name}`' for name in near)}?"] if near else []),
+                    *did_you_mean(near),
                     f'say it in kg/m³: `--density "{material}=1200"`',
                 ),
             )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from aidl_lang.common.diagnostics import Diagnostic, Label
+from aidl_lang.common.prose import listed
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import brackets, foreign, functions, missing, placements, spelling
 from aidl_lang.syntax.tokens import END, Token
@@ -94,7 +95,7 @@ def _unexpected(t: Trouble) -> Problem:
         if possible[:2] == ["a value", "a name"]:
             del possible[1]
         possible = possible[:3]
-        expected = " or ".join([", ".join(possible[:-1]), possible[-1]] if len(possible) > 1 else possible)
+        expected = listed(possible, last="or")
         place = describe(t.token) if t.token.kind != END else "the end of the file"
         message = f"expected {expected}, not {place}" if expected else f"{place} cannot stand here"
     secondary = (Label(t.span(t.first), "in the statement that begins here"),) if not t.between else ()

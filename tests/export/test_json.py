@@ -16,10 +16,10 @@ import shapely.geometry
 
 import aidl_lang
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
+from aidl_lang.common.numbers import fixed, significant
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.export import Job, export
 from aidl_lang.export.json import to_dict, to_json
-from aidl_lang.export.numbers import fixed, significant
 from aidl_lang.geometry.curves import Bezier, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import Box, Change, ConstraintReport, SolvedModel

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.export.numbers import shortest
+from aidl_lang.common.numbers import shortest
 from aidl_lang.syntax.tokens import tokenize
 from aidl_lang.tools.ide.edits import applied
 from aidl_lang.tools.ide.guesses import guesses

@@ -12,6 +12,7 @@ from aidl_lang.checking.synonyms import FIELDS, PARAMETERS
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import Edit, Fix, Label
 from aidl_lang.common.names import fold, is_like, is_slip, nearest
+from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
@@ -262,5 +263,4 @@ def respell(node: ast.Node, like: Sequence[str]) -> Fix | None:
 
 
 def list_of(start: str, names: Sequence[str], mark: str = "") -> str:
-    shown = ", ".join(f"`{mark}{name}`" for name in names[:8])
-    return start + (shown + (", …" if len(names) > 8 else "") if names else "nothing")
+    return start + (first_few(ticked(names, mark), 8, ", …") or "nothing")

@@ -12,6 +12,7 @@ from aidl_lang.checking.resolving.symbols import Scope, SymbolKind
 from aidl_lang.checking.types import PARAMETER_TYPES, PRIMITIVES, Signature
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import fold, nearest
+from aidl_lang.common.prose import ticked
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
@@ -122,9 +123,7 @@ class Declarer:
                 "E0215",
                 f"`{word.text}` is not a type" + (f"; did you mean `{like[0]}`?" if like else ""),
                 word,
-                hints=(
-                    "types are " + ", ".join(f"`{t}`" for t in PARAMETER_TYPES) + " and the names of shapes",
-                ),
+                hints=("types are " + ", ".join(ticked(PARAMETER_TYPES)) + " and the names of shapes",),
                 fix=complaints.respell(word, like),
             )
         return found

@@ -13,6 +13,7 @@ from typing import Literal
 
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.names import Spellings, find, nearest
+from aidl_lang.common.prose import with_article
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 
@@ -39,9 +40,7 @@ class SymbolKind(StrEnum):
 
     @property
     def with_article(self) -> str:
-        if self is SymbolKind.GEOMETRY:
-            return str(self)
-        return f"an {self}" if self[0] in "aeiou" else f"a {self}"
+        return with_article(self)
 
 
 UNKNOWNS = frozenset({SymbolKind.VAR, SymbolKind.GEOMETRY, SymbolKind.STRUCTURE})

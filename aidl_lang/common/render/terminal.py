@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from aidl_lang.common.diagnostics import Diagnostic, Label, Severity
+from aidl_lang.common.prose import counted, listed
 from aidl_lang.common.render.excerpt import Excerpt, Mark, mark
 from aidl_lang.common.render.patch import Change, Hunk, hunks
 from aidl_lang.common.render.style import Style
@@ -31,8 +32,7 @@ def one_line(diagnostic: Diagnostic) -> str:
 def summary(diagnostics: Iterable[Diagnostic]) -> str:
     """`2 errors and 1 warning`; empty if there is nothing to count."""
     counts = Counter(d.severity for d in diagnostics)
-    parts = [f"{n} {s}{'s' if n > 1 else ''}" for s in Severity if (n := counts[s])]
-    return " and ".join(filter(None, [", ".join(parts[:-1]), *parts[-1:]]))
+    return listed(counted(n, s) for s in Severity if (n := counts[s]))
 
 
 class _Page:

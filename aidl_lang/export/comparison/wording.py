@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import groupby
 from typing import TypeVar
 
+from aidl_lang.common.prose import first_few
 from aidl_lang.common.render import escape
 from aidl_lang.export.comparison.changes import (
     Comparison,
@@ -254,8 +255,7 @@ def _freedom(comparison: Comparison, root: str) -> Iterator[str]:
     for name, paths in (("now", comparison.freed), ("no longer", comparison.held)):
         short = [path.removeprefix(f"{root}.") for path in paths]
         if short:
-            more = [f"and {len(short) - _MOST} more"] if len(short) > _MOST else []
-            yield f"{name}: {', '.join(short[:_MOST] + more)}"
+            yield f"{name}: {first_few(short, _MOST, ', and {} more')}"
 
 
 # --- Numbers ---------------------------------------------------------------------------------------

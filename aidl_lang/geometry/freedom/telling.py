@@ -13,6 +13,7 @@ from aidl_lang.building.expression import DEGREE
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Model
 from aidl_lang.common.arrays import each_once
+from aidl_lang.common.numbers import short
 from aidl_lang.geometry.freedom.bending import Bending
 from aidl_lang.geometry.freedom.reach import POSSIBLE, Flags, Reach
 from aidl_lang.geometry.freedom.relations import Relations, pattern
@@ -200,7 +201,7 @@ class _Telling(Reach):
         if sigma[1] <= POSSIBLE * float(np.linalg.norm(xs)) and np.abs(vt[1]).min() > POSSIBLE:
             angle = math.degrees(math.atan2(vt[1, 1], vt[1, 0])) % 180.0
             velocity = xs * math.cos(math.radians(angle)) + ys * math.sin(math.radians(angle))
-            yield from self._told(velocity, "slide", things, f"slide along {_short(angle)}°")
+            yield from self._told(velocity, "slide", things, f"slide along {short(angle, 3)}°")
 
     def _turns(self, thing: Thing | None, xs: Floats, ys: Floats) -> Iterator[_Told]:
         at_x, at_y = np.flatnonzero(xs), np.flatnonzero(ys)
@@ -218,7 +219,7 @@ class _Telling(Reach):
         about, *_ = np.linalg.lstsq(missing, -self._missing(turn), rcond=1e-9)
         words = "turn"
         if np.linalg.norm(missing) > POSSIBLE:  # else it can turn about any place
-            words = f"turn about ({_short(x - about[1])}, {_short(y + about[0])})"
+            words = f"turn about ({short(x - about[1], 3)}, {short(y + about[0], 3)})"
         velocity = (turn + about[0] * xs + about[1] * ys) * DEGREE
         yield from self._told(velocity, "turn", things, words, spin=DEGREE)
 
@@ -237,7 +238,7 @@ class _Telling(Reach):
             return
         velocity = self.turning * self._inside(thing)
         velocity[local[local >= 0]] = needed[local >= 0]
-        words = f"turn about ({_short(x)}, {_short(y)})"
+        words = f"turn about ({short(x, 3)}, {short(y, 3)})"
         yield from self._told(velocity * DEGREE, "turn", [thing.path], words, spin=DEGREE)
 
     def _changes(self) -> Iterator[_Told]:
@@ -354,7 +355,3 @@ def _reduced(basis: Floats) -> Floats:
         rest = rest - np.outer(rest @ direction, direction)
     found: Floats = basis @ np.linalg.inv(basis[own])
     return found
-
-
-def _short(value: float) -> str:
-    return f"{round(value, 3) + 0.0:.6g}"

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
 from aidl_lang.building.expression import quoted
+from aidl_lang.common.prose import counted, listed
 from aidl_lang.common.records import record
 from aidl_lang.geometry.freedom.relations import pattern
 from aidl_lang.geometry.solved import Motion, SolvedModel
@@ -37,7 +38,7 @@ def report(model: SolvedModel, most: int | None = None) -> list[str]:
     if left := len(lines) - len(shown):
         told.append(f"… and {left} more like {'this' if len(shown) == 1 else 'these'}")
     if (untold := (model.degrees or 0) - len(model.ways)) > 0:
-        told.append(f"… and {untold} more {'degrees' if untold > 1 else 'degree'} of freedom, not told apart")
+        told.append(f"… and {counted(untold, 'more degree')} of freedom, not told apart")
     return told
 
 
@@ -74,12 +75,12 @@ def _lines(motions: Iterable[Motion]) -> Iterator[_Line]:
 def _words(ways: Sequence[Motion]) -> str:
     slides = [way.words.removeprefix("slide along ") for way in ways if way.kind == "slide"]
     others = [way.words for way in ways if way.kind != "slide"]
-    counted = [
+    repeated = [
         f"{words} in {count} ways" if (count := others.count(words)) > 1 else words
         for words in dict.fromkeys(others)
     ]
     slides.sort(key=lambda way: (way.startswith("a curve"), way))
-    return _listed([f"slide along {_listed(slides)}"] * bool(slides) + counted)
+    return listed([f"slide along {listed(slides)}"] * bool(slides) + repeated)
 
 
 def _sentence(line: _Line, root: str) -> str:
@@ -105,7 +106,7 @@ def _named(paths: Sequence[str], root: str) -> str:
         else:
             names += [_name(path, root) for path in run]
         rest -= len(run)
-    return _listed([*names, f"{rest} more"] if rest else names)
+    return listed([*names, f"{rest} more"] if rest else names)
 
 
 def _runs(paths: Sequence[str]) -> Iterator[list[str]]:
@@ -120,7 +121,3 @@ def _runs(paths: Sequence[str]) -> Iterator[list[str]]:
 
 def _name(path: str, root: str) -> str:
     return quoted(path.removeprefix(f"{root}."))
-
-
-def _listed(words: Sequence[str]) -> str:
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)

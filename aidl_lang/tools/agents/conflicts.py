@@ -8,10 +8,10 @@ from typing import TypeAlias
 
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic, Fix, apply_fixes
+from aidl_lang.common.numbers import short
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.explaining import failures
-from aidl_lang.explaining.remedies import short
 from aidl_lang.pipeline import Settings
 from aidl_lang.tools.agents.results import Conflict, Given, Party, Replacement, place, repair
 

@@ -9,9 +9,10 @@ from typing import cast
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.names import nearest
+from aidl_lang.common.numbers import short
+from aidl_lang.common.prose import did_you_mean
 from aidl_lang.common.render import compact
-from aidl_lang.explaining.remedies import short
-from aidl_lang.geometry.survey import Part, listed
+from aidl_lang.geometry.survey import Part, some_of
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.agents import model as models
 from aidl_lang.tools.agents.results import Body, Contact, Drawn, Export, Knob, Status, findings, joined
@@ -99,9 +100,9 @@ class _Making:
             if wanted in known:
                 return models.restricted(document, wanted)
         short_names = {name.removeprefix(f"{root}."): name for name in known}
-        near = [f"did you mean `{short_names[name]}`?" for name in nearest(path, short_names)]
+        near = [hint for name in nearest(path, short_names) for hint in did_you_mean([short_names[name]])]
         message = f"there is no structure `{path[:200]}` in the model"
-        raise refusal("E0919", message, *near, f"there is {listed(known)}")
+        raise refusal("E0919", message, *near, f"there is {some_of(known)}")
 
     def png(self) -> bytes | None:
         """The picture; of a program that did not solve, how far it came."""

@@ -10,6 +10,7 @@ from aidl_lang.building.model import Knob
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common import names
 from aidl_lang.common.diagnostics import Diagnostic, Edit
+from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.pipeline import Compiled
 from aidl_lang.syntax import ast
@@ -39,14 +40,12 @@ def find(known: tuple[Knob, ...], name: str) -> Knob:
     for wanted in (name, name.partition(".")[2]):
         if (path := names.find(wanted, by_path)) is not None:
             return by_path[path]
-    near = [f"did you mean `{path}`?" for path in names.nearest(name, by_path)]
-    listed = ", ".join(f"`{path}`" for path in list(by_path)[:_NAMED]) or "none"
-    more = len(by_path) - _NAMED
+    near = [hint for path in names.nearest(name, by_path) for hint in did_you_mean([path])]
     raise refusal(
         "E0945",
         f"there is no param `{name}`",
         *near,
-        f"params of this program: {listed}{f' and {more} more' if more > 0 else ''}",
+        f"params of this program: {first_few(ticked(by_path), _NAMED) or 'none'}",
     )
 
 

@@ -16,6 +16,7 @@ from aidl_lang.checking.variants import Variant
 from aidl_lang.common import pages
 from aidl_lang.common.diagnostics import Edit, has_errors
 from aidl_lang.common.drawing_time import TooLongError
+from aidl_lang.common.prose import did_you_mean, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.render import compact
 from aidl_lang.common.source import SourceFile, Span
@@ -132,7 +133,7 @@ class Tools:
             return Page(title, whole, list(sections))
         named = next((name for name in sections if name.casefold() == section.strip().casefold()), None)
         if named is None:
-            listed = ", ".join(f"`{name}`" for name in sections)
+            listed = ", ".join(ticked(sections))
             raise refusal("E0944", f"the guide has no section `{section[:100]}`", f"sections: {listed}")
         return Page(named, sections[named], list(sections))
 
@@ -163,8 +164,7 @@ class Tools:
         if entry is not None:
             blocks = [block for block in entry_blocks(entry, "#") if not block.startswith("<img")]
             return Page(entry.name, joined(blocks))
-        near = [f"`{n}`" for n in [*known.near(name[:100]), *pages.near(code[:100])][:6]]
-        hints = [f"did you mean {' or '.join(near)}?"] if near else []
+        hints = did_you_mean([*known.near(name[:100]), *pages.near(code[:100])][:6])
         raise refusal("E0912", f"there is no `{name[:100]}` to tell about", *hints, "`search` finds names")
 
     def measure(

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.report import UseError, exit_code
@@ -55,7 +56,7 @@ class Outcome:
         model = self.compiled.model
         freedom = ""
         if model is not None and model.degrees is not None and self.compiled.ok:
-            freedom = f", {_count(model.degrees, 'degree')} of freedom"
+            freedom = f", {counted(model.degrees, 'degree')} of freedom"
         place, remark = (", ".join(self.written), "") if self.written else (program, ", nothing written")
         status = self.compiled.status
         if status == "solved" and not self.compiled.ok:
@@ -161,7 +162,3 @@ def _suffix(name: str, fallback: str | None) -> str:
     asked = (said or own).lstrip(".")
     message = f"there is no format `{asked}`" if asked else f"the name `{name}` does not tell a format"
     raise UseError("E0905", message, f"formats: {', '.join(sorted(s.lstrip('.') for s in FORMATS))}")
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"

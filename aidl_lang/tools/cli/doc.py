@@ -7,6 +7,7 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
+from aidl_lang.common.prose import did_you_mean
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.report import UseError, say
 
@@ -51,8 +52,7 @@ def _found(known: Reference, name: str) -> Entry:
     if (entry := known.misspelt(name)) is not None:
         say(f"there is no `{escape(name)}`; this is `{entry.name}`")
         return entry
-    near = [f"`{n}`" for n in known.near(name)]
-    hints = [f"did you mean {' or '.join(near)}?"] if near else []
+    hints = did_you_mean(known.near(name))
     raise UseError("E0912", f"there is no `{name}` to tell about", *hints, "`aidl doc` lists all names")
 
 

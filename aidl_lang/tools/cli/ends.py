@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
+from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli.report import say
 
 if TYPE_CHECKING:
@@ -49,19 +50,15 @@ def _summary(sweep: Sweep) -> str:
     params = {each.knob.path for each in sweep.turned}
     failed = sum(not each.ok for each in sweep.turned)
     parts = [
-        f"{_count(len(sweep.turned), 'end')} of {_count(len(params), 'param')} tried, "
+        f"{counted(len(sweep.turned), 'end')} of {counted(len(params), 'param')} tried, "
         f"{failed or 'none'} {'fails' if failed == 1 else 'fail'}, {sweep.seconds:.1f} s"
     ]
     if sweep.rangeless:
         has = "has" if len(sweep.rangeless) == 1 else "have"
-        parts.append(f"{_count(len(sweep.rangeless), 'param')} {has} no range")
+        parts.append(f"{counted(len(sweep.rangeless), 'param')} {has} no range")
     if sweep.left:
-        parts.append(f"{_count(sweep.left, 'end')} left untried: there are too many, or they take too long")
+        parts.append(f"{counted(sweep.left, 'end')} left untried: there are too many, or they take too long")
     return "; ".join(parts)
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def data(name: str, sweep: Sweep) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli.options import add_provider, count_to, provider, sampling
 from aidl_lang.tools.cli.report import UseError, say, show
 
@@ -158,8 +159,7 @@ def _progress(done: Done) -> None:
 def _came(done: Done) -> str:
     if done.failure is not None:
         return f"broke off: {done.failure.message}"
-    count = len(done.record["attempts"])
-    after = f"after {count} attempt{'s' if count != 1 else ''}"
+    after = f"after {counted(len(done.record['attempts']), 'attempt')}"
     if not done.record["ok"]:
         return f"not valid {after}"
     lost = f", {len(done.record['missing'])} lost" if done.record["missing"] else ""

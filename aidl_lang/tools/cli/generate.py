@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.options import add_provider, count_to, provider, sampling
@@ -210,7 +211,7 @@ def _attempt_line(generation: Generation) -> str:
     if verdict is None:
         return f"attempt {attempt.number}: no whole program ({attempt.reply.finish})"
     codes = list(dict.fromkeys(verdict.codes))
-    named = ", ".join(codes[:_CODES]) + (" …" if len(codes) > _CODES else "")
+    named = first_few(codes, _CODES, " …")
     parts = [
         "valid" if verdict.ok else "a plan" if verdict.is_partial else f"wrong in {verdict.stage} ({named})"
     ]
@@ -221,9 +222,8 @@ def _attempt_line(generation: Generation) -> str:
 
 def _outcome(generation: Generation, seconds: float) -> str:
     usage = generation.usage
-    count = len(generation.attempts)
     parts = [
-        f"{'valid' if generation.ok else 'not valid'} after {count} attempt{'s' * (count != 1)}",
+        f"{'valid' if generation.ok else 'not valid'} after {counted(len(generation.attempts), 'attempt')}",
         f"{_number(usage.input)} tokens in, {_number(usage.output)} out",
         "cost unknown" if usage.cost is None else f"${usage.cost:.4f}",
         f"{seconds:.1f} s",

@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.options import add_params, add_program
 from aidl_lang.tools.cli.report import UseError, exit_code, show
@@ -81,7 +82,7 @@ def _lines(found: Survey, asked: bool) -> Iterator[str]:
 
 
 def _text(found: Survey, asked: bool) -> Iterator[str]:
-    from aidl_lang.geometry.survey import listed
+    from aidl_lang.geometry.survey import some_of
 
     yield from _block(found.whole)
     if asked:
@@ -96,12 +97,12 @@ def _text(found: Survey, asked: bool) -> Iterator[str]:
         yield ""
         yield from _pairs(found)
     if found.alone:
-        yield f"touches no other: {listed(found.alone)}"
+        yield f"touches no other: {some_of(found.alone)}"
 
 
 def _block(part: Part) -> Iterator[str]:
     """A part with all that is known of it."""
-    kinds = {"bodies": _count(part.bodies, "body", "bodies"), "body": "a body"}
+    kinds = {"bodies": counted(part.bodies, "body", "bodies"), "body": "a body"}
     yield f"{part.path}: {kinds.get(part.kind, part.kind)}"
     left, bottom, right, top = part.box
     size = max(right - left, top - bottom)
@@ -113,7 +114,7 @@ def _block(part: Part) -> Iterator[str]:
         ("size", f"{_number(right - left)} × {_number(top - bottom)} mm"),
         ("box", f"{_place((left, bottom), size)} to {_place((right, top), size)}"),
         ("centroid", _place(part.centroid, size)),
-        ("outline", f"{_count(part.pieces, 'piece')}, {_count(part.holes, 'hole')}"),
+        ("outline", f"{counted(part.pieces, 'piece')}, {counted(part.holes, 'hole')}"),
         (
             "moments",
             f"Ixx {_number(squares.xx)}, Iyy {_number(squares.yy)}, Ixy {_number(squares.xy, tiny)} mm⁴ "
@@ -178,7 +179,7 @@ def _pairs(found: Survey) -> Iterator[str]:
     for pair in rows:
         yield f"{pair.a:<{one}}  {pair.b:<{other}}  {_relation(pair)}"
     if more := len(found.pairs) - len(rows):
-        yield f"and {_count(more, 'more pair')}, {_relation(found.pairs[_MOST_PAIRS])} or further"
+        yield f"and {counted(more, 'more pair')}, {_relation(found.pairs[_MOST_PAIRS])} or further"
     if found.is_partial:
         yield "pairs that are far from each other are not listed"
 
@@ -202,18 +203,14 @@ def _mass(grams: float) -> str:
     return f"{_number(grams)} g" if grams < 1000 else f"{_number(grams / 1000)} kg"
 
 
-def _count(number: int, noun: str, plural: str = "") -> str:
-    return f"{number} {noun if number == 1 else plural or f'{noun}s'}"
-
-
 # --- JSON ----------------------------------------------------------------------------------------
 
 
 def _print_json(compiled: Compiled, found: Survey) -> None:
     import json
 
+    from aidl_lang.common.numbers import rounded
     from aidl_lang.common.render import to_dict
-    from aidl_lang.export.numbers import rounded
 
     document = {
         "units": "mm",

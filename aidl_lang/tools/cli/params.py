@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from aidl_lang.common.numbers import literal
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.options import add_program
 from aidl_lang.tools.cli.report import exit_code, show
@@ -48,24 +49,15 @@ def _print_table(knobs: tuple[Knob, ...]) -> None:
 def _row(knob: Knob) -> tuple[str, ...]:
     from aidl_lang.common.render import escape
 
-    value = f"= {_value(knob.value)}{knob.unit}"
+    value = f"= {literal(knob.value)}{knob.unit}"
     cells = (knob.path, value, _domain(knob), (knob.doc or "").replace("\n", " "))
     return tuple(map(escape, cells))
 
 
 def _domain(knob: Knob) -> str:
     if knob.choices:
-        return f"in [{', '.join(map(_value, knob.choices))}]"
+        return f"in [{', '.join(map(literal, knob.choices))}]"
     if knob.low is None or knob.high is None:
         return ""
-    step = f" step {_value(knob.step)}" if knob.step else ""
-    return f"in {_value(knob.low)}..{_value(knob.high)}{step}"
-
-
-def _value(value: object) -> str:
-    """A value as the language writes it."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, float):
-        return f"{value:g}"
-    return f'"{value}"' if isinstance(value, str) else str(value)
+    step = f" step {literal(knob.step)}" if knob.step else ""
+    return f"in {literal(knob.low)}..{literal(knob.high)}{step}"

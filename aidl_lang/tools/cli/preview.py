@@ -6,6 +6,7 @@ import argparse
 from importlib.util import find_spec
 from pathlib import Path
 
+from aidl_lang.common.prose import ticked
 from aidl_lang.tools.cli import files, listening
 from aidl_lang.tools.cli.options import add_program
 from aidl_lang.tools.cli.report import UseError, say
@@ -70,7 +71,7 @@ def _write(path: Path, data: bytes) -> None:
 def _require_packages() -> None:
     missing = [name for name in _NEEDED if find_spec(name) is None]
     if missing:
-        names = ", ".join(f"`{name}`" for name in missing)
+        names = ", ".join(ticked(missing))
         raise UseError(
             "E0952", f"the preview needs {names}, not installed here", "pip install 'aidl-lang[editor]'"
         )

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from aidl_lang.building.model import Knob
+from aidl_lang.common.numbers import literal
+from aidl_lang.common.prose import first_few
 from aidl_lang.tools.ends.told import Fault, Sweep, Tried, Turned
 from aidl_lang.tools.ends.values import Value
 
@@ -16,9 +18,7 @@ _TOLD = 3
 
 def valued(knob: Knob, value: Value) -> str:
     """A value as the language writes it."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    return f'"{value}"' if isinstance(value, str) else f"{value:.12g}{knob.unit}"
+    return literal(value, 12, knob.unit)
 
 
 def sentence(turned: Turned, name: str) -> str:
@@ -27,8 +27,8 @@ def sentence(turned: Turned, name: str) -> str:
         return ""
     where = f"at `{turned.knob.path} = {valued(turned.knob, turned.value)}` "
     faults = _places(turned.tried)
-    more = f"; and {len(faults) - _TOLD} more" if len(faults) > _TOLD else ""
-    return where + "; ".join(_said(fault, name) for fault in faults[:_TOLD]) + more + _limit(turned, name)
+    told = first_few([_said(fault, name) for fault in faults], _TOLD, "; and {} more", "; ")
+    return where + told + _limit(turned, name)
 
 
 def _places(tried: Tried) -> list[Fault]:

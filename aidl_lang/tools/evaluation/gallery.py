@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from aidl_lang.common.prose import counted
 from aidl_lang.tools.evaluation.clip import Scores
 from aidl_lang.tools.evaluation.requirements import Status
 from aidl_lang.tools.evaluation.store import picture_path
@@ -130,7 +131,7 @@ def _picture(record: Record, key: str, folder: Path) -> str:
 
 def _facts(record: Record, score: float | None) -> str:
     count = len(record["attempts"])
-    facts = [f"{count} attempt{'s' if count != 1 else ''}"]
+    facts = [counted(count, "attempt")]
     facts += [f"{value:g} {_NAMES.get(name, name)}" for name, value in record.get("numbers", {}).items()]
     if edits := record.get("edits", {}).get("edits"):
         facts.append(f"{sum(e['outcome'] == 'kept' for e in edits)}/{len(edits)} edits kept")

@@ -20,6 +20,7 @@ from aidl_lang.building.expression import Evaluator, Unknown
 from aidl_lang.building.model import Assertion, Condition, Measurement, Model, Structure
 from aidl_lang.building.values import Text
 from aidl_lang.common.diagnostics import has_errors
+from aidl_lang.common.prose import first_few
 from aidl_lang.common.records import record
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
@@ -282,6 +283,5 @@ class _Examination:
         told = []
         for name in requirement.roles:
             paths = [thing.path for thing in self.bound[name]]
-            more = f" and {len(paths) - 4} more" if len(paths) > 4 else ""
-            told.append(f"{name}: {', '.join(paths[:4]) or 'none'}{more}")
+            told.append(f"{name}: {first_few(paths, 4) or 'none'}")
         return f" ({'; '.join(told)})" if told else ""

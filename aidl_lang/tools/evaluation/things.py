@@ -8,6 +8,7 @@ from dataclasses import replace
 from itertools import chain
 from typing import TypeAlias
 
+from aidl_lang.common.prose import first_few
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.boolean import united, without
@@ -46,8 +47,7 @@ class Thing:
     @property
     def path(self) -> str:
         """Of the first part, and how many more there are that lie together."""
-        more = f" and {len(self.groups) - 1} more" if len(self.groups) > 1 else ""
-        return self.groups[0][0].path + more
+        return first_few([group[0].path for group in self.groups], 1)
 
     @property
     def paths(self) -> Iterator[str]:

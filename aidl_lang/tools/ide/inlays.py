@@ -10,9 +10,9 @@ from enum import StrEnum
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.names import fold
+from aidl_lang.common.numbers import fixed
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.export.numbers import fixed
 from aidl_lang.geometry.solved import Scalar
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.guesses import Guess, guesses

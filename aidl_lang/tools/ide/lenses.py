@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.solved import ConstraintReport, Motion, SolvedModel, SolvedStructure
@@ -51,7 +52,7 @@ def _lenses(view: View, outcome: Compiled, model: SolvedModel) -> Iterator[Lens]
 def _status(outcome: Compiled, model: SolvedModel) -> str:
     match outcome.status:
         case "solved" if model.degrees is not None:
-            return f"solved, {_counted(model.degrees, 'degree')} of freedom"
+            return f"solved, {counted(model.degrees, 'degree')} of freedom"
         case "solved":
             return "solved"
         case "partial":
@@ -66,16 +67,15 @@ def _title(
     """What is said of the structures that one piece of text made."""
     said = list(dict.fromkeys(_one(structure, motions, reports) for structure in found))
     times = f"{len(found)} times · " if len(found) > 1 else ""
-    more = " …" if len(said) > _NAMED else ""
-    return times + " | ".join(said[:_NAMED]) + more
+    return times + first_few(said, _NAMED, " …", " | ")
 
 
 def _one(structure: SolvedStructure, motions: Sequence[Motion], reports: Sequence[ConstraintReport]) -> str:
     own = [report for report in reports if report.path == structure.path and not report.soft]
     broken = [report for report in own if not report.satisfied]
-    held = f"{_counted(len(own), 'constraint')} · " if own else ""
+    held = f"{counted(len(own), 'constraint')} · " if own else ""
     if broken:
-        return f"{len(broken)} of {_counted(len(own), 'constraint')} not met"
+        return f"{len(broken)} of {counted(len(own), 'constraint')} not met"
     inside = f"{structure.path}."
     free = [
         f"{_names(motion, inside)}can {motion.words}"
@@ -83,15 +83,11 @@ def _one(structure: SolvedStructure, motions: Sequence[Motion], reports: Sequenc
         if all(thing == structure.path or thing.startswith(inside) for thing in motion.things)
     ]
     if free:
-        return f"{held}{', '.join(free[:_NAMED])}" + (" …" if len(free) > _NAMED else "")
+        return f"{held}{first_few(free, _NAMED, ' …')}"
     return f"{held}{_HELD}"
 
 
 def _names(motion: Motion, inside: str) -> str:
     """What moves, as it is called in a structure; nothing for the structure itself."""
     names = [thing.removeprefix(inside) for thing in motion.things if thing.startswith(inside)]
-    return ", ".join(names[:_NAMED]) + (" …" if len(names) > _NAMED else "") + " " * bool(names)
-
-
-def _counted(count: int, word: str) -> str:
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
+    return first_few(names, _NAMED, " …") + " " * bool(names)

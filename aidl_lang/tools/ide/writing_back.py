@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.numbers import shortest
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.export.numbers import shortest
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.ide.comparing import SAME, is_same
 from aidl_lang.tools.ide.guesses import VISIBLE, Guess, as_kept, guesses

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.numbers import short
+from aidl_lang.common.prose import counted, first_few, ticked
 from aidl_lang.common.render import compact
 from aidl_lang.geometry.freedom import report
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
@@ -40,7 +42,7 @@ def errors(compiled: Compiled) -> str:
     """What is wrong, and where the solver failed, what freedom the rest leaves."""
     wrong = [d for d in compiled.diagnostics if d.is_error]
     stage = stage_of(wrong)
-    count = "1 error" if len(wrong) == 1 else f"{len(wrong)} errors"
+    count = counted(len(wrong), "error")
     blocks = [f"The program is wrong: {count}, the first of them in the check of {stage}.", compact(wrong)]
     if stage == "solve" and compiled.model is not None:
         blocks.append(_freedom(compiled.model))
@@ -53,7 +55,7 @@ def remarks(compiled: Compiled, *, may_constrain: bool) -> str:
     floating = floats(compiled.model) if may_constrain and compiled.model is not None else ()
     blocks = [compact(warnings)] if warnings else []
     if floating:
-        names = ", ".join(f"`{path}`" for path in floating[:_MOST]) + ", …" * (len(floating) > _MOST)
+        names = first_few(ticked(floating), _MOST, ", …")
         verb, stands = ("floats", "it stands") if len(floating) == 1 else ("float", "they stand")
         blocks.append(
             f"warning: {names} {verb}: no constraint speaks of where, so {stands} as first guessed. Say how "
@@ -110,12 +112,8 @@ def plan(model: SolvedModel) -> str:
 def _box(structure: SolvedStructure) -> str:
     box = structure.box
     where = (
-        f"x {_short(box.left)} to {_short(box.right)}, y {_short(box.bottom)} to {_short(box.top)}"
+        f"x {short(box.left, 2)} to {short(box.right, 2)}, y {short(box.bottom, 2)} to {short(box.top, 2)}"
         if box
         else "no extent"
     )
     return f"{structure.kind} `{structure.path}`: {where}" + " (empty)" * structure.is_empty
-
-
-def _short(value: float) -> str:
-    return f"{round(value, 2) + 0.0:.6g}"

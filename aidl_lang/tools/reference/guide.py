@@ -22,6 +22,7 @@ from pathlib import Path
 
 from aidl_lang.checking.builtins import CUTS
 from aidl_lang.checking.variants import Variant
+from aidl_lang.common.prose import ticked
 from aidl_lang.common.resources import resource
 from aidl_lang.syntax import ast
 from aidl_lang.tools.reference.collect import Entry, reference
@@ -128,7 +129,7 @@ def _arguments(variant: Variant, entry: Entry) -> str:
 
 
 def _names(variant: Variant, *topics: str) -> str:
-    return ", ".join(f"`{entry.name}`" for entry in _entries(variant, topics))
+    return ", ".join(ticked(entry.name for entry in _entries(variant, topics)))
 
 
 def _fields(variant: Variant) -> str:

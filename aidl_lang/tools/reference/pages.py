@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from aidl_lang.checking import library
+from aidl_lang.common.prose import ticked
 from aidl_lang.tools.reference.collect import Entry, Reference, Topic
 from aidl_lang.tools.reference.signatures import exactness, held, parts, short_forms
 
@@ -162,7 +163,7 @@ def _table(sort: str, entries: list[Entry]) -> str:
 
 def _cells(sort: str, entry: Entry) -> list[str]:
     if sort in ("shape", "template"):
-        return [", ".join(f"`{part}`" for part in _parts_of(entry))]
+        return [", ".join(ticked(_parts_of(entry)))]
     if sort in ("relation", "constraint"):
         measures = ", ".join(f"`{name}` {word}" for name, word in _exactness_of(entry).items())
         return [" or ".join(_held_of(entry)), measures]

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from functools import partial
 
 from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.numbers import fixed
 from aidl_lang.common.records import record
-from aidl_lang.export.numbers import fixed
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.evaluate import bounds
 from aidl_lang.geometry.network import union_bounds

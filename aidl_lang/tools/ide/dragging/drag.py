@@ -15,8 +15,9 @@ from functools import cached_property, lru_cache
 from aidl_lang.building.expression import Unknown
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.drawing_time import TooLongError
+from aidl_lang.common.numbers import shortest
+from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.common.records import record
-from aidl_lang.export.numbers import shortest
 from aidl_lang.geometry.curves import Vec
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.ide.comparing import is_same
@@ -209,8 +210,7 @@ def _name(grip: Grip) -> str:
 
 
 def _by_param(grip: Grip, params: tuple[str, ...]) -> str:
-    more = " or others" if len(params) > _NAMED else ""
-    return f"{_name(grip)}: drag to change {' or '.join(f'`{name}`' for name in params[:_NAMED])}{more}"
+    return f"{_name(grip)}: drag to change {first_few(ticked(params), _NAMED, ' or others', ' or ')}"
 
 
 def _pulled(view: View, grip: Grip, to: Vec, step: float) -> Dragged | Refusal:

@@ -15,8 +15,8 @@ from aidl_lang.building.state import Env
 from aidl_lang.building.values import Num, PointVal, Status, Text, Value
 from aidl_lang.checking.fields import PRIMITIVE
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension
+from aidl_lang.common.numbers import fixed
 from aidl_lang.common.source import Span
-from aidl_lang.export.numbers import fixed
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.hover.solved_values import Found, Solved, items_of, spelled
 

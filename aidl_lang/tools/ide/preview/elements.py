@@ -6,9 +6,9 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
+from aidl_lang.common.numbers import short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.explaining.remedies import short
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds, bounds
 from aidl_lang.geometry.network import union_bounds
@@ -178,7 +178,7 @@ def _extent(thing: SolvedStructure | SolvedGeometry) -> str:
 
 def _mm(value: float) -> str:
     """To a thousandth, as much as anybody makes."""
-    return short(round(value, 3)) if math.isfinite(value) else "?"
+    return short(value, 3) if math.isfinite(value) else "?"
 
 
 def elements_at(view: View, offset: int) -> list[int]:

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from aidl_lang.common.numbers import rounded
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.export.numbers import rounded
 from aidl_lang.tools.ide.positions import Positions
 from aidl_lang.tools.ide.preview.values import Conflict, Element, Preview, Problem, Slider, Way
 from aidl_lang.tools.ide.view import View

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
+from aidl_lang.common.prose import counted, listed
 from aidl_lang.tools.llm.intent.changes import Fate
 from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind
 from aidl_lang.tools.llm.intent.loss import Loss
@@ -26,7 +27,7 @@ def phrase(loss: Loss) -> str:
         return f"{many} `{dotted(loss.item.thing)}` became {few}: unless fewer are meant, make as many again"
     words = f"{named(loss.item, loss.inventory)} {_fate(loss)}"
     if loss.dependents:
-        words += f", and with it {_listed([quoted(item.text) for item in loss.dependents], _TOLD)}"
+        words += f", and with it {listed([quoted(item.text) for item in loss.dependents], _TOLD)}"
     reason = _reason(loss)
     return f"{words}: {reason}" if reason else words
 
@@ -71,11 +72,11 @@ def _content(inventory: Inventory, item: Item) -> str:
     """`solid, 3 geometries, 2 constraints`"""
     counts = Counter(i.kind for i in inventory.inside(item.thing))
     parts = [
-        f"{counts[kind]} {one if counts[kind] == 1 else many}"
+        counted(counts[kind], one, many)
         for kind, one, many in (
-            (Kind.STRUCTURE, "structure", "structures"),
+            (Kind.STRUCTURE, "structure", ""),
             (Kind.GEOMETRY, "geometry", "geometries"),
-            (Kind.CONSTRAINT, "constraint", "constraints"),
+            (Kind.CONSTRAINT, "constraint", ""),
         )
         if counts[kind]
     ]
@@ -100,7 +101,7 @@ def _reason(loss: Loss) -> str:
         return "it was written wrongly; say it in a way that is right"
     match finding.state:
         case State.CONFLICTS if finding.parties:
-            with_ = _listed([quoted(party) for party in finding.parties])
+            with_ = listed(map(quoted, finding.parties), _NAMED)
             return f"as it was it conflicts with {with_}; say it in another way, or mend one of those"
         case State.CONFLICTS:
             why = f" ({finding.reason})" if finding.reason else ""
@@ -108,16 +109,8 @@ def _reason(loss: Loss) -> str:
         case State.FITS:
             clashing = [quoted(item.text) for item in loss.dependents if item.clashes]
             if clashing:
-                return f"put it back, but say {_listed(clashing, _TOLD)} in a way that holds"
+                return f"put it back, but say {listed(clashing, _TOLD)} in a way that holds"
             return "it fits as it was; put it back"
         case State.HOMELESS if not is_thing:
             return "what it speaks of is not there any more; say it of what is there now"
     return ""
-
-
-def _listed(names: Iterable[str], most: int = _NAMED) -> str:
-    """`a`; `a and b`; `a, b and 3 more`"""
-    known = list(names)
-    if len(known) > most:
-        known = [*known[: most - 1], f"{len(known) - most + 1} more"]
-    return " and ".join(filter(None, [", ".join(known[:-1]), *known[-1:]]))

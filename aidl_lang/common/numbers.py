@@ -1,4 +1,4 @@
-"""Numbers in exported texts: the same digits on every run."""
+"""Numbers in texts: the same digits on every run."""
 
 from __future__ import annotations
 
@@ -23,6 +23,23 @@ def shortest(value: float, tolerance: float) -> str:
         if abs(round(value, places) - value) <= tolerance:
             return fixed(value, places)
     return fixed(value, _MOST_DECIMALS)
+
+
+def short(value: float, decimals: int = 6) -> str:
+    """Returns a number for a sentence: six significant digits, so many decimals at most, never `-0`."""
+    return f"{round(value, decimals) + 0.0:.6g}"
+
+
+def rough(value: float) -> str:
+    """Returns a length for a sentence: four significant digits, no exponent for ordinary sizes."""
+    return f"{value + 0.0:.4g}"
+
+
+def literal(value: float | str | bool, digits: int = 6, unit: str = "") -> str:
+    """Returns a value as the language writes it; a number with so many significant digits."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f'"{value}"' if isinstance(value, str) else f"{value:.{digits}g}{unit}"
 
 
 def significant(value: float) -> float:
