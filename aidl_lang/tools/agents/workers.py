@@ -6,10 +6,9 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Mapping
-from concurrent.futures import TimeoutError
 
-from aidl_lang.common import processes
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.processes import Guarded, Limit, limit_met
 from aidl_lang.common.render import compact
 from aidl_lang.tools.agents.calling import Answer, answer
 from aidl_lang.tools.agents.tools import Tools
@@ -24,24 +23,27 @@ class Workers:
 
     def __init__(self, workshop: Tools, seconds: float = SECONDS) -> None:
         self.workshop, self.seconds = workshop, seconds
-        self.pool = processes.pool(_WORKERS, "aidl_lang.tools.agents.calling")
+        self._pool = Guarded(_WORKERS, "aidl_lang.tools.agents.calling")
 
     async def answer(self, name: str, arguments: Mapping[str, object]) -> Answer:
         """The answer of a tool. Cancelling this ends the process that works on it."""
-        from pebble import ProcessExpired
-
-        future = self.pool.schedule(answer, (self.workshop, name, arguments), timeout=self.seconds)
+        future = self._pool.submit(self.seconds, answer, self.workshop, name, arguments)
         try:
             return await asyncio.wrap_future(future)
-        except TimeoutError:
-            return _given_up(f"took longer than {self.seconds:g} s")
-        except ProcessExpired:
-            return _given_up("ended the process that worked on it")
-        except MemoryError:
-            return _given_up("needs more memory than there is for it")
+        except Exception as error:
+            if (limit := limit_met(error)) is None:
+                raise
+            return _given_up(_WHY[limit].format(self.seconds))
 
     def close(self) -> None:
-        processes.stop(self.pool)
+        self._pool.close()
+
+
+_WHY = {
+    Limit.TIME: "took longer than {:g} s",
+    Limit.DEATH: "ended the process that worked on it",
+    Limit.MEMORY: "needs more memory than there is for it",
+}
 
 
 def _given_up(why: str) -> Answer:

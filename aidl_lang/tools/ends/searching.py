@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Generator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, TimeoutError, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from aidl_lang.building.model import Knob
-from aidl_lang.common import processes
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.processes import Guarded, Limit, count, limit_met
 from aidl_lang.tools.ends.told import Fault, Sweep, Tried, Turned
 from aidl_lang.tools.ends.trying import Job, fault, tried
 from aidl_lang.tools.ends.values import Value, ends, limit
-
-if TYPE_CHECKING:
-    from pebble import ProcessPool
 
 LONGEST = 300.0
 """Seconds for all of it; what is not done by then is left, and counted."""
@@ -104,7 +101,7 @@ class _Run:
 
     def turned(self) -> tuple[Turned, ...]:
         """What the courses found, in their order, as far as there was time."""
-        workers = processes.pool(min(processes.count(), len(self.courses)), "aidl_lang.tools.ends.trying")
+        workers = Guarded(min(count(), len(self.courses)), "aidl_lang.tools.ends.trying")
         try:
             self.progress(0, len(self.courses))
             for number, course in enumerate(self.courses):
@@ -115,15 +112,15 @@ class _Run:
                 for future in done:
                     self._go_on(workers, self._waiting.pop(future), _came(future))
         finally:
-            processes.stop(workers)
+            workers.close()
         return tuple(self._results[number] for number in sorted(self._results))
 
-    def _ask(self, workers: ProcessPool, number: int, asking: Asking) -> None:
+    def _ask(self, workers: Guarded, number: int, asking: Asking) -> None:
         value, explained = asking
-        arguments = (self.job, self.knobs[number].path, value, explained)
-        self._waiting[workers.schedule(tried, arguments, timeout=self.job.seconds)] = number
+        path = self.knobs[number].path
+        self._waiting[workers.submit(self.job.seconds, tried, self.job, path, value, explained)] = number
 
-    def _go_on(self, workers: ProcessPool, number: int, found: Tried) -> None:
+    def _go_on(self, workers: Guarded, number: int, found: Tried) -> None:
         self.compiled += 1
         try:
             self._ask(workers, number, self.courses[number].send(found))
@@ -134,17 +131,14 @@ class _Run:
 
 def _came(future: Future[Tried]) -> Tried:
     """What a process found, or how it ended."""
-    from pebble import ProcessExpired
-
-    try:
+    error = future.exception()
+    if error is None or (limit := limit_met(error)) is None:
         return future.result()
-    except TimeoutError:
-        return _given_up("takes longer than a compile may")
-    except ProcessExpired:
-        return _given_up("ends the process that compiles it")
-    except MemoryError:
-        return _given_up("needs more memory than there is for it")
+    return Tried(False, (Fault("E0603", f"the program {_WHY[limit]}"),), was_given_up=True)
 
 
-def _given_up(why: str) -> Tried:
-    return Tried(False, (Fault("E0603", f"the program {why}"),), was_given_up=True)
+_WHY = {
+    Limit.TIME: "takes longer than a compile may",
+    Limit.DEATH: "ends the process that compiles it",
+    Limit.MEMORY: "needs more memory than there is for it",
+}

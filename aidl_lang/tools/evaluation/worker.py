@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import resource
-import signal
 from collections.abc import Callable
 from dataclasses import field, replace
 from itertools import count
 from typing import TypeVar
 
-from pebble import ProcessExpired, ProcessPool
-
+from aidl_lang.common.processes import Guarded, Limit, limit_met
 from aidl_lang.common.records import record
 from aidl_lang.tools.llm.language import Conversation, Language, Verdict
 
@@ -34,36 +30,27 @@ class Worker:
 
     def __init__(self, seconds: float = SECONDS) -> None:
         self._seconds = seconds
-        context = multiprocessing.get_context("forkserver")
-        context.set_forkserver_preload(["aidl_lang.tools.evaluation.measures"])
-        self._pool = ProcessPool(max_workers=1, initializer=_prepare, context=context)
+        self._pool = Guarded(1, "aidl_lang.tools.evaluation.measures", _MEMORY)
 
     def call(self, task: Callable[..., T], *arguments: object) -> T:
         """What the task returns; it and its arguments can be pickled. Raises Broken."""
-        future = self._pool.schedule(task, args=arguments, timeout=self._seconds)
+        future = self._pool.submit(self._seconds, task, *arguments)
         error = future.exception()
-        if error is not None:
-            raise Broken(_reason(error, self._seconds)) from error
-        return future.result()
+        if error is None:
+            return future.result()
+        if (limit := limit_met(error)) is not None:
+            raise Broken(_WHY[limit].format(self._seconds)) from error
+        raise Broken(f"it ended in {type(error).__name__}: {str(error)[:200]}") from error
 
     def stop(self) -> None:
-        self._pool.stop()  # type: ignore[no-untyped-call]
-        self._pool.join()
+        self._pool.close()
 
 
-def _prepare() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the main process decides what an interrupt ends
-    resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
-
-
-def _reason(error: BaseException, seconds: float) -> str:
-    if isinstance(error, TimeoutError):
-        return f"it took longer than {seconds:g} s"
-    if isinstance(error, ProcessExpired):
-        return "the process that ran it came to an end"
-    if isinstance(error, MemoryError):
-        return f"it took more than {_MEMORY >> 30} GB of memory"
-    return f"it ended in {type(error).__name__}: {str(error)[:200]}"
+_WHY = {
+    Limit.TIME: "it took longer than {:g} s",
+    Limit.DEATH: "the process that ran it came to an end",
+    Limit.MEMORY: f"it took more than {_MEMORY >> 30} GB of memory",
+}
 
 
 @record()
