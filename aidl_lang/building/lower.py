@@ -341,9 +341,9 @@ def _is_bound(part: Comparison) -> bool:
 
 def _clinging(parent: Structure) -> Sequence[Structure]:
     """The children that belong to what is drawn around them: all that lie in a part, and holes and drawings
-    beside parts.
+    beside parts; but none that stands still, for its place was said in the frame of the root.
     """
-    children = parent.children
+    children = [c for c in parent.children if parent.parent is not None or not _is_placed(c)]
     if parent.plan or any(not geometry.construction for geometry in parent.own()):
         return children
     without = [child for child in children if child.kind in _NO_BODY]
@@ -351,6 +351,11 @@ def _clinging(parent: Structure) -> Sequence[Structure]:
 
 
 _NO_BODY = ("hole", "drawing")
+
+
+def _is_placed(structure: Structure) -> bool:
+    """Whether a frame is exact in the one around it."""
+    return structure.frame.x.is_constant and structure.frame.y.is_constant
 
 
 def _is_variable(unknown: Unknown) -> bool:

@@ -120,11 +120,23 @@ def _needed(
         order = [column for number in sorted(things, key=dearness.__getitem__) for column in things[number]]
         share = _combination(matrix, matrix @ steps, order)
         chosen = [i for members in things.values() if any(share[i] for i in members) for i in members]
+        if len(chosen) == len(columns):  # nothing can stay as a whole
+            chosen = [i for members in things.values() for i in _tied(matrix, share, members)]
         needed.update(columns[i] for i in chosen)
         if chosen and not program.linear:
             found = np.linalg.lstsq(matrix[:, chosen], matrix @ steps, rcond=None)[0]
             expected.update(zip((columns[i] for i in chosen), found.tolist(), strict=True))
     return needed, expected
+
+
+def _tied(matrix: Floats, share: list[bool], members: list[int]) -> list[int]:
+    """The columns of a thing that have a share, and those that a row ties to one of them: a coordinate that
+    the others do not depend on can stay by itself.
+    """
+    slopes = np.abs(matrix)
+    sloping = slopes > REACHED * slopes.max(axis=1, initial=0.0, keepdims=True)
+    moving = sloping[:, [i for i in members if share[i]]].any(axis=1)
+    return [i for i in members if share[i] or bool((sloping[:, i] & moving).any())]
 
 
 def _combination(matrix: Floats, target: Floats, order: list[int]) -> list[bool]:

@@ -77,6 +77,19 @@ class Picture:
         return {path: (*m.center, *m.size) for path, m in self.root.leaves("d")}
 
     @property
+    def unnamed(self) -> list[str]:
+        """The paths of what no constraint names, neither it nor anything in it: nobody says where it is."""
+        return list(self._unnamed(self.root, "d", ""))
+
+    def _unnamed(self, part: Part, path: str, said: str) -> Iterator[str]:
+        said = "\n".join([said, *part.constraints])
+        for m in part.members:
+            names = "|".join([m.name, *(below.rpartition(".")[2] for below, _ in m.leaves(""))])
+            if not m.is_fixed and not re.search(rf"\b({names})\b", said):
+                yield f"{path}.{m.name}"
+            yield from self._unnamed(m, f"{path}.{m.name}", said)
+
+    @property
     def exact(self) -> Picture:
         """The same with every guess right."""
         return replace(self, noise=dict.fromkeys(self.noise, (0.0, 0.0)))
