@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import random
+from typing import Any
 
 import pytest
 from lsprotocol import types
@@ -23,6 +24,15 @@ solid slow {
 }
 """
 """Takes ten seconds and more."""
+SLOW_TO_TRY = """\
+param count = 2 in 1..60
+solid grid {
+    for i in 0..count {
+        for j in 0..count { dots[i * 61 + j] = rectangle(center: (3 * i, 3 * j), width: 1, height: 2) }
+    }
+}
+"""
+"""Takes a second and more where `count` is 40."""
 
 
 def said(diagnostics) -> list[tuple[str, str]]:
@@ -158,6 +168,59 @@ async def test_only_the_newest_attempt_is_made(editor: Editor) -> None:
     assert {each.code for each in others} == {types.LSPErrorCodes.RequestCancelled.value}
     assert (await editor.ask("aidl/preview", uri=uri, show=[]))["tried"] is False
     await editor.ask("aidl/previewClose", uri=uri)
+    editor.close(uri)
+
+
+async def test_an_attempt_is_given_up_where_its_viewer_edits(editor: Editor) -> None:
+    uri = editor.open("untitled:outdated", SLOW_TO_TRY)
+    await editor.found(uri)
+    tries = {
+        viewer: asyncio.ensure_future(editor.ask("aidl/try", uri=uri, viewer=viewer, knobs={"count": 40}))
+        for viewer in ("one", "other")
+    }
+    await asyncio.sleep(0.1)
+    refused = asyncio.ensure_future(
+        editor.ask("aidl/setKnob", uri=uri, viewer="one", path="count", value=5000)
+    )
+    with pytest.raises(JsonRpcException) as given_up:
+        await tries["one"]
+    assert given_up.value.code == types.LSPErrorCodes.RequestCancelled.value
+    assert (await tries["other"])["tried"]
+    assert not (await refused)["applied"]
+    editor.close(uri)
+
+
+async def test_viewers_of_one_document_see_what_each_asked_for(editor: Editor) -> None:
+    uri = editor.open("untitled:viewers", "solid a { b = circle(radius: 3) }\n")
+    plain = await editor.ask("aidl/preview", uri=uri, viewer="plain")
+    named = await editor.ask("aidl/preview", uri=uri, viewer="named", show=["names"], source=True)
+    assert (plain["source"], named["source"]["text"]) == (None, editor.texts[uri])
+    await editor.ask("aidl/previewClose", uri=uri, viewer="nobody")
+    version = editor.replace(uri, "3", "4")
+
+    def told() -> dict[str, Any] | None:
+        found = {p["viewer"]: p for p in editor.pictures if p["uri"] == uri and p["version"] == version}
+        return found if found.keys() == {"plain", "named"} else None
+
+    after = await editor.until(told)
+    assert "show-names" in after["named"]["svg"]
+    assert "show-names" not in after["plain"]["svg"]
+    assert after["named"]["source"]["text"] == editor.texts[uri]
+    await editor.ask("aidl/previewClose", uri=uri, viewer="plain")
+    version = editor.replace(uri, "4", "5")
+    await editor.until(lambda: [p for p in editor.pictures if p["uri"] == uri and p["version"] == version])
+    await editor.status(uri)
+    assert {p["viewer"] for p in editor.pictures if p["uri"] == uri and p["version"] == version} == {"named"}
+    editor.close(uri)
+
+
+async def test_edits_of_the_text_as_it_is_follow_one_another(editor: Editor) -> None:
+    uri = editor.open("untitled:edits", "param w = 10 in 1..99\nsolid a { b = circle(radius: w) }\n")
+    await editor.found(uri)
+    edits = [editor.ask("aidl/setKnob", uri=uri, path="w", value=value) for value in (20, 30, 40)]
+    assert await asyncio.gather(*edits) == [{"applied": True}] * 3
+    assert "param w = 40 in" in editor.texts[uri]
+    assert editor.versions[uri] == 4
     editor.close(uri)
 
 

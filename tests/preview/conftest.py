@@ -43,9 +43,13 @@ class Pane:
     """What the browser has to say: errors, and what the Content-Security-Policy stopped."""
 
     def shows(self, **changes: Any) -> None:
-        """Send a picture and wait until it is shown."""
+        """Send a picture and wait until it is shown: as the answer to who asks for it, else as news."""
         message = picture(**changes)
-        self.host.say(message)
+        asked = "aidl/try" if changes.get("tried") else "aidl/preview"
+        if self.host.is_asked(asked):
+            self.host.answer(asked, message)
+        else:
+            self.host.tell("aidl/previewChanged", message)
         shown = "([uri, version]) => JSON.stringify([uri, version]) === document.body.dataset.shown"
         self.page.wait_for_function(shown, arg=[message["uri"], message["version"]])
 
@@ -125,7 +129,7 @@ def pane(shared: tuple[BrowserContext, ScriptedHost]) -> Iterator[Pane]:
     context, host = shared
     host.forget()
     pane = opened(context, host)
-    host.hears("ready")
+    host.hears("aidl/preview")
     pane.shows()
     yield pane
     pane.page.evaluate("() => localStorage.clear()")

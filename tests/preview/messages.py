@@ -85,9 +85,8 @@ def problem(**changes: Any) -> dict[str, Any]:
 
 
 def picture(**changes: Any) -> dict[str, Any]:
-    """The message, with some of it as a test wants it. Each has a version of its own."""
+    """A picture, with some of it as a test wants it. Each has a version of its own."""
     return {
-        "type": "picture",
         "uri": URI,
         "version": next(_versions),
         "status": "solved",
@@ -111,3 +110,9 @@ def picture(**changes: Any) -> dict[str, Any]:
         "source": {"text": TEXT, "tokens": [[0, 0, 7, "keyword"], [1, 18, 3, "number"]]},
         **changes,
     }
+
+
+def where(number: int) -> dict[str, Any]:
+    """Where an element of the plate is written."""
+    found = picture()["elements"][number]
+    return {"uri": found["uri"], "range": found["range"]}

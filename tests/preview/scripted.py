@@ -17,6 +17,8 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 from websockets.sync.server import Server, ServerConnection, serve
 
+from tests.preview.messages import URI
+
 PANE = Path(__file__).resolve().parents[2] / "aidl_lang" / "tools" / "preview" / "pane"
 CSP = (
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
@@ -26,23 +28,29 @@ PATIENCE = 10.0
 """Seconds after which what a test waits for is not coming."""
 
 Message = dict[str, Any]
+_EDITS = {"aidl/setKnob", "aidl/drag", "aidl/fix"}
 
 
-def page(root: str = "", nonce: str = "", socket: str = "socket", csp: str = CSP) -> str:
+def page(root: str = "", nonce: str = "", socket: str = "socket", csp: str = CSP, uri: str = URI) -> str:
     """`index.html` as a host completes it."""
     text = (PANE / "index.html").read_text("utf-8")
-    for name, value in {"csp": csp, "root": root, "nonce": nonce, "socket": socket}.items():
+    for name, value in {"csp": csp, "root": root, "nonce": nonce, "socket": socket, "uri": uri}.items():
         text = text.replace("{{" + name + "}}", html.escape(value))
     return text
 
 
 class ScriptedHost:
-    """Serves until it is left. `heard` are the messages of the pane, in order."""
+    """Serves until it is left. `heard` are the messages of the pane, in order. It carries out edits, or says
+    why not if there is a `refusal`; everything else is answered when a test says so.
+    """
 
     def __init__(self, csp: str = CSP) -> None:
         self.csp = csp
         self.heard: list[Message] = []
         self.requests: list[str] = []
+        self.refusal = ""
+        self._open: list[Message] = []
+        """Requests that were not answered."""
         self.is_away = False
         """Whether connections are refused."""
         self._changed = threading.Condition()
@@ -68,9 +76,25 @@ class ScriptedHost:
         self._server.shutdown()
         self._thread.join(PATIENCE)
 
-    def say(self, message: Message) -> None:
-        """Send to the pane that is connected, or to the next that is."""
-        self.say_text(json.dumps(message))
+    def tell(self, method: str, params: Message) -> None:
+        """Tell the pane that is connected, or the next that is."""
+        self.say_text(json.dumps({"jsonrpc": "2.0", "method": method, "params": params}))
+
+    def fail(self, message: str) -> None:
+        """Tell what people are to know."""
+        self.tell("window/showMessage", {"type": 1, "message": message})
+
+    def is_asked(self, method: str) -> bool:
+        """Whether an answer is waited for."""
+        return any(request["method"] == method for request in self._open)
+
+    def answer(self, method: str, result: object = None, error: str = "", code: int = -32803) -> None:
+        """Answer what was asked last."""
+        self.wait(lambda: self.is_asked(method))
+        request = next(request for request in reversed(self._open) if request["method"] == method)
+        self._open = [other for other in self._open if other["method"] != method]
+        outcome = {"error": {"code": code, "message": error}} if error else {"result": result}
+        self.say_text(json.dumps({"jsonrpc": "2.0", "id": request["id"], **outcome}))
 
     def say_text(self, text: str) -> None:
         self.wait(lambda: self._connection is not None)
@@ -84,20 +108,21 @@ class ScriptedHost:
             connection.close()
             self.wait(lambda: self._connection is not connection)
 
-    def of(self, kind: str) -> list[Message]:
-        """What was heard of a type."""
-        return [message for message in self.heard if message["type"] == kind]
+    def of(self, method: str) -> list[Message]:
+        """What was heard of a method."""
+        return [message["params"] for message in self.heard if message["method"] == method]
 
-    def hears(self, kind: str, count: int = 1) -> Message:
-        """The message of a type that is so manieth, once it has come."""
-        self.wait(lambda: len(self.of(kind)) >= count)
-        return self.of(kind)[count - 1]
+    def hears(self, method: str, count: int = 1) -> Message:
+        """The parameters of the message of a method that is so manieth, once it has come."""
+        self.wait(lambda: len(self.of(method)) >= count)
+        return self.of(method)[count - 1]
 
     def forget(self) -> None:
         """What was heard and asked for until now."""
         with self._changed:
             self.heard.clear()
             self.requests.clear()
+            self.refusal = ""
 
     def wait(self, condition: Callable[[], bool]) -> None:
         with self._changed:
@@ -107,12 +132,19 @@ class ScriptedHost:
     def _converse(self, connection: ServerConnection) -> None:
         with self._changed:
             self._connection = connection
+            self._open.clear()
             self._changed.notify_all()
         try:
             for text in connection:
+                message = json.loads(text)
                 with self._changed:
-                    self.heard.append(json.loads(text))
+                    self.heard.append(message)
+                    if message["method"] not in _EDITS and "id" in message:
+                        self._open.append(message)
                     self._changed.notify_all()
+                if message["method"] in _EDITS:
+                    result = {"applied": not self.refusal, "reason": self.refusal}
+                    connection.send(json.dumps({"jsonrpc": "2.0", "id": message["id"], "result": result}))
         except ConnectionClosed:
             pass
         finally:

@@ -3,29 +3,25 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import re
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from functools import partial
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
 import pytest
-from starlette.testclient import TestClient, WebSocketTestSession
+from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
-from aidl_lang.tools.ide.preview.protocol import Json
-from aidl_lang.tools.ide.view import View
-from aidl_lang.tools.preview.host import MOST_UNTAKEN, Host, Page
-from aidl_lang.tools.preview.program import Program
-from aidl_lang.tools.preview.site import MOST_PAGES, PANE, site
+from aidl_lang.tools.preview.host import MOST_ORDERS
+from aidl_lang.tools.preview.site import MOST_PAGES, PANE
 from aidl_lang.tools.preview.watching import watch
-from aidl_lang.tools.preview.worker import MOST_ORDERS
+from tests.preview import talking as pages
+from tests.preview.talking import ADDRESS, CHANGED, TEXT, TOKEN, Talk, serving
 
-TOKEN, ADDRESS = "tok-En_123", "127.0.0.1:8123"
-TEXT = "param width = 60mm in 20..100\nsolid a { body = rectangle(width: width, height: 20) }\n"
+_ERROR = "window/showMessage"
 
 
 @pytest.fixture
@@ -36,42 +32,19 @@ def file(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def program(file: Path) -> Program:
-    def write(path: Path, data: bytes) -> None:
-        path.write_bytes(data)
-
-    return Program(file, write)
-
-
-@pytest.fixture
-def client(program: Program) -> Iterator[TestClient]:
-    app = site(Host(program), TOKEN, [ADDRESS, "localhost:8123"])
-    with TestClient(app, base_url=f"http://{ADDRESS}") as client:
+def client(file: Path) -> Iterator[TestClient]:
+    with serving(file) as client:
         yield client
 
 
-class Talk:
-    """A page that is open."""
-
-    def __init__(self, socket: WebSocketTestSession) -> None:
-        self.socket = socket
-
-    def say(self, **message: Any) -> None:
-        self.socket.send_text(json.dumps(message))
-
-    def hear(self, **wanted: Any) -> dict[str, Any]:
-        """The next message of which this holds."""
-        while True:
-            message: dict[str, Any] = json.loads(self.socket.receive_text())
-            if all(message.get(key) == value for key, value in wanted.items()):
-                return message
+@pytest.fixture
+def talking(file: Path) -> Any:
+    """A page of a client."""
+    return partial(_talking, file)
 
 
-@contextmanager
-def talking(client: TestClient, **headers: str) -> Iterator[Talk]:
-    # The client says `testserver` unless it is told.
-    with client.websocket_connect(f"/{TOKEN}/socket", headers={"host": ADDRESS, **headers}) as socket:
-        yield Talk(socket)
+def _talking(file: Path, client: TestClient, **headers: str) -> Any:
+    return pages.talking(client, file, **headers)
 
 
 class Links(HTMLParser):
@@ -141,7 +114,7 @@ def test_there_is_nothing_else(client: TestClient, path: str) -> None:
 @pytest.mark.parametrize(
     "name", ["evil.example", "evil.example:8123", "127.0.0.1", f"{ADDRESS}.evil.example", ""]
 )
-def test_another_name_is_refused(client: TestClient, name: str) -> None:
+def test_another_name_is_refused(client: TestClient, talking: Any, name: str) -> None:
     assert client.get(f"/{TOKEN}/", headers={"host": name}).status_code == 421
     with pytest.raises(WebSocketDisconnect), talking(client, host=name):
         pass
@@ -157,7 +130,7 @@ def test_another_name_is_refused(client: TestClient, name: str) -> None:
         f"http://{ADDRESS}.evil.example",
     ],
 )
-def test_pages_from_elsewhere_are_refused(client: TestClient, origin: str) -> None:
+def test_pages_from_elsewhere_are_refused(client: TestClient, talking: Any, origin: str) -> None:
     with pytest.raises(WebSocketDisconnect), talking(client, origin=origin):
         pass
     assert client.get(f"/{TOKEN}/", headers={"origin": origin}).status_code == 403
@@ -171,41 +144,58 @@ def test_the_socket_needs_the_token(client: TestClient) -> None:
         pass
 
 
-def test_a_page_gets_pictures_and_changes_the_text(client: TestClient, file: Path) -> None:
+def test_a_page_gets_pictures_and_changes_the_text(client: TestClient, talking: Any, file: Path) -> None:
     with talking(client, origin=f"http://{ADDRESS}") as page:
-        page.say(type="ready")
-        first = page.hear(type="picture")
+        first = page.preview()
         assert first["uri"] == file.as_uri()
         assert first["source"]["text"] == TEXT
-        page.say(type="knob", path="width", value=90, final=False)
-        attempt = page.hear(type="picture", tried=True)
+        attempt = page.answer("aidl/try", knobs={"width": 90})
+        assert attempt["tried"]
         assert attempt["box"][2] == pytest.approx(45)
         assert file.read_text("utf-8") == TEXT
-        page.say(type="cancel")
-        assert page.hear(type="picture", tried=False)["box"][2] == pytest.approx(30)
-        page.say(type="knob", path="width", value=80, final=True)
-        after = page.hear(type="picture", version=2)
+        assert page.preview()["box"][2] == pytest.approx(30)
+        assert page.answer("aidl/setKnob", path="width", value=80) == {"applied": True}
         assert file.read_text("utf-8") == TEXT.replace("60mm", "80mm")
+        after = page.told(CHANGED, version=2)
         assert after["source"]["text"] == TEXT.replace("60mm", "80mm")
-        assert after["handles"] or page.hear(type="picture", version=2)["handles"]
+        assert after["handles"] or page.told(CHANGED, version=2)["handles"]
 
 
-def test_a_save_elsewhere_is_seen(client: TestClient, file: Path) -> None:
+def test_tokens_cover_the_text(client: TestClient, talking: Any) -> None:
+    with talking(client) as page:
+        source = page.preview()["source"]
+    lines = source["text"].split("\n")
+    words = {(lines[line][at : at + length], kind) for line, at, length, kind in source["tokens"]}
+    assert {("param", "keyword"), ("60mm", "number"), ("solid", "keyword"), ("rectangle", "type")} <= words
+
+
+def test_a_save_elsewhere_is_seen(client: TestClient, talking: Any, file: Path) -> None:
     with talking(client) as page, talking(client) as other:
-        for each in (page, other):
-            each.say(type="ready")
-            each.hear(type="picture", version=1)
+        good = [each.preview()["svg"] for each in (page, other)]
         file.write_text(TEXT.replace("height: 20", "height: 2 +"), "utf-8")
         for each in (page, other):
-            stale = each.hear(type="picture", stale=True)
-            assert stale["svg"] is not None
+            stale = each.told(CHANGED, stale=True)
+            assert stale["svg"] == good[0]
             assert stale["problems"][0]["severity"] == "error"
         file.write_text(TEXT, "utf-8")
-        assert page.hear(type="picture", stale=False)["status"] == "solved"
+        assert page.told(CHANGED, stale=False)["status"] == "solved"
+
+
+def test_a_save_of_an_imported_file_is_seen(client: TestClient, talking: Any, file: Path) -> None:
+    other = file.with_name("other.aidl")
+    other.write_text("solid bolt(n = 1) { rim = circle(radius: n * 10) }\n", "utf-8")
+    file.write_text('import bolt from "other.aidl"\nassembly a { b = bolt() }\n', "utf-8")
+    with talking(client) as page:
+        while (made := page.preview())["box"][2] != pytest.approx(10):
+            pass
+        other.write_text("solid bolt(n = 1) { rim = circle(radius: n * 15) }\n", "utf-8")
+        while (made := page.told(CHANGED))["box"][2] != pytest.approx(15):
+            pass
+        assert made["status"] == "solved"
 
 
 def test_a_save_before_the_files_are_watched_is_seen(
-    program: Program, file: Path, monkeypatch: pytest.MonkeyPatch
+    file: Path, talking: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     may_watch = threading.Event()
 
@@ -214,162 +204,191 @@ def test_a_save_before_the_files_are_watched_is_seen(
         await watch(*told)
 
     monkeypatch.setattr("aidl_lang.tools.preview.site.watch", late)
-    app = site(Host(program), TOKEN, [ADDRESS])
-    with TestClient(app, base_url=f"http://{ADDRESS}") as client, talking(client) as page:
-        page.say(type="ready")
-        page.hear(type="picture", version=1)
+    with serving(file) as client, talking(client) as page:
+        assert page.preview()["version"] == 1
         file.write_text(TEXT.replace("60mm", "40mm"), "utf-8")
         may_watch.set()
-        while page.hear(type="picture")["box"][2] != pytest.approx(20):  # half a file may be seen first
+        while page.told(CHANGED)["box"][2] != pytest.approx(20):  # half a file may be seen first
             pass
 
 
-def test_each_page_has_its_own_layers(client: TestClient) -> None:
+def test_each_page_has_its_own_layers(client: TestClient, talking: Any, file: Path) -> None:
     with talking(client) as page, talking(client) as other:
-        for each in (page, other):
-            each.say(type="ready")
-        plain = other.hear(type="picture")["svg"]
-        page.say(type="show", layers=["names", "no such layer"])
-        while (named := page.hear(type="picture")["svg"]) == plain:
-            pass
+        plain = other.preview()["svg"]
+        named = page.preview(("names", "no such layer"))["svg"]
         assert "show-names" in named
         assert "show-names" not in plain
+        assert "show-names" in page.answer("aidl/try", knobs={"width": 90})["svg"]
+        assert "show-names" not in other.answer("aidl/try", knobs={"width": 90})["svg"]
+        file.write_text(TEXT.replace("60mm", "40mm"), "utf-8")
+        assert "show-names" in page.told(CHANGED, version=2)["svg"]
+        assert "show-names" not in other.told(CHANGED, version=2)["svg"]
 
 
-def test_fixes_are_applied_to_the_text_they_are_of(client: TestClient, file: Path) -> None:
+def test_fixes_are_applied_to_the_text_they_are_of(client: TestClient, talking: Any, file: Path) -> None:
     lines = ("one = line((0, 0), (9, 0))", "two = line((9, 0), (5, 5))", "three = line((5, 5), (1, 2))")
     file.write_text(f"solid a {{ {'; '.join(lines)} }}\n", "utf-8")
     with talking(client) as page:
-        page.say(type="ready")
-        made = page.hear(type="picture")
+        made = page.preview()
         while not any(p["fixes"] for p in made["problems"]):
-            made = page.hear(type="picture")
+            made = page.preview()
         (index,) = [k for k, p in enumerate(made["problems"]) if p["code"] == "W0702"]
-        page.say(type="fix", problem=index, fix=9)
-        assert "no such fix" in page.hear(type="error")["message"]
-        page.say(type="fix", problem=index, fix=0)
-        page.hear(type="picture", version=made["version"] + 1)
+        of = {"version": made["version"], "problem": index}
+        assert page.answer("aidl/fix", **of, fix=9) == {"applied": False, "reason": "there is no such fix"}
+        assert page.answer("aidl/fix", **of, fix=0) == {"applied": True}
+        page.told(CHANGED, version=made["version"] + 1)
         assert "constrain one.start == three.end" in file.read_text("utf-8")
+        assert page.answer("aidl/fix", **of, fix=0)["error"]["message"] == "the text has changed"
 
 
-def test_what_cannot_be_done_is_told(client: TestClient) -> None:
+def test_what_cannot_be_done_is_told(client: TestClient, talking: Any) -> None:
     with talking(client) as page:
-        page.say(type="ready")
-        page.hear(type="picture")
-        page.say(type="knob", path="width", value=5000, final=True)
-        assert "range" in page.hear(type="error")["message"]
-        page.say(type="drag", id="nothing", to=[1, 2], final=False)
-        page.hear(type="error")
-        page.say(type="export", format="exe")
-        assert "format" in page.hear(type="error")["message"]
-        page.say(type="export", format="svg")
-        assert page.hear(type="export")["name"] == "part.svg"
+        page.preview()
+        assert "range" in page.answer("aidl/setKnob", path="width", value=5000)["reason"]
+        assert page.answer("aidl/try", drag={"id": "nothing", "to": [1, 2]})["error"]["message"]
+        assert "format" in page.answer("aidl/export", format="exe")["error"]["message"]
+        assert page.answer("aidl/export", format="svg")["name"] == "part.svg"
 
 
-def test_noise_is_passed_over(client: TestClient) -> None:
+@pytest.mark.parametrize("to", [(1e300, 0.0), (float("nan"), 0.0), (float("inf"), 1.0)])
+@pytest.mark.parametrize("handle", ["", "a.body", "no such", "a.body.top_right"])
+def test_dragging_nowhere_is_refused(
+    client: TestClient, talking: Any, file: Path, handle: str, to: tuple[float, float]
+) -> None:
     with talking(client) as page:
-        for text in ("", "{", "[]", "\0", '{"type":"knob"}', "[" * 60_000):
+        page.preview()
+        assert page.answer("aidl/try", drag={"id": handle, "to": to})["error"]["message"]
+        done = page.answer("aidl/drag", id=handle, to=to)
+        assert "error" in done or done["reason"]
+    assert file.read_text("utf-8") == TEXT
+
+
+def test_noise_is_passed_over(client: TestClient, talking: Any) -> None:
+    noise = (
+        "",
+        "null",
+        "7",
+        "{",
+        "[]",
+        "\0",
+        '{"id":1}',
+        '{"method":"aidl/try"}',
+        '{"id":true,"method":"x"}',
+    )
+    with talking(client) as page:
+        for text in (*noise, '{"id":"1","method":"aidl/preview"}', "[" * 60_000, '{"a":' * 10_000):
             page.socket.send_text(text)
-        page.say(type="ready")
-        assert page.hear(type="picture")["status"] == "solved"
+        assert page.preview()["status"] == "solved"
 
 
-def test_bytes_and_much_end_a_connection(client: TestClient) -> None:
+@pytest.mark.parametrize(
+    ("method", "params"),
+    [
+        ("aidl/preview", {"show": "names"}),
+        ("aidl/preview", {"show": [1]}),
+        ("aidl/preview", {"uri": "file:///etc/passwd"}),
+        ("aidl/setKnob", {"path": "width"}),
+        ("aidl/setKnob", {"path": "width", "value": None}),
+        ("aidl/setKnob", {"path": "width", "value": {}}),
+        ("aidl/setKnob", {"path": "width", "value": float("nan")}),
+        ("aidl/setKnob", {"path": "width", "value": float("inf")}),
+        ("aidl/setKnob", {"path": "width", "value": 10**4000}),
+        ("aidl/setKnob", {"path": "a" * 20_000, "value": 1}),
+        ("aidl/drag", {"id": "p", "to": [1]}),
+        ("aidl/drag", {"id": "p", "to": [1, "2"]}),
+        ("aidl/drag", {"id": "p", "to": [1, True]}),
+        ("aidl/drag", {"id": "p", "to": [float("inf"), 1]}),
+        ("aidl/fix", {"version": 1, "problem": "0", "fix": 0}),
+        ("aidl/fix", {"problem": 0, "fix": 0}),
+        ("aidl/export", {"format": "../../etc/passwd"}),
+        ("aidl/previewClose", {}),
+        ("textDocument/didChange", {}),
+        ("workspace/executeCommand", {"command": "aidl.applyFixes"}),
+        ("shutdown", {}),
+    ],
+)
+def test_hostile_questions_are_refused(
+    client: TestClient, talking: Any, file: Path, method: str, params: dict[str, Any]
+) -> None:
+    with talking(client) as page:
+        assert page.answer(method, **params)["error"]["message"]
+        assert page.preview()["status"] == "solved"
+    assert file.read_text("utf-8") == TEXT
+
+
+def test_bytes_and_much_end_a_connection(client: TestClient, talking: Any) -> None:
     with talking(client) as page:
         page.socket.send_bytes(b"\xff")
         with pytest.raises(WebSocketDisconnect) as refused:
-            page.hear(type="never")
+            page.told("never")
     assert refused.value.reason == "This page sent what is no text."
     with talking(client) as page:
         page.socket.send_text("x" * 70_000)
         with pytest.raises(WebSocketDisconnect) as refused:
-            page.hear(type="never")
+            page.told("never")
     assert refused.value.reason == "This page sent a message that is too long."
     with talking(client) as page:
-        page.say(type="ready")
-        page.hear(type="picture")
+        assert page.preview()
 
 
-def test_only_so_many_pages(client: TestClient) -> None:
-    pages = [talking(client) for _ in range(MOST_PAGES)]
-    for each in pages:
+def test_only_so_many_pages(client: TestClient, talking: Any) -> None:
+    open_pages = [talking(client) for _ in range(MOST_PAGES)]
+    for each in open_pages:
         each.__enter__()
     with talking(client) as one_more, pytest.raises(WebSocketDisconnect) as refused:
-        one_more.hear(type="never")
+        one_more.told("never")
     assert refused.value.reason == f"{MOST_PAGES} pages show this program already: close one of them."
-    pages[0].__exit__(None, None, None)
+    open_pages[0].__exit__(None, None, None)
     with talking(client) as page:
-        page.say(type="ready")
-        page.hear(type="picture")
-    for each in pages[1:]:
+        assert page.preview()
+    for each in open_pages[1:]:
         each.__exit__(None, None, None)
 
 
-def test_many_attempts_end_with_the_last(client: TestClient) -> None:
+def test_many_attempts_end_with_the_last(client: TestClient, talking: Any) -> None:
     with talking(client) as page:
-        page.say(type="ready")
-        page.hear(type="picture")
-        for width in range(20, 101):
-            page.say(type="knob", path="width", value=width, final=False)
-        while page.hear(type="picture", tried=True)["box"][2] != pytest.approx(50):
-            pass
+        page.preview()
+        *_, last = [page.ask("aidl/try", knobs={"width": width}) for width in range(20, 101)]
+        assert page.answered(last)["box"][2] == pytest.approx(50)
 
 
 def test_a_page_that_asks_for_too_much_is_told_and_holds_up_no_other(
-    client: TestClient, program: Program, monkeypatch: pytest.MonkeyPatch
+    client: TestClient, talking: Any
 ) -> None:
-    is_full, done = threading.Event(), []
-    export, with_knob = program.export, program.with_knob
-
-    def slow_export(name: str, show: frozenset[str]) -> Json:
-        assert is_full.wait(60)
-        done.append(name)
-        return export(name, show)
-
-    def noted_knob(path: str, value: float | str | bool) -> View:
-        done.append("knob")
-        return with_knob(path, value)
-
-    monkeypatch.setattr(program, "export", slow_export)
-    monkeypatch.setattr(program, "with_knob", noted_knob)
     with talking(client) as flood, talking(client) as page:
-        for _ in range(2 * MOST_ORDERS):
-            flood.say(type="export", format="svg")
-        assert "more than can be done at once" in flood.hear(type="error")["message"]
-        page.say(type="knob", path="width", value=50, final=False)
-        is_full.set()
-        assert page.hear(type="picture", tried=True)["box"][2] == pytest.approx(25)
-        assert done.index("knob") <= 2
-        page.say(type="export", format="dxf")
-        assert page.hear(type="export")["name"] == "part.dxf"
-        flood.hear(type="export")
+        asked = [flood.ask("aidl/export", format="svg") for _ in range(40 * MOST_ORDERS)]
+        assert page.answer("aidl/try", knobs={"width": 50})["box"][2] == pytest.approx(25)
+        assert page.answer("aidl/export", format="dxf")["name"] == "part.dxf"
+        assert flood.answered(asked[0])["name"] == "part.svg"
+        assert "more than can be done at once" in str(_said(flood))
     with talking(client) as page:
-        page.say(type="ready")
-        page.hear(type="picture")
+        assert page.preview()
 
 
-def test_a_page_that_takes_nothing_is_not_heard() -> None:
-    page = Page()
-    for number in range(MOST_UNTAKEN - 1):
-        page.tell({"type": "error", "message": str(number)})
-        page.tell({"type": "busy"})
-    assert page.is_behind
-    asked: list[str] = []
-    host = Host(Program(Path("none.aidl"), lambda path, data: None))
-    host.program.set_knob = lambda path, value: asked.append(path)  # type: ignore[method-assign]
-    for _ in range(100):
-        host.hear(page, '{"type": "knob", "path": "width", "value": 5, "final": true}')
-    messages = [json.loads(text) for _, text in page._waiting]
-    assert len(messages) == MOST_UNTAKEN + 1
-    assert "more than can be done at once" in messages[-1]["message"]
-    assert asked == []
+def _said(flood: Talk) -> list[dict[str, Any]]:
+    """What a page has heard and hears until it is told of too much."""
+    while not any("more than can be done at once" in str(each) for each in flood.heard):
+        flood.heard.append(flood._next())
+    return flood.heard
 
 
-def test_a_file_that_is_gone_for_a_moment(client: TestClient, file: Path) -> None:
+def test_a_file_that_is_gone_for_a_moment(client: TestClient, talking: Any, file: Path) -> None:
     with talking(client) as page:
-        page.say(type="ready")
-        page.hear(type="picture")
+        page.preview()
         file.unlink()
-        assert "cannot be read" in page.hear(type="error")["message"]
+        assert "cannot be read" in page.told(_ERROR)["message"]
         file.write_text(TEXT.replace("60mm", "40mm"), "utf-8")
-        assert page.hear(type="picture", version=2)["box"][2] == pytest.approx(20)
+        while page.told(CHANGED)["box"][2] != pytest.approx(20):
+            pass
+
+
+@pytest.mark.parametrize("content", [b"\xff\xfe\x00", b"\xc3"])
+def test_what_is_no_text_leaves_the_picture(
+    client: TestClient, talking: Any, file: Path, content: bytes
+) -> None:
+    with talking(client) as page:
+        before = page.preview()
+        file.write_bytes(content)
+        while "UTF-8" not in page.told(_ERROR)["message"]:
+            pass
+        assert page.preview()["svg"] == before["svg"]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import pytest
 from playwright.sync_api import expect
 
 from tests.preview.conftest import Pane
-from tests.preview.messages import BORE, OUTLINE, PLATE, RIM, SVG, TEXT, URI, place, problem
+from tests.preview.messages import BORE, OUTLINE, PLATE, RIM, SVG, TEXT, URI, place, problem, where
 
 
 def stage(pane: Pane) -> tuple[float, float, float, float]:
@@ -117,7 +118,7 @@ def test_keys_move_and_zoom(pane: Pane) -> None:
 
 def test_two_fingers_zoom(open_pane) -> None:
     pane = open_pane(has_touch=True)
-    pane.host.hears("ready")
+    pane.host.hears("aidl/preview")
     pane.shows()
     before = pane.scale
     x, y = pane.at(10, 5)
@@ -195,26 +196,26 @@ def test_a_drawing_that_has_moved_out_of_sight_is_looked_for(pane: Pane) -> None
 
 def test_what_is_hovered_is_outlined_and_told(pane: Pane) -> None:
     pane.move(-40, 10)
-    assert pane.host.hears("hover") == {"type": "hover", "element": PLATE}
+    assert pane.host.hears("aidl/hover") == {"place": where(PLATE)}
     assert outlined(pane, "hover") == [re.search(r'id="body" d="([^"]*)"', SVG)[1]]
     expect(pane.find("#tooltip")).to_contain_text("part.plate")
     expect(pane.find("#tooltip")).to_contain_text("solid, 100 × 60 mm")
     pane.move(15, 5)
-    assert pane.host.hears("hover", 2)["element"] == BORE
+    assert pane.host.hears("aidl/hover", 2)["place"] == where(BORE)
     pane.move(20, 15)
-    assert pane.host.hears("hover", 3)["element"] == RIM
+    assert pane.host.hears("aidl/hover", 3)["place"] == where(RIM)
     assert outlined(pane, "hover") == [drawn(pane, RIM)]
     pane.move(-50, 0)
-    assert pane.host.hears("hover", 4)["element"] == OUTLINE
+    assert pane.host.hears("aidl/hover", 4)["place"] == where(OUTLINE)
     pane.move(-54, 0)
-    assert pane.host.hears("hover", 5)["element"] is None
+    assert pane.host.hears("aidl/hover", 5)["place"] is None
     expect(pane.find("#tooltip")).to_be_hidden()
     assert outlined(pane, "hover") == []
 
 
 def test_a_click_goes_to_the_text_and_selects(pane: Pane) -> None:
     pane.page.mouse.click(*pane.at(-40, 10))
-    assert pane.host.hears("goto") == {"type": "goto", "element": PLATE}
+    assert pane.host.hears("aidl/goto") == where(PLATE)
     assert len(outlined(pane, "selected")) == 1
     pane.shows()
     assert len(outlined(pane, "selected")) == 1
@@ -223,19 +224,19 @@ def test_a_click_goes_to_the_text_and_selects(pane: Pane) -> None:
 
 
 def test_the_host_reveals_elements(pane: Pane) -> None:
-    pane.host.say({"type": "reveal", "elements": [RIM]})
+    pane.host.tell("aidl/reveal", {"elements": [RIM]})
     expect(pane.find(".mark.reveal .line")).to_have_count(1)
     assert outlined(pane, "reveal") == [drawn(pane, RIM)]
-    pane.host.say({"type": "reveal", "elements": [0]})
+    pane.host.tell("aidl/reveal", {"elements": [0]})
     expect(pane.find(".mark.reveal .line")).to_have_count(4)  # the drawing is seen by all that is in it
-    pane.host.say({"type": "reveal", "elements": [PLATE, RIM]})
+    pane.host.tell("aidl/reveal", {"elements": [PLATE, RIM]})
     expect(pane.find(".mark.reveal .line")).to_have_count(1)  # the rim is in the plate
-    pane.host.say({"type": "reveal", "elements": [99, -1]})
+    pane.host.tell("aidl/reveal", {"elements": [99, -1]})
     expect(pane.find(".mark.reveal .line")).to_have_count(0)
 
 
 def test_elements_are_known_by_their_paths_when_numbers_change(pane: Pane) -> None:
-    pane.host.say({"type": "reveal", "elements": [RIM]})
+    pane.host.tell("aidl/reveal", {"elements": [RIM]})
     expect(pane.find(".mark.reveal .line")).to_have_count(1)
     swapped = SVG.replace('data-element="2"', 'data-element="9"').replace(
         'data-element="4"', 'data-element="2"'
@@ -294,13 +295,13 @@ def test_before_anything_is_drawn(pane: Pane) -> None:
 
 
 def test_work_that_takes_long_and_what_cannot_be_done(pane: Pane) -> None:
-    pane.host.say({"type": "busy"})
+    pane.host.tell("aidl/busy", {})
     expect(pane.find("#busy")).to_be_visible()
-    pane.host.say({"type": "error", "message": "the file has changed"})
+    pane.host.fail("the file has changed")
     expect(pane.find(".toast")).to_contain_text("the file has changed")
     expect(pane.find("#busy")).to_be_hidden()
-    pane.host.say({"type": "error", "message": "the file has changed"})
-    pane.host.say({"type": "error", "message": "again"})
+    pane.host.fail("the file has changed")
+    pane.host.fail("again")
     expect(pane.find(".toast")).to_have_count(2)
     pane.find(".toast").first.get_by_role("button", name="Close").click()
     expect(pane.find(".toast")).to_have_count(1)
@@ -322,11 +323,12 @@ def test_problems_are_listed_and_marked(pane: Pane) -> None:
     assert outlined(pane, "error") == [drawn(pane, RIM)]
     assert close(pane.middle(".point.warning .line"), pane.at(-50, 30))
     entries.nth(0).get_by_role("button", name="leave it out").click()
-    assert pane.host.hears("fix") == {"type": "fix", "problem": 1, "fix": 1}
+    version = json.loads(pane.find("body").get_attribute("data-shown") or "")[1]
+    assert pane.host.hears("aidl/fix") == {"uri": URI, "version": version, "problem": 1, "fix": 1}
     entries.nth(0).get_by_role("button", name="line 6").click()
-    assert pane.host.hears("goto") == {"type": "goto", "uri": URI, "range": found[1]["range"]}
+    assert pane.host.hears("aidl/goto") == {"uri": URI, "range": found[1]["range"]}
     entries.nth(2).get_by_text("by the way").click()
-    assert pane.host.hears("goto", 2)["uri"] == "file:///home/you/lib%20a.aidl"
+    assert pane.host.hears("aidl/goto", 2)["uri"] == "file:///home/you/lib%20a.aidl"
 
 
 def test_conflicts_name_their_constraints(pane: Pane) -> None:
@@ -348,7 +350,7 @@ def test_conflicts_name_their_constraints(pane: Pane) -> None:
     parties.nth(1).hover()
     assert outlined(pane, "reveal") == [drawn(pane, RIM)]
     parties.nth(1).get_by_text("b == 9").click()
-    assert pane.host.hears("goto") == {"type": "goto", "uri": URI, "range": constraints[1]["range"]}
+    assert pane.host.hears("aidl/goto") == {"uri": URI, "range": constraints[1]["range"]}
 
 
 def test_free_directions(pane: Pane) -> None:

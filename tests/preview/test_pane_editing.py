@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Locator, expect
 
 from tests.preview.conftest import Pane
-from tests.preview.messages import RIM, handle, knob, picture
+from tests.preview.messages import RIM, handle, knob, picture, where
 
 
 def slider(pane: Pane) -> Locator:
@@ -26,12 +26,28 @@ def along(pane: Pane, value: float, low: float = 60, high: float = 200) -> tuple
     return box["x"] + 7 + (value - low) / (high - low) * (box["width"] - 14), box["y"] + box["height"] / 2
 
 
+def asked(pane: Pane) -> list[tuple[str, dict[str, Any]]]:
+    return [(message["method"], message["params"]) for message in pane.host.heard if "id" in message]
+
+
 def knobs(pane: Pane) -> list[tuple[Any, bool]]:
-    return [(message["value"], message["final"]) for message in pane.host.of("knob")]
+    """The values that were tried, and those that were written."""
+    tried = {"aidl/try": False, "aidl/setKnob": True}
+    return [
+        (params["value"] if tried[method] else next(iter(params["knobs"].values())), tried[method])
+        for method, params in asked(pane)
+        if method in tried
+    ]
 
 
 def drags(pane: Pane) -> list[tuple[list[float], bool]]:
-    return [(message["to"], message["final"]) for message in pane.host.of("drag")]
+    """The places where a point was tried, and where it was left."""
+    tried = {"aidl/try": False, "aidl/drag": True}
+    return [
+        ((params if tried[method] else params["drag"])["to"], tried[method])
+        for method, params in asked(pane)
+        if method in tried
+    ]
 
 
 # Sliders
@@ -52,18 +68,17 @@ def test_a_slider_asks_for_one_thing_at_a_time_and_next_for_the_newest(pane: Pan
     expect(field(pane)).to_have_value("140")
     expect(pane.find("#status")).to_contain_text("tried")
     expect(pane.find("#status-size")).to_have_text("120 × 60 mm")
-    pane.host.hears("knob", 2)
+    pane.host.hears("aidl/try", 2)
     assert knobs(pane)[1] == (140, False)
     pane.page.mouse.move(*along(pane, 150))
     assert len(knobs(pane)) == 2
 
     pane.page.mouse.up()
-    pane.host.hears("knob", 3)
+    pane.host.hears("aidl/setKnob")
     assert knobs(pane)[2:] == [(150, True)]
     pane.shows(knobs=[knob(value=150)])
     expect(field(pane)).to_have_value("150")
     expect(pane.find("#status")).to_have_text("Solved")
-    assert pane.host.of("cancel") == []
 
 
 def test_a_late_answer_to_what_was_tried_is_not_shown(pane: Pane) -> None:
@@ -72,7 +87,7 @@ def test_a_late_answer_to_what_was_tried_is_not_shown(pane: Pane) -> None:
     pane.page.mouse.move(*along(pane, 120))
     pane.page.mouse.up()
     pane.host.wait(lambda: (120, True) in knobs(pane))
-    pane.host.say(picture(tried=True, degrees=77))
+    pane.host.answer("aidl/try", picture(tried=True, degrees=77))
     pane.shows(knobs=[knob(value=120)])
     expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
 
@@ -91,7 +106,7 @@ def test_a_slider_by_keys_writes_when_the_key_is_let_go(pane: Pane) -> None:
     slider(pane).focus()
     pane.page.keyboard.down("ArrowRight")
     pane.page.keyboard.down("ArrowRight")
-    assert pane.host.hears("knob")["final"] is False
+    pane.host.hears("aidl/try")
     assert not any(final for _, final in knobs(pane))
     pane.page.keyboard.up("ArrowRight")
     pane.host.wait(lambda: (101, True) in knobs(pane))  # two steps of half a millimetre
@@ -104,11 +119,10 @@ def test_escape_while_sliding_forgets_it(pane: Pane) -> None:
     pane.page.mouse.move(*along(pane, 100))
     pane.page.mouse.down()
     pane.page.mouse.move(*along(pane, 150))
-    pane.host.hears("knob")
+    pane.host.hears("aidl/try")
     pane.shows(tried=True, degrees=5)
     expect(pane.find("#status-freedom")).to_have_text("5 degrees of freedom")
     pane.page.keyboard.press("Escape")
-    pane.host.hears("cancel")
     expect(field(pane)).to_have_value("100")
     expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
     pane.page.mouse.move(*along(pane, 170))
@@ -134,7 +148,7 @@ def test_a_number_that_is_typed_stays_within_the_bounds(pane: Pane) -> None:
         field(pane).press("Enter")
         expect(field(pane)).to_have_value(f"{sent or 100:g}")
         if sent is not None:
-            pane.host.hears("knob")
+            pane.host.hears("aidl/setKnob")
         assert knobs(pane) == ([] if sent is None else [(sent, True)])
         pane.shows()
 
@@ -155,7 +169,7 @@ def test_choices_truths_and_texts(pane: Pane) -> None:
     field(pane, "label").press("Enter")
     pane.host.wait(lambda: len([1 for _, final in knobs(pane) if final]) == 4)
     assert [value for value, final in knobs(pane) if final] == ["m5", 6, True, "it's"]
-    assert [m["path"] for m in pane.host.of("knob") if m["final"]] == ["bolt", "size", "a.feet", "label"]
+    assert [params["path"] for params in pane.host.of("aidl/setKnob")] == ["bolt", "size", "a.feet", "label"]
 
 
 @pytest.mark.parametrize("changes", [{"editable": False}, {"range": None, "uri": None}])
@@ -167,22 +181,20 @@ def test_what_is_not_in_the_text_can_only_be_tried(pane: Pane, changes: dict[str
     pane.page.mouse.down()
     pane.page.mouse.move(*along(pane, 150))
     pane.page.mouse.up()
-    pane.host.hears("knob")
+    pane.host.hears("aidl/try")
     pane.shows(tried=True, knobs=[knob(value=150, **changes), knob(path="depth", name="depth")], degrees=9)
     expect(reset).to_be_visible()
     assert knobs(pane) == [(150, False)]
     reset.click()
-    pane.host.hears("cancel")
     expect(field(pane)).to_have_value("100")
     expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
 
 
 def test_what_the_host_refuses_is_taken_back(pane: Pane) -> None:
+    pane.host.refusal = "the file has changed"
     field(pane).fill("120")
     field(pane).press("Enter")
-    pane.host.hears("knob")
-    pane.host.say({"type": "error", "message": "the file has changed"})
-    expect(pane.find(".toast")).to_be_visible()
+    expect(pane.find(".toast")).to_contain_text("the file has changed")
     expect(field(pane)).to_have_value("100")
 
 
@@ -240,7 +252,7 @@ def test_points_appear_when_their_element_is_pointed_at(pane: Pane) -> None:
     expect(dot).to_be_visible()
     pane.move(20, 5)  # on the point itself
     expect(dot).to_be_visible()
-    assert pane.host.hears("hover", 2)["element"] == RIM
+    assert pane.host.hears("aidl/hover", 2)["place"] == where(RIM)
     pane.move(-54, 0)
     expect(dot).to_be_hidden()
     pane.page.get_by_role("button", name="Points", exact=True).click()
@@ -259,8 +271,8 @@ def test_a_dragged_point_tells_millimetres(pane: Pane) -> None:
     assert [final for _, final in drags(pane)] == [False, True]
     assert pane.scale < 8
     assert drags(pane)[-1] == ([30, -5], True)
-    assert pane.host.of("drag")[-1]["id"] == "h0"
-    assert pane.host.of("goto") == []
+    assert pane.host.of("aidl/drag")[-1]["id"] == "h0"
+    assert pane.host.of("aidl/goto") == []
     assert pane.middle(".handle .knot") == pytest.approx(pane.at(30, -5), abs=0.6)
 
 
@@ -290,12 +302,13 @@ def test_shift_lets_a_point_go_anywhere(pane: Pane) -> None:
 def test_escape_while_dragging_forgets_it(pane: Pane) -> None:
     grab(pane, 20, 5)
     pane.move(30, 5, steps=2)
-    pane.host.hears("drag")
+    pane.host.hears("aidl/try")
     pane.page.keyboard.press("Escape")
-    pane.host.hears("cancel")
+    pane.host.answer("aidl/try", picture(tried=True, degrees=77))
     pane.move(35, 5)
     pane.page.mouse.up()
     expect(pane.find(".handle.dragged")).to_have_count(0)
+    expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
     assert all(not final for _, final in drags(pane))
 
 

@@ -38,7 +38,7 @@ CROWDED = NOBODY.replace('new Event("close")', 'new CloseEvent("close", { reason
 
 def test_a_lost_connection_is_told_and_made_again(open_pane) -> None:
     pane = open_pane()
-    pane.host.hears("ready")
+    pane.host.hears("aidl/preview")
     pane.shows()
     pane.host.is_away = True
     pane.host.drop()
@@ -48,7 +48,7 @@ def test_a_lost_connection_is_told_and_made_again(open_pane) -> None:
     filters = "() => getComputedStyle(document.getElementById('world')).filter"
     assert "grayscale" in pane.page.evaluate(filters)
     pane.host.is_away = False
-    pane.host.hears("ready", 2)
+    pane.host.hears("aidl/preview", 2)
     expect(banner).to_be_hidden()
     pane.shows()
     expect(pane.find("#status")).to_have_text("Solved")
@@ -79,18 +79,23 @@ def test_why_there_is_no_connection_is_told(open_pane) -> None:
 def test_layers_are_asked_for_again_after_a_lost_connection(pane: Pane) -> None:
     pane.page.get_by_role("button", name="Layers").click()
     pane.page.get_by_label("Dimensions").check()
-    assert pane.host.hears("show") == {"type": "show", "layers": ["dimensions"]}
+    asks = {"uri": URI, "source": True}
+    assert pane.host.hears("aidl/preview", 2) == {**asks, "show": ["dimensions"]}
     pane.page.get_by_label("Names").check()
-    assert pane.host.hears("show", 2) == {"type": "show", "layers": ["names", "dimensions"]}
+    assert pane.host.hears("aidl/preview", 3) == {**asks, "show": ["names", "dimensions"]}
     pane.host.drop()
-    pane.host.hears("ready", 2)
-    assert pane.host.hears("show", 3)["layers"] == ["names", "dimensions"]
+    assert pane.host.hears("aidl/preview", 4)["show"] == ["names", "dimensions"]
     pane.page.reload()
-    assert pane.host.hears("show", 4)["layers"] == ["names", "dimensions"]
+    assert pane.host.hears("aidl/preview", 5)["show"] == ["names", "dimensions"]
 
 
 def test_what_is_no_message_is_passed_over(pane: Pane) -> None:
-    for text in ("", "null", "7", "[]", "{", '{"type":"unknown"}', '{"no":"type"}'):
+    noise = ("", "null", "7", "[]", "{", '{"method":"unknown"}', '{"no":"method"}', '{"id":99,"result":{}}')
+    for text in (
+        *noise,
+        '{"method":"aidl/previewChanged","params":7}',
+        '{"id":1,"error":{"message":"late"}}',
+    ):
         pane.host.say_text(text)
     pane.shows(degrees=7)
     expect(pane.find("#status-freedom")).to_have_text("7 degrees of freedom")
@@ -101,10 +106,10 @@ def test_files_are_asked_for_and_saved(pane: Pane) -> None:
     for count, name in enumerate(formats, 1):
         pane.page.get_by_role("button", name="Export").click()
         pane.find("#export-menu").get_by_role("button").nth(count - 1).click()
-        assert pane.host.hears("export", count) == {"type": "export", "format": name}
+        assert pane.host.hears("aidl/export", count) == {"uri": URI, "format": name, "show": []}
     content = bytes(range(256)) * 3
     with pane.page.expect_download() as saved:
-        pane.host.say({"type": "export", "name": "plate.dxf", "data": base64.b64encode(content).decode()})
+        pane.host.answer("aidl/export", {"name": "plate.dxf", "data": base64.b64encode(content).decode()})
     assert saved.value.suggested_filename == "plate.dxf"
     assert saved.value.path().read_bytes() == content
 
@@ -114,13 +119,16 @@ def test_files_are_asked_for_and_saved(pane: Pane) -> None:
 
 def test_in_vs_code_messages_go_by_its_api(open_pane) -> None:
     pane = open_pane(script=CODE)
-    pane.page.wait_for_function("() => window.sent.some(m => m.type === 'ready')")
+    pane.page.wait_for_function("() => window.sent.some(m => m.method === 'aidl/preview')")
     assert "/socket" not in pane.host.requests
-    pane.page.evaluate("message => window.postMessage(message)", picture())
+    asked = pane.page.evaluate("() => window.sent")
+    assert [m["params"] for m in asked] == [{"uri": URI, "show": [], "source": False}]
+    answer = {"jsonrpc": "2.0", "id": asked[0]["id"], "result": picture()}
+    pane.page.evaluate("message => window.postMessage(message)", answer)
     expect(pane.find("#status")).to_have_text("Solved")
     pane.page.mouse.click(*pane.at(-40, 10))
     sent = pane.page.evaluate("() => window.sent")
-    assert [m["type"] for m in sent] == ["ready", "hover", "goto"]
+    assert [m["method"] for m in sent] == ["aidl/preview", "aidl/hover", "aidl/goto"]
     assert pane.page.evaluate("() => window.kept.uri") == URI
     expect(pane.find("#theme")).to_be_hidden()
     pane.page.get_by_role("button", name="Points", exact=True).click()
@@ -169,7 +177,7 @@ def test_themes(open_pane, scheme: str) -> None:
 @pytest.mark.parametrize("width", [320, 480, 720, 1400])
 def test_everything_fits_into_narrow_windows(open_pane, width: int) -> None:
     pane = open_pane(viewport={"width": width, "height": 800})
-    pane.host.hears("ready")
+    pane.host.hears("aidl/preview")
     pane.shows(problems=[problem(message="a `long` " * 30)])
     size = pane.page.evaluate(
         "() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
@@ -206,7 +214,7 @@ def test_menus_work_by_keys(pane: Pane) -> None:
     pane.page.keyboard.press("Tab")
     pane.page.keyboard.press("ArrowDown")
     pane.page.keyboard.press("Enter")
-    assert pane.host.hears("export")["format"] == "pdf"
+    assert pane.host.hears("aidl/export")["format"] == "pdf"
     expect(pane.find("#export-menu")).to_be_hidden()
     expect(pane.page.get_by_role("button", name="Export")).to_be_focused()
     pane.page.keyboard.press("Enter")
@@ -221,7 +229,7 @@ def test_panels_fold_and_stay_folded(pane: Pane) -> None:
     expect(pane.find("#knobs-list")).to_be_hidden()
     expect(fold).to_have_attribute("aria-expanded", "false")
     pane.page.reload()
-    pane.host.hears("ready", 2)
+    pane.host.hears("aidl/preview", 2)
     pane.shows()
     expect(pane.find("#knobs-list")).to_be_hidden()
 

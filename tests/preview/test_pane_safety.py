@@ -82,7 +82,7 @@ def test_the_same_would_do_harm_elsewhere(open_pane) -> None:
     """So that the test above can fail."""
     with ScriptedHost(csp="") as host:
         pane = open_pane(host)
-        host.hears("ready")
+        host.hears("aidl/preview")
         pane.page.evaluate(
             """text => document.body.append(document.importNode(
                 new DOMParser().parseFromString(text, "image/svg+xml").documentElement, true))""",
@@ -152,7 +152,7 @@ def test_hostile_texts_are_shown_as_text(pane: Pane) -> None:
     )
     pane.page.get_by_role("button", name="Freedom").click()
     pane.move(-40, 10)
-    pane.host.say({"type": "error", "message": evil})
+    pane.host.fail(evil)
     expect(pane.find(".toast")).to_contain_text(seen)
     for where, text in (
         ("tooltip", evil),

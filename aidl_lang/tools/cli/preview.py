@@ -11,7 +11,7 @@ from aidl_lang.tools.cli import files, listening
 from aidl_lang.tools.cli.options import add_program
 from aidl_lang.tools.cli.report import UseError, say
 
-_NEEDED = ("starlette", "uvicorn", "websockets")
+_NEEDED = ("pygls", "starlette", "uvicorn", "websockets")
 
 
 def register(parser: argparse.ArgumentParser) -> None:

@@ -48,6 +48,7 @@ class Document:
     seen      the serial of what was looked at last, be it that looking failed
     solved    the serial of what was run last
     memory    of the solver, from run to run
+    editing   held by an edit that is asked for beside the text
     """
 
     uri: str
@@ -62,6 +63,7 @@ class Document:
     was_given_up: bool = False
     is_open: bool = True
     memory: Memory = field(default_factory=Memory)
+    editing: asyncio.Lock = field(default_factory=asyncio.Lock)
     _waiting: list[_Waiting] = field(default_factory=list)
 
     async def until_seen(self, serial: int) -> None:

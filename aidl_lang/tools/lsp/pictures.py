@@ -3,31 +3,51 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from dataclasses import field, replace
 from functools import partial
 from typing import Any, TypeAlias, TypeVar
 
 from aidl_lang.common.cancelling import Cancelled
 from aidl_lang.common.records import record
+from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.ide.dragging import Handle
 from aidl_lang.tools.ide.preview import Preview, Writer, preview, with_handles
 from aidl_lang.tools.ide.view import View
-from aidl_lang.tools.lsp.documents import Document
+from aidl_lang.tools.lsp.documents import Document, Known
+from aidl_lang.tools.lsp.params import Show
 from aidl_lang.tools.lsp.server import Asked, Server
 
 _PAUSE = 0.25
 """Seconds without a change after which it is looked into what can be dragged: that takes as long as a run."""
 
 Json: TypeAlias = dict[str, Any]
+Look: TypeAlias = tuple[frozenset[str], bool]
+"""The layers over a picture, and whether the text is wanted with it."""
 T = TypeVar("T")
+_PLAIN: Look = (frozenset(), False)
 
 
 @record(frozen=False, eq=False)
 class _Shown:
-    """The layers that are wanted, and what could be dragged when that was looked into last."""
+    """
+    viewers  who sees a document, each with what is wanted
+    handles  what could be dragged when that was looked into last
+    made     the pictures that were made last, each of a run
+    text     the source that was coloured last, as the pane reads it
+    """
 
-    layers: tuple[str, ...] = ()
+    viewers: dict[str, Look] = field(default_factory=dict)
     handles: tuple[Handle, ...] = ()
+    made: dict[Look, tuple[Known, Preview]] = field(default_factory=dict)
+    text: tuple[SourceFile, Json] | None = None
+
+    def looks(self) -> dict[Look, list[str]]:
+        """The viewers that see the same picture."""
+        return {
+            look: [viewer for viewer, wanted in self.viewers.items() if wanted == look]
+            for look in self.viewers.values()
+        }
 
 
 class Pictures:
@@ -39,48 +59,72 @@ class Pictures:
         self.server = server
         self._shown: dict[Document, _Shown] = {}
         server.on_solved.append(self._solved)
-        server.on_closed.append(self.forget)
+        server.on_closed.append(self._forget)
 
-    def show(self, document: Document, layers: tuple[str, ...]) -> None:
-        self._shown.setdefault(document, _Shown()).layers = layers
+    def show(self, document: Document, wanted: Show) -> None:
+        shown = self._shown.setdefault(document, _Shown())
+        shown.viewers[wanted.viewer] = frozenset(wanted.show), wanted.source
 
-    def forget(self, document: Document) -> None:
+    def close(self, document: Document, viewer: str) -> None:
+        """A viewer is told no more of a document."""
+        shown = self._shown.get(document)
+        if shown is not None and shown.viewers.pop(viewer, None) is not None and not shown.viewers:
+            self._forget(document)
+
+    def _forget(self, document: Document) -> None:
         self._shown.pop(document, None)
 
-    def drawn(self, asked: Asked, document: Document, view: View, *, is_tried: bool = False) -> Json:
-        """The message for a view. To be called in the solving thread."""
-        return self._written(asked, self._made(document, view, is_tried=is_tried), view)
+    def tried(self, asked: Asked, document: Document, view: View, viewer: str) -> Json:
+        """The message for a view that is not that of the text. To be called in the solving thread."""
+        shown = self._shown.get(document, _Shown())
+        layers, source = shown.viewers.get(viewer, _PLAIN)
+        made = preview(view, layers, tried=True, known=shown.handles)
+        return self._written(asked, made, view, shown, source)
 
-    async def picture(self, document: Document, key: Hashable) -> Json | None:
+    async def picture(self, document: Document, viewer: str, key: Hashable) -> Json | None:
         """The message for the newest run; None where there was none. What can be dragged follows."""
         known = document.ran
         if known is None or not document.is_open:
             return None
         asked = self.server.asked_now(document, known)
-        made = await self._work(("picture", key), document, partial(self._made, document, known.view))
+        shown = self._shown.get(document, _Shown())
+        look = layers, source = shown.viewers.get(viewer, _PLAIN)
+        made = await self._work(
+            ("picture", key), document, lambda: preview(known.view, layers, known=shown.handles)
+        )
         if made is None:
             return None
         if document in self._shown and document.ran is known:
+            shown.made = {each: of for each, of in shown.made.items() if of[0] is known} | {
+                look: (known, made)
+            }
             self.server.in_background(self._complete(document, asked, made))
-        return self._written(asked, made, known.view)
+        return self._written(asked, made, known.view, shown, source)
 
-    def _made(self, document: Document, view: View, *, is_tried: bool = False) -> Preview:
-        shown = self._shown.get(document, _Shown())
-        return preview(view, shown.layers, tried=is_tried, known=shown.handles)
-
-    def _written(self, asked: Asked, made: Preview, view: View) -> Json:
-        return Writer(view, asked.convert.uri_of).preview(made, asked.known.version)
+    def _written(self, asked: Asked, made: Preview, view: View, shown: _Shown, source: bool) -> Json:
+        writer = Writer(view, asked.convert.uri_of)
+        text = None
+        if source:
+            if shown.text is None or shown.text[0] is not view.source:
+                shown.text = view.source, writer.source(view)
+            text = shown.text[1]
+        return writer.preview(made, asked.known.version, text)
 
     def _solved(self, document: Document) -> None:
         if document.ran is None:
             return
         self._tell_status(document)
-        if document in self._shown:
-            self.server.in_background(self._send(document))
+        shown = self._shown.get(document, _Shown())
+        for look, viewers in shown.looks().items():
+            self.server.in_background(self._send(document, look, viewers))
 
-    async def _send(self, document: Document) -> None:
-        if (message := await self.picture(document, document)) is not None:
-            self.server.protocol.tell("aidl/previewChanged", message)
+    async def _send(self, document: Document, look: Look, viewers: Sequence[str]) -> None:
+        if (message := await self.picture(document, viewers[0], (document, look))) is not None:
+            self._tell(viewers, message)
+
+    def _tell(self, viewers: Iterable[str], message: Json) -> None:
+        for viewer in viewers:
+            self.server.protocol.tell("aidl/previewChanged", {"viewer": viewer, **message})
 
     async def _complete(self, document: Document, asked: Asked, made: Preview) -> None:
         """Find out what can be dragged, and tell of the picture again if that is news."""
@@ -95,9 +139,11 @@ class Pictures:
         if full is None or shown is None or document.ran is not asked.known:
             return
         shown.handles = full.handles
-        if full.handles != made.handles:
-            message = self._written(asked, full, view)
-            self.server.protocol.tell("aidl/previewChanged", message)
+        for look, viewers in shown.looks().items():
+            known, before = shown.made.get(look, (None, made))
+            if known is asked.known and before.handles != full.handles:
+                complete = replace(before, handles=full.handles)
+                self._tell(viewers, self._written(asked, complete, view, shown, look[1]))
 
     async def _work(
         self, key: Hashable, document: Document, function: Callable[[], T], *, first: bool = True

@@ -18,6 +18,7 @@ from typing import Protocol, TypeVar
 from aidl_lang.common import resources
 from aidl_lang.common.cancelling import Cancelled, cancelled_when, checkpoint
 from aidl_lang.common.world import MemoryWorld
+from aidl_lang.pipeline import Settings
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion import complete
 from aidl_lang.tools.ide.hover import hover
@@ -65,8 +66,10 @@ class Runner:
         workspace: Workspace,
         listener: Listener,
         loop: asyncio.AbstractEventLoop,
+        limits: Settings = LIMITS,
     ) -> None:
         self.documents, self.workspace, self.listener = documents, workspace, listener
+        self.limits = limits
         self.delay = 0.0
         self.active: Document | None = None
         """What the user is at: it goes first."""
@@ -91,7 +94,7 @@ class Runner:
         self.looking.put(
             Job(
                 document,
-                partial(look, document.path, document.text, world, LIMITS),
+                partial(look, document.path, document.text, world, self.limits),
                 partial(self._looked, document, version, serial),
             ),
             first=active,
@@ -202,7 +205,7 @@ class Runner:
 
         with cancelled_when(is_unwanted):
             last = document.ran.view if document.ran is not None else None
-            return run(known.view, last, document.memory, settings=LIMITS)
+            return run(known.view, last, document.memory, settings=self.limits)
 
     def _ran(self, document: Document, known: Known, future: Future[View]) -> None:
         if not document.is_open or self._is_closing:

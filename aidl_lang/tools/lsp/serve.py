@@ -13,9 +13,11 @@ from collections.abc import Coroutine
 
 from pygls.exceptions import JsonRpcException
 
+from aidl_lang.pipeline import Settings as Limits
 from aidl_lang.tools.lsp import wire
 from aidl_lang.tools.lsp.lane import give_room
 from aidl_lang.tools.lsp.requests import actions, appearance, hints, lifecycle, navigation, preview, writing
+from aidl_lang.tools.lsp.running import LIMITS
 from aidl_lang.tools.lsp.server import Server
 
 _RECURSION = 20_000
@@ -26,9 +28,9 @@ _LOST = 1
 """Exit code when the client has gone without a word."""
 
 
-def make() -> Server:
+def make(limits: Limits = LIMITS) -> Server:
     """A server that knows all requests."""
-    server = Server()
+    server = Server(limits)
     for theme in (lifecycle, navigation, appearance, actions, hints, preview, writing):
         theme.register(server)
     return server
@@ -83,12 +85,17 @@ async def _serve(reader: asyncio.StreamReader, writer: wire.Output | asyncio.Str
         server.close()
 
 
-def _run(session: Coroutine[None, None, int]) -> int:
+def make_room() -> None:
+    """Prepares the process for a server: programs may be nested, and whoever asks is answered at once."""
     give_room()
     sys.setrecursionlimit(max(sys.getrecursionlimit(), _RECURSION))
     sys.setswitchinterval(_SWITCH)
     logging.basicConfig(stream=sys.stderr, format="%(levelname)s %(name)s: %(message)s")
     logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_news)
+
+
+def _run(session: Coroutine[None, None, int]) -> int:
+    make_room()
     code = asyncio.run(session)
     _end_threads(code)
     return code

@@ -15,6 +15,7 @@ from pygls.capabilities import get_capability
 from pygls.lsp.server import LanguageServer
 
 from aidl_lang.common.records import record
+from aidl_lang.pipeline import Settings as Limits
 from aidl_lang.tools.ide.positions import Unit
 from aidl_lang.tools.ide.project import Project
 from aidl_lang.tools.ide.view import View
@@ -24,7 +25,7 @@ from aidl_lang.tools.lsp.documents import Document, Documents, Known
 from aidl_lang.tools.lsp.lane import Answers
 from aidl_lang.tools.lsp.protocol import Protocol, converter
 from aidl_lang.tools.lsp.publishing import Publisher, converted
-from aidl_lang.tools.lsp.running import Runner
+from aidl_lang.tools.lsp.running import LIMITS, Runner
 from aidl_lang.tools.lsp.settings import Settings
 from aidl_lang.version import __version__
 
@@ -62,8 +63,9 @@ class Server(LanguageServer):
 
     protocol: Protocol
 
-    def __init__(self) -> None:
+    def __init__(self, limits: Limits = LIMITS) -> None:
         super().__init__("aidl", __version__, protocol_cls=Protocol, converter_factory=converter)
+        self.limits = limits
         self.documents = Documents()
         self.open_files = Workspace()
         self.project = Project(self.open_files)
@@ -79,7 +81,7 @@ class Server(LanguageServer):
         self._background: set[asyncio.Task[None]] = set()
 
     def start(self) -> None:
-        self.runner = Runner(self.documents, self.open_files, self, asyncio.get_running_loop())
+        self.runner = Runner(self.documents, self.open_files, self, asyncio.get_running_loop(), self.limits)
 
     def close(self) -> None:
         """Give up what is being worked on."""

@@ -1,288 +1,342 @@
-"""The host of the pages that show a program: brings them pictures, and carries out what they ask for."""
+"""The host of the pages that show a program: a client of the language server whose text is a file.
+
+A page speaks the server's requests (`lsp/requests/preview.py`), and is answered by it. Here pages have turns:
+of each one order is under way, and one attempt; of attempts the newest waits. An edit that the server asks
+for is written into the file.
+"""
 
 from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Iterable
 from functools import partial
-from typing import TypeAlias
+from itertools import count
+from pathlib import Path
+from typing import Any, TypeAlias
 
-from aidl_lang.common.cancelling import Cancelled
-from aidl_lang.common.records import record
-from aidl_lang.tools.agents.workspace import RefusalError
-from aidl_lang.tools.ide.preview import Preview
-from aidl_lang.tools.ide.preview.protocol import Json
+from attrs import field, frozen
+from lsprotocol.types import ErrorCodes, LSPErrorCodes, MessageType
+from pygls.exceptions import JsonRpcInvalidParams
+
+from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.tools.ide.positions import Positions
 from aidl_lang.tools.ide.refusing import CannotError
-from aidl_lang.tools.ide.view import View
-from aidl_lang.tools.preview import messages
-from aidl_lang.tools.preview.messages import ApplyFix, Cancel, Drag, Export, Ready, SetKnob, Show
-from aidl_lang.tools.preview.program import Program
-from aidl_lang.tools.preview.worker import Job, Worker
+from aidl_lang.tools.ide.view import SETTINGS
+from aidl_lang.tools.lsp.documents import Document
+from aidl_lang.tools.lsp.params import read
+from aidl_lang.tools.lsp.serve import make
+from aidl_lang.tools.preview import files
 
-Then: TypeAlias = Callable[[], None]
-"""What is left to do in the event loop."""
+Json: TypeAlias = dict[str, Any]
 
-
-@record(eq=False)
-class Picture:
-    """A preview of a version of the text, and the message that says it."""
-
-    preview: Preview
-    version: int
-    text: str
-
-
-_BUSY: Json = {"type": "busy"}
-_TOO_MUCH: Json = {
-    "type": "error",
-    "message": "this page asks for more than can be done at once: what it asked for last was left out",
-}
-_GIVEN_UP: Json = {"type": "error", "message": "the text has changed meanwhile: ask for it again"}
+LONGEST = 65_536
+"""Bytes of a message of a page."""
+MOST_ORDERS = 8
+"""Of one page, that wait."""
 MOST_UNTAKEN = 16
 """Messages that wait for a page before it is heard again."""
+BUSY_AFTER = 0.15
+"""Seconds of a run after which the pages are told."""
+
+_ATTEMPT = "aidl/try"
+_EDITS = frozenset({"aidl/setKnob", "aidl/drag", "aidl/fix"})
+_METHODS = _EDITS | {_ATTEMPT, "aidl/preview", "aidl/export"}
+"""What a page may ask of the server."""
+_TOO_MUCH = "this page asks for more than can be done at once: what it asked for last was left out"
+_CLIENT: Json = {
+    "general": {"positionEncodings": ["utf-16"]},
+    "workspace": {"applyEdit": True, "workspaceEdit": {"documentChanges": True}},
+}
+
+
+@frozen(kw_only=True)
+class Request:
+    """What a page asks; `id` is its own."""
+
+    id: int
+    method: str
+    params: dict[str, Any] = field(factory=dict)
 
 
 class Page:
     """One page that is open. What it has not taken yet waits; of pictures the newest, of equals one."""
 
-    def __init__(self) -> None:
-        self.show: frozenset[str] = frozenset()
-        self.shown: Picture | None = None
-        """what it was sent last"""
-        self.is_owed = False
-        """whether it waits for a picture even if the text stays as it is"""
-        self.is_held_up = False
-        """whether it was told that it asks for too much, and nothing of it was taken since"""
+    def __init__(self, name: str = "") -> None:
+        self.name = name
+        self.orders: deque[Request] = deque()
+        self.is_ordering = False
+        """whether an order is under way"""
+        self.attempt: Request | None = None
+        """what is tried next"""
+        self.is_trying = False
+        self._is_held_up = False
         self._waiting: list[tuple[bool, str]] = []
         self._news = asyncio.Event()
-
-    def post(self, text: str, *, is_picture: bool = False) -> None:
-        if is_picture:
-            self._waiting = [each for each in self._waiting if not each[0]]
-        if (is_picture, text) not in self._waiting:
-            self._waiting.append((is_picture, text))
-        self._news.set()
 
     @property
     def is_behind(self) -> bool:
         """Whether it asks for more than it takes."""
         return len(self._waiting) >= MOST_UNTAKEN
 
-    def take(self, picture: Picture) -> None:
-        self.shown = picture
-        self.post(picture.text, is_picture=True)
+    def post(self, message: Json, *, is_picture: bool = False) -> None:
+        text = json.dumps({"jsonrpc": "2.0", **message})
+        if is_picture:
+            self._waiting = [each for each in self._waiting if not each[0]]
+        if (is_picture, text) not in self._waiting:
+            self._waiting.append((is_picture, text))
+        self._news.set()
 
-    def tell(self, message: Json) -> None:
-        self.post(json.dumps(message))
+    def tell(self, message: str) -> None:
+        """What people are to know."""
+        params = {"type": MessageType.Error.value, "message": message}
+        self.post({"method": "window/showMessage", "params": params})
+
+    def refuse(self, request: Request, code: int, message: str) -> None:
+        self.post({"id": request.id, "error": {"code": code, "message": message}})
+
+    def hold_up(self) -> None:
+        """Leave out what it asks for; that is told once."""
+        if not self._is_held_up:
+            self._is_held_up = True
+            self.tell(_TOO_MUCH)
 
     async def next(self) -> str:
         """The next message for it."""
         while not self._waiting:
             self._news.clear()
             await self._news.wait()
+        self._is_held_up = False
         return self._waiting.pop(0)[1]
 
 
 class Host:
-    def __init__(self, program: Program) -> None:
-        self.program = program
+    """All methods belong to the loop's thread. `start` is called once, in the loop that serves the pages."""
+
+    def __init__(self, path: Path, write: files.Write) -> None:
+        self.path, self._write = path, write
+        self.uri = path.as_uri()
         self.pages: list[Page] = []
-        self._worker = Worker(Job(self._refreshed, partial(self._tell_all, _BUSY), self._trouble))
-        self._trouble_told = ""
+        self.server = make(SETTINGS)
+        self._gone = Page()
+        """carries out the edits of pages that left"""
+        self._text: str | None = None
+        self._version = 0
+        self._trouble = ""
+        self._numbers = count(1)
+        self._asked: dict[int, Callable[[Json], None]] = {}
+        self._busy: asyncio.TimerHandle | None = None
 
-    async def run(self) -> None:
-        """Works until it is cancelled."""
-        self._worker.refresh()
-        await self._worker.run()
+    def start(self) -> None:
+        self._loop = asyncio.get_running_loop()
+        self.server.start()
+        self.server.protocol.set_writer(self, include_headers=False)
+        self._ask("initialize", {"processId": None, "rootUri": None, "capabilities": _CLIENT}, _ignore)
+        self._say("initialized", {})
+        self.look()
 
-    def changed(self) -> None:
-        """A file has changed, or may have."""
-        self._worker.refresh()
+    def close(self) -> None:
+        """Gives up what is being worked on."""
+        self._rested()
+        self.server.close()
+
+    # --- The text
+
+    def changed(self, paths: Iterable[Path] = ()) -> None:
+        """Files have changed, or may have; the program's own is looked at in any case."""
+        others = [{"uri": path.as_uri(), "type": 2} for path in paths if path != self.path]
+        if others:
+            self._say("workspace/didChangeWatchedFiles", {"changes": others})
+        try:
+            text = files.text_of(self.path)
+        except CannotError as reason:
+            self._tell_trouble(str(reason))
+            return
+        self._tell_trouble("")
+        if text != self._text:
+            self._renew(text)
 
     def look(self) -> None:
-        """A file may have changed before anybody saw to it. What runs goes on."""
-        self._worker.ask(None)
+        """Any file of the program may have changed before anybody saw to it."""
+        self.changed(self._sources())
+
+    def _renew(self, text: str) -> None:
+        self._version += 1
+        named: Json = {"uri": self.uri, "version": self._version}
+        if self._text is None:
+            self._say("textDocument/didOpen", {"textDocument": {**named, "languageId": "aidl", "text": text}})
+        else:
+            self._say("textDocument/didChange", {"textDocument": named, "contentChanges": [{"text": text}]})
+        self._text = text
+        if self._busy is None:
+            self._busy = self._loop.call_later(BUSY_AFTER, self._tell_all, {"method": "aidl/busy"})
+
+    def _rested(self) -> None:
+        if self._busy is not None:
+            self._busy.cancel()
+            self._busy = None
+
+    def _tell_trouble(self, message: str) -> None:
+        """That the file cannot be read is told once, not at each look at it."""
+        if message and message != self._trouble:
+            for page in self.pages:
+                page.tell(message)
+        self._trouble = message
+
+    def _tell_all(self, message: Json) -> None:
+        for page in self.pages:
+            page.post(message)
+
+    def _sources(self) -> dict[Path, SourceFile]:
+        """The files that the program is made of, as they were run last."""
+        document: Document | None = self.server.documents.get(self.uri)
+        if document is None or document.ran is None:
+            return {}
+        view = document.ran.view
+        sources = [m.source for m in view.resolution.modules if not view.is_library(m.source)]
+        return {path: source for source in sources if (path := view.file(source)) is not None}
+
+    # --- Pages
 
     def join(self) -> Page:
-        page = Page()
+        page = Page(str(next(self._numbers)))
         self.pages.append(page)
         return page
 
     def leave(self, page: Page) -> None:
+        """The page has gone: of its orders the edits are carried out."""
         self.pages.remove(page)
-        self._worker.leave(page)
-
-    # --- The text
-
-    def _refreshed(self) -> Then:
-        is_new, trouble = False, ""
-        try:
-            is_new = self.program.refresh()
-        except CannotError as reason:
-            if self.program.view is None:
-                raise
-            trouble = str(reason)
-        pages = [page for page in tuple(self.pages) if is_new or page.is_owed]
-        view = self.program.current
-        pictures: dict[frozenset[str], Picture] = {}
-        for show in {page.show for page in pages}:
-            made = self.program.picture(view, show)
-            pictures[show] = Picture(made, self.program.version, self.program.message(view, made))
-        return partial(self._show_all, pages, pictures, trouble)
-
-    def _show_all(self, pages: list[Page], pictures: dict[frozenset[str], Picture], trouble: str) -> None:
-        for page in pages:
-            if page.show in pictures:  # else it has just asked for others
-                page.is_owed = False
-                page.take(pictures[page.show])
-        self._tell_trouble(trouble)
-        if pages:
-            self._worker.later(Job(self._completed, _nothing, self._trouble))
-
-    def _completed(self) -> Then:
-        """What takes longer is told when the pictures are there."""
-        found: list[tuple[Page, Picture, Picture]] = []
-        for page in tuple(self.pages):
-            before = page.shown
-            if before is not None and not before.preview.tried and before.version == self.program.version:
-                made = self.program.completed(before.preview)
-                if made.handles != before.preview.handles:
-                    text = self.program.message(self.program.current, made)
-                    found.append((page, before, Picture(made, before.version, text)))
-        return partial(self._complete_all, found)
-
-    def _complete_all(self, found: list[tuple[Page, Picture, Picture]]) -> None:
-        for page, before, after in found:
-            if page.shown is before:
-                page.take(after)
-
-    def _trouble(self, error: BaseException) -> None:
-        if not isinstance(error, Cancelled):
-            self._tell_trouble(_told(error))
-
-    def _tell_trouble(self, message: str) -> None:
-        """That the file cannot be read is told once, not at each look at it."""
-        if message and message != self._trouble_told:
-            self._tell_all({"type": "error", "message": message})
-        self._trouble_told = message
-
-    def _tell_all(self, message: Json) -> None:
-        for page in self.pages:
-            page.tell(message)
-
-    # --- What pages ask for
+        for request in page.orders:
+            if request.method in _EDITS and len(self._gone.orders) < MOST_ORDERS:
+                self._gone.orders.append(request)
+        page.orders.clear()
+        page.attempt = None
+        self._go_on(self._gone)
+        self._ask("aidl/previewClose", {"uri": self.uri, "viewer": page.name}, _ignore)
 
     def hear(self, page: Page, text: str) -> None:
-        """Take a message; the answer comes when there is one."""
+        """Takes a message; the answer comes when there is one. What is no request is passed over."""
         if page.is_behind:
-            self._hold_up(page)
+            page.hold_up()
             return
-        match messages.read(text):
-            case Ready() | Cancel():
-                self._worker.forget(page)
-                self._owe(page)
-            case Show(layers):
-                page.show = layers
-                self._owe(page)
-            case SetKnob(path, value, final):
-                if final:
-                    self._edit(page, lambda: self.program.set_knob(path, value))
-                else:
-                    self._attempt(page, lambda: self._tried_knob(page, path, value))
-            case Drag(handle, to, final):
-                if final:
-                    self._edit(page, lambda: self.program.drop(handle, to))
-                else:
-                    self._attempt(page, lambda: self._dragged(page, handle, to))
-            case ApplyFix(problem, fix):
-                self._edit(page, partial(self._fix, page.shown, problem, fix))
-            case Export(name):
-                self._order(page, lambda: self._exported(page, name))
-            case None:
-                pass
-
-    def _owe(self, page: Page) -> None:
-        page.is_owed = True
-        self._worker.ask(page)
-
-    def _attempt(self, page: Page, do: Callable[[], Then]) -> None:
-        self._worker.attempt(page, Job(do, partial(page.tell, _BUSY), partial(self._refused, page)))
-
-    def _order(self, page: Page, do: Callable[[], Then], *, lasts: bool = False) -> None:
-        job = Job(do, partial(page.tell, _BUSY), partial(self._refused, page, is_order=True), lasts)
-        if self._worker.order(page, job):
-            page.is_held_up = False
+        try:
+            request = read(json.loads(text), Request)
+        except (ValueError, RecursionError, JsonRpcInvalidParams):
+            return
+        if request.method not in _METHODS:
+            page.refuse(request, ErrorCodes.MethodNotFound, "pages cannot ask for this")
+        elif request.method == _ATTEMPT:
+            if page.attempt is not None:
+                page.refuse(page.attempt, LSPErrorCodes.RequestCancelled, "there is something newer")
+            page.attempt = request
+            self._try(page)
+        elif len(page.orders) == MOST_ORDERS:
+            page.refuse(request, LSPErrorCodes.RequestFailed, _TOO_MUCH)
         else:
-            self._hold_up(page)
+            page.orders.append(request)
+            self._go_on(page)
 
-    def _hold_up(self, page: Page) -> None:
-        """Leave out what it asks for; that is told once."""
-        if not page.is_held_up:
-            page.is_held_up = True
-            page.tell(_TOO_MUCH)
-            self._owe(page)
+    def _try(self, page: Page) -> None:
+        if page.attempt is not None and not page.is_trying:
+            request, page.attempt, page.is_trying = page.attempt, None, True
+            self._forward(page, request, partial(self._tried, page))
 
-    def _edit(self, page: Page, edit: Callable[[], None]) -> None:
-        """An order after which the page gets the picture of the text."""
+    def _tried(self, page: Page) -> None:
+        page.is_trying = False
+        self._try(page)
 
-        def do() -> Then:
-            edit()
-            return partial(self._edited, page)
+    def _go_on(self, page: Page) -> None:
+        if page.orders and not page.is_ordering:
+            page.is_ordering = True
+            self._forward(page, page.orders.popleft(), partial(self._carried_out, page))
 
-        self._worker.forget(page)
-        self._order(page, do, lasts=True)
+    def _carried_out(self, page: Page) -> None:
+        page.is_ordering = False
+        self._go_on(page)
 
-    def _edited(self, page: Page) -> None:
-        page.is_owed = True
-        self._worker.refresh()
+    def _forward(self, page: Page, request: Request, then: Callable[[], None]) -> None:
+        """Has the server answer a page."""
 
-    def _refused(self, page: Page, error: BaseException, *, is_order: bool = False) -> None:
-        """What was given up is followed by the picture of the text."""
-        if not isinstance(error, Cancelled):
-            page.tell({"type": "error", "message": _told(error)})
-        elif is_order:
-            page.tell(_GIVEN_UP)
-        self._owe(page)
+        def answered(message: Json) -> None:
+            if page in self.pages:
+                page.post({**message, "id": request.id})
+            then()
 
-    # --- In the thread of the worker
+        self._ask(request.method, {**request.params, "viewer": page.name}, answered)
 
-    def _tried_knob(self, page: Page, path: str, value: float | str | bool) -> Then:
-        view = self.program.with_knob(path, value)
-        return self._tried(page, view)
+    # --- The server
 
-    def _dragged(self, page: Page, handle: str, to: tuple[float, float]) -> Then:
-        return self._tried(page, self.program.dragged(handle, to))
+    def _ask(self, method: str, params: Json, answered: Callable[[Json], None]) -> None:
+        number = next(self._numbers)
+        self._asked[number] = answered
+        self._receive({"id": number, "method": method, "params": params})
 
-    def _tried(self, page: Page, view: View) -> Then:
-        made = self.program.picture(view, page.show, is_tried=True)
-        return partial(page.take, Picture(made, self.program.version, self.program.message(view, made)))
+    def _say(self, method: str, params: Json) -> None:
+        self._receive({"method": method, "params": params})
 
-    def _fix(self, shown: Picture | None, problem: int, fix: int) -> None:
-        if shown is None or shown.version != self.program.version:
-            raise CannotError("the text has changed meanwhile")
-        problems = shown.preview.problems
-        if not (0 <= problem < len(problems) and 0 <= fix < len(problems[problem].fixes)):
-            raise CannotError("there is no such fix")
-        self.program.edit(problems[problem].fixes[fix].edits)
+    def _receive(self, message: Json) -> None:
+        self.server.protocol.receive(json.dumps({"jsonrpc": "2.0", **message}).encode())
 
-    def _exported(self, page: Page, name: str) -> Then:
-        return partial(page.tell, self.program.export(name, page.show))
+    def write(self, data: bytes) -> None:
+        """Takes what the server sends; see `pygls`."""
+        self._loop.call_soon(self._heard, json.loads(data))
+
+    def _heard(self, message: Json) -> None:
+        method: str | None = message.get("method")
+        params: Json = message.get("params") or {}
+        if method is None:
+            self._asked.pop(message["id"])(message)
+        elif "id" in message:
+            made = self._edited(params) if method == "workspace/applyEdit" else None
+            self._receive({"id": message["id"], "result": made})
+        elif method == "aidl/previewChanged":
+            self._rested()
+            for page in self.pages:
+                if page.name == params["viewer"]:
+                    page.post(message, is_picture=True)
+        elif method == "aidl/status":
+            self._rested()
+        elif method == "window/showMessage":
+            self._tell_all(message)
+
+    def _edited(self, params: Json) -> Json:
+        """Writes an edit into the files."""
+        try:
+            self._edit(params["edit"]["documentChanges"])
+        except CannotError as reason:
+            return {"applied": False, "failureReason": str(reason)}
+        self.look()
+        return {"applied": True}
+
+    def _edit(self, changes: list[Json]) -> None:
+        """Each file as a whole or not at all. Raises CannotError."""
+        known = {
+            self.server.documents.uri_of(path): (path, source) for path, source in self._sources().items()
+        }
+        written = []
+        for change in changes:
+            path, source = known.get(change["textDocument"]["uri"], (None, None))
+            if path is None or source is None:
+                raise CannotError("this cannot be changed from here")
+            if change["textDocument"]["version"] not in (None, self._version):
+                raise CannotError("the text has changed meanwhile")
+            written.append((path, files.rewritten(path, source, _edits(source, change["edits"]))))
+        files.write(written, self._write)
 
 
-def _nothing() -> None:
+def _edits(source: SourceFile, edits: Iterable[Json]) -> list[Edit]:
+    positions = Positions(source.text)
+
+    def offset(place: Json) -> int:
+        return positions.offset(place["line"], place["character"])
+
+    return [
+        Edit(Span(source, offset(e["range"]["start"]), offset(e["range"]["end"])), e["newText"])
+        for e in edits
+    ]
+
+
+def _ignore(message: Json) -> None:
     """Nobody waits for it."""
-
-
-def _told(error: BaseException) -> str:
-    """What ended a job, for people. Raises what nobody foresaw, to be told by the event loop."""
-    match error:
-        case CannotError():
-            return str(error)
-        case RefusalError(diagnostics=(first, *_)):
-            return "; ".join([first.message, *first.hints[:1]])
-        case _:
-            asyncio.get_running_loop().call_exception_handler(
-                {"message": "the preview failed at something", "exception": error}
-            )
-            return "this did not work; the terminal says more"

@@ -8,9 +8,9 @@ from socket import AF_INET6, socket
 
 import uvicorn
 
-from aidl_lang.tools.preview.host import Host
-from aidl_lang.tools.preview.messages import LONGEST
-from aidl_lang.tools.preview.program import Program, Write
+from aidl_lang.tools.lsp.serve import make_room
+from aidl_lang.tools.preview.files import Write
+from aidl_lang.tools.preview.host import LONGEST, Host
 from aidl_lang.tools.preview.site import MOST_PAGES, site
 
 _CONNECTIONS = 8 * MOST_PAGES
@@ -25,7 +25,7 @@ class Served:
     def __init__(self, path: Path, write: Write, listener: socket) -> None:
         self._listener = listener
         self._token = secrets.token_urlsafe(24)
-        self._host = Host(Program(path, write))
+        self._host = Host(path, write)
         address, self._port = listener.getsockname()[:2]
         self._name = f"[{address}]" if listener.family == AF_INET6 else str(address)
 
@@ -35,6 +35,7 @@ class Served:
 
     def run(self) -> None:
         """Until it is interrupted."""
+        make_room()
         names = {self._name, "localhost", "127.0.0.1", "[::1]"}
         config = uvicorn.Config(
             site(self._host, self._token, [f"{name}:{self._port}" for name in names]),

@@ -11,7 +11,7 @@ import asyncio
 import html
 import secrets
 from collections.abc import AsyncIterator, Collection
-from contextlib import AsyncExitStack, asynccontextmanager
+from contextlib import asynccontextmanager
 from functools import cache
 from pathlib import Path
 
@@ -22,8 +22,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-from aidl_lang.tools.preview.host import Host, Page
-from aidl_lang.tools.preview.messages import LONGEST
+from aidl_lang.tools.preview.host import LONGEST, Host, Page
 from aidl_lang.tools.preview.watching import watch
 
 PANE = Path(__file__).parent / "pane"
@@ -61,19 +60,16 @@ def site(host: Host, token: str, addresses: Collection[str]) -> ASGIApp:
 
 @asynccontextmanager
 async def _working(app: Starlette) -> AsyncIterator[None]:
-    """The host works, and looks at the files, while the application runs."""
+    """The host works, and its files are watched, while the application runs."""
     host: Host = app.state.host
-    async with AsyncExitStack() as stack:
-        for work in (host.run(), watch(host.program.path, host.changed, host.look)):
-            stack.push_async_callback(_end, asyncio.create_task(work))
-        yield
-
-
-async def _end(task: asyncio.Task[None]) -> None:
-    task.cancel()
-    await asyncio.wait([task])
-    if not task.cancelled():
-        task.result()
+    host.start()
+    watching = asyncio.create_task(watch(host.path, host.changed, host.look))
+    yield
+    host.close()
+    watching.cancel()
+    await asyncio.wait([watching])
+    if not watching.cancelled():
+        watching.result()
 
 
 class _Guard:
@@ -108,7 +104,8 @@ class _Guard:
 
 async def _index(request: Request) -> Response:
     text = (PANE / "index.html").read_text("utf-8")
-    for name, value in {"csp": POLICY, "root": "pane/", "nonce": "", "socket": "socket"}.items():
+    uri = request.app.state.host.uri
+    for name, value in {"csp": POLICY, "root": "pane/", "nonce": "", "socket": "socket", "uri": uri}.items():
         text = text.replace(f"{{{{{name}}}}}", html.escape(value))
     return Response(text, media_type="text/html", headers=_HEADERS)
 

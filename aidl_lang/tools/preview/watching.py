@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from watchfiles import Change, awatch
@@ -15,9 +15,9 @@ _SETTLED = 500
 """Milliseconds after which the system has begun to watch, if nothing has shown that before."""
 
 
-async def watch(file: Path, changed: Callable[[], None], begun: Callable[[], None]) -> None:
-    """Calls back whenever a file, or a program beside it or below its folder, has changed, and once when it
-    has begun to see that; until it is cancelled.
+async def watch(file: Path, changed: Callable[[Iterable[Path]], None], begun: Callable[[], None]) -> None:
+    """Calls back with the paths whenever a file, or programs beside it or below its folder, have changed, and
+    once when it has begun to see that; until it is cancelled.
     """
     try:
         await _watch(file, changed, begun, polling=None)
@@ -26,7 +26,7 @@ async def watch(file: Path, changed: Callable[[], None], begun: Callable[[], Non
 
 
 async def _watch(
-    file: Path, changed: Callable[[], None], begun: Callable[[], None], polling: bool | None
+    file: Path, changed: Callable[[Iterable[Path]], None], begun: Callable[[], None], polling: bool | None
 ) -> None:
     def concerns(change: Change, path: str) -> bool:
         return path.endswith(SUFFIX) or path == str(file)
@@ -42,7 +42,7 @@ async def _watch(
         yield_on_timeout=True,
     ):
         if changes:
-            changed()
+            changed({Path(path) for _, path in changes})
         elif not has_begun:
             begun()
         has_begun = True

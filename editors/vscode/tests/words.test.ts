@@ -29,12 +29,12 @@ test("of two that begin or end together the smaller is the inner, whatever their
 
 test("the page: values are escaped, the folder ends with a slash, nothing is left open", () => {
   const template = '<meta content="{{csp}}"><script nonce="{{nonce}}" src="{{root}}main.js"></script>{{socket}}';
-  const page = complete(template, { source: 'https://"&<x>', root: "https://files/a&b", nonce: "N0nce" });
+  const page = complete(template, { source: 'https://"&<x>', root: "https://files/a&b", nonce: "N0nce", uri: URI });
   assert.match(page, /src="https:\/\/files\/a&amp;b\/main.js"/);
   assert.match(page, /nonce="N0nce"/);
   assert.match(page, /content="default-src 'none'; script-src 'nonce-N0nce' https:\/\/&quot;&amp;&lt;x&gt;;/);
   assert.doesNotMatch(page, /unsafe|\{\{|\*/);
-  assert.throws(() => complete("{{other}}", { source: "", root: "", nonce: "" }), /other/);
+  assert.throws(() => complete("{{other}}", { source: "", root: "", nonce: "", uri: URI }), /other/);
 });
 
 test("the status bar", () => {

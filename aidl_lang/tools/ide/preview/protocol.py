@@ -10,6 +10,7 @@ from aidl_lang.common.numbers import rounded
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.tools.ide.positions import Positions
 from aidl_lang.tools.ide.preview.values import Conflict, Element, Preview, Problem, Slider, Way
+from aidl_lang.tools.ide.semantic_tokens import semantic_tokens
 from aidl_lang.tools.ide.view import View
 
 Json: TypeAlias = dict[str, Any]
@@ -24,7 +25,7 @@ class Writer:
         self._uris: dict[SourceFile, str | None] = {}
 
     def preview(self, preview: Preview, version: int, source: Json | None = None) -> Json:
-        """The message `picture` without its type. Numbers that have no value are null."""
+        """Numbers that have no value are null. `source` is that of `source`, or null."""
         made = {
             "uri": self._uri_of(self._view.path),
             "version": version,
@@ -46,6 +47,15 @@ class Writer:
             "degrees": preview.degrees,
         }
         return {**rounded(made), "source": source}
+
+    def source(self, view: View) -> Json:
+        """The text with its colours, for who sees no editor."""
+        positions = self.positions(view.source)
+        tokens = [
+            (*positions.position(c.span.start), positions.length(c.span.start, c.span.end), c.type)
+            for c in semantic_tokens(view)
+        ]
+        return {"text": view.source.text, "tokens": tokens}
 
     def place(self, span: Span | None) -> Json:
         """`range` and `uri` of a place; both null for what is in the library, or nowhere."""

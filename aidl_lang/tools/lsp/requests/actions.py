@@ -11,7 +11,7 @@ from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcIn
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.tools.ide.actions import Action, actions
 from aidl_lang.tools.ide.refusing import CannotError
-from aidl_lang.tools.lsp.given import Given
+from aidl_lang.tools.lsp import params as asking
 from aidl_lang.tools.lsp.server import FAILED, Asked, Server
 
 _KINDS = (
@@ -31,10 +31,10 @@ def register(server: Server) -> None:
     async def resolve(action: types.CodeAction) -> types.CodeAction:
         if action.data is None:
             return action
-        given = Given(action.data)
-        document = server.documents.get(given.text("uri"))
+        given = asking.read(action.data, asking.Action)
+        document = server.documents.get(given.uri)
         asked = await server.asked(document) if document is not None else None
-        if asked is None or asked.known.version != given.whole("version"):
+        if asked is None or asked.known.version != given.version:
             raise JsonRpcContentModified("the text has changed")
         action.edit = await server.answers.ask(lambda: _worked_out(asked, given, action.title))
         return action
@@ -112,10 +112,9 @@ def _is_mended(shown: types.Diagnostic, action: Action, asked: Asked) -> bool:
     return shown.range == asked.convert.range(mends.span)
 
 
-def _worked_out(asked: Asked, given: Given, title: str) -> types.WorkspaceEdit:
-    kind = given.text("kind")
-    for action in actions(asked.view, given.whole("start"), given.whole("end")):
-        if (action.title, action.kind) == (title, kind):
+def _worked_out(asked: Asked, given: asking.Action, title: str) -> types.WorkspaceEdit:
+    for action in actions(asked.view, given.start, given.end):
+        if (action.title, action.kind) == (title, given.kind):
             return _made(asked, action)
     raise JsonRpcContentModified("the text has changed")
 

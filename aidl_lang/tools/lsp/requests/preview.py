@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from collections import Counter
 from collections.abc import Awaitable, Callable, Sequence
 from itertools import count
 from typing import Any, TypeVar
@@ -16,17 +17,16 @@ from pygls.exceptions import (
 )
 
 from aidl_lang.common.cancelling import Cancelled
-from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.diagnostics import Diagnostic, Edit
 from aidl_lang.export import FORMATS, ExportError, Options
 from aidl_lang.tools.agents.workspace import RefusalError
-from aidl_lang.tools.ide.dragging import Dragged, drag
+from aidl_lang.tools.ide.dragging import drag
 from aidl_lang.tools.ide.preview import LAYERS, set_knob, tried
 from aidl_lang.tools.ide.refusing import Refusal
 from aidl_lang.tools.ide.view import View
 from aidl_lang.tools.lsp.documents import Document
-from aidl_lang.tools.lsp.given import Given
+from aidl_lang.tools.lsp.params import ApplyFix, Drag, Export, OfDocument, OfVersion, SetKnob, Show, Try, read
 from aidl_lang.tools.lsp.pictures import Json, Pictures
-from aidl_lang.tools.lsp.running import LIMITS
 from aidl_lang.tools.lsp.server import FAILED, Asked, Server
 
 _LONGEST_WAIT = 30.0
@@ -38,25 +38,20 @@ T = TypeVar("T")
 
 def register(server: Server) -> None:
     requests = _Requests(server)
-    for method, answer in {
-        "aidl/preview": requests.preview,
-        "aidl/previewClose": requests.close,
-        "aidl/try": requests.attempt,
-        "aidl/setKnob": requests.set_knob,
-        "aidl/drag": requests.drag,
-        "aidl/fix": requests.fix,
-        "aidl/export": requests.export,
-    }.items():
-        server.feature(method)(_handler(answer))
+    _answer(server, "aidl/preview", Show, requests.preview)
+    _answer(server, "aidl/previewClose", OfDocument, requests.close)
+    _answer(server, "aidl/try", Try, requests.attempt)
+    _answer(server, "aidl/setKnob", SetKnob, requests.set_knob)
+    _answer(server, "aidl/drag", Drag, requests.drag)
+    _answer(server, "aidl/fix", ApplyFix, requests.fix)
+    _answer(server, "aidl/export", Export, requests.export)
 
 
-def _handler(answer: Callable[[Given], Awaitable[Any]]) -> Callable[[Any], Awaitable[Any]]:
-    """What pygls knows for a coroutine function of the parameters, which may not be typed as `object`."""
+def _answer(server: Server, method: str, kind: type[T], answer: Callable[[T], Awaitable[Any]]) -> None:
+    async def handler(params: Any) -> Any:  # pygls takes no parameter that is typed as `object`
+        return await answer(read(params, kind))
 
-    async def handler(params: Any) -> Any:
-        return await answer(Given(params))
-
-    return handler
+    server.feature(method)(handler)
 
 
 class _Requests:
@@ -64,73 +59,71 @@ class _Requests:
         self.server = server
         self.pictures = Pictures(server)
         self._numbers = count()
+        self._asked: Counter[tuple[str, str]] = Counter()
+        """How often a viewer of a document asked for what outdates its tries."""
 
-    async def preview(self, given: Given) -> Json | None:
+    async def preview(self, given: Show) -> Json | None:
         """Shows a document from now on."""
         document = self._document(given)
-        self.pictures.show(document, given.texts("show"))
+        self._outdate_tries(given)
+        self.pictures.show(document, given)
         self.server.runner.active = document
         await document.until_solved(document.serial, _LONGEST_WAIT)
-        return await self.pictures.picture(document, next(self._numbers))
+        return await self.pictures.picture(document, given.viewer, next(self._numbers))
 
-    async def close(self, given: Given) -> None:
-        document = self.server.documents.get(given.text("uri"))
+    async def close(self, given: OfDocument) -> None:
+        self._asked.pop((given.uri, given.viewer), None)
+        document = self.server.documents.get(given.uri)
         if document is not None:
-            self.pictures.forget(document)
+            self.pictures.close(document, given.viewer)
 
-    async def attempt(self, given: Given) -> Json:
+    async def attempt(self, given: Try) -> Json:
         """The picture with other values of params, or with a point dragged; nothing is written."""
-        asked, document = await self._solved(given)
-        if "drag" in given:
-            wanted = given.inner("drag")
-            handle, to = wanted.text("id"), wanted.point("to")
+        viewer = given.uri, given.viewer
+        asked_before = self._asked[viewer]
+        asked, document = await self._solved(given, given.version)
 
-            def view() -> View:
-                return _agreed(drag(asked.view, handle, to)).view
-        else:
-            knobs = given.values("knobs")
-
-            def view() -> View:
-                return tried(asked.view, knobs, document.memory, LIMITS)
+        def view() -> View:
+            if given.drag is None:
+                return tried(asked.view, given.knobs, document.memory, self.server.limits)
+            made = drag(asked.view, given.drag.id, given.drag.to)
+            if isinstance(made, Refusal):
+                raise JsonRpcException(made.reason, FAILED)
+            return made.view
 
         def picture() -> Json:
-            return self.pictures.drawn(asked, document, view(), is_tried=True)
+            return self.pictures.tried(asked, document, view(), given.viewer)
 
-        return await self._work("try", document, asked, picture)
+        return await self._work(
+            ("try", *viewer), document, asked, picture, lambda: self._asked[viewer] != asked_before
+        )
 
-    async def set_knob(self, given: Given) -> Json:
-        asked, _ = await self._solved(given)
-        path, value = given.text("path"), given.value("value")
-        try:
-            edits = await self.server.answers.ask(lambda: set_knob(asked.view, path, value))
-        except RefusalError as refusal:
-            return _not_applied(str(refusal))
-        return await self._apply(asked, edits, f"Set {path}")
+    async def set_knob(self, given: SetKnob) -> Json:
+        def edits(view: View) -> Sequence[Edit] | Refusal:
+            try:
+                return set_knob(view, given.path, given.value)
+            except RefusalError as refusal:
+                return Refusal(_worded(refusal.diagnostics[0]))
 
-    async def drag(self, given: Given) -> Json:
-        asked, document = await self._solved(given)
-        handle, to = given.text("id"), given.point("to")
+        return await self._edit(given, edits, f"Set {given.path}")
 
-        def edits() -> Sequence[Edit] | Refusal:
-            dragged = drag(asked.view, handle, to)
+    async def drag(self, given: Drag) -> Json:
+        def edits(view: View) -> Sequence[Edit] | Refusal:
+            dragged = drag(view, given.id, given.to)
             return dragged if isinstance(dragged, Refusal) else dragged.edits
 
-        made = await self._work("drag", document, asked, edits)
-        if isinstance(made, Refusal):
-            return _not_applied(made.reason)
-        return await self._apply(asked, made, "Drag")
+        return await self._edit(given, edits, "Drag")
 
-    async def fix(self, given: Given) -> Json:
-        asked, _ = await self._solved(given)
-        problem, number = given.whole("problem"), given.whole("fix")
+    async def fix(self, given: ApplyFix) -> Json:
+        asked, _ = await self._solved(given, given.version)
         found = asked.view.diagnostics
-        fix = found[problem].fix if 0 <= problem < len(found) and number == 0 else None
+        fix = found[given.problem].fix if 0 <= given.problem < len(found) and given.fix == 0 else None
         if fix is None:
             return _not_applied("there is no such fix")
         return await self._apply(asked, fix.edits, fix.title)
 
-    async def export(self, given: Given) -> Json:
-        suffix, show = f".{given.text('format')}", frozenset(given.texts("show"))
+    async def export(self, given: Export) -> Json:
+        suffix, show = f".{given.format}", frozenset(given.show)
         if suffix not in FORMATS:
             raise JsonRpcInvalidParams(f"there is no format `{suffix}`")
         document = self._document(given)
@@ -142,34 +135,58 @@ class _Requests:
         try:
             data = await self.server.searches.ask(lambda: outcome.export(suffix, options))
         except ExportError as reason:
-            raise JsonRpcException(str(reason), FAILED) from None
+            raise JsonRpcException(_worded(reason.diagnostic), FAILED) from None
         return {"name": document.path.stem + suffix, "data": base64.b64encode(data).decode("ascii")}
 
-    def _document(self, given: Given) -> Document:
-        document = self.server.documents.get(given.text("uri"))
+    def _document(self, given: OfDocument) -> Document:
+        document = self.server.documents.get(given.uri)
         if document is None:
             raise JsonRpcInvalidParams("this document is not open")
         return document
 
-    async def _solved(self, given: Given) -> tuple[Asked, Document]:
+    def _outdate_tries(self, given: OfDocument) -> None:
+        """What the viewer tried before is of no use to it any more."""
+        self._asked[given.uri, given.viewer] += 1
+
+    async def _solved(self, given: OfDocument, version: int | None) -> tuple[Asked, Document]:
         """The outcome of the version that is spoken of. Raises JsonRpcContentModified where that is gone."""
-        document, version = self._document(given), given.whole("version")
+        document = self._document(given)
         await document.until_solved(document.serial, _LONGEST_WAIT)
         known = document.ran
-        if known is None or known.version != version or document.version != version:
+        if known is None or known.version != document.version or version not in (None, known.version):
             raise JsonRpcContentModified("the text has changed")
         return self.server.asked_now(document, known), document
 
-    async def _work(self, kind: str, document: Document, asked: Asked, function: Callable[[], T]) -> T:
-        """In the solving thread, unless the text changes meanwhile, or more of the kind is asked."""
+    async def _work(
+        self,
+        key: tuple[str, ...],
+        document: Document,
+        asked: Asked,
+        function: Callable[[], T],
+        is_outdated: Callable[[], bool] = lambda: False,
+    ) -> T:
+        """In the solving thread, unless the text changes meanwhile, or more is asked under the key."""
 
         def is_unwanted() -> bool:
-            return document.version != asked.known.version or not document.is_open
+            return document.version != asked.known.version or not document.is_open or is_outdated()
 
         try:
-            return await self.server.runner.work((kind, document), function, is_unwanted)
+            return await self.server.runner.work(key, function, is_unwanted)
         except Cancelled:
             raise JsonRpcRequestCancelled("there is something newer") from None
+
+    async def _edit(
+        self, given: OfVersion, edits: Callable[[View], Sequence[Edit] | Refusal], label: str
+    ) -> Json:
+        """One edit of a document after the other: each is of the text that the one before made."""
+        self._outdate_tries(given)
+        async with self._document(given).editing:
+            asked, document = await self._solved(given, given.version)
+            key = ("edit", given.uri)
+            made = await self._work(key, document, asked, lambda: edits(asked.view))
+            if isinstance(made, Refusal):
+                return _not_applied(made.reason)
+            return await self._apply(asked, made, label)
 
     async def _apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> Json:
         """Have the client change the text."""
@@ -182,11 +199,8 @@ class _Requests:
         return _not_applied(answer.failure_reason or "the editor did not change the text")
 
 
-def _agreed(made: Dragged | Refusal) -> Dragged:
-    """Raises JsonRpcException where a point cannot be dragged."""
-    if isinstance(made, Refusal):
-        raise JsonRpcException(made.reason, FAILED)
-    return made
+def _worded(diagnostic: Diagnostic) -> str:
+    return "; ".join([diagnostic.message, *diagnostic.hints[:1]])
 
 
 def _not_applied(reason: str) -> Json:

@@ -1,6 +1,6 @@
 /** The preview: brings what the host says onto the page, and what is done there to the host.
  * @import { Box } from "./view.js"
- * @import { FromHost, Handle, Preview, Range, ToHost, Vec } from "./protocol.js"
+ * @import { Applied, Attempt, Format, Handle, Name, Params, Place, Preview, Range, Requests, Told, Vec } from "./protocol.js"
  */
 
 import { Attempts } from "./attempts.js";
@@ -10,7 +10,7 @@ import { Drawing } from "./drawing.js";
 import { Freedom } from "./freedom.js";
 import { watch } from "./gestures.js";
 import { coordinates, Handles } from "./handles.js";
-import { connect } from "./host.js";
+import { connect, Refusal } from "./host.js";
 import { listenToKeys } from "./keys.js";
 import { Knobs } from "./knobs.js";
 import { remember, remembering } from "./memory.js";
@@ -25,6 +25,8 @@ import { StatusView } from "./status.js";
 import { Tooltip } from "./tooltip.js";
 import { View } from "./view.js";
 
+/** Milliseconds after which it is shown that something takes long. */
+const BUSY_AFTER = 150;
 /** Wide enough for the text beside the drawing from the start. */
 const WIDE = 900;
 
@@ -36,12 +38,15 @@ class Pane {
   #isSourceWanted = false;
   #isFreedomWanted = false;
   #isOpen = false;
+  /** Requests under way. */
+  #asked = 0;
   /** The box that was fitted into the window last. */
   #fitted = /** @type {Box} */ ([0, 0, 0, 0]);
 
   stage = part("stage", HTMLElement);
+  uri = document.body.dataset.uri ?? "";
   host = connect({
-    message: (message) => this.receive(message),
+    told: (told) => this.receive(told),
     open: () => this.open(),
     lost: (seconds, reason) => this.lost(seconds, reason),
   });
@@ -54,7 +59,7 @@ class Pane {
     const point = (/** @type {readonly number[]} */ elements) => this.pointing.reveal(elements);
 
     this.status = new StatusView();
-    this.attempts = new Attempts((message) => this.send(message));
+    this.attempts = new Attempts((attempt, isWanted) => this.attempt(attempt, isWanted));
     this.view = new View(() => this.place());
     this.paper = new Paper(part("paper", SVGGElement));
     this.drawing = new Drawing(part("world", SVGGElement));
@@ -62,8 +67,8 @@ class Pane {
     this.freedom = new Freedom(motions, part("freedom-list", HTMLElement), this.view, { point });
     this.tooltip = new Tooltip(part("tooltip", HTMLElement), this.stage);
     this.handles = new Handles(handles, this.stage, this.view, {
-      drag: ({ id }, to) => this.attempts.attempt({ type: "drag", id, to, final: false }),
-      drop: ({ id }, to) => this.attempts.finish({ type: "drag", id, to, final: true }),
+      drag: ({ id }, to) => this.attempts.attempt({ drag: { id, to } }),
+      drop: ({ id }, to) => this.edit("aidl/drag", { uri: this.uri, id, to }),
       cancel: () => this.cancel(),
       tell: (handle, at, where) => this.tell(handle, at, where),
       hush: () => this.tooltip.hide(),
@@ -72,15 +77,15 @@ class Pane {
       choose: (line) => this.pointing.choose(this.preview ? elementsOn(this.preview, line) : []),
       point: (line) => point(this.preview && line !== null ? elementsOn(this.preview, line) : []),
     });
-    this.pointing = new Pointing(this.drawing, this.handles, this.source, (element) => this.send({ type: "hover", element }));
+    this.pointing = new Pointing(this.drawing, this.handles, this.source, (element) => this.hover(element));
     this.knobs = new Knobs(part("knobs-list", HTMLElement), {
-      attempt: ({ path }, value) => this.attempts.attempt({ type: "knob", path, value, final: false }),
-      write: ({ path }, value) => this.attempts.finish({ type: "knob", path, value, final: true }),
+      attempt: ({ path }, value) => this.attempts.attempt({ knobs: { [path]: value } }),
+      write: ({ path }, value) => this.edit("aidl/setKnob", { uri: this.uri, path, value }),
       cancel: () => this.cancel(),
     });
     this.problems = new Problems(part("problems-list", HTMLElement), part("problems-count", HTMLElement), {
       goto: (uri, range) => this.goto(uri, range),
-      fix: (problem, fix) => this.send({ type: "fix", problem, fix }),
+      fix: (problem, fix) => this.edit("aidl/fix", { uri: this.uri, version: this.settled?.version ?? 0, problem, fix }),
       point,
     });
     this.watch();
@@ -115,9 +120,9 @@ class Pane {
   menus() {
     foldingPanels();
     themeButton(this.host.code !== null);
-    exportMenu((format) => this.send({ type: "export", format }));
+    exportMenu((format) => void this.export(format));
     this.layers = layersMenu(
-      () => this.want(),
+      () => void this.want(),
       (hasGrid) => {
         this.paper.hasGrid = hasGrid;
         this.place();
@@ -128,7 +133,7 @@ class Pane {
       this.#isFreedomWanted = isOn;
       this.freedom.toggle(isOn);
       this.panels();
-      if (this.#isOpen) this.want();
+      if (this.#isOpen) void this.want();
     });
     const isWide = innerWidth >= WIDE;
     toggle("source-toggle", (isOn) => {
@@ -141,21 +146,72 @@ class Pane {
     part("reconnect", HTMLElement).addEventListener("click", () => this.host.reconnect());
   }
 
-  /** @param {ToHost} message */
-  send(message) {
-    this.host.send(message);
+  /**
+   * Null where there is no answer; why is told, unless something newer came first.
+   * @template {Name} N
+   * @param {N} method
+   * @param {Params<N>} params
+   * @returns {Promise<Requests[N]["result"] | null>}
+   */
+  async ask(method, params) {
+    const timer = setTimeout(() => this.status.busy(true), BUSY_AFTER);
+    this.#asked += 1;
+    try {
+      return await this.host.ask(method, params);
+    } catch (error) {
+      if (!(error instanceof Refusal && error.isOvertaken)) this.failed(error instanceof Error ? error.message : String(error));
+      return null;
+    } finally {
+      clearTimeout(timer);
+      this.#asked -= 1;
+      if (this.#asked === 0) this.status.busy(false);
+    }
   }
 
   open() {
     this.#isOpen = true;
     this.status.connected();
-    this.send({ type: "ready" });
-    if (this.#wanted().length) this.want();
+    void this.want();
   }
 
-  /** Tell the host what is wanted beside the drawing: what can move takes it a while to find out. */
-  want() {
-    this.send({ type: "show", layers: this.#wanted() });
+  /** Ask for the picture, with what is wanted beside the drawing: what can move takes a while to find out. */
+  async want() {
+    const source = this.host.code === null;
+    const picture = await this.ask("aidl/preview", { uri: this.uri, show: this.#wanted(), source });
+    if (picture) this.picture(picture);
+  }
+
+  /**
+   * @param {Attempt} attempt
+   * @param {() => boolean} isWanted
+   */
+  async attempt(attempt, isWanted) {
+    const picture = await this.ask("aidl/try", { uri: this.uri, ...attempt });
+    if (picture && isWanted()) this.picture(picture);
+  }
+
+  /**
+   * The last word on what was tried: the text changes, and its picture follows.
+   * @template {"aidl/setKnob" | "aidl/drag" | "aidl/fix"} N
+   * @param {N} method
+   * @param {Params<N>} params
+   */
+  async edit(method, params) {
+    this.attempts.forget();
+    const done = /** @type {Applied | null} */ (await this.ask(method, params));
+    if (done === null) this.restore();
+    else if (!done.applied) this.failed(done.reason ?? "This could not be written into the text.");
+  }
+
+  /** @param {Format} format */
+  async export(format) {
+    const file = await this.ask("aidl/export", { uri: this.uri, format, show: this.#wanted() });
+    if (file) download(file.name, file.data);
+  }
+
+  /** @param {number | null} element */
+  hover(element) {
+    this.host.tell("aidl/hover", { place: element === null ? null : placeOf(this.preview?.elements[element]) });
   }
 
   /** @returns {import("./protocol.js").Layer[]} */
@@ -173,29 +229,32 @@ class Pane {
     document.body.classList.add("lost");
   }
 
-  /** @param {FromHost} message */
-  receive(message) {
-    switch (message.type) {
-      case "picture":
-        return this.picture(message);
-      case "busy":
+  /** @param {Told} told */
+  receive(told) {
+    switch (told.method) {
+      case "aidl/previewChanged":
+        return this.changed(told.params);
+      case "aidl/busy":
         return this.status.busy(true);
-      case "reveal":
-        return this.pointing.revealFromHost(message.elements);
-      case "error":
-        return this.failed(message.message);
-      case "export":
-        return download(message.name, message.data);
+      case "aidl/reveal":
+        return this.pointing.revealFromHost(told.params.elements);
+      case "window/showMessage":
+        return this.failed(told.params.message);
     }
+  }
+
+  /**
+   * The program was run. News that come late, of a text before the one shown, are dropped.
+   * @param {Preview} preview
+   */
+  changed(preview) {
+    if (this.settled === null || preview.version >= this.settled.version) this.picture(preview);
   }
 
   /** @param {Preview} preview */
   picture(preview) {
     document.body.classList.remove("lost");
     this.status.busy(false);
-    const isAwaited = this.attempts.active;
-    this.attempts.answered();
-    if (preview.tried && !isAwaited) return; // it was cancelled or written meanwhile
     if (!preview.tried) this.settled = preview;
     this.show(preview);
   }
@@ -204,13 +263,12 @@ class Pane {
   failed(message) {
     this.status.busy(false);
     this.status.toast(message);
-    this.attempts.answered();
     if (!this.attempts.active) this.restore();
   }
 
   /** Forget what was tried. */
   cancel() {
-    this.attempts.finish({ type: "cancel" });
+    this.attempts.forget();
     this.restore();
   }
 
@@ -318,7 +376,8 @@ class Pane {
   click(event) {
     const element = this.drawing.elementAt(document.elementFromPoint(event.clientX, event.clientY));
     this.pointing.select(element);
-    if (element !== null && this.preview?.elements[element]?.range) this.send({ type: "goto", element });
+    const { uri, range } = placeOf(element === null ? undefined : this.preview?.elements[element]) ?? NOWHERE;
+    if (uri !== null && range !== null) this.host.tell("aidl/goto", { uri, range });
   }
 
   /**
@@ -326,7 +385,7 @@ class Pane {
    * @param {Range} range
    */
   goto(uri, range) {
-    this.send({ type: "goto", uri, range });
+    this.host.tell("aidl/goto", { uri, range });
     if (uri === this.preview?.uri) this.source.mark([range], { scroll: true });
   }
 
@@ -340,6 +399,17 @@ class Pane {
     const words = [el("strong", {}, coordinates(at, this.view.scale)), el("span", {}, hint)];
     this.tooltip.show(words, where.right - 6, where.bottom - 6);
   }
+}
+
+/** @type {Place} */
+const NOWHERE = { uri: null, range: null };
+
+/**
+ * @param {Place | undefined} element
+ * @returns {Place | null}
+ */
+function placeOf(element) {
+  return element === undefined ? null : { uri: element.uri, range: element.range };
 }
 
 new Pane();

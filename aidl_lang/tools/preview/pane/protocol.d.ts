@@ -93,28 +93,54 @@ export interface Preview {
 export type Layer = "names" | "points" | "bbox" | "constraints" | "dof" | "plan" | "dimensions" | "freedom";
 export type Format = (typeof FORMATS)[number][0];
 
-export type FromHost =
-  | ({ type: "picture" } & Preview)
-  | { type: "busy" }
-  | { type: "reveal"; elements: number[] }
-  | { type: "error"; message: string }
-  | { type: "export"; name: string; data: string };
+/** Values to solve with that are not in the text. */
+export type Attempt = { knobs: Record<string, Value> } | { drag: { id: string; to: Vec } };
 
-export type ToHost =
-  | { type: "ready" }
-  | { type: "knob"; path: string; value: Value; final: boolean }
-  | { type: "drag"; id: string; to: Vec; final: boolean }
-  | { type: "cancel" }
-  | { type: "hover"; element: number | null }
-  | { type: "goto"; element: number }
-  | { type: "goto"; uri: string; range: Range }
-  | { type: "fix"; problem: number; fix: number }
-  | { type: "export"; format: Format }
-  | { type: "show"; layers: Layer[] };
+/** The answer to a request that edits the text. */
+export interface Applied { applied: boolean; reason?: string }
+
+/** A file; `data` is base64. */
+export interface Exported { name: string; data: string }
+
+/** The requests that the language server answers beyond those of the protocol that all editors speak. `viewer` tells
+ * apart those who see one document. Without `version` the text as it is is meant. */
+export interface Requests {
+  "aidl/preview": { params: { show: readonly string[]; source?: boolean }; result: Preview | null };
+  "aidl/previewClose": { params: object; result: null };
+  "aidl/try": { params: { version?: number } & Attempt; result: Preview };
+  "aidl/setKnob": { params: { version?: number; path: string; value: Value }; result: Applied };
+  "aidl/drag": { params: { version?: number; id: string; to: Vec }; result: Applied };
+  "aidl/fix": { params: { version: number; problem: number; fix: number }; result: Applied };
+  "aidl/export": { params: { format: string; show?: readonly string[] }; result: Exported | null };
+}
+export type Name = keyof Requests;
+export type Params<N extends Name> = { uri: string; viewer?: string } & Requests[N]["params"];
+export type Ask = <N extends Name>(method: N, params: Params<N>) => Promise<Requests[N]["result"]>;
+
+/** What a host tells a pane unasked. */
+export type Told =
+  | { method: "aidl/previewChanged"; params: Preview }
+  | { method: "aidl/busy"; params?: object }
+  | { method: "aidl/reveal"; params: { elements: number[] } }
+  | { method: "window/showMessage"; params: { type: number; message: string } };
+
+/** What a pane tells its host unasked: what is pointed at, null where nothing is, and where to go in the text. */
+export type Tells = { "aidl/hover": { place: Place | null }; "aidl/goto": { uri: string; range: Range } };
+export type Tell = <N extends keyof Tells>(method: N, params: Tells[N]) => void;
+
+/** JSON-RPC, in either direction. */
+export interface Message {
+  jsonrpc: "2.0";
+  id?: number;
+  method?: string;
+  params?: unknown;
+  result?: unknown;
+  error?: { code: number; message: string };
+}
 
 /** What VS Code gives a webview. */
 export interface VsCodeApi {
-  postMessage(message: ToHost): void;
+  postMessage(message: Message): void;
   getState(): unknown;
   setState(state: unknown): void;
 }

@@ -21,18 +21,19 @@ export async function exportDrawing(
   format: string,
   layers: readonly string[],
 ): Promise<void> {
-  const { name, data } = await vscode.window.withProgress(
+  const file = await vscode.window.withProgress(
     { location: vscode.ProgressLocation.Window, title: `AIDL: draws ${format.toUpperCase()}` },
     () => ask("aidl/export", { uri: document.toString(), format, show: [...layers] }),
   );
+  if (file === null) throw new Error("The language server made no file.");
   const folder = document.scheme === "file" ? vscode.Uri.joinPath(document, "..") : firstFolder();
   const target = await vscode.window.showSaveDialog({
-    ...(folder === undefined ? {} : { defaultUri: vscode.Uri.joinPath(folder, name) }),
+    ...(folder === undefined ? {} : { defaultUri: vscode.Uri.joinPath(folder, file.name) }),
     filters: { [format.toUpperCase()]: [format] },
     saveLabel: "Export",
   });
   if (target === undefined) return;
-  await vscode.workspace.fs.writeFile(target, Buffer.from(data, "base64"));
+  await vscode.workspace.fs.writeFile(target, Buffer.from(file.data, "base64"));
   const open = "Open";
   void vscode.window.showInformationMessage(`Exported ${vscode.workspace.asRelativePath(target)}`, open).then((answer) => {
     if (answer === open) void vscode.commands.executeCommand("vscode.open", target);

@@ -7,10 +7,12 @@ export interface Page {
   root: string;
   /** Fresh for each page; scripts without it do not run. */
   nonce: string;
+  /** Of the document. */
+  uri: string;
 }
 
 /** `template` is the pane's index.html. Throws if it asks for something that a webview does not know. */
-export function complete(template: string, { source, root, nonce }: Page): string {
+export function complete(template: string, { source, root, nonce, uri }: Page): string {
   const csp = [
     "default-src 'none'",
     `script-src 'nonce-${nonce}' ${source}`,
@@ -18,7 +20,7 @@ export function complete(template: string, { source, root, nonce }: Page): strin
     `img-src ${source} data:`,
     `font-src ${source}`,
   ].join("; ");
-  const values: Record<string, string> = { csp, root: root.endsWith("/") ? root : root + "/", nonce, socket: "" };
+  const values: Record<string, string> = { csp, root: root.endsWith("/") ? root : root + "/", nonce, socket: "", uri };
   return template.replace(/\{\{(\w+)\}\}/g, (_, name: string) => {
     const value = values[name];
     if (value === undefined) throw new Error(`the preview's page asks for {{${name}}}`);

@@ -8,8 +8,7 @@ import { previewLayers } from "../settings";
 import { exportDrawing } from "./export";
 import { Marks } from "./marks";
 import { complete } from "./page";
-import type { Place, Range, ToHost } from "./protocol";
-import { applyQuickFix } from "./quickfix";
+import type { Message, Place, Range } from "./protocol";
 import { toPosition, toRange } from "./ranges";
 import { Relay } from "./relay";
 
@@ -101,8 +100,8 @@ export class Previews implements vscode.Disposable, vscode.WebviewPanelSerialize
     });
     panel.onDidChangeViewState(() => this.changedActive.fire());
     panel.webview.options = { enableScripts: true, localResourceRoots: [this.pane] };
-    panel.webview.onDidReceiveMessage((message: ToHost) => void relay.receive(message));
-    panel.webview.html = await this.page(panel.webview);
+    panel.webview.onDidReceiveMessage((message: Message) => void relay.receive(message));
+    panel.webview.html = await this.page(panel.webview, uri);
     const editor = vscode.window.visibleTextEditors.find((one) => one.document.uri.toString() === uri);
     if (editor !== undefined) this.followCaret(editor);
   }
@@ -112,25 +111,24 @@ export class Previews implements vscode.Disposable, vscode.WebviewPanelSerialize
     return new Relay(
       {
         uri,
-        version: () => vscode.workspace.textDocuments.find((one) => one.uri.toString() === uri)?.version ?? null,
         connected: () => this.server.state === "running",
         post: (message) => void panel.webview.postMessage(message),
         ask: this.server.ask,
         mark: (place) => this.marks.mark(place === null ? null : normalPlace(place)),
         goto: (file, range) => void goto(vscode.Uri.parse(file), range, panel.viewColumn),
-        quickFix: (problem, fix) => applyQuickFix(document, problem, fix),
         export: (format, layers) => exportDrawing(this.server.ask, document, format, layers),
       },
       previewLayers(),
     );
   }
 
-  private async page(webview: vscode.Webview): Promise<string> {
+  private async page(webview: vscode.Webview, uri: string): Promise<string> {
     const template = await vscode.workspace.fs.readFile(vscode.Uri.joinPath(this.pane, "index.html"));
     return complete(Buffer.from(template).toString("utf8"), {
       source: webview.cspSource,
       root: webview.asWebviewUri(this.pane).toString(),
       nonce: randomBytes(16).toString("base64url"),
+      uri,
     });
   }
 

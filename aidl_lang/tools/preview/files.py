@@ -1,0 +1,69 @@
+"""The files of a program that is previewed: read, and edited in one step each."""
+
+from __future__ import annotations
+
+from codecs import BOM_UTF8
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.source import SourceFile
+from aidl_lang.common.world import MAX_BYTES
+from aidl_lang.tools.ide.edits import applied
+from aidl_lang.tools.ide.refusing import CannotError
+
+Write = Callable[[Path, bytes], None]
+"""Replaces a file in one step. Raises OSError."""
+
+
+def text_of(path: Path) -> str:
+    """Returns what a file says. Raises CannotError."""
+    return _text(_read(path))
+
+
+def rewritten(file: Path, known: SourceFile, edits: Sequence[Edit]) -> bytes:
+    """Returns the content of a file after edits of the text that is known of it. Raises CannotError."""
+    data = _read(file)
+    text = _text(data)
+    mark = BOM_UTF8 if data.startswith(BOM_UTF8) else b""
+    known_text = known.text.removeprefix("\ufeff")
+    skipped = len(known.text) - len(known_text)
+    # What is imported is read with its line ends made one.
+    is_converted = text != known_text and text.replace("\r\n", "\n") == known_text
+    if text != known_text and not is_converted:
+        raise CannotError(f"{file.name} has changed meanwhile; nothing was written")
+    after = applied(known.text, edits)[skipped:]
+    return mark + (after.replace("\n", "\r\n") if is_converted else after).encode()
+
+
+def write(files: Sequence[tuple[Path, bytes]], put: Write) -> None:
+    """Gives files their contents. Raises CannotError."""
+    for file, data in files:
+        try:
+            put(file, data)
+        except OSError as reason:
+            raise CannotError(f"{file.name} was not written: {_why(reason)}") from None
+
+
+def _read(path: Path) -> bytes:
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except OSError as reason:
+        raise CannotError(f"{path.name} cannot be read: {_why(reason)}") from None
+    if len(data) > MAX_BYTES:
+        raise CannotError(f"{path.name} is too large for a program")
+    return data
+
+
+def _text(data: bytes) -> str:
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as reason:
+        line = data.count(b"\n", 0, reason.start) + 1
+        raise CannotError(f"line {line} is not UTF-8 text; the picture is of what was there before") from None
+
+
+def _why(reason: OSError) -> str:
+    text = reason.strerror or str(reason)
+    return text[:1].lower() + text[1:]

@@ -1,0 +1,163 @@
+"""A program in its file: edited, exported; files that change, break and vanish."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from aidl_lang import pipeline
+from aidl_lang.common.diagnostics import Edit
+from aidl_lang.common.resources import resource
+from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.tools.ide.refusing import CannotError
+from aidl_lang.tools.preview import files
+from aidl_lang.tools.preview.host import Host
+from tests.preview.talking import CHANGED, TEXT, serving, talking, write_bytes
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "part.aidl"
+    path.write_text(TEXT, "utf-8")
+    return path
+
+
+@pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_an_edit_changes_nothing_else(file: Path, mark: bytes, end: str) -> None:
+    text = "// 😀 é\n" + TEXT
+    file.write_bytes(mark + text.replace("\n", end).encode())
+    with serving(file) as client, talking(client, file) as page:
+        page.preview()
+        assert page.answer("aidl/setKnob", path="width", value=72.5) == {"applied": True}
+        assert file.read_bytes() == mark + text.replace("60mm", "72.5mm").replace("\n", end).encode()
+        after = page.told(CHANGED, version=2)["source"]["text"]
+    assert pipeline.knobs(SourceFile("p", after))[0][0].value == 72.5
+
+
+@pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_an_imported_file_is_edited(file: Path, mark: bytes, end: str) -> None:
+    other = file.with_name("other.aidl")
+    text = "// 😀\nsolid bolt(n = 1) {\n param d = 6mm in 4..9\n rim = circle(diameter: n * d) }\n"
+    other.write_bytes(mark + text.replace("\n", end).encode())
+    file.write_text('import bolt from "other.aidl"\nassembly a { b = bolt() }\n')
+    with serving(file) as client, talking(client, file) as page:
+        (knob,) = page.preview()["knobs"]
+        before = other.read_bytes()
+        assert page.answer("aidl/setKnob", path=knob["path"], value=7) == {"applied": True}
+        assert other.read_bytes() == before.replace(b"6mm", b"7mm")
+        while page.told(CHANGED)["box"][2] != pytest.approx(3.5):
+            pass
+
+
+def test_what_was_changed_meanwhile_is_not_overwritten(file: Path) -> None:
+    known = SourceFile(file.name, TEXT)
+    edit = Edit(Span(known, 0, 5), "PARAM")
+    assert files.rewritten(file, known, [edit]).startswith(b"PARAM width")
+    file.write_text("// new\n" + TEXT, "utf-8")
+    with pytest.raises(CannotError, match="changed meanwhile"):
+        files.rewritten(file, known, [edit])
+    assert file.read_text("utf-8") == "// new\n" + TEXT
+
+
+@pytest.mark.parametrize("uri", [resource("stdlib").as_uri() + "/shapes.aidl", "file:///etc/passwd"])
+def test_nothing_but_the_program_is_edited(file: Path, uri: str) -> None:
+    def refuse(path: Path, data: bytes) -> None:
+        raise AssertionError(path)
+
+    place = {"line": 0, "character": 0}
+    edits = [{"range": {"start": place, "end": place}, "newText": "x"}]
+
+    async def edited() -> Any:
+        host = Host(file, refuse)
+        host.start()
+        document = host.server.documents.get(host.uri)
+        assert document is not None
+        await document.until_solved(document.serial, 60)
+        texts = [{"textDocument": {"uri": uri, "version": None}, "edits": edits}]
+        stale = [{"textDocument": {"uri": host.uri, "version": 7}, "edits": edits}]
+        made = [host._edited({"edit": {"documentChanges": changes}}) for changes in (texts, stale)]
+        host.close()
+        return made
+
+    assert asyncio.run(edited()) == [
+        {"applied": False, "failureReason": "this cannot be changed from here"},
+        {"applied": False, "failureReason": "the text has changed meanwhile"},
+    ]
+
+
+def test_a_file_that_cannot_be_written_says_so(file: Path) -> None:
+    def refuse(path: Path, data: bytes) -> None:
+        raise OSError(28, "No space left on device")
+
+    with serving(file, refuse) as client, talking(client, file) as page:
+        page.preview()
+        done = page.answer("aidl/setKnob", path="width", value=30)
+    assert done == {"applied": False, "reason": "part.aidl was not written: no space left on device"}
+
+
+def test_a_broken_text_keeps_the_picture_as_stale(file: Path) -> None:
+    with serving(file) as client, talking(client, file) as page:
+        good = page.preview()
+        broken = TEXT.replace("height: 20", "height: ")
+        file.write_text(broken, "utf-8")
+        while (stale := page.told(CHANGED))["source"]["text"] != broken:
+            pass
+        assert (stale["stale"], stale["svg"]) == (True, good["svg"])
+        assert stale["version"] > good["version"]
+        assert "does not draw" in page.answer("aidl/export", format="svg")["error"]["message"]
+
+
+def test_dragging_shows_and_writes_the_same(file: Path) -> None:
+    text = "drawing a {\n    one = line((0, 0), (30, 5))\n    two = line((30, 5), (60, 0))\n}\n"
+    file.write_text(text, "utf-8")
+    with serving(file) as client, talking(client, file) as page:
+        made = page.preview()
+        while not made["handles"]:
+            made = page.told(CHANGED)
+        handle = next(h["id"] for h in made["handles"] if h["at"] == pytest.approx([60, 0]))
+        shown = page.answer("aidl/try", drag={"id": handle, "to": [70, 12]})
+        assert shown["tried"]
+        assert {h["id"] for h in shown["handles"]} == {h["id"] for h in made["handles"]}
+        assert next(h["at"] for h in shown["handles"] if h["id"] == handle) == pytest.approx(
+            [70, 12], abs=1e-3
+        )
+        assert file.read_text("utf-8") == text
+        assert page.answer("aidl/drag", id=handle, to=[70, 12]) == {"applied": True}
+        assert re.sub(r"\d+", "N", file.read_text("utf-8")) == re.sub(r"\d+", "N", text)
+        assert "(70, 12)" in file.read_text("utf-8")
+        while not (after := page.told(CHANGED, version=2))["handles"]:
+            pass
+        assert next(h["at"] for h in after["handles"] if h["id"] == handle) == pytest.approx(
+            [70, 12], abs=1e-6
+        )
+
+
+@pytest.mark.parametrize(
+    ("name", "start"), [("svg", b"<?xml"), ("png", b"\x89PNG"), ("dxf", b"  0"), ("pdf", b"%PDF")]
+)
+def test_exports_are_the_files_of_the_command(file: Path, name: str, start: bytes) -> None:
+    with serving(file) as client, talking(client, file) as page:
+        made = page.answer("aidl/export", format=name, show=["names", "dimensions"])
+    assert made["name"] == f"part.{name}"
+    assert base64.b64decode(made["data"]).startswith(start)
+
+
+def test_what_cannot_be_exported_says_why(file: Path) -> None:
+    with serving(file) as client, talking(client, file) as page:
+        assert "thick" in page.answer("aidl/export", format="stl")["error"]["message"]
+
+
+def test_files_are_written_in_one_step_each(file: Path) -> None:
+    files.write([(file, b"one")], write_bytes)
+    assert file.read_bytes() == b"one"
+    assert files.text_of(file) == "one"
+    file.unlink()
+    with pytest.raises(CannotError, match="cannot be read"):
+        files.text_of(file)
