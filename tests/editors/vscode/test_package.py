@@ -12,7 +12,7 @@ from aidl_lang.version import __version__
 
 ROOT = Path(__file__).parents[3]
 EXTENSION = ROOT / "editors" / "vscode"
-PANE = ROOT / "aidl_lang" / "preview" / "pane"
+PANE = ROOT / "aidl_lang" / "tools" / "preview" / "pane"
 
 
 def test_the_version_is_that_of_aidl():
