@@ -4,11 +4,10 @@ is refused.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from operator import eq
-from typing import TypeAlias, TypeVar
+from typing import Any, TypeAlias, TypeVar, get_args
 
 from attrs import field, frozen
 from cattrs import ClassValidationError, Converter, transform_error
@@ -124,68 +123,41 @@ def read(params: object, kind: type[T]) -> T:
         raise JsonRpcInvalidParams("; ".join(transform_error(error))) from None
 
 
-def _text(value: object, _: object) -> str:
-    if not isinstance(value, str):
-        raise TypeError
-    if len(value) > _LONGEST:
+_IS: dict[type, Callable[[Any], bool]] = {
+    str: lambda value: isinstance(value, str) and len(value) <= _LONGEST,
+    bool: lambda value: isinstance(value, bool),
+    int: lambda value: type(value) is int,
+    float: lambda value: type(value) in (int, float) and abs(value) <= 1e300,
+}
+"""Whether plain data is of a type as it is: the library itself takes `"3"` for a number."""
+
+
+def _plain(value: Any, kind: Any) -> Any:
+    if not _IS[kind](value):
         raise ValueError
-    return value
+    return kind(value)
 
 
-def _truth(value: object, _: object) -> bool:
-    if not isinstance(value, bool):
-        raise TypeError
-    return value
+def _value(value: Any, _: object) -> Any:
+    return _plain(value, type(value) if isinstance(value, str | bool) else float)
 
 
-def _whole(value: object, _: object) -> int:
-    if not isinstance(value, int) or isinstance(value, bool):
-        raise TypeError
-    return value
-
-
-def _number(value: object, _: object) -> float:
-    if not isinstance(value, int | float) or isinstance(value, bool):
-        raise TypeError
-    if not abs(value) < math.inf or abs(value) > 1e300:
-        raise ValueError
-    return float(value)
-
-
-def _value(value: object, _: object) -> Value:
-    if isinstance(value, bool):
-        return value
-    return _text(value, str) if isinstance(value, str) else _number(value, float)
-
-
-def _texts(value: object, _: object) -> Texts:
-    if not isinstance(value, list):
-        raise TypeError
-    return tuple(_text(each, str) for each in value)
-
-
-def _values(value: object, _: object) -> Values:
+def _values(value: Any, _: object) -> Any:
     if not isinstance(value, Mapping):
-        raise TypeError
-    return {_text(name, str): _value(each, Value) for name, each in value.items()}
+        raise ValueError
+    return {_plain(name, str): _value(each, Value) for name, each in value.items()}
 
 
-def _point(value: object, _: object) -> Point:
-    if not isinstance(value, list) or len(value) != 2:
-        raise TypeError
-    return _number(value[0], float), _number(value[1], float)
+def _tuple(value: Any, kind: Any) -> Any:
+    first, *_ = kinds = get_args(kind)
+    if not isinstance(value, list) or (... not in kinds and len(value) != len(kinds)):
+        raise ValueError
+    return tuple(_plain(each, first) for each in value)
 
 
-def _strict() -> Converter:
-    """Reads types as they are: the library itself takes `"3"` for a number."""
-    made = Converter()
-    for kind, hook in {str: _text, bool: _truth, int: _whole, float: _number}.items():
-        made.register_structure_hook(kind, hook)
-    made.register_structure_hook_func(partial(eq, Value), _value)
-    made.register_structure_hook_func(partial(eq, Texts), _texts)
-    made.register_structure_hook_func(partial(eq, Values), _values)
-    made.register_structure_hook_func(partial(eq, Point), _point)
-    return made
-
-
-_converter = _strict()
+_converter = Converter()
+for _kind in _IS:
+    _converter.register_structure_hook(_kind, _plain)
+_converter.register_structure_hook_func(partial(eq, Value), _value)
+_converter.register_structure_hook_func(partial(eq, Values), _values)
+_converter.register_structure_hook_func((Texts, Point).__contains__, _tuple)
