@@ -7,7 +7,7 @@ expressions.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from aidl_lang.checking.conditions import check_condition, check_empty, check_item, check_operation
 from aidl_lang.checking.cycles import find_cycles
@@ -39,7 +39,11 @@ from aidl_lang.checking.violations import Violation
 from aidl_lang.checking.wording import a, shown
 from aidl_lang.common.diagnostics import Diagnostic, ordered
 from aidl_lang.common.records import record
+from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
+
+_EVALUATED = ast.Expression | ast.Equation
+"""What is worked out while building, or left if it is wrong."""
 
 
 @record(eq=False)
@@ -48,7 +52,7 @@ class Program:
 
     violations   breaches of the rules of validity; their diagnostics need values as written, and are made
                  after building (`Violation.diagnostic`)
-    rejected     calls that were reported as fitting nothing; building need not say it again
+    rejected     what was reported as wrong; to the builder it is nothing, of which it says nothing
     diagnostics  everything else that resolving and checking found, in text order
     inference    what is known of the expressions, for those who ask about one later
     """
@@ -60,7 +64,7 @@ class Program:
     violations: tuple[Violation, ...]
     diagnostics: tuple[Diagnostic, ...]
     inference: Inference
-    rejected: frozenset[ast.Call] = frozenset()
+    rejected: frozenset[ast.Node] = frozenset()
 
 
 def check(resolution: Resolution, variant: Variant = Variant.FULL) -> Program:
@@ -75,16 +79,39 @@ def check(resolution: Resolution, variant: Variant = Variant.FULL) -> Program:
     check_unused_geometry(inference)
     check_unused_params(inference)
     inference.diagnostics += check_subset(inference, variant)
+    diagnostics = tuple(ordered([*resolution.diagnostics, *inference.diagnostics]))
     return Program(
         main=resolution.main,
         imports=resolution.imports,
         library=resolution.library,
         resolution=resolution,
         violations=tuple(violations),
-        diagnostics=tuple(ordered([*resolution.diagnostics, *inference.diagnostics])),
+        diagnostics=diagnostics,
         inference=inference,
-        rejected=frozenset(inference.rejected),
+        rejected=frozenset(_rejected(resolution.modules, diagnostics)),
     )
+
+
+def _rejected(modules: Sequence[ast.Module], found: Sequence[Diagnostic]) -> Iterator[ast.Node]:
+    """Yields for each error the innermost expression or equation that it was found in, and its name."""
+    for error in found:
+        for module in modules:
+            if error.is_error and error.span is not None and error.span.source is module.source:
+                yield from _innermost(module, error.span)
+
+
+def _innermost(module: ast.Module, place: Span) -> Iterator[ast.Node]:
+    found: ast.Node | None = None
+    around: ast.Node | None = module
+    while around is not None:
+        if isinstance(around, ast.Identifier):
+            yield around
+        elif isinstance(around, _EVALUATED):
+            found = around
+        inner = (n for n in ast.children(around) if n.span.start <= place.start and place.end <= n.span.end)
+        around = next(inner, None)
+    if found is not None:
+        yield found
 
 
 class Checker:

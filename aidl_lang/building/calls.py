@@ -15,7 +15,7 @@ from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.lists import run
 from aidl_lang.building.model import Condition, Geometry
 from aidl_lang.building.outlines import remember, usable
-from aidl_lang.building.overloads import Site, candidates_of, no_overload, site_of, unknown_callable
+from aidl_lang.building.overloads import Site, candidates_of, no_overload, site_of
 from aidl_lang.building.placing import placing, spliced
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
@@ -58,8 +58,7 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
             return NOTHING
     candidates = candidates_of(it, node, env.scope, receiver)
     if not candidates:
-        unknown_callable(it, node, env)
-        return NOTHING
+        return NOTHING  # the checker has said so, or what it would be in could not be imported
     site = site_of(it, node, candidates)
     around, env = env, _env_of_arguments(site, env)
     given, nodes = _given(it, site, receiver, node, env)

@@ -15,7 +15,6 @@ from aidl_lang.building.values import (
     Nothing,
     Value,
 )
-from aidl_lang.checking.builtins import EVERYWHERE
 from aidl_lang.syntax import ast
 
 
@@ -29,13 +28,7 @@ def declare(
 ) -> None:
     """Give a value a name in the structure or shape whose body this is."""
     target = scope.declaring()
-    if name.text in EVERYWHERE:
-        it.report(
-            "E0209",
-            f"`{name.text}` belongs to every structure and cannot be declared",
-            name,
-            hints=["choose another name"],
-        )
+    if name in it.rejected:
         return
     if not indices:
         if scope.turn and name.text in target.values and not isinstance(target.values[name.text], LetBinding):

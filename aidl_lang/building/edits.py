@@ -209,7 +209,7 @@ def _step(it: Interpreter, edit: Edit, thing: Value, centre: Place, here: Struct
     candidates = find_candidates(it, node.callee.text, edit.scope, None)
     chosen = select([c.signature for c in candidates], given)
     if isinstance(chosen, list):
-        if node not in it.program.rejected:
+        if node not in it.rejected:
             it.report("E0311", f"`{node.callee.text}` {chosen[0].reason}", node)
         return None
     taken, places = arranged(chosen, values, nodes)
@@ -335,7 +335,7 @@ def frame_edited(
 
 def check_edit(it: Interpreter, call: ast.Call, env: Env) -> None:
     """An edit that nothing was made with is an error."""
-    if (call, env.scope.labels) in it.edited or call in it.watched or call in it.program.rejected:
+    if (call, env.scope.labels) in it.edited or call in it.watched or call in it.rejected:
         return
     target = _target(call)
     assert target is not None

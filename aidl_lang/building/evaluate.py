@@ -32,12 +32,13 @@ from aidl_lang.building.values import (
 from aidl_lang.checking import units
 from aidl_lang.checking.builtins import WORDS
 from aidl_lang.checking.units import UNITS
-from aidl_lang.common.names import nearest
 from aidl_lang.syntax import ast
 
 
 def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
     """The value of an expression; NOTHING after an error, which has been reported."""
+    if node in it.rejected:
+        return NOTHING
     value = _EVALUATE[type(node)](it, node, env)
     if type(value) in _UNBOUNDED:
         it.check_extent(node, value)
@@ -162,15 +163,9 @@ def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
             return not_built(it, node, branch)
     if node.text in WORDS:
         return Text(node.text)
-    known: set[str] = set()
-    for scope in env.scope.chain():
-        known |= scope.values.keys()
-    like = nearest(node.text, known)
-    hint = f"did you mean `{like[0]}`?" if like else "names are declared with `let`, `param` or `name = …`"
-    it.report(
-        "E0201", f"there is no `{node.text}` here", node, label="not declared, or not built", hints=[hint]
-    )
-    return NOTHING
+    if node in it.program.resolution.uses or node.span.source in it.library_sources:
+        it.report("E0201", f"there is no `{node.text}` here yet", node, label="made further on")
+    return NOTHING  # else the checker has said so, or what it would be in could not be imported
 
 
 def _member(it: Interpreter, node: ast.Member, env: Env) -> Value:

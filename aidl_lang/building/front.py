@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from typing import TypeAlias
 
 from aidl_lang import parser
@@ -21,10 +21,7 @@ from aidl_lang.solver.settings import Settings as SolverSettings
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
 
-_IMPORT_FAILURES = frozenset({"E0210", "E0211", "E0212", "E0213", "E0804"})
-_CIRCLE = "E0207"
 _UNUSED = "W0201"
-_MISSING_NAMES = frozenset({"E0201", "E0203"})
 
 
 @record()
@@ -81,18 +78,4 @@ def build(
     with watch("interpret"):
         built = interpret(program, params, settings.building, turned, states_constants)
     static += [violation.diagnostic(built.written) for violation in program.violations]
-    found = [*static, *_new(built.diagnostics, static)]
-    return built, within_limit(ordered(adapted(found, settings.variant)))
-
-
-def _new(found: Sequence[Diagnostic], known: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
-    """Findings of a later stage whose place an earlier one has not already complained about."""
-    places = [d.span for d in known if d.is_error and d.span is not None]
-    is_missing_file = any(d.code in _IMPORT_FAILURES for d in known)
-    for d in found:
-        if is_missing_file and d.code in _MISSING_NAMES:
-            continue  # the name may be in the file that could not be imported
-        if d.code == _CIRCLE and any(k.code == _CIRCLE for k in known):
-            continue  # the same circle, entered elsewhere
-        if not (d.is_error and d.span is not None and any(d.span.overlaps(p) for p in places)):
-            yield d
+    return built, within_limit(ordered(adapted([*static, *built.diagnostics], settings.variant)))

@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
 from aidl_lang.building.scopes import Candidate, Scope
-from aidl_lang.building.state import Env, Interpreter
+from aidl_lang.building.state import Interpreter
 from aidl_lang.building.values import Namespace, Text, Value, kind_of, type_of
 from aidl_lang.checking.binding import select
 from aidl_lang.checking.builtins import CUTS, DERIVING, OUTLINES, PATTERNS, SIGNATURES, is_word
 from aidl_lang.checking.resolving.cuts import meant
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import ANY, PRIMITIVES, Binding, Given, Mismatch, Signature, Type, with_article
-from aidl_lang.common.names import find, nearest
+from aidl_lang.common.names import find
 from aidl_lang.syntax import ast
 
 _NO_NAMES: Mapping[ast.Node, Symbol] = {}
@@ -138,12 +138,6 @@ def _callable_names(it: Interpreter, scope: Scope) -> dict[str, None]:
     return scope.callable_names(it.program.library.callables) | dict.fromkeys(SIGNATURES)
 
 
-def unknown_callable(it: Interpreter, node: ast.Call, env: Env) -> None:
-    like = nearest(node.callee.text, _callable_names(it, env.scope), 3)
-    hints = [f"did you mean {' or '.join(f'`{n}`' for n in like)}?"] if like else []
-    it.report("E0203", f"there is no `{node.callee.text}(…)`", node.callee, hints=hints)
-
-
 def no_overload(
     it: Interpreter,
     node: ast.Call,
@@ -151,8 +145,6 @@ def no_overload(
     nodes: Sequence[ast.Node],
     values: Sequence[Value],
 ) -> None:
-    if node in it.program.rejected:
-        return  # the checker has said so
     name = node.callee.text
     if it.place(node) is not node.span:
         # What the library asks of a pair of things is told of the author's call, in the author's words.

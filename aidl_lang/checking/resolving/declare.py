@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
-from aidl_lang.checking.builtins import DERIVING, PATTERNS
+from aidl_lang.checking.builtins import DERIVING, EVERYWHERE, PATTERNS
 from aidl_lang.checking.library import signature
 from aidl_lang.checking.resolving import complaints
-from aidl_lang.checking.resolving.symbols import Scope, SymbolKind
+from aidl_lang.checking.resolving.symbols import UNKNOWNS, Scope, SymbolKind
 from aidl_lang.checking.types import PARAMETER_TYPES, PRIMITIVES, Signature
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import fold, nearest
@@ -220,6 +220,10 @@ class Declarer:
         branch: Branch,
         indices: Sequence[ast.Expression] = (),
     ) -> None:
+        if name.text in EVERYWHERE and kind in UNKNOWNS:
+            message = f"`{name.text}` belongs to every structure and cannot be declared"
+            self.resolver.report("E0209", message, name, hints=("choose another name",))
+            return
         known = self.scope.values.get(name.text)
         numbers = tuple(i.value for i in indices if isinstance(i, ast.Number))
         place = numbers if len(numbers) == len(indices) and indices else None
