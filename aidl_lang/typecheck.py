@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from aidl_lang.checking import rules
 from aidl_lang.checking.conditions import check_condition, check_empty, check_item, check_operation
 from aidl_lang.checking.cycles import find_cycles
 from aidl_lang.checking.facts import Fact
@@ -22,7 +23,6 @@ from aidl_lang.checking.subset import check_subset
 from aidl_lang.checking.types import (
     ANY,
     AnyType,
-    GeometryType,
     ListType,
     NumberType,
     PointType,
@@ -162,7 +162,7 @@ class Checker:
             case ast.Param():
                 self._param(node)
             case ast.Var(value=value):
-                self._wanted(value, "a `var`", NumberType(LENGTH), NumberType(ANGLE), PointType())
+                self._unknown(value)
             case ast.ExpressionStatement(value):
                 if not check_operation(infer, value):
                     check_condition(infer, value)
@@ -244,21 +244,20 @@ class Checker:
         if placement.rotated is not None:
             self._wanted(placement.rotated, "`rotated`", NumberType(ANGLE))
 
-    def _wanted(self, node: ast.Expression, what: str, *wanted: Type) -> None:
+    def _wanted(self, node: ast.Expression, what: str, wanted: Type) -> None:
         fact = self.infer.fact(node)
-        if all(accepts(kind, fact.type) is None for kind in wanted):
-            first = wanted[0] if len(wanted) == 1 else None
-            needs = a(first) if first is not None else "a number or a point"
-            hints = []
-            if first == PointType() and isinstance(fact.type, NumberType):
-                hints = [f"as in `at ({shown(node)}, 0)`"]
-            elif what == "a `var`":
-                hints = ["`var gap = 5` is an unknown number; shapes are defined without `var`"]
-            elif isinstance(fact.type, GeometryType):
-                hints = [f"name a part of it: `{shown(node)}.center`"]
-            self.infer.report("E0302", f"{what} wants {needs}, and this is {a(fact.type)}", node, hints=hints)
-        elif len(wanted) == 1 and isinstance(wanted[0], NumberType):
-            self.infer.serves(fact, wanted[0].dimension, node)
+        if accepts(wanted, fact.type) is None:
+            self.infer.refuse(rules.unwanted(what, wanted, fact.type, shown(node)), node)
+        elif isinstance(wanted, NumberType):
+            self.infer.serves(fact, wanted.dimension, node)
+
+    def _unknown(self, node: ast.Expression) -> None:
+        """The first guess of a `var`."""
+        kind = self.infer.fact(node).type
+        if all(accepts(k, kind) is None for k in (NumberType(LENGTH), NumberType(ANGLE), PointType())):
+            message = f"a `var` wants a number or a point, and this is {a(kind)}"
+            hint = "`var gap = 5` is an unknown number; shapes are defined without `var`"
+            self.infer.report("E0302", message, node, hints=[hint])
 
     def _param(self, node: ast.Param) -> None:
         infer = self.infer
@@ -284,11 +283,7 @@ class Checker:
             case RangeType() | ListType() | AnyType():
                 pass
             case kind:
-                infer.report(
-                    "E0314",
-                    f"the range of a `param` is as `20..200` or a list of choices, not {a(kind)}",
-                    domain,
-                )
+                infer.refuse(rules.no_domain(kind), domain)
         infer.known(domain, "the range of a `param`")
 
     def _assert(self, test: ast.Expression, message: ast.Expression | None) -> None:

@@ -21,14 +21,14 @@ from aidl_lang.building.values import (
     PointVal,
     RecordVal,
     Value,
-    kind_of,
     length,
     members,
+    type_of,
 )
-from aidl_lang.checking import units
+from aidl_lang.checking import rules
 from aidl_lang.checking.units import LENGTH, PLAIN
+from aidl_lang.checking.wording import shown
 from aidl_lang.common.diagnostics import Edit, Fix
-from aidl_lang.common.prose import ticked
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
@@ -102,7 +102,7 @@ def numeric(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num | No
     if isinstance(value, Geometry) and value.type == "line":
         return edge_coordinate(it, value, node, env)
     if not isinstance(value, Nothing):
-        it.report("E0302", f"a number is needed here, and this is {kind_of(value)}", node)
+        it.misfit(rules.needed("a number", type_of(value)), node)
     return None
 
 
@@ -112,7 +112,7 @@ def coordinate(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num |
     if found is None:
         return None
     if found.dimension not in (None, PLAIN, LENGTH):
-        it.report("E0301", f"a coordinate must be a length, not a {units.describe(found.dimension)}", node)
+        it.misfit(rules.no_coordinate(shown(node), type_of(found)), node)
         return None
     return Num(found.expression, LENGTH, found.status)
 
@@ -172,14 +172,7 @@ def constant(it: Interpreter, value: Num, node: ast.Node, what: str) -> float | 
         for u in found:
             u.exact = True
         return value.value
-    names = ", ".join(ticked(u.path for u in found[:2]))
-    it.report(
-        "E0501",
-        f"{what} must be known before solving, and this depends on {names}",
-        node,
-        label="found by the solver only",
-        hints=["use a `param`, a `let` of constants, or a loop variable"],
-    )
+    it.misfit(rules.unknown_yet(what, shown(node)), node)
     return None
 
 
@@ -188,12 +181,12 @@ def whole(it: Interpreter, value: Value, node: ast.Node, what: str) -> int | Non
     if isinstance(value, Nothing):
         return None
     if not isinstance(value, Num):
-        it.report("E0302", f"{what} must be a whole number, not {kind_of(value)}", node)
+        it.misfit(rules.no_whole_number(what, type_of(value)), node)
         return None
     known = constant(it, value, node, what)
     if known is None:
         return None
     if abs(known - round(known)) > 1e-9 * max(1.0, abs(known)) or not math.isfinite(known):
-        it.report("E0306", f"{what} must be a whole number, and this is {known:g}", node)
+        it.misfit(rules.fraction(what, f"{known:g}"), node)
         return None
     return round(known)

@@ -22,11 +22,12 @@ from aidl_lang.building.values import (
     PointVal,
     Text,
     Value,
-    kind_of,
     members,
+    type_of,
 )
-from aidl_lang.checking import units
-from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.checking import rules, units
+from aidl_lang.checking.units import ANGLE
+from aidl_lang.checking.wording import shown
 from aidl_lang.syntax import ast
 
 RELATIONS = ("==", "<=", ">=", "<", ">")
@@ -50,38 +51,36 @@ def compare(
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
     if isinstance(left, Text | bool) or isinstance(right, Text | bool):
-        return _compare_plain(it, relation, left, right, node)
+        if relation not in ("==", "!=") or type(left) is not type(right):
+            return _incomparable(it, relation, left, right, node, left_node, right_node)
+        both = (side.value if isinstance(side, Text) else side for side in (left, right))
+        return (next(both) == next(both)) == (relation == "==")
     a, b = as_point(it, left, left_node, env), as_point(it, right, right_node, env)
     if a is not None and b is not None:
         return _compare_points(it, relation, a, b, node)
     if a is not None or b is not None:
-        it.report(
-            "E0309",
-            f"{kind_of(left)} is compared with {kind_of(right)}",
-            node,
-            hints=["points compare with points, coordinates (`.x`, `.y`) with lengths"],
-        )
-        return NOTHING
+        return _incomparable(it, relation, left, right, node, left_node, right_node)
     x, y = numeric(it, left, left_node, env), numeric(it, right, right_node, env)
     return compare_numbers(it, relation, x, y, node) if x is not None and y is not None else NOTHING
 
 
-def _compare_plain(it: Interpreter, relation: str, left: Value, right: Value, node: ast.Node) -> Value:
-    if relation in ("==", "!=") and type(left) is type(right):
-        a, b = (side.value if isinstance(side, Text) else side for side in (left, right))
-        return (a == b) == (relation == "==")
-    it.report("E0309", f"`{relation}` does not compare {kind_of(left)} with {kind_of(right)}", node)
+def _incomparable(
+    it: Interpreter,
+    relation: str,
+    left: Value,
+    right: Value,
+    node: ast.Node,
+    left_node: ast.Node,
+    right_node: ast.Node,
+) -> Nothing:
+    sides = shown(left_node), shown(right_node)
+    it.misfit(rules.no_comparison(relation, type_of(left), type_of(right), *sides), node)
     return NOTHING
 
 
 def _compare_points(it: Interpreter, relation: str, a: PointVal, b: PointVal, node: ast.Node) -> Value:
     if relation not in ("==", "!="):
-        it.report(
-            "E0309",
-            f"points have no order, so `{relation}` does not compare them",
-            node,
-            hints=["compare coordinates, as in `a.x <= b.x`"],
-        )
+        it.misfit(rules.no_order(relation), node)
         return NOTHING
     both = conjunction(
         it,
@@ -96,26 +95,14 @@ def _compare_points(it: Interpreter, relation: str, a: PointVal, b: PointVal, no
 def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.Node) -> Value:
     try:
         dimension = units.add(a.dimension, b.dimension)
-    except ValueError as reason:
-        it.report(
-            "E0308",
-            f"`{node.span.text}` compares {str(reason).replace(' and ', ' with ')}",
-            node,
-            hints=[_dimension_hint(a, b)],
-        )
+    except units.UnequalError as pair:
+        it.misfit(rules.unequal(f"`{relation}` does not compare", *pair.args), node)
         return NOTHING
     left, right = spelled_out(a.expression, b.expression, equal=relation == "==")
     if left.is_constant and right.is_constant:
         return _relates(relation, left.value, right.value, dimension == ANGLE, EXACT, strict=True)
     boxes, beside = boxes_in(a.expression, b.expression)
     return Condition("and", (Comparison(relation, left, right, dimension, None, boxes, beside),))
-
-
-def _dimension_hint(a: Num, b: Num) -> str:
-    """An arc's length is often written as an angle times a radius."""
-    if {a.dimension, b.dimension} == {LENGTH, units.multiply(LENGTH, ANGLE)}:
-        return "an angle times a radius is no length: an arc is `radians(angle) * radius` long"
-    return "both sides need the same dimension; units are written as in `30deg`, `4mm`"
 
 
 def _relates(
@@ -147,7 +134,7 @@ def conjunction(it: Interpreter, operator: str, left: Value, right: Value, node:
         return NOTHING
     for side in (left, right):
         if not isinstance(side, bool | Condition):
-            it.report("E0302", f"`{operator}` joins conditions, and this is {kind_of(side)}", node)
+            it.misfit(rules.needed("a condition", type_of(side)), node)
             return NOTHING
     neutral = operator == "and"
     if left is neutral:
@@ -172,7 +159,7 @@ def negation(it: Interpreter, value: Value, node: ast.Node) -> Value:
         case Nothing():
             return NOTHING
         case _:
-            it.report("E0302", f"`not` turns a condition round, and this is {kind_of(value)}", node)
+            it.misfit(rules.needed("a condition", type_of(value)), node)
             return NOTHING
 
 

@@ -21,7 +21,6 @@ from aidl_lang.building.derive import Copier
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.motion import STILL, Motion, Place, after
-from aidl_lang.building.overloads import find_candidates
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.values import (
@@ -66,7 +65,7 @@ def is_edit(it: Interpreter, node: ast.Node, scope: Scope) -> bool:
     """Whether a statement's expression is an edit, and not a definition of the program of that name."""
     if not isinstance(node, ast.Call) or _target(node) is None:
         return False
-    candidates = find_candidates(it, node.callee.text, scope, None)
+    candidates = scope.candidates(it.spelled(node.callee))
     return bool(candidates) and candidates[0].signature.kind is None and candidates[0].signature.name in EDITS
 
 
@@ -78,13 +77,13 @@ def _target(call: ast.Call) -> ast.Expression | None:
     return next(named, None)
 
 
-def _path(node: ast.Expression | None) -> tuple[str, tuple[ast.Expression, ...]] | None:
+def _path(it: Interpreter, node: ast.Expression | None) -> tuple[str, tuple[ast.Expression, ...]] | None:
     """Name and indices of `a[i][j]`."""
     indices: list[ast.Expression] = []
     while isinstance(node, ast.Index):
         indices.insert(0, node.index)
         node = node.value
-    return (node.text, tuple(indices)) if isinstance(node, ast.Name) else None
+    return (it.spelled(node), tuple(indices)) if isinstance(node, ast.Name) else None
 
 
 def edits_on(it: Interpreter, name: str, indices: tuple[int, ...], scope: Scope) -> list[Edit]:
@@ -93,8 +92,8 @@ def edits_on(it: Interpreter, name: str, indices: tuple[int, ...], scope: Scope)
     for ahead in reversed(it.ahead):
         if ahead.scope.declaring() is not scope.declaring():
             break
-        if fold(name) in _edited_names(it, ahead.statements):
-            found += _among(it, ahead.statements[ahead.next :], ahead.scope, (fold(name), indices))
+        if name in _edited_names(it, ahead.statements):
+            found += _among(it, ahead.statements[ahead.next :], ahead.scope, (name, indices))
     return found
 
 
@@ -105,8 +104,10 @@ def _edited_names(it: Interpreter, statements: Sequence[ast.Statement]) -> froze
     found: set[str] = set()
     for statement in statements:
         match statement:
-            case ast.ExpressionStatement(ast.Call() as call) if (path := _path(_target(call))) is not None:
-                found.add(fold(path[0]))
+            case ast.ExpressionStatement(ast.Call() as call) if (
+                path := _path(it, _target(call))
+            ) is not None:
+                found.add(path[0])
             case ast.For(body=body):
                 found |= _edited_names(it, body.statements)
             case ast.If(then=then, otherwise=otherwise):
@@ -146,8 +147,8 @@ def _chosen(it: Interpreter, test: ast.Expression, env: Env) -> bool:
 
 
 def _is_on(it: Interpreter, call: ast.Call, env: Env, wanted: tuple[str, tuple[int, ...]]) -> bool:
-    path = _path(_target(call))
-    if path is None or fold(path[0]) != wanted[0] or len(path[1]) != len(wanted[1]):
+    path = _path(it, _target(call))
+    if path is None or path[0] != wanted[0] or len(path[1]) != len(wanted[1]):
         return False
     found = _tried(it, lambda: [whole(it, evaluate(it, i, env), i, "an index") for i in path[1]])
     return found == list(wanted[1]) and is_edit(it, call, env.scope)
@@ -188,7 +189,7 @@ def motion_of(
 
 
 def _step(it: Interpreter, edit: Edit, thing: Value, centre: Place, here: Structure) -> Motion | None:
-    node, env = edit.call, Env(_seeing(edit, thing), here, Reach.OWN)
+    node, env = edit.call, Env(_seeing(it, edit, thing), here, Reach.OWN)
     nodes = [node.receiver] if node.receiver is not None else []
     nodes += [a.value for a in node.arguments]
     target = _target(node)
@@ -206,7 +207,7 @@ def _step(it: Interpreter, edit: Edit, thing: Value, centre: Place, here: Struct
     names: list[str | None] = [None] * (len(nodes) - len(node.arguments))
     names += [a.name.text if a.name else None for a in node.arguments]
     given = [Given(name, type_of(v)) for name, v in zip(names, values, strict=True)]
-    candidates = find_candidates(it, node.callee.text, edit.scope, None)
+    candidates = edit.scope.candidates(it.spelled(node.callee))
     chosen = select([c.signature for c in candidates], given)
     if isinstance(chosen, list):
         if node not in it.rejected:
@@ -225,9 +226,9 @@ def _mentions(nodes: Sequence[ast.Expression], target: ast.Node | None, name: st
     return any(isinstance(n, ast.Name) and fold(n.text) == fold(name.partition("[")[0]) for n in others)
 
 
-def _seeing(edit: Edit, thing: Value) -> Scope:
+def _seeing(it: Interpreter, edit: Edit, thing: Value) -> Scope:
     """What the arguments of an edit see: the thing by its name, too, as the edits before have left it."""
-    path = _path(_target(edit.call))
+    path = _path(it, _target(edit.call))
     assert path is not None
     scope = Scope(edit.scope, edit.scope.container, turn=True, labels=edit.scope.labels)
     if not isinstance(thing, Geometry | PointVal):
@@ -235,7 +236,7 @@ def _seeing(edit: Edit, thing: Value) -> Scope:
     scope.values[path[0]] = thing
     if edit.indices:
         found = edit.scope.find(path[0])
-        known = found[1].values[found[0]] if found is not None else None
+        known = found.values[path[0]] if found is not None else None
         scope.values[path[0]] = array = Array(path[0])
         array.members = dict(known.members) if isinstance(known, Array) else {}
         array.members[edit.indices] = thing
@@ -339,7 +340,7 @@ def check_edit(it: Interpreter, call: ast.Call, env: Env) -> None:
         return
     target = _target(call)
     assert target is not None
-    is_below = isinstance(target, ast.Name) and env.scope.find(target.text) is None
+    is_below = isinstance(target, ast.Name) and env.scope.find(it.spelled(target)) is None
     value = NOTHING if is_below else evaluate(it, target, env)
     if isinstance(value, Nothing) and not is_below:
         return

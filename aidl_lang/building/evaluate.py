@@ -25,13 +25,14 @@ from aidl_lang.building.values import (
     RecordVal,
     Text,
     Value,
-    kind_of,
     members,
     number,
+    type_of,
 )
-from aidl_lang.checking import units
+from aidl_lang.checking import rules, units
 from aidl_lang.checking.builtins import WORDS
 from aidl_lang.checking.units import UNITS
+from aidl_lang.checking.wording import shown
 from aidl_lang.syntax import ast
 
 
@@ -97,12 +98,7 @@ def iterate(it: Interpreter, node: ast.Expression, env: Env) -> list[Value] | No
     if items is None and isinstance(value, RangeVal):
         return None
     if items is None and not isinstance(value, Nothing):
-        it.report(
-            "E0304",
-            f"`for` runs through a range or a list, and this is {kind_of(value)}",
-            node,
-            hints=["as in `for i in 0..9 { … }` or `for s in [-1, 1] { … }`"],
-        )
+        it.misfit(rules.no_run(type_of(value)), node)
         return None
     return list(items) if items is not None else None
 
@@ -138,15 +134,9 @@ def truth(it: Interpreter, value: Value, node: ast.Node) -> bool:
             for u in found:
                 u.exact = True
             return holds(value, lambda e: e.value, 1e-9, strict=True)
-        it.report(
-            "E0502",
-            f"`{node.span.text}` is decided by the solver, so it cannot choose what is built",
-            node,
-            label="depends on unknowns",
-            hints=["compare `param`s and constants, or use `written(…)` for the value as written"],
-        )
+        it.misfit(rules.undecided(shown(node)), node)
     elif not isinstance(value, Nothing):
-        it.report("E0302", f"a condition is needed here, and this is {kind_of(value)}", node)
+        it.misfit(rules.needed("a condition", type_of(value)), node)
     return False
 
 
@@ -154,12 +144,12 @@ def truth(it: Interpreter, value: Value, node: ast.Node) -> bool:
 
 
 def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
-    found = env.scope.find(node.text)
+    name = it.spelled(node)
+    found = env.scope.find(name)
     if found is not None:
-        name, scope = found
-        return read(it, scope.values[name], node, env)
+        return read(it, found.values[name], node, env)
     for scope in env.scope.chain():
-        if (branch := scope.unbuilt.get(node.text)) is not None:
+        if (branch := scope.unbuilt.get(name)) is not None:
             return not_built(it, node, branch)
     if node.text in WORDS:
         return Text(node.text)
@@ -182,7 +172,7 @@ def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
         return lists.entry(it, value, index.value, node.index)
     items = members(value)
     if items is None:
-        it.report("E0305", f"`{node.value.span.text}` is {kind_of(value)} and has no members by number", node)
+        it.misfit(rules.no_members(shown(node.value), type_of(value)), node)
         return NOTHING
     position = whole(it, index, node.index, "an index")
     if position is None:
@@ -253,14 +243,7 @@ def _vector(it: Interpreter, node: ast.Binary, left: Value, right: Value, env: E
     elif isinstance(left, Num) and isinstance(right, PointVal) and op == "*":
         x, y = arithmetic(it, op, left, right.x, node), arithmetic(it, op, left, right.y, node)
     else:
-        it.report(
-            "E0307",
-            f"`{op}` does not work on {kind_of(left)} and {kind_of(right)}",
-            node,
-            hints=[
-                "points take `+` and `-` with points, `*` and `/` with numbers; see also `dot` and `cross`"
-            ],
-        )
+        it.misfit(rules.no_vectors(op, type_of(left), type_of(right)), node)
         return NOTHING
     return PointVal(x, y) if isinstance(x, Num) and isinstance(y, Num) else NOTHING
 
@@ -294,8 +277,11 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
             dimension = units.power(a.dimension, exponent)
         else:
             dimension = _DIMENSION[op](a.dimension, b.dimension)
+    except units.UnequalError as pair:
+        it.misfit(rules.unequal(f"`{op}` does not join", *pair.args), node)
+        return NOTHING
     except ValueError as reason:
-        it.report("E0308", f"`{op}` does not join {str(reason).replace(' and ', ' with ')}", node)
+        it.report("E0308", f"`{op}` has no meaning here: {reason}", node)
         return NOTHING
     if op == "%":
         x, y = (constant(it, n, node, "an operand of `%`") for n in (a, b))
@@ -360,7 +346,7 @@ def _membership(it: Interpreter, node: ast.Membership, env: Env) -> Value:
         return conjunction(it, "and", low, high, node)
     items = members(container)
     if items is None:
-        it.report("E0302", f"`in` wants a range or a list, not {kind_of(container)}", node.container)
+        it.misfit(rules.needed("a range or a list", type_of(container)), node.container)
         return NOTHING
     result: Value = False
     for item in items:
@@ -377,8 +363,8 @@ def _range(it: Interpreter, node: ast.Range, env: Env) -> Value:
     try:
         dimension = units.add(start.dimension, end.dimension)
         dimension = units.add(dimension, step.dimension) if step is not None else dimension
-    except ValueError as reason:
-        it.report("E0308", f"a range does not join {reason}", node)
+    except units.UnequalError as pair:
+        it.misfit(rules.unequal("a range does not join", *pair.args), node)
         return NOTHING
     return RangeVal(
         Num(start.expression, dimension, start.status),

@@ -28,7 +28,7 @@ from aidl_lang.building.values import (
     members,
     number,
 )
-from aidl_lang.checking import units
+from aidl_lang.checking import rules, units
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension
 from aidl_lang.common.names import find, nearest
 from aidl_lang.syntax import ast
@@ -128,8 +128,8 @@ def _common(it: Interpreter, values: list[Num], node: ast.Call) -> tuple[MaybeDi
     try:
         for value in values:
             dimension = units.add(dimension, value.dimension)
-    except ValueError as reason:
-        it.report("E0308", f"`{node.callee.text}` does not join {reason}", node)
+    except units.UnequalError as pair:
+        it.misfit(rules.unequal(f"`{node.callee.text}` does not join", *pair.args), node)
         return None
     return dimension, max((v.status for v in values), default=Status.NUMBER)
 

@@ -33,9 +33,12 @@ from aidl_lang.building.values import (
     kind_of,
     members,
     number,
+    type_of,
 )
 from aidl_lang.building.wording import Read, Wording
+from aidl_lang.checking import rules
 from aidl_lang.checking.units import LENGTH
+from aidl_lang.checking.wording import shown
 from aidl_lang.common.names import fold
 from aidl_lang.syntax import ast
 
@@ -71,12 +74,7 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
                 hints=[f"give it one: `{value.type}_1 = {node.span.text}`"],
             )
         case _:
-            it.report(
-                "E0321",
-                f"a constraint is a condition, and this is {kind_of(value)}",
-                node,
-                hints=["compare it (`== 20`), or call a relation such as `above(a, b)`"],
-            )
+            it.misfit(rules.no_condition(shown(node), type_of(value)), node)
 
 
 def _holds_place(it: Interpreter, node: ast.Expression) -> bool:
@@ -169,12 +167,8 @@ def _impose_condition(
             return
         if isinstance(part, Condition) or (isinstance(part, Comparison) and part.relation not in RELATIONS):
             word = part.operator if isinstance(part, Condition) else part.relation
-            it.report(
-                "E0322",
-                f"`{word}` does not constrain: a solver cannot choose between alternatives",
-                node,
-                hints=["state the one that is meant, choose with `if` over params, or `assert` it"],
-            )
+            hint = "state the one that is meant, choose with `if` over params, or `assert` it"
+            it.misfit(rules.no_equation(word, hint), node)
             return
         if isinstance(part, Comparison):
             comparisons.append(part)
@@ -310,7 +304,7 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
     if isinstance(value, Nothing):
         return
     if not isinstance(value, bool | Condition):
-        it.report("E0321", f"`assert` wants a condition, and this is {kind_of(value)}", node.test)
+        it.misfit(rules.needed("a condition", type_of(value)), node.test)
         return
     message = evaluate(it, node.message, env) if node.message is not None else None
     if value is False and shape:

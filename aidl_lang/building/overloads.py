@@ -9,11 +9,10 @@ from aidl_lang.building.scopes import Candidate, Scope
 from aidl_lang.building.state import Interpreter
 from aidl_lang.building.values import Namespace, Text, Value, kind_of, type_of
 from aidl_lang.checking.binding import select
-from aidl_lang.checking.builtins import CUTS, DERIVING, OUTLINES, PATTERNS, SIGNATURES, is_word
+from aidl_lang.checking.builtins import CUTS, DERIVING, OUTLINES, PATTERNS, is_word
 from aidl_lang.checking.resolving.cuts import meant
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import ANY, PRIMITIVES, Binding, Given, Mismatch, Signature, Type, with_article
-from aidl_lang.common.names import find
 from aidl_lang.syntax import ast
 
 _NO_NAMES: Mapping[ast.Node, Symbol] = {}
@@ -114,28 +113,16 @@ _MOST_MEANINGS = 100  # of one call; lists of every length are types of their ow
 
 def candidates_of(it: Interpreter, node: ast.Call, scope: Scope, receiver: Value | None) -> list[Candidate]:
     """The callables that a call may mean where it stands."""
-    found = find_candidates(it, node.callee.text, scope, receiver)
+    if isinstance(receiver, Namespace):
+        inner = receiver.values.get("")
+        return inner.candidates(it.spelled(node.callee)) if isinstance(inner, Scope) else []
+    found = scope.candidates(it.spelled(node.callee))
     if not found or found[0].signature.name not in CUTS:
         return found
     of_context = it.program.resolution.candidates.get(node)
     signatures = [c.signature for c in found]
     wanted = meant(signatures, of_context is not None and any(s.kind is ast.Structure for s in of_context))
     return found if wanted is signatures else [c for c in found if c.signature in wanted]
-
-
-def find_candidates(it: Interpreter, name: str, scope: Scope, receiver: Value | None) -> list[Candidate]:
-    """The callables of a name: as written, else spelled alike."""
-    if isinstance(receiver, Namespace):
-        inner = receiver.values.get("")
-        return inner.candidates(name) if isinstance(inner, Scope) else []
-    if found := scope.candidates(name):
-        return found
-    alike = find(name, _callable_names(it, scope))
-    return scope.candidates(alike) if alike else []
-
-
-def _callable_names(it: Interpreter, scope: Scope) -> dict[str, None]:
-    return scope.callable_names(it.program.library.callables) | dict.fromkeys(SIGNATURES)
 
 
 def no_overload(

@@ -20,8 +20,9 @@ from aidl_lang.building.values import (
     kind_of,
     members,
     number,
+    type_of,
 )
-from aidl_lang.checking import units
+from aidl_lang.checking import rules, units
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import fold, nearest
@@ -142,7 +143,8 @@ def _domain(
         return domain.start.value, domain.end.value, ()
     items = members(domain)
     if items is None or not all(isinstance(i, Num | Text | bool) for i in items):
-        it.report("E0314", "the range of a `param` is as `20..200` or a list of choices", node.domain)
+        if node.domain is not None:
+            it.misfit(rules.no_domain(type_of(domain)), node.domain)
         return None, None, ()
     return None, None, tuple(_plain(i) for i in items)
 

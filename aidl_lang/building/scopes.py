@@ -6,14 +6,13 @@ evaluated when it is asked for.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.building.expression import Unknown
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.checking.types import Signature
-from aidl_lang.common.names import Spellings
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 
@@ -114,7 +113,6 @@ class Scope:
     unbuilt: dict[str, ast.If] = field(default_factory=dict)
     supply: Callable[[str], Iterable[Candidate]] | None = None
     """looks up callables that are kept elsewhere (the library's)"""
-    _spellings: Spellings | None = field(default=None, repr=False)
     _candidates: dict[str, list[Candidate]] = field(default_factory=dict, repr=False)
 
     def chain(self) -> Iterable[Scope]:
@@ -123,19 +121,12 @@ class Scope:
             yield scope
             scope = scope.parent
 
-    def find(self, name: str) -> tuple[str, Scope] | None:
-        """The scope that has a value of this name: as written anywhere, else the nearest spelled alike."""
+    def find(self, name: str) -> Scope | None:
+        """Returns the nearest scope that has a value of this name."""
         scope: Scope | None = self
-        while scope is not None:
-            if name in scope.values:
-                return name, scope
+        while scope is not None and name not in scope.values:
             scope = scope.parent
-        for scope in self.chain():
-            if scope._spellings is None:
-                scope._spellings = Spellings(scope.values)
-            if (alike := scope._spellings.find(name)) is not None:
-                return alike, scope
-        return None
+        return scope
 
     def declaring(self) -> Scope:
         """The scope whose container gets what is declared here."""
@@ -174,10 +165,3 @@ class Scope:
                 alias = alias or scope.aliases.get(key)
             key = alias
         return found
-
-    def callable_names(self, library: Mapping[str, object]) -> dict[str, None]:
-        """Every name that can be called from here."""
-        names: dict[str, None] = {}
-        for scope in self.chain():
-            names |= dict.fromkeys(scope.callables) | dict.fromkeys(scope.aliases)
-        return names | dict.fromkeys(library)

@@ -13,6 +13,7 @@ from aidl_lang.building.expression import Unknown
 from aidl_lang.building.model import Assertion, Comparison, Constraint, Geometry, Knob, Literal, Structure
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.values import ListVal, Num, PointVal, RecordVal, Text, Value
+from aidl_lang.checking.rules import Misfit
 from aidl_lang.checking.types import Binding, Signature
 from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
 from aidl_lang.common.cancelling import OutOfTime, checkpoint
@@ -175,12 +176,20 @@ class Interpreter:
         if self.errors > MOST_ERRORS:
             raise Stop
 
+    def misfit(self, found: Misfit, node: ast.Node, fix: Fix | None = None) -> None:
+        """Say why a value does not go where it stands."""
+        self.report(found.code, found.message, node, found.label, found.hints, fix)
+
     def refuse(self, node: ast.Node, why: str, hints: Sequence[str] = ()) -> None:
         """A call makes no sense of its arguments; said of the call that the author wrote."""
         span = self.place(node)
         text = f"`{span.one_line}`" if span is not None else "this"
         if not any(d.code == "E0342" and d.span == span for d in self.diagnostics):
             self._add(Diagnostic("E0342", f"{text} says nothing: {why}", span, hints=tuple(hints)))
+
+    def spelled(self, node: ast.Name | ast.Identifier) -> str:
+        """The name that is meant, as it is defined."""
+        return self.program.resolution.canonical.get(node, node.text)
 
     @property
     def library_sources(self) -> tuple[object, ...]:

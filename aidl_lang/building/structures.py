@@ -24,12 +24,15 @@ from aidl_lang.building.values import (
     Num,
     PointVal,
     Status,
-    kind_of,
     number,
     point,
+    type_of,
 )
+from aidl_lang.checking import rules
 from aidl_lang.checking.builtins import FINISHES, ROTATION
+from aidl_lang.checking.types import NumberType, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.checking.wording import shown
 from aidl_lang.syntax import ast
 
 _PLAN = 10.0
@@ -171,7 +174,8 @@ def place_of(it: Interpreter, placement: ast.Placement | None, env: Env) -> tupl
         value = evaluate(it, placement.at, env)
         at = as_point(it, value, placement.at, env)
         if at is None and not isinstance(value, Nothing):
-            it.report("E0302", f"`at` wants a point, not {kind_of(value)}", placement.at)
+            wrong = rules.unwanted("`at`", PointType(), type_of(value), shown(placement.at))
+            it.misfit(wrong, placement.at)
     return at or PointVal(number(0.0, LENGTH), number(0.0, LENGTH)), _rotation(it, placement, env)
 
 
@@ -183,7 +187,8 @@ def _rotation(it: Interpreter, placement: ast.Placement | None, env: Env) -> Num
     if found is None:
         return None
     if found.dimension not in (None, ANGLE):
-        it.report("E0301", "`rotated` wants an angle", placement.rotated, hints=["as in `rotated 45deg`"])
+        wrong = rules.unwanted("`rotated`", NumberType(ANGLE), type_of(found), shown(placement.rotated))
+        it.misfit(wrong, placement.rotated)
         return None
     return found
 

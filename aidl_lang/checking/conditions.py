@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from aidl_lang.checking import rules
 from aidl_lang.checking.builtins import EDITS, FINISHES
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.resolving.declare import made_by
 from aidl_lang.checking.resolving.symbols import SymbolKind
-from aidl_lang.checking.types import AnyType, GeometryType, NumberType, PointType, StructureType, TruthType
-from aidl_lang.checking.wording import a, shown
+from aidl_lang.checking.types import AnyType, TruthType
+from aidl_lang.checking.wording import shown
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
@@ -77,13 +78,7 @@ def check_condition(infer: Inference, node: ast.Expression, may_make: bool = Tru
             return
     if isinstance(fact.type, AnyType):
         return
-    text = shown(node)
-    hint = f"compare it with something: `{text} == …`"
-    if isinstance(fact.type, NumberType):
-        hint = f"say what it shall be: `{text} == …` or `{text} <= …`"
-    elif isinstance(fact.type, GeometryType | StructureType | PointType):
-        hint = f"say what about it, as in `fixed({text})`, `horizontal({text})` or `{text}.center == …`"
-    infer.report("E0321", f"`{text}` is {a(fact.type)} and constrains nothing", node, hints=[hint])
+    infer.refuse(rules.no_condition(shown(node), fact.type), node)
 
 
 def _needs_name(infer: Inference, node: ast.Call, may_make: bool) -> None:
@@ -132,5 +127,4 @@ def _check_logic(infer: Inference, node: ast.Expression) -> None:
 
 
 def _cannot(infer: Inference, node: ast.Expression, word: str, hint: str, fix: Fix | None = None) -> None:
-    message = f"`{word}` does not constrain: there are many ways to satisfy it"
-    infer.report("E0322", message, node, hints=[hint], fix=fix)
+    infer.refuse(rules.no_equation(word, hint), node, fix)

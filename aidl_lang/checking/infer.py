@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
-from aidl_lang.checking import calls, members, named, operators, units
+from aidl_lang.checking import calls, members, named, operators, rules, units
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, joined
 from aidl_lang.checking.resolving.resolution import Resolution
 from aidl_lang.checking.resolving.symbols import Symbol
+from aidl_lang.checking.rules import Misfit
 from aidl_lang.checking.types import (
     ANY,
     AnyType,
@@ -28,7 +29,7 @@ from aidl_lang.checking.types import (
     Type,
 )
 from aidl_lang.checking.units import ANGLE, LENGTH, PLAIN, UNITS, MaybeDimension
-from aidl_lang.checking.wording import a, shown
+from aidl_lang.checking.wording import shown
 from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Edit, Fix, Label
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
@@ -76,6 +77,10 @@ class Inference:
             self._errors += found.is_error
         return UNKNOWN
 
+    def refuse(self, misfit: Misfit, node: ast.Node, fix: Fix | None = None) -> Fact:
+        """Say why something does not go where it stands; nothing is known of the result."""
+        return self.report(misfit.code, misfit.message, node, misfit.label, misfit.hints, fix=fix)
+
     def is_standard(self, node: ast.Node) -> bool:
         return node.span.source in self._standard
 
@@ -84,34 +89,20 @@ class Inference:
         fact = self.fact(node)
         if isinstance(fact.type, (AnyType, *allowed)):
             return fact
-        return self.report("E0302", f"{what} is needed here, and this is {a(fact.type)}", node)
+        return self.refuse(rules.needed(what, fact.type), node)
 
     def known(self, node: ast.Expression, what: str) -> bool:
         """Report an expression whose value the solver finds where one is needed while building."""
         if not self.fact(node).reads:
             return True
-        self.report(
-            "E0501",
-            f"{what} must be known before solving, and `{shown(node)}` is found by the solver",
-            node,
-            label="depends on unknowns",
-            hints=[
-                "use a `param`, a `let` of constants or a loop variable; `written(…)` is the value as written"
-            ],
-        )
+        self.refuse(rules.unknown_yet(what, shown(node)), node)
         return False
 
     def test(self, node: ast.Expression) -> None:
         """A condition that chooses what is built."""
         fact = self.wants(node, "a condition", TruthType)
         if fact.reads:
-            self.report(
-                "E0502",
-                f"`{shown(node)}` is decided by the solver, so it cannot choose what is built",
-                node,
-                label="depends on unknowns",
-                hints=["compare `param`s and constants, or use `written(…)` for the value as written"],
-            )
+            self.refuse(rules.undecided(shown(node)), node)
 
     # --- Expressions ---------------------------------------------------------------------------
 
@@ -143,11 +134,7 @@ class Inference:
             if isinstance(fact.type, NumberType):
                 self.serves(fact, LENGTH, part)
                 if fact.type.dimension not in (None, PLAIN, LENGTH):
-                    self.report(
-                        "E0301",
-                        f"a coordinate must be a length, and `{shown(part)}` is {a(fact.type)}",
-                        part,
-                    )
+                    self.refuse(rules.no_coordinate(shown(part), fact.type), part)
         return Fact(PointType(), reads)
 
     def numeric(self, node: ast.Expression) -> Fact:
@@ -159,7 +146,7 @@ class Inference:
             case GeometryType("line"):
                 return Fact(NumberType(LENGTH), fact.reads)
             case _:
-                return self.report("E0302", f"a number is needed here, and this is {a(fact.type)}", node)
+                return self.refuse(rules.needed("a number", fact.type), node)
 
     def _list(self, node: ast.List) -> Fact:
         facts = [self.fact(item) for item in node.items]
@@ -189,22 +176,14 @@ class Inference:
             case ListType() | AnyType():
                 return fact
             case NumberType():
-                return self.report(
-                    "E0304",
-                    f"`for` runs through a range or a list, and this is {a(fact.type)}",
-                    node,
-                    hints=[f"`0..<{shown(node)}` counts from 0 up to it"],
-                    fix=Fix(f"write `0..<{shown(node)}`", (Edit(_at(node), "0..<"),), is_sure=True)
-                    if isinstance(node, ast.Name | ast.Number | ast.Member | ast.Call)
-                    else None,
-                )
+                counted = f"0..<{shown(node)}"
+                misfit = replace(rules.no_run(fact.type), hints=(f"`{counted}` counts from 0 up to it",))
+                fix = None
+                if isinstance(node, ast.Name | ast.Number | ast.Member | ast.Call):
+                    fix = Fix(f"write `{counted}`", (Edit(_at(node), "0..<"),), is_sure=True)
+                return self.refuse(misfit, node, fix)
             case _:
-                return self.report(
-                    "E0304",
-                    f"`for` runs through a range or a list, and this is {a(fact.type)}",
-                    node,
-                    hints=["as in `for i in 0..9 { … }` or `for s in [-1, 1] { … }`"],
-                )
+                return self.refuse(rules.no_run(fact.type), node)
 
     def _range(self, node: ast.Range) -> Fact:
         start, end = self.numeric(node.start), self.numeric(node.end)
@@ -234,9 +213,7 @@ class Inference:
             case AnyType():
                 return Fact(ANY, fact.reads)
             case _:
-                return self.report(
-                    "E0305", f"`{shown(node.value)}` is {a(fact.type)} and has no members by number", node
-                )
+                return self.refuse(rules.no_members(shown(node.value), fact.type), node)
 
     def whole(self, node: ast.Expression, what: str) -> None:
         """An expression that has to be a whole number known while building."""
@@ -247,11 +224,11 @@ class Inference:
             case NumberType(dimension):
                 is_fraction = isinstance(node, ast.Number) and not node.value.is_integer()
                 if dimension not in (None, units.PLAIN) or is_fraction:
-                    self.report("E0306", f"{what} must be a whole number, and this is `{shown(node)}`", node)
+                    self.refuse(rules.fraction(what, shown(node)), node)
                 else:
                     self.known(node, what)
             case _:
-                self.report("E0302", f"{what} must be a whole number, not {a(fact.type)}", node)
+                self.refuse(rules.no_whole_number(what, fact.type), node)
 
     # --- Numbers ---
 
@@ -263,12 +240,7 @@ class Inference:
         try:
             common = units.add(x, y)
         except ValueError:
-            self.report(
-                "E0308",
-                f"{what} {a(left.type)} and {a(right.type)}",
-                node,
-                hints=["both sides need the same dimension; units are written as in `30deg`, `4mm`"],
-            )
+            self.refuse(rules.unequal(what, x, y), node)
             return None
         for side in (left, right):
             self.serves(side, common, node)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from aidl_lang.checking import units
+from aidl_lang.checking import rules, units
 from aidl_lang.checking.facts import Fact, is_number, is_point
 from aidl_lang.checking.types import (
     ANY,
@@ -15,7 +15,7 @@ from aidl_lang.checking.types import (
     TextType,
     TruthType,
 )
-from aidl_lang.checking.wording import a, comparison_hint, shown
+from aidl_lang.checking.wording import shown
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
@@ -57,12 +57,7 @@ def _vector(check: Inference, node: ast.Binary, left: Fact, right: Fact) -> Fact
         or (numbers[0] and op == "*")
     ):
         return Fact(PointType(), left.reads | right.reads)
-    hint = "points take `+` and `-` with points, `*` and `/` with numbers; see also `dot` and `cross`"
-    if op in "+-" and any(numbers):
-        hint = "to move a point, add a point: `p + (dx, dy)`"
-    return check.report(
-        "E0307", f"`{op}` does not work on {a(left.type)} and {a(right.type)}", node, hints=[hint]
-    )
+    return check.refuse(rules.no_vectors(op, left.type, right.type), node)
 
 
 def _arithmetic(
@@ -111,23 +106,13 @@ def compare(
         return
     if is_point(x.type) and is_point(y.type):
         if operator not in ("==", "!="):
-            check.report(
-                "E0309",
-                f"points have no order, so `{operator}` does not compare them",
-                node,
-                hints=["compare coordinates, as in `a.x <= b.x`"],
-            )
+            check.refuse(rules.no_order(operator), node)
         return
     if isinstance(x.type, ListType) or isinstance(y.type, ListType):
         return
     if type(x.type) is type(y.type) and isinstance(x.type, TextType | TruthType) and operator in ("==", "!="):
         return
-    check.report(
-        "E0309",
-        f"`{operator}` does not compare {a(x.type)} with {a(y.type)}",
-        node,
-        hints=[comparison_hint(x.type, y.type, shown(left), shown(right))],
-    )
+    check.refuse(rules.no_comparison(operator, x.type, y.type, shown(left), shown(right)), node)
 
 
 def membership(check: Inference, node: ast.Membership) -> Fact:

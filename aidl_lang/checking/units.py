@@ -50,16 +50,20 @@ def describe(dimension: MaybeDimension) -> str:
     return "number without a unit" if dimension is None else str(dimension)
 
 
+class UnequalError(ValueError):
+    """Two dimensions that do not go together; both are its arguments."""
+
+
 def add(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
     """Dimension of a sum, difference, minimum or comparison.
 
-    Raises ValueError when the two do not go together.
+    Raises UnequalError when the two do not go together.
     """
     if a is None or a == b:
         return b
     if b is None:
         return a
-    raise ValueError(f"{describe(a)} and {describe(b)}")
+    raise UnequalError(a, b)
 
 
 @lru_cache(maxsize=256)
