@@ -128,6 +128,7 @@ async def test_renaming_a_parameter_that_three_files_name(editor: Editor, tmp_pa
     assert {uri: drawn(editor, uri) for uri in uris[1:]} == before
     for uri in uris:
         await editor.rid_of_errors(uri)
+    for uri in uris:  # on disk each says what it said before
         editor.close(uri)
 
 
