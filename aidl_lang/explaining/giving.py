@@ -4,7 +4,7 @@ or that no constraint names and that moved all the same (language, "What gives w
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from aidl_lang.building.expression import Unknown
@@ -19,7 +19,7 @@ from aidl_lang.explaining.failures import NAMED
 from aidl_lang.explaining.trials import GAVE_WAY
 from aidl_lang.geometry.solved import Change, SolvedModel
 from aidl_lang.solver import Settings, Solution
-from aidl_lang.solver.reasons import reasons
+from aidl_lang.solver.reasons import Reason, reasons
 
 _A_TENTH = 0.1 + 1e-9
 """Part of a size by which it may change without a warning."""
@@ -40,20 +40,34 @@ class GaveWay:
 
 def gave_way(lowered: Lowered, solution: Solution, settings: Settings) -> tuple[GaveWay, ...]:
     """What gave way in a solution."""
-    problem, found, told = lowered.problem, [], set[int]()
+    found, told = list[GaveWay](), set[int]()
     for stage in reversed(solution.stages):
-        for reason in reasons(problem, settings, stage.gave) if stage.gave is not None else ():
-            stated = [c for i in reason.constraints if (c := lowered.stated[i]) is not None]
-            moved = {}
-            for index in sorted(reason.unknowns - told):
-                before, now = float(problem.initial[index]), float(solution.values[index])
-                if abs(now - before) > _STILL:
-                    moved[lowered.unknowns[index]] = before, now
+        if (gave := stage.gave) is None:
+            continue
+        together: dict[tuple[Constraint, ...], GaveWay] = {}
+        for reason in reasons(lowered.problem, settings, gave, solution.values):
+            one = _given(lowered, solution, reason, told)
             told |= reason.unknowns
-            if moved:
-                stated.sort(key=lambda c: c.span.start)
-                found.append(GaveWay(moved, tuple(stated), reason.minimal))
+            if one.moved:
+                # What a shape asks of itself takes along what its author asked of it, and is told with that.
+                said = tuple(c for c in one.because if not c.is_inherent)
+                known = together.get(said, one)
+                chief = min(one, known, key=lambda each: len(each.because))
+                together[said] = replace(chief, moved={**known.moved, **one.moved})
+        found += together.values()
     return tuple(reversed(found))
+
+
+def _given(lowered: Lowered, solution: Solution, reason: Reason, told: Container[int]) -> GaveWay:
+    """What gave way for a reason, but for what was told."""
+    moved = {}
+    for index in sorted(reason.unknowns):
+        before, now = float(lowered.problem.initial[index]), float(solution.values[index])
+        if index not in told and abs(now - before) > _STILL:
+            moved[lowered.unknowns[index]] = before, now
+    stated = [c for i in reason.constraints if (c := lowered.stated[i]) is not None]
+    stated.sort(key=lambda c: c.span.start)
+    return GaveWay(moved, tuple(stated), reason.minimal)
 
 
 def explained(model: SolvedModel, given: Sequence[GaveWay]) -> SolvedModel:

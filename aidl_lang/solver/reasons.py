@@ -13,6 +13,7 @@ from aidl_lang.common.records import record
 from aidl_lang.solver.conflicts import conflict
 from aidl_lang.solver.hierarchy import Hierarchy
 from aidl_lang.solver.newton import Clock
+from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.problem import Problem, Settings
 from aidl_lang.solver.solution import Giving
 from aidl_lang.solver.tiers import Scope
@@ -29,8 +30,8 @@ class Reason:
     minimal: bool
 
 
-def reasons(problem: Problem, settings: Settings, gave: Giving) -> Iterator[Reason]:
-    """Why each of the unknowns that gave way did."""
+def reasons(problem: Problem, settings: Settings, gave: Giving, solved: Floats) -> Iterator[Reason]:
+    """Why each of the unknowns that gave way did; `solved` are the values (n,) that came of it."""
     hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
     hierarchy.reached[:] = gave.values
     hierarchy.values.assign(enumerate(gave.values.tolist()))
@@ -40,6 +41,26 @@ def reasons(problem: Problem, settings: Settings, gave: Giving) -> Iterator[Reas
         before = {unknown: float(gave.values[unknown]) for unknown in gave.free}
         found, minimal = conflict(hierarchy, scope, before)
         mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, found))
-        share = left & mentioned or left
+        share = _bound(hierarchy, found, left & mentioned, gave, solved) or left & mentioned or left
         yield Reason(share, tuple(found), minimal and bool(found))
         left -= share
+
+
+def _bound(
+    hierarchy: Hierarchy, constraints: list[int], unknowns: frozenset[int], gave: Giving, solved: Floats
+) -> frozenset[int]:
+    """The unknowns on which it depends, at the solution, that the constraints hold: where one of these is put
+    back, they do not.
+    """
+    if len(unknowns) < 2:
+        return unknowns
+    kept = hierarchy.save(range(len(solved)))
+    hierarchy.values.assign(enumerate(solved.tolist()))
+    found = set()
+    for unknown in unknowns:
+        hierarchy.values.assign([(unknown, float(gave.values[unknown]))])
+        if hierarchy.unmet(constraints):
+            found.add(unknown)
+        hierarchy.values.assign([(unknown, float(solved[unknown]))])
+    hierarchy.values.assign(kept.items())
+    return frozenset(found)
