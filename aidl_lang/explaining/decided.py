@@ -31,8 +31,8 @@ _PLACES = 5
 
 
 def failing(lowered: Lowered, solution: Solution) -> Solution:
-    """The solution of a problem that states constants, with each of these that does not hold as a failure of
-    its own.
+    """Returns the solution of a problem that states constants, with each of these that does not hold as a
+    failure of its own.
     """
     found = []
     for index, stated in enumerate(lowered.stated):
@@ -64,8 +64,8 @@ def answered(
 def _answered(
     d: Diagnostic, stated: Constraint, failure: GroupFailure, everything: Sequence[Diagnostic], trials: Trials
 ) -> Diagnostic:
-    """A finding with what fits where its numbers are given, and the least change of these as the fix. Where
-    there is none, it is told what fits in a constraint; what an `assert` asks is not up for change.
+    """Returns a finding with what fits where its numbers are given, and the least change of these as the fix.
+    Where there is none, it is told what fits in a constraint; what an `assert` asks is not up for change.
     """
     wording = stated.wording
     if not isinstance(wording, Wording) or wording.node.span != stated.span:
@@ -90,7 +90,7 @@ def _answered(
 
 
 def _with(labels: tuple[Label, ...], found: Remedy) -> tuple[Label, ...]:
-    """The labels, one of them with what would fit in place of a number."""
+    """Returns the labels, one of them with what would fit in place of a number."""
     place, text = found.dial.place, found.would_fit()
     for index, label in enumerate(labels):
         if found.dial.name and label.span.overlaps(place):

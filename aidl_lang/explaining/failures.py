@@ -89,7 +89,7 @@ class Conflict:
 
 
 def _follows(failure: GroupFailure, failures: Sequence[GroupFailure], paths: Sequence[str]) -> bool:
-    """Whether a search that found nothing may owe that to a failure in the same group or inside it."""
+    """Tells whether a search that found nothing may owe that to a failure in the same group or inside it."""
     if failure.reason in _PROVEN:
         return False
     here = f"{paths[failure.group]}."
@@ -118,7 +118,7 @@ class _Party:
         return None
 
     def value(self, part: ast.Expression) -> Expression | None:
-        """The number that a part of the statement is."""
+        """Returns the number that a part of the statement is."""
         wording = self.stated.wording
         value = wording.value(part) if isinstance(wording, Wording) else None
         return value.expression if isinstance(value, Num) else None
@@ -179,7 +179,7 @@ class Explanation:
         return Party(stated.holder.path, stated.text, stated.span, party.member.off, would_fit, fix)
 
     def _size(self, index: int) -> Unknown:
-        """The size that a constraint which nobody stated keeps from vanishing: `least - size <= 0` or
+        """Returns the size that a constraint which nobody stated keeps from vanishing: `least - size <= 0` or
         `-size <= 0`.
         """
         problem = self.lowered.problem
@@ -230,8 +230,8 @@ class Explanation:
 
     @staticmethod
     def _dials(party: _Party) -> list[Dial]:
-        """The numbers of a statement for which others may be told: by what something is multiplied is no
-        measure.
+        """Returns the numbers of a statement for which others may be told: by what something is multiplied is
+        no measure.
         """
         return [] if party.node is None else [dial for dial in stated_in(party.node) if not dial.is_factor]
 
@@ -260,7 +260,7 @@ class Explanation:
         return None
 
     def _once(self, found: Remedy) -> Fix:
-        """The fix; where it would say what another party says, that the statement is left out."""
+        """Returns the fix; where it would say what another party says, that the statement is left out."""
         for party in self.parties:
             span = party.stated.span
             if party.node is None or not span.overlaps(found.dial.place):
@@ -285,7 +285,7 @@ class Explanation:
         return -shared, found.counts, breaks, round(share, 4), -found.dial.place.start
 
     def _shares(self, place: Span) -> int:
-        """The number of other failures in which what stands at a place takes part."""
+        """Returns the number of other failures in which what stands at a place takes part."""
         return sum(any(span.overlaps(place) for span in spans) for spans in self._others)
 
     @cached_property
@@ -348,7 +348,7 @@ class Explanation:
         return found.would_fit(len(stated_in(party.node))) + (f", all {times} times" if times > 1 else "")
 
     def _labels(self, chief: _Party) -> Iterator[Label]:
-        """The other places, each once; of many those where something would fit, and the first."""
+        """Yields the other places, each once; of many those where something would fit, and the first."""
         text = "conflicts with this" if self.is_proven else "takes part"
         spans = [span for span in self.turns if span != chief.stated.span]
         fitting = {span: self._would_fit(self.turns[span][0]) for span in spans}
@@ -356,7 +356,7 @@ class Explanation:
             yield Label(span, "; ".join(filter(None, (text, fitting[span]))))
 
     def _givens(self) -> Iterator[Label]:
-        """The exact numbers that have a share in it."""
+        """Yields the exact numbers that have a share in it."""
         for found in self._remedies:
             if found.dial.is_exact:
                 yield Label(found.dial.place, f"exact; {found.would_fit()}")
@@ -408,7 +408,7 @@ def _name(parties: Sequence[_Party]) -> str:
 
 
 def measured_in(value: float, stated: Constraint) -> str:
-    """A value with its unit, where all that a constraint compares has the same."""
+    """Returns a value with its unit, where all that a constraint compares has the same."""
     dimensions = {comparison.dimension for comparison in stated.comparisons}
     unit = " mm" if dimensions <= {LENGTH, None} else "°" if dimensions == {ANGLE} else ""
     return f"{short(value)}{unit}"

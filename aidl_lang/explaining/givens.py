@@ -53,15 +53,15 @@ class Dial:
     is_rough: bool = False
 
     def may_be(self, value: float) -> bool:
-        """Whether its author can have meant a value: none whose sign turns what is said round."""
+        """Tells whether its author can have meant a value: none whose sign turns what is said round."""
         if self.value < 0.0 or self.sign is Sign.ANY:
             return True
         return value > 0.0 if self.sign is Sign.POSITIVE else value >= 0.0
 
 
 def stated(node: ast.Expression) -> list[Dial]:
-    """The numbers written in a statement, the last first: those that count among arguments and what is
-    compared. Indices are none: they say which thing is meant.
+    """Returns the numbers written in a statement, the last first: those that count among arguments and what
+    is compared. Indices are none: they say which thing is meant.
     """
     found: list[Dial] = []
     stack: list[ast.Node] = [node]
@@ -88,7 +88,7 @@ def stated(node: ast.Expression) -> list[Dial]:
 def _among(
     nodes: Iterable[ast.Node], sign: Sign, further: list[ast.Node], operator: str = ""
 ) -> Iterator[Dial]:
-    """The literals among the operands of an operator; what is none goes `further`."""
+    """Yields the literals among the operands of an operator; what is none goes `further`."""
     for node in nodes:
         if _is_literal(node):
             yield replace(_dial(node), sign=sign, is_factor=operator in _FACTORING)
@@ -97,9 +97,9 @@ def _among(
 
 
 def behind(nodes: Iterable[ast.Node], uses: Mapping[ast.Node, Symbol]) -> list[Dial]:
-    """The exact numbers behind what is mentioned in some nodes: values of `param`s and `let`s, and what is
-    `fixed`, in what is mentioned and what that mentions in turn; zeros, which mostly say where to begin,
-    last.
+    """Returns the exact numbers behind what is mentioned in some nodes: values of `param`s and `let`s, and
+    what is `fixed`, in what is mentioned and what that mentions in turn; zeros, which mostly say where to
+    begin, last.
     """
     found: dict[Span, Dial] = {}
     waiting, seen = list(nodes), set[ast.Node]()

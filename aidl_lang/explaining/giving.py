@@ -71,14 +71,14 @@ def _given(lowered: Lowered, solution: Solution, reason: Reason, told: Container
 
 
 def explained(model: SolvedModel, given: Sequence[GaveWay]) -> SolvedModel:
-    """The model with the reasons of its changed sizes."""
+    """Returns the model with the reasons of its changed sizes."""
     texts = {u.path: tuple(c.text for c in g.because) for g in given for u in g.moved}
     changed = tuple(replace(c, because=texts.get(c.path, ())) for c in model.changed)
     return replace(model, changed=changed)
 
 
 def refused(note: Diagnostic) -> Diagnostic:
-    """A diagnostic, as an error if it tells that something gave way."""
+    """Returns a diagnostic, as an error if it tells that something gave way."""
     return replace(note, code="E0606") if note.code in GAVE_WAY else note
 
 
@@ -106,7 +106,7 @@ def giving_notes(given: Sequence[GaveWay], model: SolvedModel) -> Iterator[Diagn
 
 
 def _of_sizes(sizes: Sequence[Change], given: GaveWay) -> Diagnostic:
-    """A note; a warning where a size changed by more than a tenth."""
+    """Returns a note; a warning where a size changed by more than a tenth."""
     chief = max(sizes, key=lambda c: (round(_share(c), 6), -c.span.start if c.span else 0))
     rest = [c for c in sizes if c is not chief]
     written, solved = short(chief.written), short(chief.solved)
@@ -134,7 +134,9 @@ def _of_sizes(sizes: Sequence[Change], given: GaveWay) -> Diagnostic:
 
 
 def _share(change: Change) -> float:
-    """The part of a size by which it changed; of an angle or offset that of a right angle, or nothing."""
+    """Returns the part of a size by which it changed; of an angle or offset that of a right angle, or
+    nothing.
+    """
     if not change.is_size or not change.written:
         return 0.0
     return abs(change.solved / change.written - 1.0)
@@ -179,7 +181,7 @@ def _of_frame(structure: Structure, unknowns: Sequence[Unknown], given: GaveWay)
 
 
 def _is_named(structure: Structure, given: GaveWay) -> bool:
-    """Whether one of the constraints speaks of something in it."""
+    """Tells whether one of the constraints speaks of something in it."""
     parts = [part for c in given.because for part in c.comparisons]
     spoken = {s for part in parts for s in part.boxes}
     spoken.update(u.frame_of or u.owner for part in parts for u in part.spoken_of)

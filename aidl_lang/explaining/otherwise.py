@@ -61,8 +61,8 @@ def otherwise(
     again: Callable[[Mapping[int, int]], Interpretation | None],
     settings: Settings,
 ) -> tuple[Otherwise | None, Solution]:
-    """The program with ambiguous calls taken so that it solves and nothing dear gives way; None where it does
-    as it is, or no way was found. With the solution as it is: what conflicts by such calls is no
+    """Returns the program with ambiguous calls taken so that it solves and nothing dear gives way; None where
+    it does as it is, or no way was found. With the solution as it is: what conflicts by such calls is no
     contradiction in it unless they were taken in every way.
     """
     readings = list(built.model.readings)
@@ -90,8 +90,8 @@ def otherwise(
 
 
 def _still_fails(made: Lowered, solution: Solution, settings: Settings) -> bool:
-    """Whether what conflicted does so with calls taken otherwise, by a search that is quicker than solving.
-    The same statements in the same order have the same numbers there.
+    """Tells whether what conflicted does so with calls taken otherwise, by a search that is quicker than
+    solving. The same statements in the same order have the same numbers there.
     """
     return any(
         lack(made.problem, settings, f.conflict, f.conflict, dict(f.nearest)) for f in solution.failures
@@ -99,13 +99,13 @@ def _still_fails(made: Lowered, solution: Solution, settings: Settings) -> bool:
 
 
 def _numbers(readings: Sequence[tuple[Span, str]], lowered: Lowered, indices: Iterable[int]) -> list[int]:
-    """The readings, by number, that have a share in some constraints."""
+    """Returns the readings, by number, that have a share in some constraints."""
     spans = {c.span for i in indices if (c := lowered.stated[i]) is not None}
     return [n for n, (span, _) in enumerate(readings) if any(map(span.overlaps, spans))]
 
 
 def _ways(numbers: Sequence[int]) -> Iterator[dict[int, int]]:
-    """The ways in which readings can be taken otherwise: one of them, two, and so on."""
+    """Yields the ways in which readings can be taken otherwise: one of them, two, and so on."""
     for count in range(1, len(numbers) + 1):
         for chosen in itertools.combinations(numbers, count):
             for ranks in itertools.product(_RANKS, repeat=count):
@@ -113,7 +113,9 @@ def _ways(numbers: Sequence[int]) -> Iterator[dict[int, int]]:
 
 
 def _undecided(lowered: Lowered, solution: Solution, readings: Sequence[tuple[Span, str]]) -> Solution:
-    """The solution, in which failures that ambiguous calls have a share in are not taken for proven."""
+    """Returns the solution, in which failures that ambiguous calls have a share in are not taken for
+    proven.
+    """
     failures = tuple(
         replace(f, reason=Failure.NOT_CONVERGED) if _numbers(readings, lowered, f.conflict) else f
         for f in solution.failures
@@ -122,7 +124,7 @@ def _undecided(lowered: Lowered, solution: Solution, readings: Sequence[tuple[Sp
 
 
 def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:
-    """The constraints that take part in a failure, or left a size no way but to change much."""
+    """Returns the constraints that take part in a failure, or left a size no way but to change much."""
     found = {i for failure in solution.failures for i in failure.conflict}
     for stage in solution.stages:
         for unknown in stage.gave.unknowns if stage.gave is not None else ():
@@ -139,8 +141,8 @@ def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:
 def elsewhere_notes(
     model: Model, lowered: Lowered, solution: Solution, other: Otherwise | None, trials: Trials
 ) -> Iterator[Diagnostic]:
-    """A note on what was not taken, or not found, as the first guesses have it, with first guesses that
-    do.
+    """Yields a note on what was not taken, or not found, as the first guesses have it, with first guesses
+    that do.
     """
     if solution.status is not Status.SOLVED:
         return

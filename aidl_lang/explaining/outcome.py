@@ -60,7 +60,7 @@ def solution_notes(
 
 
 def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
-    """A note for each wish that is not met."""
+    """Yields a note for each wish that is not met."""
     for stated, off, is_met in zip(lowered.stated, solution.residuals, solution.satisfied, strict=True):
         if stated is None or stated.weight is None or is_met:
             continue
@@ -92,7 +92,9 @@ def assertion_notes(
 
 
 def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | None:
-    """An assertion that does not hold at the values of the evaluator, with the numbers; None if it does."""
+    """Returns an assertion that does not hold at the values of the evaluator, with the numbers; None if it
+    does.
+    """
     if holds(assertion.condition, evaluate, _TOLERANCE):
         return None
     message = assertion.message or f"`{assertion.text}` does not hold"
@@ -149,8 +151,8 @@ def _is_measured(comparisons: Sequence[Comparison]) -> bool:
 
 
 def _can_be_stated(condition: Condition | bool) -> bool:
-    """Whether `constrain` takes it: comparisons that all hold, by relations that a solver knows, of what is
-    known before everything is solved.
+    """Tells whether `constrain` takes it: comparisons that all hold, by relations that a solver knows, of
+    what is known before everything is solved.
     """
     if not isinstance(condition, Condition) or condition.operator != "and":
         return False
@@ -177,7 +179,7 @@ def _compared(comparison: Comparison, evaluate: Callable[..., float]) -> str:
 
 
 def measured(kind: str, regions: Sequence[Region], size: float) -> float:
-    """A measurement of what is drawn; `size` is that of the drawing."""
+    """Returns a measurement of what is drawn; `size` is that of the drawing."""
     from aidl_lang.geometry.boolean import clearance, overlap_area
 
     match kind:
@@ -205,7 +207,9 @@ class _Measure:
         return measured(payload.kind, [self._region(thing) for thing in payload.of], self.drawing.size)
 
     def _side(self, payload: Measurement) -> float:
-        """A side of the box of an outline that was worked out after solving, as a structure sees it."""
+        """Returns a side of the box of an outline that was worked out after solving, as a structure sees
+        it.
+        """
         assert payload.here is not None
         found = [g for g in all_geometry(self.model.root) if g.path == payload.of[0].path]
         curves = [c for g in found for c in replace(g, construction=False).curves()]

@@ -164,7 +164,7 @@ class Search:
         return (self._found() if is_range else None) or self._remedy(pinned, pinned.shown)
 
     def turned(self) -> Remedy | None:
-        """A negative number without its sign."""
+        """Returns a negative number without its sign."""
         opposite = self._plain(-self.dial.value)
         fits = self.dial.value < 0.0 and self._fits(opposite)
         return self._remedy(opposite, opposite.shown) if fits else None
@@ -211,7 +211,7 @@ class Search:
         return 0.0 if abs(target) <= _VANISHES * max(abs(self.dial.value), 1.0) else target
 
     def _may_be(self, target: float) -> bool:
-        """Whether the author can have meant a number."""
+        """Tells whether the author can have meant a number."""
         value = self.dial.value
         return self.dial.may_be(target) and abs(target - value) <= _FAR * max(abs(value), 10.0)
 
@@ -285,8 +285,8 @@ class Search:
         return None
 
     def _ending(self, written: _Written, target: float, onward: float) -> _Written:
-        """The short number at a `target` that was found by going `onward`, if it fits and is an end; else the
-        one `written`.
+        """Returns the short number at a `target` that was found by going `onward`, if it fits and is an end;
+        else the one `written`.
         """
         limits = (self._plain(round(target, digits)) for digits in range(_PLAIN))
         near = 0.1 * _NUDGE * max(abs(target), 1.0)
@@ -295,7 +295,7 @@ class Search:
         return limit if limit is not written and self._lack(beyond) and self._fits(limit) else written
 
     def _is_sharp(self, end: _Written, onward: float) -> bool:
-        """Whether a number that lies hardly less far `onward` than an end does not fit."""
+        """Tells whether a number that lies hardly less far `onward` than an end does not fit."""
         aside = max(_SHARP * abs(onward), _NUDGE * abs(end.value))
         return bool(self._lack(end.value - math.copysign(aside, onward)))
 
@@ -312,15 +312,15 @@ class Search:
         return (Edit(self.dial.place, text),)
 
     def _at(self, value: float) -> tuple[Edit, ...]:
-        """The number turned to a value, with all its digits."""
+        """Returns the number turned to a value, with all its digits."""
         return self._edits(f"{value + 0.0:.15g}{self.dial.unit}")
 
     def _lack(self, value: float) -> float | None:
         return self.trials.lack(self._at(value), self.failure)
 
     def _fitting(self, spelled: Iterable[_Written]) -> _Written | None:
-        """The first way to write a number that fits. Where one does not for other reasons than its digits, no
-        other will.
+        """Returns the first way to write a number that fits. Where one does not for other reasons than its
+        digits, no other will.
         """
         for written in spelled:
             if self._fits(written):
@@ -376,7 +376,7 @@ def _is_plain(value: float, digits: int) -> bool:
 
 
 def _neat(target: float, onward: float, slack: float) -> float:
-    """A short number at `target` or, by no more than `slack`, onward from it."""
+    """Returns a short number at `target` or, by no more than `slack`, onward from it."""
     for digits in range(8):
         step = 10.0**-digits
         rounded = round((math.floor if onward < 0.0 else math.ceil)(target / step) * step, digits)

@@ -40,7 +40,9 @@ _SECONDS = 1.0
 
 
 def repetition_notes(lowered: Lowered, solution: Solution, freedom: Freedom) -> list[Diagnostic]:
-    """A note for each stated constraint that follows from others, and for each part that is undecided."""
+    """Returns a note for each stated constraint that follows from others, and for each part that is
+    undecided.
+    """
     redundant = [found for found in freedom.redundant if _stated(lowered, found.constraint)]
     times = Counter(stated.span for stated in lowered.stated if stated is not None)
     can_go = [found.constraint for found in redundant if _is_single(lowered.stated[found.constraint], times)]
@@ -51,7 +53,7 @@ def repetition_notes(lowered: Lowered, solution: Solution, freedom: Freedom) -> 
 
 
 def _stated(lowered: Lowered, index: int) -> Constraint | None:
-    """The constraint if somebody wrote it."""
+    """Returns the constraint if somebody wrote it."""
     stated = lowered.stated[index]
     return stated if stated is not None and stated.wording is not None else None
 
@@ -79,14 +81,16 @@ def _name(stated: Constraint) -> str:
 
 
 def _is_single(stated: Constraint | None, times: Counter[Span]) -> bool:
-    """Whether its place states this constraint and no other: no loop, no template."""
+    """Tells whether its place states this constraint and no other: no loop, no template."""
     if stated is None or not isinstance(stated.wording, Wording):
         return False
     return stated.wording.node.span == stated.span and not stated.label and times[stated.span] == 1
 
 
 def _changes_nothing(lowered: Lowered, solution: Solution, left_out: Sequence[int]) -> bool:
-    """Whether the drawing is the same without these constraints: they may have said what moves first."""
+    """Tells whether the drawing is the same without these constraints: they may have said what moves
+    first.
+    """
     problem = lowered.problem
     if not left_out or len(problem.initial) > _LARGEST:
         return False
@@ -121,7 +125,7 @@ def _undecided(lowered: Lowered, freedom: Freedom) -> Iterator[Diagnostic]:
 
 
 def follows(lowered: Lowered, solution: Solution, span: Span) -> bool:
-    """Whether what is stated in a place of a solved model holds wherever the other constraints hold: an
+    """Tells whether what is stated in a place of a solved model holds wherever the other constraints hold: an
     equation near by and with sizes kept, as degrees of freedom are counted; an inequality everywhere. False
     as well where that is too much to tell.
     """
@@ -145,7 +149,7 @@ def _are_redundant(
     others: Sequence[SolverConstraint],
     equations: Sequence[SolverConstraint],
 ) -> bool:
-    """Whether equations follow from others, sizes being kept."""
+    """Tells whether equations follow from others, sizes being kept."""
     tape = problem.tape
     is_size = tape.ops == Op.UNKNOWN
     is_size[is_size] = problem.kept[tape.operands[is_size, 0]]
@@ -164,7 +168,7 @@ def _are_redundant(
 def _can_be_broken(
     problem: Problem, solution: Solution, others: Sequence[SolverConstraint], inequality: SolverConstraint
 ) -> bool:
-    """Whether others hold somewhere where an inequality does not, or may do so."""
+    """Tells whether others hold somewhere where an inequality does not, or may do so."""
     (row,), tape = inequality.rows, problem.tape
     node, level = len(tape), tape.levels[row.expression] + 1
     longer = replace(  # by a difference that is at most zero where the inequality is off

@@ -76,7 +76,7 @@ class Trials:
         return self._clock.expired
 
     def can_edit(self, edits: Iterable[Edit]) -> bool:
-        """Whether edits are of the program itself, and not of what it imports."""
+        """Tells whether edits are of the program itself, and not of what it imports."""
         return all(edit.span.source is self.source for edit in edits)
 
     def lack(self, edits: Sequence[Edit], failure: GroupFailure) -> float | None:
@@ -97,15 +97,15 @@ class Trials:
         return off
 
     def _together(self, failure: GroupFailure) -> list[int]:
-        """The constraints of a failure and those that took part in the search, but for what other failures
-        are about.
+        """Returns the constraints of a failure and those that took part in the search, but for what other
+        failures are about.
         """
         others = self._others(failure)
         hard = np.isnan(self.lowered.problem.weight)
         return [i for i in failure.within if hard[i] and i not in others]
 
     def _others(self, failure: GroupFailure) -> set[int]:
-        """The constraints that only other failures are about."""
+        """Returns the constraints that only other failures are about."""
         others = {i for f in self.solution.failures if f is not failure for i in f.conflict}
         return others.difference(failure.conflict)
 
@@ -130,7 +130,9 @@ class Trials:
         return self._places[key]
 
     def _free(self, failure: GroupFailure) -> dict[int, float]:
-        """The unknowns that may move where nothing is to give way, and where the search came nearest."""
+        """Returns the unknowns that may move where nothing is to give way, and where the search came
+        nearest.
+        """
         unknowns = self.lowered.unknowns
         return {
             u: value
@@ -141,8 +143,8 @@ class Trials:
     def _counterpart(
         self, edits: Sequence[Edit], failure: GroupFailure
     ) -> tuple[Lowered, dict[int, int], dict[int, int]] | None:
-        """The problem after the edits, with the constraints and unknowns that have other numbers there; None
-        where it is wrong, or not one of the same kind.
+        """Returns the problem after the edits, with the constraints and unknowns that have other numbers
+        there; None where it is wrong, or not one of the same kind.
         """
         if self.is_over or (other := self._with(edits)) is None:
             return None
@@ -153,8 +155,8 @@ class Trials:
         return (other, matched, numbered) if len(numbered) == len(failure.nearest) else None
 
     def mends(self, edits: Sequence[Edit], failure: GroupFailure) -> bool:
-        """Whether after the edits all holds but what other failures are about, and nothing gives way but what
-        did before and sizes that the constraints are about.
+        """Tells whether after the edits all holds but what other failures are about, and nothing gives way
+        but what did before and sizes that the constraints are about.
         """
         if self.is_over or (other := self._with(edits)) is None:
             return False
@@ -175,13 +177,13 @@ class Trials:
         return _gave_way(other, found) <= _gave_way(self.lowered, self.solution) | asked
 
     def finishes(self, edits: Sequence[Edit]) -> bool:
-        """Whether edits that mend a failure leave no errors, as another failure or an assertion that
+        """Tells whether edits that mend a failure leave no errors, as another failure or an assertion that
         fails.
         """
         return not has_errors(self.found(edits))
 
     def settles(self, edits: Sequence[Edit]) -> bool:
-        """Whether after the edits the program solves from its first guesses, and nothing gives way."""
+        """Tells whether after the edits the program solves from its first guesses, and nothing gives way."""
         if self.is_over or not self.can_edit(edits):
             return False
         found = self.found(edits)
@@ -203,7 +205,7 @@ class Trials:
         return replace(self.settings, explain=False, seconds=min(self.settings.seconds, _LONGEST))
 
     def edited(self, edits: Sequence[Edit]) -> SourceFile:
-        """The program after edits."""
+        """Returns the program after edits."""
         text, _ = apply_fixes(self.source, [Diagnostic("E0601", "", fix=Fix("", tuple(edits)))])
         return SourceFile(self.source.name, text)
 
@@ -217,7 +219,7 @@ class Trials:
 
 
 def _matched(one: Lowered, other: Lowered) -> dict[int, int] | None:
-    """The constraints of another problem by those of one, which must be stated in the same order."""
+    """Returns the constraints of another problem by those of one, which must be stated in the same order."""
     pairs = list(zip(_in_order(one), _in_order(other), strict=False))
     if len(one.stated) != len(other.stated) or any(_label(one, a) != _label(other, b) for a, b in pairs):
         return None
@@ -225,14 +227,14 @@ def _matched(one: Lowered, other: Lowered) -> dict[int, int] | None:
 
 
 def _by_text(one: Lowered, other: Lowered) -> dict[int, int]:
-    """The same where constraints were left out, for those that read the same."""
+    """Returns the same where constraints were left out, for those that read the same."""
     found = {(c.text, c.label, c.holder.path): i for i, c in enumerate(other.stated) if c is not None}
     keys = ((i, (c.text, c.label, c.holder.path)) for i, c in enumerate(one.stated) if c is not None)
     return {i: found[key] for i, key in keys if key in found}
 
 
 def _in_order(lowered: Lowered) -> list[int]:
-    """The constraints as they stand in the text; what nobody stated comes last."""
+    """Returns the constraints as they stand in the text; what nobody stated comes last."""
 
     def place(index: int) -> tuple[bool, str, int, str, int]:
         stated = lowered.stated[index]
@@ -249,7 +251,9 @@ def _label(lowered: Lowered, index: int) -> str | None:
 
 
 def _keys(lowered: Lowered) -> list[tuple[str, int]]:
-    """A name for each unknown that it has in another problem, too: its path, and how many had that before."""
+    """Returns a name for each unknown that it has in another problem, too: its path, and how many had that
+    before.
+    """
     met: Counter[str] = Counter()
     found = []
     for path in lowered.problem.names:
@@ -259,7 +263,7 @@ def _keys(lowered: Lowered) -> list[tuple[str, int]]:
 
 
 def _gave_way(lowered: Lowered, solution: Solution) -> set[str]:
-    """The paths of what gave way unasked."""
+    """Returns the paths of what gave way unasked."""
     moved = np.abs(solution.values - lowered.problem.initial) > _MOVED
     gave = {u for stage in solution.stages if stage.gave is not None for u in stage.gave.unknowns}
     return {lowered.problem.names[u] for u in gave if moved[u] and not lowered.unknowns[u].implied}

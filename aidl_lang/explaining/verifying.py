@@ -24,7 +24,9 @@ def verified(
 
 
 def mends(found: Diagnostic, fix: Fix, before: Sequence[Diagnostic], trials: Trials) -> bool:
-    """Whether a program of which `before` is said no longer has a finding after a fix, and nothing worse."""
+    """Tells whether a program of which `before` is said no longer has a finding after a fix, and nothing
+    worse.
+    """
     if trials.is_over or not trials.can_edit(fix.edits):
         return False
     after = trials.found(fix.edits)
@@ -49,7 +51,7 @@ def _gave_way(found: Sequence[Diagnostic]) -> Counter[str]:
 
 
 def _is_same(one: Diagnostic, before: Diagnostic, edits: Sequence[Edit]) -> bool:
-    """Whether a finding in the program after some edits is one that was in it before."""
+    """Tells whether a finding in the program after some edits is one that was in it before."""
     if one.code != before.code or one.span is None or before.span is None:
         return one.code == before.code and one.message == before.message
     span = before.span

@@ -11,7 +11,7 @@ from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, Solved
 
 
 def region_alone(model: SolvedModel, path: str) -> Region:
-    """The region that a geometry would cover as a solid of its own."""
+    """Returns the region that a geometry would cover as a solid of its own."""
     found = (g for g in all_geometry(model.root) if g.path == path)
     geometry = tuple(replace(g, construction=False) for g in found)
     frame = Frame(0.0, 0.0, 0.0)
@@ -21,7 +21,7 @@ def region_alone(model: SolvedModel, path: str) -> Region:
 
 
 def all_geometry(root: SolvedStructure) -> Iterator[SolvedGeometry]:
-    """Every piece of geometry under a structure, with the parts of each."""
+    """Yields every piece of geometry under a structure, with the parts of each."""
     for structure in root.walk():
         stack = list(structure.drawn)
         while stack:

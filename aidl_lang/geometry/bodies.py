@@ -132,7 +132,7 @@ class Bodies:
     findings: list[Finding] = field(default_factory=list)
 
     def masses(self, structure: SolvedStructure) -> list[Mass]:
-        """The material of a structure that is not a hole."""
+        """Returns the material of a structure that is not a hole."""
         own = None if structure.kind == "drawing" else self._own(structure)
         children = [m for c in structure.structures if c.kind != "hole" for m in self.masses(c)]
         cuts = [self.cut(c) for c in structure.structures if c.kind == "hole"]
@@ -229,7 +229,7 @@ class Bodies:
     def _separate(
         self, structure: SolvedStructure, own: Section | None, children: list[Mass], cuts: list[Cut]
     ) -> list[Mass]:
-        """The masses of an assembly, each cut by its holes, and the islands."""
+        """Returns the masses of an assembly, each cut by its holes, and the islands."""
         masses = ([] if own is None else [Mass(structure, own)]) + children
         if cuts:
             self._voids(structure, union([m.section for m in masses]), cuts)
@@ -255,7 +255,7 @@ class Bodies:
     def _still_open(
         self, holder: SolvedStructure, voids: Sequence[Void], material: Section, others: list[Mass]
     ) -> list[Void]:
-        """The voids that the material does not fill again; tells of those that it does.
+        """Returns the voids that the material does not fill again; tells of those that it does.
 
         What a void was cut from does not cover it, so it may be among the others.
         """

@@ -41,7 +41,9 @@ def overlap_area(a: Region, b: Region) -> float:
 
 
 def clearance(a: Region, b: Region) -> float:
-    """The least distance between two regions, mm; 0 where they touch or overlap, infinite if one is empty."""
+    """Returns the least distance between two regions, mm; 0 where they touch or overlap, infinite if one is
+    empty.
+    """
     if not _lie_apart(a, b) and overlap_area(a, b) > 0:
         return 0.0
     closest = region_distance(a, b)
@@ -49,7 +51,7 @@ def clearance(a: Region, b: Region) -> float:
 
 
 def _lie_apart(a: Region, b: Region) -> bool:
-    """Whether no outlines of two regions meet, and none lies in the box of the other."""
+    """Tells whether no outlines of two regions meet, and none lies in the box of the other."""
     curves, count = [*a.pieces, *b.pieces], len(a.pieces)
     boxes = np.concatenate((a.boxes, b.boxes))
     tolerance = RELATIVE_TOLERANCE * float(np.ptp(boxes.reshape(-1, 2), axis=0).max(initial=0.0))
@@ -63,7 +65,7 @@ def _lie_apart(a: Region, b: Region) -> bool:
 
 
 def _may_hold(region: Region, other: Region) -> bool:
-    """Whether an outline of the other lies in the box of a region."""
+    """Tells whether an outline of the other lies in the box of a region."""
     if not (region and other):
         return False
     begins = list(accumulate([0, *(len(loop.pieces) for loop in other.loops[:-1])]))
@@ -87,7 +89,7 @@ def _combined(regions: Sequence[Region], operation: Callable[..., Section]) -> R
 
 
 def section_of(network: Network, region: Region, number: int) -> Section:
-    """A region as polygons; its pieces are the curves of the network from `number` on."""
+    """Returns a region as polygons; its pieces are the curves of the network from `number` on."""
     polygons = []
     for loop in region.loops:
         uses = [use for k in range(len(loop.pieces)) for use in network.uses[number + k]]

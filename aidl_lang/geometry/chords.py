@@ -48,7 +48,9 @@ def joined(parts: list[Chords]) -> Chords:
 
 
 def chords(outline: Skeleton, reach: float, least: float) -> Iterator[Chords]:
-    """Those longer than `least` between elements whose boxes are at most `reach` apart, some at a time."""
+    """Yields those longer than `least` between elements whose boxes are at most `reach` apart, some at a
+    time.
+    """
     for i, j in _pairs(outline, reach):
         lines = outline.straight
         yield _between_lines(outline, *_only(i, j, (i < lines) & (j < lines)), least)
@@ -74,7 +76,9 @@ def _pairs(o: Skeleton, reach: float) -> Iterator[tuple[Ints, Ints]]:
 
 
 def _by_place(boxes: Floats, reach: float) -> tuple[Ints, Ints, Ints]:
-    """An order of all elements, and for each where in it its partners begin and how many there are."""
+    """Returns an order of all elements, and for each where in it its partners begin and how many there
+    are.
+    """
     extent = boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
     along = int(extent[1] > extent[0])
     order = np.argsort(boxes[:, along], kind="stable")
@@ -85,7 +89,9 @@ def _by_place(boxes: Floats, reach: float) -> tuple[Ints, Ints, Ints]:
 
 
 def _by_direction(o: Skeleton) -> tuple[Ints, Ints, Ints]:
-    """The same by where the opposite of the other's range begins: in one's own range, for one of the two."""
+    """Returns the same by where the opposite of the other's range begins: in one's own range, for one of the
+    two.
+    """
     turn = 2 * math.pi
     opposite = (o.normal + math.pi - o.spread) % turn
     order = np.argsort(opposite, kind="stable")
@@ -134,7 +140,7 @@ def _between_lines(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:
 
 
 def _line_to_round(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:
-    """The perpendicular from the center of a round element to a line."""
+    """Returns the perpendicular from the center of a round element to a line."""
     k = j - o.straight
     u = o.way[i]
     normal = np.stack((-u[:, 1], u[:, 0]), axis=1)
@@ -189,7 +195,9 @@ def _on_centers(
 
 
 def _shared_direction(o: Skeleton, i: Ints, j: Ints) -> tuple[Floats, NDArray[np.bool_]]:
-    """A direction into the material at the first and out of it at the other, and whether there is one."""
+    """Returns a direction into the material at the first and out of it at the other, and whether there is
+    one.
+    """
     first, p, q = o.normal[i], o.spread[i], o.spread[j]
     away = (o.normal[j] - first) % (2 * math.pi) - math.pi
     low, high = np.maximum(-p, away - q), np.minimum(p, away + q)

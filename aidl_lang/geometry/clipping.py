@@ -12,7 +12,7 @@ from aidl_lang.geometry.sections import inside_mask
 
 
 def clipped(curves: Sequence[Piece], region: Region) -> list[Piece]:
-    """The parts of curves that lie inside."""
+    """Returns the parts of curves that lie inside."""
     pieces = [p for loop in region.loops for p in loop.pieces]
     network = Network([*pieces, *curves])
     section = section_of(network, region, 0)

@@ -29,7 +29,7 @@ _HEX = re.compile(r"#(?:[0-9a-f]{3}|[0-9a-f]{6})")
 
 
 def css_color(values: Sequence[object]) -> str | None:
-    """A colour that SVG understands, or None if the values are no colour.
+    """Returns a colour that SVG understands, or None if the values are no colour.
 
     Three numbers are red, green and blue, from 0 to 255, or from 0 to 1 if none is larger and one is a
     fraction.
@@ -68,5 +68,5 @@ _ALIKE = 16
 
 @lru_cache(maxsize=256)
 def look_alike(one: str, other: str) -> bool:
-    """Whether thin lines of one colour are not seen on the other."""
+    """Tells whether thin lines of one colour are not seen on the other."""
     return one == other or all(abs(a - b) <= _ALIKE for a, b in zip(rgb(one), rgb(other), strict=True))

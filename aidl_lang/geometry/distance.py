@@ -41,7 +41,7 @@ def _between(a: Region, b: Region, pair: int) -> Closest:
 
 
 def piece_distance(a: Piece, b: Piece) -> Closest:
-    """The least distance between two curves that do not cross."""
+    """Returns the least distance between two curves that do not cross."""
     candidates = [_to(b, p) for p in _candidates(a, b)]
     candidates += [(d, q, p) for d, p, q in (_to(a, p) for p in _candidates(b, a))]
     return min(candidates, key=lambda c: c[0])
@@ -71,7 +71,7 @@ def _candidates(a: Piece, b: Piece) -> list[Vec]:
 
 
 def _sampled_candidates(a: Piece, b: Piece) -> list[Vec]:
-    """The ends of a, and the nearest of a sampling, polished."""
+    """Returns the ends of a, and the nearest of a sampling, polished."""
     away = ((points(a, _SAMPLES)[:, None, :] - points(b, _SAMPLES)[None, :, :]) ** 2).sum(axis=2)
     i, j = divmod(int(np.argmin(away)), len(_SAMPLES))
     t = _facing(a, b, float(_SAMPLES[i]), float(_SAMPLES[j]))

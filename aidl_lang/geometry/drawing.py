@@ -118,7 +118,7 @@ class Drawing:
 
 
 def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
-    """The drawing of a model, and what is noteworthy about its curves and parts."""
+    """Returns the drawing of a model, and what is noteworthy about its curves and parts."""
     notes: list[Diagnostic] = []
     curves, boxes, shapes = _collect(model.root, notes)
     network, walk, masses, traced, gaps = _closed(model.root, Network(curves, boxes), shapes)
@@ -178,7 +178,7 @@ def _closed(
 def _arranged(
     root: SolvedStructure, network: Network, shapes: dict[str, list[Shape]]
 ) -> tuple[Bodies, list[Mass], dict[str, Traced]]:
-    """The bodies, and the outlines of everything that has material or cuts, in order of writing."""
+    """Returns the bodies, and the outlines of everything that has material or cuts, in order of writing."""
     walk = Bodies(network, shapes)
     masses = _root_masses(walk, root)
     walk.sections.update((m.structure.path, m.section) for m in masses)
@@ -191,7 +191,9 @@ def _arranged(
 def _collect(
     root: SolvedStructure, notes: list[Diagnostic]
 ) -> tuple[list[Piece], list[Bounds], dict[str, list[Shape]]]:
-    """All curves that can be drawn, numbered, their boxes, and by structure the shapes they belong to."""
+    """Returns all curves that can be drawn, numbered, their boxes, and by structure the shapes they belong
+    to.
+    """
     curves: list[Piece] = []
     boxes: list[Bounds] = []
     shapes: dict[str, list[Shape]] = {}
@@ -217,7 +219,7 @@ def _collect(
 
 
 def _leaves(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
-    """The primitives with curves, construction geometry aside."""
+    """Yields the primitives with curves, construction geometry aside."""
     if geometry.construction:
         return
     if geometry.curve is not None:
@@ -227,7 +229,9 @@ def _leaves(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
 
 
 def _usable(curve: Piece) -> tuple[Piece, Bounds] | None:
-    """The curve with positive radii, and its box; None if it has no extent or no finite coordinates."""
+    """Returns the curve with positive radii, and its box; None if it has no extent or no finite
+    coordinates.
+    """
     if not is_finite(curve):
         return None
     if isinstance(curve, Circle):
@@ -247,7 +251,7 @@ def _usable(curve: Piece) -> tuple[Piece, Bounds] | None:
 
 
 def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:
-    """The bodies; a root that is a hole has nothing to cut, and leaves its islands."""
+    """Returns the bodies; a root that is a hole has nothing to cut, and leaves its islands."""
     if root.kind != "hole":
         return walk.masses(root)
     cut = walk.cut(root)
@@ -315,7 +319,7 @@ def _strokes(
     ground: Ground,
     notes: list[Diagnostic],
 ) -> Iterator[Stroke]:
-    """The curves of drawings, and those of other structures that bound nothing."""
+    """Yields the curves of drawings, and those of other structures that bound nothing."""
     curves = walk.network.curves
     loose = {f.structure.path: f.curves for f in walk.findings if isinstance(f, LooseCurves)}
     own = _colored_drawings(root)
@@ -364,7 +368,7 @@ def _inked(
 
 
 def _styled(style: Style, geometry: SolvedGeometry, notes: list[Diagnostic]) -> Style:
-    """The style of a geometry: that of its structure, but for a colour of its own."""
+    """Returns the style of a geometry: that of its structure, but for a colour of its own."""
     values = geometry.attributes.get("color")
     if not values:
         return style

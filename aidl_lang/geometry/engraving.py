@@ -20,7 +20,7 @@ from aidl_lang.geometry.sections import inside_mask
 def engraved(
     bodies: Sequence[Body], strokes: Sequence[Stroke]
 ) -> tuple[dict[str, list[Stroke]], list[Stroke]]:
-    """The strokes of drawings by the path of their body, and what lies on no body.
+    """Returns the strokes of drawings by the path of their body, and what lies on no body.
 
     A drawing inside a part stays with it. Any other is cut where parts end: what lies on several of them goes
     to the one that has most of the stroke, of equal ones to that drawn last.
@@ -49,14 +49,14 @@ def engraved(
 
 
 def owner(bodies: Mapping[str, Body], path: str) -> str | None:
-    """The nearest body at a path or above it."""
+    """Returns the nearest body at a path or above it."""
     while path and path not in bodies:
         path = path.rpartition(".")[0]
     return path or None
 
 
 def _by_cover(stroke: Stroke, bodies: Sequence[Body]) -> list[Body]:
-    """The bodies under a stroke, first the one that has most of it."""
+    """Returns the bodies under a stroke, first the one that has most of it."""
     box = union_bounds([bounds(piece) for piece in stroke.pieces])
     near = [body for body in reversed(bodies) if boxes_meet(box, body.box)]
     if len(near) < 2:

@@ -54,7 +54,9 @@ class OwnFaces:
 
 
 def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
-    """The faces of the shapes of one structure, in order of writing, those of free curves after them."""
+    """Returns the faces of the shapes of one structure, in order of writing, those of free curves after
+    them.
+    """
     result = OwnFaces()
     free: list[tuple[SolvedGeometry, int]] = []
     outlines: list[Use] = []
@@ -77,7 +79,7 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
 
 
 def _is_closed(network: Network, shape: Shape, uses: list[Use]) -> bool:
-    """Whether the shape may be a face by itself: not a single open curve."""
+    """Tells whether the shape may be a face by itself: not a single open curve."""
     if shape.geometry.parts or len(shape.leaves) > 1:
         return True
     return bool(uses) and _start(network, uses[0]) == _end(network, uses[-1])
@@ -111,7 +113,7 @@ def _without_dangling(network: Network, uses: Iterable[Use]) -> list[Use]:
 
 
 def _alternating(network: Network, uses: list[Use]) -> Section:
-    """The loops of one shape under the even-odd rule; where a node has an odd degree, all that is
+    """Returns the loops of one shape under the even-odd rule; where a node has an odd degree, all that is
     enclosed.
     """
     degree: dict[int, int] = defaultdict(int)
@@ -151,7 +153,8 @@ def _walk(network: Network, first: Use, ways: dict[int, list[Use]], left: dict[i
 
 
 def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[NDArray[np.float64]], set[int]]:
-    """The outer outline of each connected part of a planar graph, and the edges that bound some face of it.
+    """Returns the outer outline of each connected part of a planar graph, and the edges that bound some face
+    of it.
 
     Walks the graph keeping the face on the left, turning at each node to the next way clockwise.
     """
@@ -188,7 +191,7 @@ def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
 
 
 def _direction(network: Network, use: Use) -> float:
-    """The angle at which the polyline of an edge leaves its start."""
+    """Returns the angle at which the polyline of an edge leaves its start."""
     edge = network.edges[use[0]]
     inner = edge.inner if use[1] else edge.inner[::-1]
     target = inner[0] if len(inner) else network.node_grid[_end(network, use)]
@@ -242,7 +245,7 @@ def _close_with_outlines(
 
 
 def _connected(network: Network, uses: list[Use]) -> list[list[Use]]:
-    """The uses by connected part, in order of first mention."""
+    """Returns the uses by connected part, in order of first mention."""
     parent: dict[int, int] = {}
 
     def root(node: int) -> int:
@@ -260,5 +263,5 @@ def _connected(network: Network, uses: list[Use]) -> list[list[Use]]:
 
 
 def union_of(faces: Iterable[OwnFace]) -> Section:
-    """All faces united."""
+    """Returns all faces united."""
     return union([face.section for face in faces])

@@ -101,7 +101,7 @@ class Result:
 
 
 def direction(curve: Piece, t: float) -> Vec:
-    """The unit tangent; at a stalled end of a Bézier curve that of the curve beside it."""
+    """Returns the unit tangent; at a stalled end of a Bézier curve that of the curve beside it."""
     dx, dy = derivative(curve, t)
     size = math.hypot(dx, dy)
     if size == 0:
@@ -111,7 +111,9 @@ def direction(curve: Piece, t: float) -> Vec:
 
 
 def arms_at(curves: Sequence[Piece], p: Vec, tolerance: float) -> list[Arm]:
-    """The arms of all curves that end at a point, those that arrive there (in their own direction) first."""
+    """Returns the arms of all curves that end at a point, those that arrive there (in their own direction)
+    first.
+    """
     found = []
     for number, curve in enumerate(curves):
         if is_closed(curve):
@@ -125,7 +127,7 @@ def arms_at(curves: Sequence[Piece], p: Vec, tolerance: float) -> list[Arm]:
 
 
 def corners_of(curves: Sequence[Piece], tolerance: float) -> list[Corner]:
-    """All points where exactly two curves end, at an angle."""
+    """Returns all points where exactly two curves end, at an angle."""
     found: list[Corner] = []
     seen: list[Vec] = []
     for p in (p for c in curves if not is_closed(c) for p in ends(c)):
@@ -139,7 +141,7 @@ def corners_of(curves: Sequence[Piece], tolerance: float) -> list[Corner]:
 
 
 def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
-    """Every corner finished; those that do not fit are left sharp and told."""
+    """Returns every corner finished; those that do not fit are left sharp and told."""
     result = Result(list(curves))
     done: list[Finished] = []
     for work in works:
@@ -166,18 +168,18 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
 
 
 def _misfit(work: Work) -> TooLarge:
-    """A finish that an arm is too short for."""
+    """Returns a finish that an arm is too short for."""
     return TooLarge(work, largest(lambda size: solve(sized(work, size)) is not None, max(work.sizes)))
 
 
 def sized(work: Work, size: float) -> Work:
-    """The same finish with its larger size changed, the other in proportion."""
+    """Returns the same finish with its larger size changed, the other in proportion."""
     share = size / max(work.sizes)
     return Work(work.kind, work.corner, (work.sizes[0] * share, work.sizes[1] * share))
 
 
 def largest(fits: Callable[[float], bool], too_large: float) -> float:
-    """The largest size below one that is too large, by halving."""
+    """Returns the largest size below one that is too large, by halving."""
     low, high = 0.0, too_large
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
@@ -214,7 +216,7 @@ def _end_at(made: Finished, number: int, first: bool) -> Vec:
 
 
 def solve(work: Work) -> Finished | None:
-    """The finish of a corner by itself; None if an arm is too short for it."""
+    """Returns the finish of a corner by itself; None if an arm is too short for it."""
     corner = work.corner
     if work.kind == "chamfer":
         cuts = [_along(arm.curve, size) for arm, size in zip(corner.arms, work.sizes, strict=True)]
@@ -241,7 +243,7 @@ def _arc(corner: Corner, radius: float, center: Vec, p: Vec, q: Vec) -> Arc:
 
 
 def _along(curve: Piece, distance: float) -> float | None:
-    """The parameter at a distance along a curve from its start; None beyond its end."""
+    """Returns the parameter at a distance along a curve from its start; None beyond its end."""
     whole = length(curve)
     if distance > whole * (1 + _EXACT):
         return None
@@ -276,7 +278,9 @@ def _round(corner: Corner, radius: float) -> tuple[float, float, Vec] | None:
 
 
 def _moved(curve: Line | Arc, left: float) -> Line | Circle | None:
-    """The carrier (the endless line or whole circle) of all points at a distance to the left of a curve."""
+    """Returns the carrier (the endless line or whole circle) of all points at a distance to the left of a
+    curve.
+    """
     if isinstance(curve, Line):
         dx, dy = direction(curve, 0.0)
         (x0, y0), (x1, y1) = curve.start, curve.end
@@ -298,7 +302,7 @@ def _meet(a: Line | Circle, b: Line | Circle) -> list[Vec]:
 
 
 def _foot(curve: Line | Arc, p: Vec) -> float | None:
-    """The parameter of the point of an arm nearest to p; None before its start."""
+    """Returns the parameter of the point of an arm nearest to p; None before its start."""
     if isinstance(curve, Line):
         dx, dy = derivative(curve, 0.0)
         t = ((p[0] - curve.start[0]) * dx + (p[1] - curve.start[1]) * dy) / (dx * dx + dy * dy)

@@ -55,7 +55,7 @@ class Gap:
 def open_gaps(
     network: Network, findings: Iterable[Finding], shapes: Mapping[str, Sequence[Shape]]
 ) -> list[Gap]:
-    """The gaps beside curves of solids and holes that enclose nothing, narrow enough to be closed."""
+    """Returns the gaps beside curves of solids and holes that enclose nothing, narrow enough to be closed."""
     widest = min(WIDEST * network.size, WIDEST_MM)
     curves = list(network.curves)
     gaps = []
@@ -76,7 +76,7 @@ def open_gaps(
 
 
 def without_gaps(curves: Sequence[Piece], gaps: Iterable[Gap]) -> list[Piece]:
-    """The curves with the moved ends where they are to be."""
+    """Returns the curves with the moved ends where they are to be."""
     result = list(curves)
     for gap in gaps:
         number, widest = gap.moved.number, 2 * gap.width
@@ -85,7 +85,7 @@ def without_gaps(curves: Sequence[Piece], gaps: Iterable[Gap]) -> list[Piece]:
 
 
 def effective(gaps: Iterable[Gap], findings: Iterable[Finding]) -> list[Gap]:
-    """The gaps whose curves both enclose something."""
+    """Returns the gaps whose curves both enclose something."""
     loose = {number for f in findings if isinstance(f, LooseCurves) for _, number in f.curves}
     return [gap for gap in gaps if not loose & {gap.moved.number, gap.kept.number}]
 
@@ -125,7 +125,7 @@ def _ends(network: Network, shapes: Iterable[Shape]) -> list[End]:
 
 
 def _open_ends(network: Network, shapes: Sequence[Shape]) -> list[End]:
-    """The ends at which no other curve of the structure has a node."""
+    """Returns the ends at which no other curve of the structure has a node."""
     meeting: dict[int, int] = defaultdict(int)
     for shape in shapes:
         for _, number in shape.leaves:
@@ -147,7 +147,9 @@ def _nearest_first(found: Sequence[End], widest: float) -> Iterator[tuple[End, E
 
 
 def _with_end(curve: Piece, is_last: bool, kept: End, widest: float) -> Piece | None:
-    """A curve of the same kind whose end lies elsewhere; None if that would change more than its end."""
+    """Returns a curve of the same kind whose end lies elsewhere; None if that would change more than its
+    end.
+    """
     left, bottom, right, top = bounds(curve)
     if max(right - left, top - bottom) <= 10 * widest:
         return None
@@ -167,7 +169,7 @@ def _way(p: Vec, q: Vec) -> Vec:
 
 
 def _arc_through(arc: Arc, start: Vec, end: Vec, widest: float) -> Arc | None:
-    """The arc between two points whose centre is nearest to that of another, and not far from it."""
+    """Returns the arc between two points whose centre is nearest to that of another, and not far from it."""
     if start == end:
         return replace(arc, start=start, end=end, sweep=math.copysign(TAU, arc.sweep))
     (x, y), (cx, cy), (dx, dy) = start, arc.center, _way(start, end)

@@ -34,7 +34,7 @@ class _Contact:
 
 
 def hull(curves: Sequence[Piece]) -> Region:
-    """The least convex region around the curves; empty for what lies on one line."""
+    """Returns the least convex region around the curves; empty for what lies on one line."""
     contacts = _contacts(_distinct(curves))
     if len(contacts) == 1 and is_closed(contacts[0].curve):
         return Region((Face(Loop((contacts[0].curve,))),))
@@ -62,7 +62,7 @@ def _distinct(curves: Sequence[Piece]) -> list[Piece]:
 
 
 def _holds(outer: Piece, inner: Arc | Circle) -> bool:
-    """Whether one curve is a circle in whose disc the other lies."""
+    """Tells whether one curve is a circle in whose disc the other lies."""
     if not isinstance(outer, Circle):
         return False
     return math.dist(outer.center, inner.center) + inner.radius <= outer.radius * (1 + _NEAR)
@@ -102,7 +102,7 @@ def _contacts(curves: Sequence[Piece]) -> list[_Contact]:
 
 
 def _spread(curve: Piece) -> NDArray[np.float64]:
-    """The parameters of the samples of a curve."""
+    """Returns the parameters of the samples of a curve."""
     if isinstance(curve, Line):
         return np.array([0.0, 1.0])
     return np.arange(_SAMPLES + (not is_closed(curve))) / _SAMPLES
@@ -128,7 +128,9 @@ def _convex(p: NDArray[np.float64]) -> list[int]:
 
 
 def _touch(a: _Contact, b: _Contact) -> tuple[float, float]:
-    """The parameters where the line from one contact to the next leaves the one and reaches the other."""
+    """Returns the parameters where the line from one contact to the next leaves the one and reaches the
+    other.
+    """
     t, s = a.t1, b.t0
     one, other = _disc(a.curve, t), _disc(b.curve, s)
     while one is not None and other is not None and (ways := _tangent(*one, *other)) is not None:
@@ -153,20 +155,22 @@ def _touch(a: _Contact, b: _Contact) -> tuple[float, float]:
 
 
 def _is_near(curve: Piece, t: float, sampled: float) -> bool:
-    """Whether a parameter lies between the samples around the one that the sampling told."""
+    """Tells whether a parameter lies between the samples around the one that the sampling told."""
     away = abs(t - sampled)
     return min(away, 1 - away if is_closed(curve) else away) < 2 / _SAMPLES
 
 
 def _disc(curve: Piece, t: float) -> tuple[Vec, float] | None:
-    """A centre and a radius; the end of a line is a disc without extent."""
+    """Returns a centre and a radius; the end of a line is a disc without extent."""
     if isinstance(curve, Line):
         return point(curve, t), 0.0
     return (curve.center, curve.radius) if isinstance(curve, Arc | Circle) else None
 
 
 def _tangent(c: Vec, r: float, d: Vec, s: float) -> tuple[Vec, Vec] | None:
-    """The points of touch of the line that has both discs on its left; None if one lies in the other."""
+    """Returns the points of touch of the line that has both discs on its left; None if one lies in the
+    other.
+    """
     x, y = d[0] - c[0], d[1] - c[1]
     square = x * x + y * y
     rest = square - (r - s) ** 2
@@ -194,7 +198,9 @@ def _parameter(curve: Piece, p: Vec, about: float) -> float | None:
 
 
 def _tangent_from(curve: Piece, p: Vec, t: float) -> float:
-    """The parameter near t at which the tangent of a curve passes through a point; an end stays an end."""
+    """Returns the parameter near t at which the tangent of a curve passes through a point; an end stays an
+    end.
+    """
     if isinstance(curve, Line):
         return t
 
@@ -215,7 +221,9 @@ def _tangent_from(curve: Piece, p: Vec, t: float) -> float:
 
 
 def _along(curve: Piece, t0: float, t1: float, p: Vec, q: Vec) -> Piece:
-    """The part of a curve from one point of touch to the next; the hull runs round closed ones forwards."""
+    """Returns the part of a curve from one point of touch to the next; the hull runs round closed ones
+    forwards.
+    """
     return part(curve, t0, t0 + (t1 - t0) % 1.0 if is_closed(curve) else t1, p, q)
 
 

@@ -38,7 +38,7 @@ def intersections(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
 
 
 def meet(a: Piece, b: Piece, tolerance: float) -> bool:
-    """Whether two curves have a point in common: a crossing, a touch, an end of one on the other."""
+    """Tells whether two curves have a point in common: a crossing, a touch, an end of one on the other."""
     return (
         any(locate(a, p, tolerance) is not None for p in ends(b))
         or any(locate(b, p, tolerance) is not None for p in ends(a))
@@ -137,7 +137,7 @@ def _sampled(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
 
 
 def _lie_on_each_other(a: Piece, b: Piece, tolerance: float) -> bool:
-    """Whether the curves share a stretch: between two ends that lie on both, all else does."""
+    """Tells whether the curves share a stretch: between two ends that lie on both, all else does."""
     if is_closed(a):
         a, b = b, a
     marks = [0.0, 1.0]
@@ -182,8 +182,8 @@ def _nearest_samples(p: NDArray[np.float64], q: NDArray[np.float64]) -> list[tup
 
 
 def _touch_beside(a: Piece, b: Piece, crossing: Crossing, tolerance: float) -> Crossing | None:
-    """The touch that a crossing belongs to, if the curves run so close from one to the other that they are
-    one there.
+    """Returns the touch that a crossing belongs to, if the curves run so close from one to the other that
+    they are one there.
     """
     t, s, _ = crossing
     (ax, ay), (bx, by) = derivative(a, t), derivative(b, s)
@@ -243,7 +243,7 @@ def _within(curve: Piece, t: float) -> float:
 
 
 def self_crossing(curve: Bezier) -> tuple[float, float] | None:
-    """The two parameters at which a cubic passes one point, if its loop is within 0..1.
+    """Returns the two parameters at which a cubic passes one point, if its loop is within 0..1.
 
     With p = a t³ + b t² + c t + d and u = s + t, v = s t, p(s) = p(t) gives a (u² - v) + b u + c = 0.
     """

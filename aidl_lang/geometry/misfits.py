@@ -95,7 +95,7 @@ class _Fault:
         return Misfit(self.spans, most, note)
 
     def _most(self) -> float:
-        """The largest size, as it is printed, with which all corners of these statements work out."""
+        """Returns the largest size, as it is printed, with which all corners of these statements work out."""
         now = max(max(w.sizes) for w in self.own)
         found = largest(self._fits, now)
         for most in (_floor(found * (1 + 1e-9)), _floor(found)):
@@ -157,7 +157,7 @@ class _Fault:
         return f"at most {rough(most)} fits{where}"
 
     def _fix(self, most: float) -> Fix | None:
-        """The size in the statements, where each has it as a number that nothing else decides."""
+        """Returns the size in the statements, where each has it as a number that nothing else decides."""
         edits: dict[Span, Edit] = {}
         for work in self.own:
             reason = self.reason_of[id(work)]
@@ -176,7 +176,9 @@ class _Fault:
 
 
 def in_one(found: Sequence[Misfit]) -> list[Diagnostic]:
-    """The notes, those of the same statements as one: what fits everywhere is the least of what fits."""
+    """Returns the notes, those of the same statements as one: what fits everywhere is the least of what
+    fits.
+    """
     least: dict[frozenset[Span], Misfit] = {}
     for misfit in found:
         known = least.get(misfit.statements)

@@ -27,7 +27,7 @@ def near_pairs(boxes: Sequence[Bounds], margin: float) -> Iterator[tuple[int, in
 
 
 def near_rows(boxes: Sequence[Bounds] | Floats, margin: float) -> Ints:
-    """The same pairs as a table of two columns.
+    """Returns the same pairs as a table of two columns.
 
     The sweep itself runs along the axis on which fewer boxes meet, so that a long row costs no more than a
     long column.
@@ -55,13 +55,15 @@ def near_rows(boxes: Sequence[Bounds] | Floats, margin: float) -> Ints:
 
 
 def _sweep(b: Floats, axis: int, margin: float) -> tuple[Ints, Ints]:
-    """The boxes in the order of their beginnings on an axis; for each place the one up to which they meet."""
+    """Returns the boxes in the order of their beginnings on an axis; for each place the one up to which they
+    meet.
+    """
     along = np.argsort(b[:, axis], kind="stable")
     return along, np.searchsorted(b[along, axis], b[along, 2 + axis] + margin, side="right")
 
 
 def _windows(low: Ints, high: Ints) -> Iterator[tuple[Ints, Ints]]:
-    """Every number k with every place in `low[k]:high[k]`, a part of them at a time."""
+    """Yields every number k with every place in `low[k]:high[k]`, a part of them at a time."""
     sizes = np.maximum(0, high - low)
     ends = np.cumsum(sizes)
     begin = 0
@@ -99,7 +101,7 @@ class Sides:
                 yield place, of_size[window]
 
     def near(self, spots: Floats, reach: float) -> tuple[Ints, Ints, Floats]:
-        """All sides that pass a spot at most at the given distance: spot, side and distance."""
+        """Returns all sides that pass a spot at most at the given distance: spot, side and distance."""
         found = [(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0))]
         for spot, side in self.beside(spots[:, 0], reach):
             away = self._distance(spots[spot], side)
@@ -109,7 +111,7 @@ class Sides:
         return spot, side, away
 
     def nearest(self, spots: Floats, reach: float) -> Ints:
-        """The side nearest to each spot, the first of several; sought within a reach that grows."""
+        """Returns the side nearest to each spot, the first of several; sought within a reach that grows."""
         result = np.full(len(spots), -1, dtype=np.int64)
         while len(left := np.flatnonzero(result < 0)):
             spot, side, away = self.near(spots[left], reach)

@@ -80,7 +80,7 @@ class Weld:
         self._cells: dict[tuple[int, int], list[int]] = {}
 
     def number(self, p: Vec) -> int:
-        """The number of p, a new one if no point is near. Looks into the four cells the tolerance can
+        """Returns the number of p, a new one if no point is near. Looks into the four cells the tolerance can
         reach.
         """
         step = 2 * self.tolerance
@@ -179,7 +179,7 @@ class Network:
         return [self._edge(number, t0, t1, a, b) for (t0, a), (t1, b) in pairwise(cuts)]
 
     def _edge(self, number: int, t0: float, t1: float, start: int, end: int) -> Use:
-        """The edge for this part of a curve: the one that lies there already, or a new one."""
+        """Returns the edge for this part of a curve: the one that lies there already, or a new one."""
         curve = self.curves[number]
         middle = -1 if isinstance(curve, Line) else self._middles.number(point(curve, (t0 + t1) / 2))
         key = (min(start, end), max(start, end), middle)
@@ -215,8 +215,8 @@ class Network:
         self._index()
 
     def _inner_points(self, numbers: Sequence[int], counts: Sequence[int]) -> Iterator[tuple[int, Ints]]:
-        """The inner points of edges cut into many chords: those of circles and arcs in one go, likewise those
-        of Bézier curves.
+        """Yields the inner points of edges cut into many chords: those of circles and arcs in one go,
+        likewise those of Bézier curves.
         """
         rounds, cubics = [], []
         for k in numbers:
@@ -241,7 +241,7 @@ class Network:
         counts: Sequence[int],
         at: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]],
     ) -> Iterator[tuple[int, Ints]]:
-        """The inner points of edges of curves of one kind, which have a row each."""
+        """Yields the inner points of edges of curves of one kind, which have a row each."""
         parts = np.array([(self.edges[k].t0, self.edges[k].t1 - self.edges[k].t0) for k in numbers])
         count = np.array([counts[k] for k in numbers])
         row = np.repeat(np.arange(len(numbers)), count - 1)
@@ -274,7 +274,7 @@ class Network:
                 self._straight[edge.start, edge.end] = self._straight[edge.end, edge.start] = k
 
     def polyline(self, uses: Sequence[Use]) -> NDArray[np.float64]:
-        """The closed polygon through these edges, in grid units as Manifold takes them."""
+        """Returns the closed polygon through these edges, in grid units as Manifold takes them."""
         rows: list[Ints] = []
         for number, forward in uses:
             edge = self.edges[number]
@@ -284,14 +284,14 @@ class Network:
         return np.concatenate(rows).astype(np.float64) * GRID
 
     def piece(self, use: Use) -> Piece:
-        """The part of its curve that runs along an edge, in the direction of the use."""
+        """Returns the part of its curve that runs along an edge, in the direction of the use."""
         edge = self.edges[use[0]]
         ways = (edge.t0, edge.t1, edge.start, edge.end), (edge.t1, edge.t0, edge.end, edge.start)
         t0, t1, start, end = ways[0] if use[1] else ways[1]
         return part(self.curves[edge.curve], t0, t1, self.nodes[start], self.nodes[end])
 
     def midpoints(self, numbers: Sequence[int]) -> NDArray[np.float64]:
-        """A point about halfway along each of some edges, in grid units."""
+        """Returns a point about halfway along each of some edges, in grid units."""
         edges = np.array(numbers, dtype=np.int64)
         count = self._sizes[edges]
         nodes = [(self.edges[k].start, self.edges[k].end) for k in numbers]
@@ -312,7 +312,7 @@ class Network:
         return owner, place
 
     def position(self, vertex: NDArray[np.float64]) -> Vec:
-        """A vertex of a result in millimetres."""
+        """Returns a vertex of a result in millimetres."""
         x, y = vertex / self.scale + np.array(self.middle)
         return float(x), float(y)
 
@@ -331,7 +331,7 @@ class Network:
             raise TooCoarse
 
     def _all_sides(self) -> tuple[Ints, Sides]:
-        """All sides of polylines, and the numbers of their edges."""
+        """Returns all sides of polylines, and the numbers of their edges."""
         if self._sides is None:
             lines = []
             for edge in self.edges:
@@ -343,7 +343,7 @@ class Network:
         return self._sides
 
     def straight(self, start: int, end: int, default: int) -> int:
-        """The line edge between two nodes."""
+        """Returns the line edge between two nodes."""
         return self._straight.get((start, end), default)
 
 

@@ -29,12 +29,12 @@ def at(p: Vec) -> str:
 
 
 def local(structure: SolvedStructure, geometry: SolvedGeometry) -> str:
-    """The name of a geometry as the structure writes it."""
+    """Returns the name of a geometry as the structure writes it."""
     return geometry.path.removeprefix(structure.path + ".")
 
 
 def finding_note(finding: Finding, network: Network) -> Diagnostic | None:
-    """The warning about a finding; open curves are one only in solids and holes."""
+    """Returns the warning about a finding; open curves are one only in solids and holes."""
     if isinstance(finding, InnerLoop):
         return _inner_loop(finding)
     if isinstance(finding, LooseCurves):
@@ -67,7 +67,7 @@ def _inner_loop(finding: InnerLoop) -> Diagnostic:
 
 
 def _fresh(structure: SolvedStructure, name: str) -> str:
-    """A name for a hole around a geometry that its structure does not use yet."""
+    """Returns a name for a hole around a geometry that its structure does not use yet."""
     base = re.sub(r"\W.*", "", name) + "_hole"
     if structure.span and base not in _words(structure.span.source.text):
         return base
@@ -147,7 +147,7 @@ def _lost(finding: LooseCurves, names: Sequence[str], network: Network) -> Diagn
 
 
 def _whole_names(structure: SolvedStructure, loose: Sequence[SolvedGeometry]) -> list[str]:
-    """The names of these primitives, a compound shape by its own where none of it bounds a face."""
+    """Returns the names of these primitives, a compound shape by its own where none of it bounds a face."""
     found = {g.path for g in loose}
     whole = {
         curve: geometry.name
@@ -173,7 +173,7 @@ End = tuple[SolvedGeometry, Vec, str]
 
 
 def _gap(finding: LooseCurves, network: Network) -> tuple[End, End] | None:
-    """The open end that is nearest to another one, ends of one curve only if there are no others."""
+    """Returns the open end that is nearest to another one, ends of one curve only if there are no others."""
     meeting: dict[int, int] = {}
     for use in (network.uses[number] for number in finding.numbers):
         for node in {n for edge, _ in use for n in (network.edges[edge].start, network.edges[edge].end)}:
@@ -220,7 +220,7 @@ def gap_note(gap: Gap) -> Diagnostic:
 
 
 def _join_fix(structure: SolvedStructure, equation: str) -> Fix | None:
-    """The constraint before the closing brace of the structure."""
+    """Returns the constraint before the closing brace of the structure."""
     span = structure.span
     if span is None or not span.text.endswith("}"):
         return None
@@ -306,7 +306,7 @@ def _covered_holes(finding: CoveredHoles) -> Diagnostic:
 
 
 def detached_notes(root: SolvedStructure, paths: Sequence[str], contacts: Contacts) -> list[Diagnostic]:
-    """A warning for each body that touches and overlaps none of the others."""
+    """Returns a warning for each body that touches and overlaps none of the others."""
     free = marked_detached(root)
     if sum(path not in free for path in paths) < 2:
         return []  # there is nothing that a part could touch

@@ -24,7 +24,8 @@ NEAR = 1e-6
 
 
 def offset(region: Region, distance: float, sharp: bool = True) -> Region:
-    """All that is within a distance of the region; for a negative one, what is left without its border.
+    """Returns all that is within a distance of the region; for a negative one, what is left without its
+    border.
 
     With `sharp`, edges are lengthened at corners until they meet.
     """
@@ -42,7 +43,7 @@ def offset(region: Region, distance: float, sharp: bool = True) -> Region:
 
 
 def _in_parts(pieces: Sequence[Piece], strips: Sequence[Strip]) -> Iterator[Piece]:
-    """The outline cut where its strips are, so that both have the same curves."""
+    """Yields the outline cut where its strips are, so that both have the same curves."""
     firsts = [strip[0][0] for strip in strips]
     for piece in pieces:
         if isinstance(piece, Line | Arc | Circle):
@@ -84,7 +85,7 @@ def thick(curves: Sequence[Piece], width: float, caps: str = "round", sharp: boo
 
 
 def _joints(curves: Sequence[Piece], near: float) -> list[tuple[Vec, list[Vec]]]:
-    """The points where open curves end, with the directions in which they leave them."""
+    """Returns the points where open curves end, with the directions in which they leave them."""
     found: list[tuple[Vec, list[Vec]]] = []
     for curve in curves:
         if is_closed(curve):
@@ -100,7 +101,7 @@ def _joints(curves: Sequence[Piece], near: float) -> list[tuple[Vec, list[Vec]]]
 
 
 def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
-    """A region with strips added to it or taken off."""
+    """Returns a region with strips added to it or taken off."""
     pieces = [p for loop in region.loops for p in loop.pieces]
     number = len(pieces)
     pieces += [p for strip in strips for outline in strip for p in outline]

@@ -27,7 +27,7 @@ def _sources(recipe: Recipe) -> list[str]:
 
 
 def nothing_left(g: SolvedGeometry, recipe: Recipe, depth: float | None = None) -> Diagnostic:
-    """An outline of which nothing remains."""
+    """Returns an outline of which nothing remains."""
     sources, hint = _sources(recipe), ""
     match recipe.kind:
         case "offset":

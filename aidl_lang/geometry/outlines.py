@@ -38,7 +38,7 @@ _HALVINGS = 24
 
 
 def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
-    """The model with its derived outlines and finished corners, and what is wrong with them."""
+    """Returns the model with its derived outlines and finished corners, and what is wrong with them."""
     index = {g.path: g for g in model.root.walk_geometry()}
     outliner = _Outliner(tuple(f for s in model.root.walk() for f in s.finishes), index)
     root = outliner.structure(model.root)
@@ -46,7 +46,9 @@ def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
 
 
 def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:
-    """The primitives of a geometry that is drawn, with their curves; those without a place are left out."""
+    """Yields the primitives of a geometry that is drawn, with their curves; those without a place are left
+    out.
+    """
     if g.construction:
         return
     if g.curve is not None and is_finite(g.curve) and max(map(abs, bounds(g.curve))) <= LARGEST:
@@ -92,8 +94,8 @@ class _Outliner:
         )
 
     def _with_corners(self, own: Sequence[Finish]) -> Iterator[Finish]:
-        """The finishes of a structure in their order, with the corners where they were carried out, if any;
-        then those that its geometry has as a copy.
+        """Yields the finishes of a structure in their order, with the corners where they were carried out, if
+        any; then those that its geometry has as a copy.
         """
         left = dict(self.carried_out)
         for f in own:
@@ -209,8 +211,8 @@ class _Outliner:
         finishes: Sequence[Finish],
         told: SolvedStructure | None = None,
     ) -> list[SolvedGeometry]:
-        """The geometry with all finishes that are about its corners. `told`: the structure whose program
-        hears of those that do not fit; elsewhere they are passed over.
+        """Returns the geometry with all finishes that are about its corners. `told`: the structure whose
+        program hears of those that do not fit; elsewhere they are passed over.
         """
         leaves = [leaf for g in geometry for leaf in _leaves(g)]
         near = NEAR * _extent([c for _, c in leaves])
@@ -237,7 +239,7 @@ class _Outliner:
     def _own(
         self, leaves: Leaves, finishes: Sequence[Finish], near: float, told: SolvedStructure | None
     ) -> Iterator[tuple[Finish, Corner]]:
-        """The finishes of these curves with their corners."""
+        """Yields the finishes of these curves with their corners."""
         for f in finishes:
             if f.of and not any(_is_of(g.path, f.of) for g, _ in leaves):
                 continue
@@ -281,12 +283,12 @@ def _arm(curve: Piece, number: int, first: bool) -> Arm:
 
 
 def _is_of(path: str, of: Iterable[str]) -> bool:
-    """Whether a path is one of some, or leads on from it."""
+    """Tells whether a path is one of some, or leads on from it."""
     return any(path == p or path.startswith((f"{p}.", f"{p}[")) for p in of)
 
 
 def _corners(f: Finish, leaves: Leaves, near: float) -> list[Corner]:
-    """The corners that a finish is about, among these curves."""
+    """Returns the corners that a finish is about, among these curves."""
     own = [number for number, (g, _) in enumerate(leaves) if _is_of(g.path, f.of)]
     if f.at is None:
         found = corners_of([leaves[n][1] for n in own], near)
@@ -305,7 +307,7 @@ def _renumbered(corner: Corner, numbers: Sequence[int]) -> Corner:
 
 
 def _rebuilt(geometry: Sequence[SolvedGeometry], leaves: Leaves, result: Result) -> list[SolvedGeometry]:
-    """The geometry with its new curves; a new one belongs to what both its neighbours belong to."""
+    """Returns the geometry with its new curves; a new one belongs to what both its neighbours belong to."""
     changed = {g.path: c for (g, old), c in zip(leaves, result.curves, strict=True) if c is not old}
     added: dict[str, list[SolvedGeometry]] = {}
     free: list[SolvedGeometry] = []
@@ -366,7 +368,7 @@ def _deepest(region: Region, too_deep: float) -> float:
 def _box(
     s: SolvedStructure, geometry: Iterable[SolvedGeometry], children: Iterable[SolvedStructure]
 ) -> Box | None:
-    """The box with what was derived since it was read out."""
+    """Returns the box with what was derived since it was read out."""
     boxes = [s.box] if s.box is not None else []
     boxes += [Box(*bounds(c)) for g in geometry for c in g.curves()]
     boxes += [c.box for c in children if c.box is not None and c.kind != "hole"]

@@ -28,7 +28,9 @@ _HEAVY = "most of its curves are made here"
 def pictured(
     built: Model, lowered: Lowered, solution: Solution, freedom: Freedom, watch: Stopwatch
 ) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic]]:
-    """A solution put back into names and coordinates, its drawing, and what there is to say of that."""
+    """Returns a solution put back into names and coordinates, its drawing, and what there is to say of
+    that.
+    """
     from aidl_lang.geometry.drawing import draw
     from aidl_lang.geometry.placeless import with_places
     from aidl_lang.geometry.readout import read_out
@@ -43,7 +45,9 @@ def pictured(
 
 
 def _completed(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
-    """The model with its derived outlines and finished corners; few programs have any to load code for."""
+    """Returns the model with its derived outlines and finished corners; few programs have any to load code
+    for.
+    """
     if not model.is_unfinished:
         return model, []
     from aidl_lang.geometry.outlines import complete
@@ -64,7 +68,7 @@ def _sizes(built: Model, evaluator: Evaluator) -> Callable[[SolvedModel], tuple[
 
 
 def _most_drawn(model: SolvedModel) -> Span | None:
-    """The statement of the program that makes more curves than any other."""
+    """Returns the statement of the program that makes more curves than any other."""
     made: Counter[Span] = Counter()
     for structure in model.root.walk():
         for geometry in structure.geometry:

@@ -70,8 +70,8 @@ def loose_piece_notes(
     solids: Sequence[Solid],
     pairs: Sequence[Contact],
 ) -> Iterator[Diagnostic]:
-    """A warning for pieces of a solid that touch neither the rest of it nor what touches that. A solid that
-    is the whole program is a drawing without parts, in which gaps are as good as lines.
+    """Yields a warning for pieces of a solid that touch neither the rest of it nor what touches that. A solid
+    that is the whole program is a drawing without parts, in which gaps are as good as lines.
     """
     free = marked_detached(root)
     known = {solid.path: solid for solid in solids}
@@ -213,7 +213,9 @@ def fallen_piece_notes(
     solids: Sequence[Solid],
     pairs: Sequence[Contact],
 ) -> Iterator[Diagnostic]:
-    """A warning for each hole that cuts pieces free which nothing else holds, as the inside of an O."""
+    """Yields a warning for each hole that cuts pieces free which nothing else holds, as the inside of an
+    O.
+    """
     free = marked_detached(root)
     held = _held_by_others(solids, pairs)
     known, holes = {s.path: s for s in root.walk()}, _holes(root, masses)
@@ -233,7 +235,7 @@ def fallen_piece_notes(
 
 
 def _islands(structure: SolvedStructure) -> Iterator[SolvedStructure]:
-    """The structures in the holes of one."""
+    """Yields the structures in the holes of one."""
     for each in structure.walk():
         if each.kind == "hole":
             yield from (s for child in each.structures if child.kind != "hole" for s in _material(child))
@@ -267,7 +269,7 @@ def _held_by_others(solids: Sequence[Solid], pairs: Sequence[Contact]) -> dict[s
 
 
 def _enclosed(sections: Sequence[Section]) -> Iterator[tuple[Section, Section]]:
-    """The pieces that lie in openings of others, each with the smallest such opening."""
+    """Yields the pieces that lie in openings of others, each with the smallest such opening."""
     if len(sections) < 2:
         return
     openings = [hole for s in sections if s.num_contour() > 1 for hole in holes_of(s)]
@@ -281,7 +283,7 @@ def _enclosed(sections: Sequence[Section]) -> Iterator[tuple[Section, Section]]:
 
 
 def _was_joined(walk: Bodies, mass: Mass, piece: Section, opening: Section) -> bool:
-    """Whether a piece hung together with what is around the opening before anything was cut out."""
+    """Tells whether a piece hung together with what is around the opening before anything was cut out."""
     faces = [f.section for s in _material(mass.structure) for f in walk.faces.get(s.path, ())]
     near = union([f for f in faces if boxes_meet(f, opening)])
     return any(covers(whole, opening) and covers(whole, piece) for whole in near.decompose())
@@ -298,7 +300,7 @@ def _touches(walk: Bodies, piece: Section, others: Sequence[Solid]) -> bool:
 def _cutting(
     walk: Bodies, holes: Iterable[SolvedStructure], opening: Section, piece: Section
 ) -> Iterator[str]:
-    """The paths of those holes that took away what was between a piece and the rest."""
+    """Yields the paths of those holes that took away what was between a piece and the rest."""
     between = difference(opening, piece)
     for hole in holes:
         if hole.path in walk.faces:
@@ -325,7 +327,7 @@ def _fallen(hole: SolvedStructure, solid: SolvedStructure, walk: Bodies, count: 
 
 
 def _between(a: Bounds, b: Bounds) -> float:
-    """The distance of two boxes."""
+    """Returns the distance of two boxes."""
     return math.hypot(max(0.0, a[0] - b[2], b[0] - a[2]), max(0.0, a[1] - b[3], b[1] - a[3]))
 
 

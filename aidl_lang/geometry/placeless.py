@@ -17,7 +17,9 @@ from aidl_lang.geometry.solved import Box, Frame, SolvedGeometry, SolvedModel, S
 
 
 def with_places(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
-    """The model without curves and numbers that are no numbers or beyond reach, and what was left out."""
+    """Returns the model without curves and numbers that are no numbers or beyond reach, and what was left
+    out.
+    """
     if all(map(_is_sound, model.root.walk())):
         return model, []
     cleaner = _Cleaner()
@@ -34,7 +36,7 @@ def _is_sound(structure: SolvedStructure) -> bool:
 
 
 def _has_place(geometry: SolvedGeometry) -> bool:
-    """Whether all of a geometry, what it is made of included, can be drawn."""
+    """Tells whether all of a geometry, what it is made of included, can be drawn."""
     return (
         _is_within(geometry.values.values())
         and all(map(_has_place, geometry.parts))
@@ -50,7 +52,7 @@ def _is_possible(outline: SolvedGeometry) -> bool:
 
 
 def _is_within(value: object) -> bool:
-    """Whether every number in a value can be drawn."""
+    """Tells whether every number in a value can be drawn."""
     if isinstance(value, float):
         return abs(value) <= LARGEST
     return isinstance(value, str | int) or (isinstance(value, Iterable) and all(map(_is_within, value)))
@@ -82,7 +84,7 @@ class _Cleaner:
 
 
 def _lost(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
-    """The innermost parts that have no place."""
+    """Yields the innermost parts that have no place."""
     inside = [lost for part in geometry.parts for lost in _lost(part)]
     yield from inside
     if not inside and not _has_place(geometry):
@@ -90,7 +92,7 @@ def _lost(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
 
 
 def _stripped(geometry: SolvedGeometry) -> SolvedGeometry:
-    """A geometry with what of it has a place; its name stays."""
+    """Returns a geometry with what of it has a place; its name stays."""
     if _has_place(geometry):
         return geometry
     values = {name: value for name, value in geometry.values.items() if _is_within(value)}

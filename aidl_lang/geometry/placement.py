@@ -44,13 +44,13 @@ class Plane:
         return self.origin + x * self.u + y * self.v
 
     def shifted(self, distance: float) -> Plane:
-        """The plane moved towards where the material grows."""
+        """Returns the plane moved towards where the material grows."""
         return replace(self, origin=self.origin + distance * self.growth)
 
     def placed(self, thickness: float = 0.0) -> Matrix:
-        """The rigid motion, shape (3, 4), that takes what stands from 0 to `thickness` over the root's plane
-        to its place: rotation, then shift. It never mirrors: where the material grows away from the viewer,
-        it begins at its far side.
+        """Returns the rigid motion, shape (3, 4), that takes what stands from 0 to `thickness` over the
+        root's plane to its place: rotation, then shift. It never mirrors: where the material grows away from
+        the viewer, it begins at its far side.
         """
         normal = np.cross(self.u, self.v)
         depth = min(0.0, thickness * float(normal @ self.growth))
@@ -58,7 +58,7 @@ class Plane:
 
 
 def planes(root: SolvedStructure) -> dict[str, Plane]:
-    """The plane of each structure, by its path.
+    """Returns the plane of each structure, by its path.
 
     What has another orientation than the structure around it is hinged at the origin of its frame: that
     point stays in the plane around it, and its sketch, turned by its own frame alone, stands in the world
@@ -79,8 +79,8 @@ def planes(root: SolvedStructure) -> dict[str, Plane]:
 
 
 def _hinged(point: Matrix, hinge: Matrix, turn: Matrix, orientation: str) -> Plane:
-    """The plane of an orientation in which `hinge`, in root coordinates, lies at a point of space. `turn` is
-    that of the frame around it, which is undone.
+    """Returns the plane of an orientation in which `hinge`, in root coordinates, lies at a point of space.
+    `turn` is that of the frame around it, which is undone.
     """
     right, up, growth = _AXES[orientation]
     u, v = turn @ (right, up)

@@ -70,7 +70,7 @@ def intersection(a: Section, b: Section) -> Section:
 
 
 def boxes_meet(a: Section, b: Section) -> bool:
-    """Whether the bounding boxes overlap by more than nothing."""
+    """Tells whether the bounding boxes overlap by more than nothing."""
     if a.is_empty() or b.is_empty():
         return False
     (a0, a1, a2, a3), (b0, b1, b2, b3) = a.bounds(), b.bounds()
@@ -78,14 +78,16 @@ def boxes_meet(a: Section, b: Section) -> bool:
 
 
 def box_within(a: Section, b: Section) -> bool:
-    """Whether the box of a lies in the box of b."""
+    """Tells whether the box of a lies in the box of b."""
     (a0, a1, a2, a3), (b0, b1, b2, b3) = a.bounds(), b.bounds()
     e = NEGLIGIBLE
     return bool(a0 >= b0 - e and a1 >= b1 - e and a2 <= b2 + e and a3 <= b3 + e)
 
 
 def is_nothing(section: Section, scale: float | None = None) -> bool:
-    """Whether an area is empty or thinner than the tolerance; `scale` is the size to compare it with."""
+    """Tells whether an area is empty or thinner than the tolerance; `scale` is the size to compare it
+    with.
+    """
     if section.is_empty():
         return True
     if scale is None:
@@ -95,7 +97,7 @@ def is_nothing(section: Section, scale: float | None = None) -> bool:
 
 
 def covers(cover: Section, section: Section) -> bool:
-    """Whether nothing of the section lies outside the cover."""
+    """Tells whether nothing of the section lies outside the cover."""
     if section.is_empty() or cover.is_empty() or not box_within(section, cover):
         return False
     return is_nothing(difference(section, cover), math.sqrt(abs(section.area())))

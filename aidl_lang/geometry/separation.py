@@ -45,7 +45,9 @@ def _cutting() -> Floats:
 
 
 def _blossom(r: float, s: float, t: float) -> list[float]:
-    """The shares of the control points in the blossom of a cubic (Farin, Curves and Surfaces, ch. 4)."""
+    """Returns the shares of the control points in the blossom of a cubic (Farin, Curves and Surfaces, ch.
+    4).
+    """
     u, v, w = 1 - r, 1 - s, 1 - t
     return [u * v * w, r * v * w + u * s * w + u * v * t, r * s * w + r * v * t + u * s * t, r * s * t]
 
@@ -54,7 +56,7 @@ _CUTTING = _cutting()
 
 
 def meeting(curves: Sequence[Piece], pairs: Ints, tolerance: float, nodes: Ints, places: Floats) -> Ints:
-    """Those of some pairs of curves that may meet in more than an end they share.
+    """Returns those of some pairs of curves that may meet in more than an end they share.
 
     nodes   by curve, which points its two ends are
     places  where these points are
@@ -96,8 +98,8 @@ class _Hulls:
         return np.asarray(meets.any(axis=(1, 2)), dtype=np.bool_)
 
     def _on_two_sides(self, ours: Floats, theirs: Floats, spots: Floats) -> Mask:
-        """Whether a straight line through a spot tells some parts from others. Points that are as good as the
-        spot itself are on either side.
+        """Tells whether a straight line through a spot tells some parts from others. Points that are as good
+        as the spot itself are on either side.
         """
         at = spots[:, None, None]
         ways = np.concatenate((at - ours, theirs - at), axis=1)
@@ -112,7 +114,7 @@ class _Hulls:
 
 
 def _beside(end: int, reach: int) -> slice:
-    """The parts of a curve that lie beside its start (0) or its end (1)."""
+    """Returns the parts of a curve that lie beside its start (0) or its end (1)."""
     return slice(PARTS - reach, PARTS) if end else slice(0, reach)
 
 

@@ -79,7 +79,7 @@ class _Place:
 
 
 def laid_out(drawing: Drawing, sheet: Size, spacing: float = SPACING) -> Layout:
-    """All bodies on as few sheets as the packer finds, those of one stock together (sizes in mm)."""
+    """Returns all bodies on as few sheets as the packer finds, those of one stock together (sizes in mm)."""
     on, off = engraved(drawing.bodies, drawing.strokes)
     parts = _parts(drawing, on)
     gap = _ceil(spacing)
@@ -136,7 +136,7 @@ def _parts(drawing: Drawing, on: dict[str, list[Stroke]]) -> list[_Part]:
 
 
 def _packed(parts: Sequence[_Part], room: Cell, gap: int) -> list[list[_Place]]:
-    """The places on each sheet. Parts are turned only if that saves sheets."""
+    """Returns the places on each sheet. Parts are turned only if that saves sheets."""
     cells = [part.cell(gap) for part in parts]
     upright = all(_fits(cell, room) for cell in cells)
     bins = _bins(cells, room, turning=False) if upright else []
@@ -171,7 +171,7 @@ def _place(part: _Part, cell: Any, gap: int) -> _Place:
 
 
 def _drawn(drawing: Drawing, sheet: Size, places: Sequence[_Place]) -> Drawing:
-    """The drawing of one sheet. Seams and plans are not cut."""
+    """Returns the drawing of one sheet. Seams and plans are not cut."""
     bodies, strokes, regions = [], [], dict[str, Region]()
     for place in places:
         part = place.part

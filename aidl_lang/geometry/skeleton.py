@@ -134,7 +134,7 @@ class Skeleton:
             yield from _chopped(number, piece)
 
     def _corner(self, number: int, after: int) -> Bit:
-        """The corner where a piece ends. Its parameter 2 says that it is fixed there."""
+        """Returns the corner where a piece ends. Its parameter 2 says that it is fixed there."""
         one, other = self.pieces[number], self.pieces[after]
         arriving, leaving = direction(one, 1.0), direction(other, 0.0)
         turn = math.remainder(leaving - arriving, TAU)
@@ -147,7 +147,7 @@ class Skeleton:
 
 
 def _bend(piece: int, t: float, at: Vec, arriving: float, turn: float) -> Bit:
-    """A corner: one to the left sticks out of the material, which lies on the left."""
+    """Returns a corner: one to the left sticks out of the material, which lies on the left."""
     side = 1.0 if turn >= 0 else -1.0
     middle = arriving - side * math.pi / 2 + turn / 2
     return Bit(piece, t, t, at, (0.0, 0.0), True, 0.0, middle, abs(turn) / 2, side)
@@ -169,7 +169,7 @@ def _chopped(number: int, piece: Piece) -> Iterator[Bit]:
 
 
 def _turned(piece: Piece) -> Piece:
-    """A whole curve run through clockwise: an ellipse mirrored in its long axis is itself."""
+    """Returns a whole curve run through clockwise: an ellipse mirrored in its long axis is itself."""
     return (
         Ellipse(piece.center, piece.rx, -piece.ry, piece.angle)
         if isinstance(piece, Ellipse)
@@ -187,7 +187,9 @@ def _error(piece: Piece) -> float:
 
 
 def direction(piece: Piece, t: float) -> float:
-    """The direction of travel at an end, radians; where a control point is doubled, by a small step."""
+    """Returns the direction of travel at an end, radians; where a control point is doubled, by a small
+    step.
+    """
     dx, dy = derivative(piece, t)
     start, end = ends(piece)
     if math.hypot(dx, dy) <= 1e-9 * max(math.dist(start, end), 1e-300):
@@ -199,7 +201,7 @@ def direction(piece: Piece, t: float) -> float:
 
 
 def within(angle: Floats | float, middle: Floats, half: Floats, slack: float) -> NDArray[np.bool_]:
-    """Whether directions lie in ranges, up to some radians."""
+    """Tells whether directions lie in ranges, up to some radians."""
     away = np.abs((angle - middle + math.pi) % TAU - math.pi)
     inside: NDArray[np.bool_] = away <= half + slack
     return inside

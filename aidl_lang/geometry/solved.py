@@ -98,13 +98,13 @@ class SolvedGeometry:
     attributes: dict[str, tuple[Scalar, ...]] = field(default_factory=dict)
 
     def walk(self) -> Iterator[SolvedGeometry]:
-        """This geometry and all its parts."""
+        """Yields this geometry and all its parts."""
         yield self
         for part in self.parts:
             yield from part.walk()
 
     def curves(self) -> Iterator[Piece]:
-        """The drawn curves in order of writing; none of construction geometry."""
+        """Yields the drawn curves in order of writing; none of construction geometry."""
         if self.construction:
             return
         if self.curve is not None:
@@ -146,13 +146,13 @@ class SolvedStructure:
         return self.geometry if self.finished is None else self.finished
 
     def walk(self) -> Iterator[SolvedStructure]:
-        """This structure and all below it, parents first, in order of writing."""
+        """Yields this structure and all below it, parents first, in order of writing."""
         yield self
         for child in self.structures:
             yield from child.walk()
 
     def walk_geometry(self) -> Iterator[SolvedGeometry]:
-        """The geometry of this structure and of all below it, each followed by its parts."""
+        """Yields the geometry of this structure and of all below it, each followed by its parts."""
         return (part for s in self.walk() for geometry in s.geometry for part in geometry.walk())
 
     def find(self, path: str) -> SolvedStructure | None:

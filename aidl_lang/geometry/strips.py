@@ -98,7 +98,9 @@ def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
 
 
 def _reached(curve: Piece, t: float, left: float) -> Vec:
-    """The end of a normal that goes a little beyond the centre of curvature, but not beyond the distance."""
+    """Returns the end of a normal that goes a little beyond the centre of curvature, but not beyond the
+    distance.
+    """
     stretch = _stretch(curve, t, left)
     return _parallel(curve, t, left * min(1.0, 1.1 / abs(1 - stretch)) if stretch != 1 else left)
 
@@ -116,7 +118,7 @@ def _stretch(curve: Piece, t: float, left: float) -> float:
 
 
 def _fitted(curve: Piece, t0: float, t1: float, left: float) -> Bezier:
-    """The cubic with the ends and the derivatives of the parallel curve."""
+    """Returns the cubic with the ends and the derivatives of the parallel curve."""
     p, q = _parallel(curve, t0, left), _parallel(curve, t1, left)
     (ax, ay), (bx, by) = derivative(curve, t0), derivative(curve, t1)
     u, v = (_stretch(curve, t, left) * (t1 - t0) / 3 for t in (t0, t1))

@@ -42,7 +42,7 @@ class Width:
     part: str
 
     def to_dict(self) -> dict[str, object]:
-        """The form in JSON."""
+        """Returns the form in JSON."""
         return {"length": self.length, "from": self.a, "to": self.b, "part": self.part}
 
 
@@ -77,7 +77,7 @@ class Part:
     mass: float | None = None
 
     def to_dict(self) -> dict[str, object]:
-        """The form in JSON."""
+        """Returns the form in JSON."""
         left, bottom, right, top = self.box
         squares = self.inertia
         return {
@@ -144,7 +144,7 @@ class NothingThereError(KeyError):
 
 
 def some_of(names: Sequence[str]) -> str:
-    """The first of them as a sentence has them, and how many more there are."""
+    """Returns the first of them as a sentence has them, and how many more there are."""
     return first_few(ticked(names), _NAMED)
 
 
@@ -177,7 +177,7 @@ def survey(
 
 
 def _far_pairs(drawing: Drawing) -> Iterator[Contact]:
-    """The pairs of bodies that the drawing leaves out, since their boxes are far from each other."""
+    """Yields the pairs of bodies that the drawing leaves out, since their boxes are far from each other."""
     compared = {(pair.a, pair.b) for pair in drawing.pairs}
     for one, other in combinations(drawing.bodies, 2):
         if (one.path, other.path) not in compared:
@@ -191,7 +191,7 @@ def measured(
     path: str | None = None,
     own_densities: Mapping[str, float] | None = None,
 ) -> Part:
-    """The part at a path, or the whole. Raises NothingThereError as `survey` does."""
+    """Returns the part at a path, or the whole. Raises NothingThereError as `survey` does."""
     surveyor = _Surveyor(model, drawing, own_densities or {})
     return surveyor.part(path) if path else surveyor.of_bodies(model.root.path, drawing.bodies)
 
@@ -279,7 +279,7 @@ class _Surveyor:
             )
 
     def _find(self, written: str) -> tuple[str, str]:
-        """The full path of what is meant, and its kind."""
+        """Returns the full path of what is meant, and its kind."""
         known = self._known()
         root = self.model.root.path
         for path in (written, f"{root}.{written}"):
@@ -309,7 +309,7 @@ def _total(values: Sequence[float | None]) -> float | None:
 
 
 def _measured(path: str, kind: str, region: Region) -> Part:
-    """A region with its thin places."""
+    """Returns a region with its thin places."""
     checkpoint()
     wall, gap = (Width(c.length, c.a, c.b, path) if c else None for c in widths(region))
     return replace(_part(path, kind, region), wall=wall, gap=gap)

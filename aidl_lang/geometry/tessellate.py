@@ -36,7 +36,7 @@ def region_polygons(region: Region, tolerance: float) -> list[Polygon]:
 
 
 def face_polygons(face: Face, tolerance: float) -> list[Polygon]:
-    """The outer polygon, counter-clockwise, then those of the holes, clockwise."""
+    """Returns the outer polygon, counter-clockwise, then those of the holes, clockwise."""
     return [_faithful(loop, tolerance) for loop in face.loops]
 
 
@@ -55,7 +55,7 @@ def _faithful(loop: Loop, tolerance: float) -> Polygon:
 
 
 def loop_points(loop: Loop, tolerance: float) -> Polygon:
-    """The polygon of a loop in its own direction (`tolerance` in mm, above 0)."""
+    """Returns the polygon of a loop in its own direction (`tolerance` in mm, above 0)."""
     if not tolerance > 0:
         raise ValueError(f"the tolerance must be above 0, not {tolerance}")
     polygon = np.concatenate([_from_start(piece, tolerance) for piece in loop.pieces])
@@ -63,7 +63,7 @@ def loop_points(loop: Loop, tolerance: float) -> Polygon:
 
 
 def piece_points(piece: Piece, tolerance: float) -> Polygon:
-    """A polyline along a piece, both ends included."""
+    """Returns a polyline along a piece, both ends included."""
     return np.concatenate((_from_start(piece, tolerance), [ends(piece)[1]]))
 
 

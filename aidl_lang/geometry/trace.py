@@ -67,7 +67,7 @@ class Sides:
 
 
 def trace(network: Network, section: Section) -> Traced:
-    """The exact region whose polygons Manifold returned, faces and loops in a canonical order."""
+    """Returns the exact region whose polygons Manifold returned, faces and loops in a canonical order."""
     return trace_all(network, [section])[0]
 
 
@@ -91,7 +91,7 @@ def trace_all(network: Network, sections: Sequence[Section]) -> list[Traced]:
 
 
 def _components(section: Section) -> list[Section]:
-    """The connected faces, one outer polygon each."""
+    """Returns the connected faces, one outer polygon each."""
     count = section.num_contour()
     return [section] if count == 1 else section.decompose() if count else []
 
@@ -158,7 +158,7 @@ def _sides(network: Network, polygons: list[NDArray[np.float64]]) -> Sides:
 
 
 def _touched_node(network: Network, a: int, b: int, p: Vec) -> int | None:
-    """The node at which two edges touch, if from a point between them to there they are one.
+    """Returns the node at which two edges touch, if from a point between them to there they are one.
 
     Near a touch chords cross however fine they are, and an outline changes from edge to edge too soon.
     """
@@ -216,7 +216,7 @@ def _split_at_pinches(runs: list[Run]) -> list[list[Run]]:
 
 
 def _run(network: Network, sides: Sides, number: int, begin: tuple[int, int], end: tuple[int, int]) -> Run:
-    """The run along one edge; its ends are given with the vertices of the run beside them."""
+    """Returns the run along one edge; its ends are given with the vertices of the run beside them."""
     place = sides.place
     first, start = _spot(network, sides, begin[0])
     last, stop = _spot(network, sides, end[0])
@@ -234,7 +234,7 @@ def _run(network: Network, sides: Sides, number: int, begin: tuple[int, int], en
 
 
 def _spot(network: Network, sides: Sides, vertex: int) -> tuple[int | None, Vec]:
-    """The node at a vertex, if there is one, and its place in millimetres."""
+    """Returns the node at a vertex, if there is one, and its place in millimetres."""
     if sides.owner[vertex] == NODE:
         node = int(sides.place[vertex])
         return node, network.nodes[node]

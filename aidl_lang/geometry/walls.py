@@ -65,7 +65,7 @@ WALL, GAP = 1, -1
 
 
 def widths(region: Region) -> Widths:
-    """The thinnest wall and the narrowest gap of a region."""
+    """Returns the thinnest wall and the narrowest gap of a region."""
     if not region:
         return Widths(None, None)
     outline = Skeleton(region)
@@ -122,7 +122,7 @@ class _Search:
 
 
 def _touch(o: Skeleton, tolerance: float) -> Vec | None:
-    """A place where two parts of the outline meet that do not follow each other."""
+    """Returns a place where two parts of the outline meet that do not follow each other."""
     for found in chords(o, tolerance + 2 * o.error, -1.0):
         slack = np.where(o.free[found.i] | o.free[found.j], 2 * o.error, 0.0)
         close = found.where(found.length <= tolerance + slack)
@@ -136,7 +136,7 @@ def _touch(o: Skeleton, tolerance: float) -> Vec | None:
 
 
 def _is_convex(outline: Skeleton) -> bool:
-    """Whether the outline is one loop that turns to the left only: beside it there is no gap."""
+    """Tells whether the outline is one loop that turns to the left only: beside it there is no gap."""
     whole = [is_closed(p) for p in outline.pieces]
     return bool(
         np.all((outline.side > 0) | (outline.half < ANGLE))
@@ -153,7 +153,9 @@ def _is_free(o: Skeleton, found: Chords, k: int) -> bool:
 
 
 def _settled(o: Skeleton, found: Chords, k: int) -> Chord | None:
-    """The chord itself, or the one at right angles that is near where curves are not straight or round."""
+    """Returns the chord itself, or the one at right angles that is near where curves are not straight or
+    round.
+    """
     a, b = _vec(found.a[k]), _vec(found.b[k])
     if not _is_free(o, found, k):
         return Chord(float(found.length[k]), a, b)
@@ -246,7 +248,7 @@ def _tapers(o: Skeleton) -> Iterator[tuple[int, Chord]]:
 
 
 def _is_clear(o: Skeleton, chord: Chord, kind: int) -> bool:
-    """Whether a chord runs through its kind of space alone.
+    """Tells whether a chord runs through its kind of space alone.
 
     It is looked at a little to its left and right, so that a corner it passes by does not count, and one
     through which it enters something does. A chord that runs along an edge is none.
@@ -265,7 +267,7 @@ def _is_clear(o: Skeleton, chord: Chord, kind: int) -> bool:
 
 
 def _runs_along(o: Skeleton, chord: Chord) -> bool:
-    """Whether the middle of a chord lies on a line of the outline in its direction."""
+    """Tells whether the middle of a chord lies on a line of the outline in its direction."""
     n = o.straight
     middle = np.array(((chord.a[0] + chord.b[0]) / 2, (chord.a[1] + chord.b[1]) / 2))
     offset = middle - o.start[:n]
@@ -275,7 +277,7 @@ def _runs_along(o: Skeleton, chord: Chord) -> bool:
 
 
 def _crosses(o: Skeleton, start: Floats, way: Floats, margin: float) -> bool:
-    """Whether a segment crosses the outline, its parts near the ends aside."""
+    """Tells whether a segment crosses the outline, its parts near the ends aside."""
     n = o.straight
     length = float(np.hypot(way[0], way[1]))
     offset = o.start[:n] - start
@@ -300,7 +302,9 @@ def _crosses(o: Skeleton, start: Floats, way: Floats, margin: float) -> bool:
 
 
 def _covers(o: Skeleton, spot: Floats) -> bool:
-    """Whether a place lies in the material: how often the outline goes round it, by the angles it sees."""
+    """Tells whether a place lies in the material: how often the outline goes round it, by the angles it
+    sees.
+    """
     n = o.straight
     turns = _seen(o.start[:n] - spot, o.start[:n] + o.way * o.length[:, None] - spot).sum()
     is_arc = o.radius > 0
@@ -320,7 +324,7 @@ def _covers(o: Skeleton, spot: Floats) -> bool:
 
 
 def _seen(a: Floats, b: Floats) -> Floats:
-    """The signed angles under which segments are seen from the origin."""
+    """Returns the signed angles under which segments are seen from the origin."""
     angles: Floats = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
     return angles
 

@@ -72,7 +72,7 @@ def _refuse(file: str, reason: str) -> int:
 
 
 def _timed(case: Case, times: int) -> tuple[Solution, float]:
-    """The solution, and the median of the seconds that it took."""
+    """Returns the solution, and the median of the seconds that it took."""
     seconds = []
     for _ in range(times):
         start = time.perf_counter()

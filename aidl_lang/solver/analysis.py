@@ -101,7 +101,7 @@ def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = 
 
 
 def _equal_rows(problem: Problem, holding: Bools, order: Sequence[int] | None) -> Ints:
-    """The equations of the constraints that are `holding`, in the order that is preferred."""
+    """Returns the equations of the constraints that are `holding`, in the order that is preferred."""
     rows = problem.rows
     equal = np.flatnonzero(holding[rows.constraint] & ~rows.at_most)
     if order is None:
@@ -112,7 +112,7 @@ def _equal_rows(problem: Problem, holding: Bools, order: Sequence[int] | None) -
 
 
 def _equations(problem: Problem, equal: Ints, slopes: Sparse) -> tuple[Equations, list[int]]:
-    """The equations that have a slope, and the constraints that consist of nothing else."""
+    """Returns the equations that have a slope, and the constraints that consist of nothing else."""
     rows = problem.rows
     matrix = slopes.scaled(1.0 / rows.scale[equal], problem.scale)
     lengths = matrix.lengths()
@@ -152,7 +152,9 @@ def _mobility(
 
 
 def _distinct(matrix: Sparse) -> tuple[Ints, Ints]:
-    """The first of all rows that are equal, and for each row its place among these; -1 for an empty one."""
+    """Returns the first of all rows that are equal, and for each row its place among these; -1 for an empty
+    one.
+    """
     known: dict[tuple[object, ...], int] = {}
     firsts: list[int] = []
     places: list[int] = []

@@ -71,7 +71,9 @@ class ArrayFreezing:
         self._slopes = np.ones(4 * len(self._values) + 1)
 
     def branches(self, roots: Ints) -> list[tuple[int, int]]:
-        """The branching nodes below these nodes (r,) through active branches, and the choice made at each."""
+        """Returns the branching nodes below these nodes (r,) through active branches, and the choice made at
+        each.
+        """
         below = np.zeros(len(self._values) + 1, dtype=np.bool_)  # the last one is for missing operands
         below[roots] = True
         added = np.arange(len(self._schedule.tape), len(self._values))
@@ -86,7 +88,7 @@ class ArrayFreezing:
         return not len(self._branching) and bool(self._varies[self._ops > Op.UNKNOWN].all())
 
     def varies(self, roots: Ints) -> Bools:
-        """Whether each of these nodes depends on a free unknown."""
+        """Tells whether each of these nodes depends on a free unknown."""
         return self._varies[roots]
 
     # -- branches
@@ -171,7 +173,7 @@ class ArrayFreezing:
         return layout.row, layout.unknown
 
     def program(self, roots: Ints) -> ArrayProgram:
-        """The rows at these nodes (r,), each of which varies."""
+        """Returns the rows at these nodes (r,), each of which varies."""
         layout = self._lay_out(roots)
         count, width = len(self._values), len(self._free)
         nodes = _distinct(layout.nodes, count)
@@ -205,7 +207,7 @@ class ArrayFreezing:
         return Graph(self._ops, self._operands, self._levels).batches(nodes)
 
     def _lay_out(self, roots: Ints) -> _Layout:
-        """The pairs of a row and a node below it that varies; remembered for the last roots."""
+        """Returns the pairs of a row and a node below it that varies; remembered for the last roots."""
         if self._laid_out is None or not np.array_equal(self._laid_out[0], roots):
             self._laid_out = roots, self._find_pairs(roots)
         return self._laid_out[1]
@@ -246,7 +248,7 @@ class ArrayFreezing:
         above.add(self._levels[child], row[at], child, low + at, k * len(self._values) + node[at])
 
     def _curved(self, nodes: Ints) -> Bools:
-        """Whether each node is not an affine function of those of its operands that vary."""
+        """Tells whether each node is not an affine function of those of its operands that vary."""
         ops, operands = self._ops[nodes], self._operands[nodes]
         second = self._varies[operands[:, 1]] & (operands[:, 1] >= 0)
         straight = _STRAIGHT[ops]
@@ -268,7 +270,7 @@ class _Pending:
             self._levels.setdefault(level, []).append(found)
 
     def descending(self) -> Iterable[int]:
-        """The levels that are left, from above; taking one may add lower ones."""
+        """Returns the levels that are left, from above; taking one may add lower ones."""
         while self._levels:
             yield max(self._levels)
 
@@ -280,7 +282,7 @@ class _Pending:
 
 
 def _table(ops: Iterable[int]) -> Bools:
-    """Whether each code of an operation is among `ops`."""
+    """Tells whether each code of an operation is among `ops`."""
     found = np.zeros(64, dtype=np.bool_)
     found[list(ops)] = True
     return found
@@ -291,15 +293,15 @@ _STRAIGHT = _table([*LINEAR, IDENTITY])
 
 
 def _distinct(numbers: Ints, count: int) -> Ints:
-    """The different numbers below `count` that occur, ascending."""
+    """Returns the different numbers below `count` that occur, ascending."""
     found = np.zeros(count, dtype=np.bool_)
     found[numbers] = True
     return np.flatnonzero(found)
 
 
 def _slope(batch: Batch, values: Floats, slopes: Floats) -> tuple[Floats, Bools]:
-    """The slope of each node in the direction of which `slopes` has those of its operands, and whether it is
-    the same everywhere.
+    """Returns the slope of each node in the direction of which `slopes` has those of its operands, and
+    whether it is the same everywhere.
     """
     op, operands = batch.op, batch.operands
     inner = [slopes[a] for a in operands]

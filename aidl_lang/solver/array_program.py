@@ -78,7 +78,7 @@ class ArrayProgram:
         return len(self.roots), len(self.columns)
 
     def residuals(self, x: Floats) -> Floats:
-        """The r rows at the k unknowns `x`."""
+        """Returns the r rows at the k unknowns `x`."""
         values = self._values
         values[self._inputs] = x
         with np.errstate(all="ignore"):
@@ -88,7 +88,9 @@ class ArrayProgram:
         return values[self.roots]
 
     def jacobian(self, row_factors: Floats, column_factors: Floats) -> Matrix:
-        """The (r, k) partial derivatives where `residuals` was last evaluated, times these factors."""
+        """Returns the (r, k) partial derivatives where `residuals` was last evaluated, times these
+        factors.
+        """
         entries = self.entries() * row_factors[self.entry_rows] * column_factors[self.indices]
         rows, columns = self.shape
         if rows * columns <= DENSE:
@@ -107,7 +109,9 @@ class ArrayProgram:
         return np.repeat(np.arange(len(self.roots)), np.diff(self.indptr))
 
     def entries(self) -> Floats:
-        """The partial derivatives in the order of the pattern, where `residuals` was last evaluated."""
+        """Returns the partial derivatives in the order of the pattern, where `residuals` was last
+        evaluated.
+        """
         values, slopes = self._values, self._slopes
         stride = len(values)
         with np.errstate(all="ignore"):

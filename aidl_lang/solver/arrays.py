@@ -13,7 +13,7 @@ from aidl_lang.solver.operations import PARTIALS, ROUNDING, STEEPEST, VALUE, Flo
 
 
 def values(op: int, operands: tuple[Floats, ...]) -> Floats:
-    """The values (k,) of k nodes of one operation, from (k,) arrays of their operands."""
+    """Returns the values (k,) of k nodes of one operation, from (k,) arrays of their operands."""
     if function := _VALUE.get(op):
         return function(*operands)
     scalar = VALUE[op]
@@ -21,7 +21,9 @@ def values(op: int, operands: tuple[Floats, ...]) -> Floats:
 
 
 def partials(op: int, operands: tuple[Floats, ...], value: Floats) -> tuple[Floats, ...]:
-    """The partial derivatives of k nodes, an array (k,) or a number for each operand; always finite."""
+    """Returns the partial derivatives of k nodes, an array (k,) or a number for each operand; always
+    finite.
+    """
     if function := _PARTIALS.get(op):
         return tuple(_finite(slope) for slope in function(*operands, value))
     scalar = PARTIALS[op]

@@ -56,8 +56,8 @@ def solve(
     tolerance: float,
     clock: Clock,
 ) -> tuple[Floats, Bools, Bools]:
-    """The values (k,) of all columns, and which systems were solved; the values of others mean nothing. Then
-    the systems whose linear equations contradict each other at once, in any branch.
+    """Returns the values (k,) of all columns, and which systems were solved; the values of others mean
+    nothing. Then the systems whose linear equations contradict each other at once, in any branch.
     """
     stacks = list(_stacks(program, systems, at_most))
     x = scaling.origin.copy()
@@ -84,7 +84,7 @@ def solve(
 
 
 def _stacks(program: ArrayProgram, systems: Systems, at_most: Bools) -> Iterator[_Stack]:
-    """The wanted systems by shape."""
+    """Yields the wanted systems by shape."""
     count = len(systems.wanted)
     rows_of = np.bincount(systems.of_row, minlength=count)
     columns_of = np.bincount(systems.of_column, minlength=count)
@@ -116,7 +116,7 @@ def _stacks(program: ArrayProgram, systems: Systems, at_most: Bools) -> Iterator
 
 
 def _ranks(of: Ints, counts: Ints) -> tuple[Ints, Ints]:
-    """The members in order of their systems, and the place of each within its system."""
+    """Returns the members in order of their systems, and the place of each within its system."""
     order = np.argsort(of, kind="stable")
     rank = np.empty(len(of), dtype=np.int64)
     rank[order] = np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -220,8 +220,8 @@ class _Stack:
             self.failed |= still & ~pushing
 
     def _push(self, jacobian: Floats) -> Bools:
-        """Whether the inequalities of each system keep it from being nearer; those that do not are not met
-        with equality.
+        """Tells whether the inequalities of each system keep it from being nearer; those that do not are not
+        met with equality.
         """
         multipliers = -np.einsum("bkm,bk->bm", np.linalg.pinv(jacobian), self.z)
         slack = PULLING * (1.0 + np.abs(multipliers).max(axis=1))
@@ -231,7 +231,8 @@ class _Stack:
 
 
 def least_norm(jacobian: Floats, y: Floats, which: Bools) -> tuple[Floats, Floats]:
-    """The shortest z (b, k) with J z = y for J (b, m, k), y (b, m), and what of y is beyond reach (b, m).
+    """Returns the shortest z (b, k) with J z = y for J (b, m, k), y (b, m), and what of y is beyond reach (b,
+    m).
 
     Only those in `which` (b,) are looked for. Where J or y is not finite, everything is beyond reach.
     """

@@ -170,7 +170,7 @@ class _Attempt:
             base = self._current()
 
     def _active(self) -> tuple[Branch, ...]:
-        """The branches active at the current values."""
+        """Returns the branches active at the current values."""
         return self.freezer.freeze([self.task.rows[i].expression for i in self.considered]).branches
 
     def _solve_in_branch(
@@ -257,8 +257,8 @@ class _Attempt:
         return verdict
 
     def _turning(self, blamed: Mapping[int, float]) -> list[int]:
-        """The branching nodes that may help where the rows `blamed` contradict each other, or, if none is to
-        blame, those that do not hold at the current values.
+        """Returns the branching nodes that may help where the rows `blamed` contradict each other, or, if
+        none is to blame, those that do not hold at the current values.
         """
         rows, tolerance = self.task.rows, self.settings.tolerance
         unmet = [rows[i].expression for i in blamed] or [
@@ -271,7 +271,7 @@ class _Attempt:
         return nodes
 
     def _is_refuted(self) -> bool:
-        """Whether it is shown that no branches would help."""
+        """Tells whether it is shown that no branches would help."""
         from aidl_lang.solver.refuting import is_refuted
 
         return is_refuted(self.values, self.task.rows, self.free, self.settings.tolerance)
@@ -368,7 +368,7 @@ class _Attempt:
             self.steady = steady
 
     def _failing_constants(self, frozen: Frozen) -> list[int]:
-        """The hard rows that no free unknown moves and that do not hold as they are."""
+        """Returns the hard rows that no free unknown moves and that do not hold as they are."""
         return [
             i
             for i in frozen.constant
@@ -378,7 +378,7 @@ class _Attempt:
         ]
 
     def _judge(self, end: End) -> Verdict:
-        """The verdict of the original expressions at the current values."""
+        """Returns the verdict of the original expressions at the current values."""
         worst = 0.0
         for row, softness in zip(self.task.rows, self.task.softness, strict=True):
             if not softness:

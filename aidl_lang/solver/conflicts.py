@@ -90,8 +90,8 @@ def explain(
 
 
 def conflict(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) -> tuple[list[int], bool]:
-    """A set among the constraints of `scope` that cannot hold together with its unknowns free, starting from
-    `before`, and whether it is known to be minimal; an empty set if all of them can.
+    """Returns a set among the constraints of `scope` that cannot hold together with its unknowns free,
+    starting from `before`, and whether it is known to be minimal; an empty set if all of them can.
     """
     hierarchy.values.assign(before.items())
     search = _Search(hierarchy, scope, before)
@@ -156,7 +156,7 @@ class _Search:
         )
 
     def _found(self, group: int, failing: Sequence[int], place: _Trial) -> GroupFailure:
-        """A failure of constraints that hold in another place."""
+        """Returns a failure of constraints that hold in another place."""
         hierarchy = self.hierarchy
         hierarchy.values.assign(self.before.items())
         members = tuple(self.member(hierarchy, index) for index in failing)
@@ -171,8 +171,8 @@ class _Search:
         )
 
     def _nearest(self, conflict: Sequence[int], best: _Trial, starts: int) -> _Trial:
-        """The best of searches from many places: where the constraints hold after all, if one finds that,
-        with no kept size changed if possible.
+        """Returns the best of searches from many places: where the constraints hold after all, if one finds
+        that, with no kept size changed if possible.
         """
         hierarchy, clock = self.hierarchy, Clock(min(LONGEST, self.hierarchy.clock.left / 2.0))
         mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, conflict))
@@ -205,15 +205,15 @@ class _Search:
 
     @staticmethod
     def member(hierarchy: Hierarchy, index: int) -> Member:
-        """The constraint and how far it is off at the current values."""
+        """Returns the constraint and how far it is off at the current values."""
         hierarchy.refresh([index])
         return Member(index, max(violation_of(row, hierarchy.values) for row in hierarchy.rows([index])))
 
     # -- the set
 
     def _conflict(self, best: dict[int, float], refuted: list[int]) -> list[int]:
-        """A set that cannot hold together, found among those that are `refuted` if there are any; minimal
-        unless the budget was spent.
+        """Returns a set that cannot hold together, found among those that are `refuted` if there are any;
+        minimal unless the budget was spent.
         """
         if refuted:
             return self._needed(refuted)
@@ -223,8 +223,8 @@ class _Search:
         return self._needed(found)
 
     def _needed(self, found: list[int]) -> list[int]:
-        """A smallest part of a set that fails which still does, or what was left of it as the budget was
-        spent.
+        """Returns a smallest part of a set that fails which still does, or what was left of it as the budget
+        was spent.
         """
         if self._relaxation(found).is_tight:
             return sorted(found)
@@ -265,8 +265,8 @@ class _Search:
         return self.hierarchy.unmet(self.scope.constraints)
 
     def _around(self, best: dict[int, float]) -> Iterator[list[int]]:
-        """The constraint that is furthest off and those that share free unknowns with it, then those that do
-        with these, and so on while they are few.
+        """Yields the constraint that is furthest off and those that share free unknowns with it, then those
+        that do with these, and so on while they are few.
         """
         hierarchy, free = self.hierarchy, self.scope.free
         violated = self._violated(best)
@@ -285,7 +285,9 @@ class _Search:
             before = len(around)
 
     def _connected(self) -> Iterator[list[int]]:
-        """The constraints by free unknowns that they share, directly or by others; at last all of them."""
+        """Yields the constraints by free unknowns that they share, directly or by others; at last all of
+        them.
+        """
         hierarchy, free = self.hierarchy, self.scope.free
         groups: list[tuple[set[int], list[int]]] = []
         for index in self.scope.constraints:
@@ -304,14 +306,14 @@ class _Search:
     # -- what there is to say of it
 
     def _count(self, conflict: Sequence[int]) -> tuple[tuple[int, ...], int]:
-        """The unknowns that could move for the conflict, and the number of its equations."""
+        """Returns the unknowns that could move for the conflict, and the number of its equations."""
         hierarchy = self.hierarchy
         mentioned = frozenset().union(*map(hierarchy.mentions.__getitem__, conflict))
         rows = hierarchy.rows(conflict)
         return tuple(sorted(mentioned & self.scope.free)), sum(r.relation is Relation.EQUAL for r in rows)
 
     def _sizes(self, conflict: Sequence[int]) -> frozenset[int]:
-        """The kept sizes that constraints are about which hang on no position."""
+        """Returns the kept sizes that constraints are about which hang on no position."""
         hierarchy, found = self.hierarchy, set[int]()
         for index in conflict:
             roots = [row.expression for row in hierarchy.rows([index])]
@@ -323,7 +325,7 @@ class _Search:
         return frozenset(found)
 
     def _curved(self, conflict: Sequence[int]) -> bool:
-        """Whether the slopes of the rows depend on the place."""
+        """Tells whether the slopes of the rows depend on the place."""
         hierarchy = self.hierarchy
         roots = [row.expression for row in hierarchy.rows(conflict)]
         free = sorted(self.scope.free)
@@ -345,7 +347,7 @@ class _Search:
         return self.clock.expired or self.work >= self.left
 
     def _holds(self, constraints: Sequence[int]) -> bool:
-        """Whether constraints can hold together, as far as a proof or a search tells."""
+        """Tells whether constraints can hold together, as far as a proof or a search tells."""
         wanted = tuple(sorted(constraints))
         if wanted not in self.trials:
             relaxation = self._relaxation(wanted)

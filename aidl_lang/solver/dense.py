@@ -46,7 +46,7 @@ class LeastNorm:
 
 
 def least_norm(jacobian: Floats, y: Floats) -> LeastNorm:
-    """The shortest z with J z = y."""
+    """Returns the shortest z with J z = y."""
     if len(y) == 1:
         return _least_norm_of_one(jacobian, y)
     if jacobian.size > SMALL and (solved := _least_norm_by_cholesky(jacobian, y) or _by_giving(jacobian, y)):

@@ -33,7 +33,7 @@ Relation: TypeAlias = dict[int, float]
 
 
 def dependent_rows(rows: Sparse, width: int) -> tuple[dict[int, Relation], list[int]]:
-    """The relation of each dependent row among unit rows, and rows of which it could not be told."""
+    """Returns the relation of each dependent row among unit rows, and rows of which it could not be told."""
     relations = _copies(rows, width)
     originals = others(len(rows), relations)
     matrix = rows.take(originals)
@@ -78,7 +78,7 @@ def _copies(matrix: Sparse, width: int) -> dict[int, Relation]:
 
 
 def _pairs(matrix: Sparse, row: int) -> list[tuple[int, float]]:
-    """The columns and entries of a row."""
+    """Returns the columns and entries of a row."""
     here = slice(matrix.starts[row], matrix.starts[row + 1])
     return list(zip(matrix.columns[here].tolist(), matrix.entries[here].tolist(), strict=True))
 
@@ -111,7 +111,7 @@ def _entangled(matrix: Sparse, width: int) -> Ints:
 
 
 def _doubtful_parts(matrix: Sparse, width: int) -> Iterable[Ints]:
-    """The rows by what they share, without parts that are clearly independent."""
+    """Returns the rows by what they share, without parts that are clearly independent."""
     if not len(matrix):
         return []
     links = matrix.links
@@ -136,7 +136,7 @@ def _doubtful_parts(matrix: Sparse, width: int) -> Iterable[Ints]:
 
 
 def _relations(matrix: Sparse) -> dict[int, Relation] | None:
-    """The dependent rows of one part; None if the rank cannot be told."""
+    """Returns the dependent rows of one part; None if the rank cannot be told."""
     columns = each_once(matrix.columns)
     if max(len(columns), len(matrix)) > LARGE:
         return _sparse_relations(matrix, columns)

@@ -68,7 +68,7 @@ def independent_rows(matrix: Sparse, width: int) -> Ints:
 
 
 def rank_of(blocks: Iterable[Sparse], width: int) -> int:
-    """The rank of matrices of unit rows on top of each other. Raises UndecidedError."""
+    """Returns the rank of matrices of unit rows on top of each other. Raises UndecidedError."""
     parts = list(blocks)
     starts = np.cumsum([0, *(len(part.columns) for part in parts)])
     stacked = Sparse(
@@ -101,7 +101,7 @@ class NullSpace:
 
 
 def combinations(rows: Sparse, wanted: Sparse, width: int) -> Floats:
-    """The coefficients (w, r) of independent rows that make up each of w wanted ones."""
+    """Returns the coefficients (w, r) of independent rows that make up each of w wanted ones."""
     basis, target = as_csr(rows, width), as_csr(wanted, width).T.toarray()
     solve = gram_solver(basis)
     found = solve(basis @ target)
@@ -162,7 +162,9 @@ def _untouched(
     priority: Floats,
     width: int,
 ) -> tuple[Ints, Ints]:
-    """The candidates (one to a row) that come before all those they touch, and of the rest again the same."""
+    """Returns the candidates (one to a row) that come before all those they touch, and of the rest again the
+    same.
+    """
     column_starts = np.flatnonzero(np.diff(columns[by_column], prepend=-1))
     column_names = columns[by_column][column_starts]
     taken: list[Ints] = []
@@ -191,7 +193,9 @@ def _untouched(
 def _eliminate(
     rest: scipy.sparse.csr_array, names: Ints, rows: Ints, pivots: Ints
 ) -> tuple[scipy.sparse.csr_array, Ints]:
-    """The Schur complement of the pivots: the other rows without the part along the pivots' columns."""
+    """Returns the Schur complement of the pivots: the other rows without the part along the pivots'
+    columns.
+    """
     place = np.full(rest.shape[1], -1)
     place[pivots] = np.arange(len(pivots))
     upper = rest[rows]

@@ -172,7 +172,7 @@ class TapeBuilder:
         return self._extremum(self._maximum_of_two, args)
 
     def mod(self, a: int, b: int) -> int:
-        """The remainder a - b floor(a / b), which has the sign of `b`."""
+        """Returns the remainder a - b floor(a / b), which has the sign of `b`."""
         return self._node(Op.MOD, a, b)
 
     def select(self, condition: int, a: int, b: int) -> int:
@@ -184,7 +184,7 @@ class TapeBuilder:
         return self._node(Op.SELECT, condition, a, b)
 
     def cubic_max(self, p0: int, p1: int, p2: int, p3: int) -> int:
-        """The greatest value over t in [0, 1] of the cubic with these Bernstein coefficients."""
+        """Returns the greatest value over t in [0, 1] of the cubic with these Bernstein coefficients."""
         return self._node(Op.CUBIC_MAX, p0, p1, p2, p3)
 
     def finish(self) -> Tape:
@@ -207,7 +207,7 @@ class TapeBuilder:
         return a if a == b else self._of_two(Op.MAXIMUM, min(a, b), max(a, b))
 
     def _extremum(self, of_two: Callable[[int, int], int], args: Sequence[int]) -> int:
-        """A balanced tree of binary nodes, so that the depth of the tape stays logarithmic."""
+        """Returns a balanced tree of binary nodes, so that the depth of the tape stays logarithmic."""
         if not args:
             raise ValueError("minimum and maximum take at least one operand")
         level = sorted(set(args))
@@ -217,7 +217,7 @@ class TapeBuilder:
         return level[0]
 
     def _of_two(self, op: int, a: int, b: int) -> int:
-        """The node of an operation on two, the kind that most are."""
+        """Returns the node of an operation on two, the kind that most are."""
         key = (op, a, b)
         node = self._known.get(key)
         if node is not None:
@@ -247,7 +247,7 @@ class TapeBuilder:
 
 
 def below(tape: Tape, roots: Iterable[int]) -> list[int]:
-    """The nodes that `roots` are made of, operands first."""
+    """Returns the nodes that `roots` are made of, operands first."""
     ops, operands = tape.op_list, tape.operand_lists
     seen = set(roots)
     if len(tape) < DENSE * len(seen):
@@ -271,6 +271,6 @@ def below(tape: Tape, roots: Iterable[int]) -> list[int]:
 
 
 def mentioned(tape: Tape, roots: Iterable[int]) -> list[int]:
-    """The unknowns that `roots` are made of, in the order of their nodes."""
+    """Returns the unknowns that `roots` are made of, in the order of their nodes."""
     ops, operands = tape.op_list, tape.operand_lists
     return [operands[node][0] for node in below(tape, roots) if ops[node] == Op.UNKNOWN]

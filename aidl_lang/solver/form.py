@@ -84,7 +84,7 @@ class Case:
 
 
 def read(text: str) -> Case:
-    """The problem in a JSON text. Raises `FormError`."""
+    """Returns the problem in a JSON text. Raises `FormError`."""
     if len(text) > LONGEST_FILE:
         raise FormError(f"more than {LONGEST_FILE} characters")
     try:
@@ -98,7 +98,7 @@ def read(text: str) -> Case:
 
 
 def load(form: object) -> Case:
-    """The problem in a JSON document that was parsed already. Raises `FormError`."""
+    """Returns the problem in a JSON document that was parsed already. Raises `FormError`."""
     return _Loading().case(form)
 
 
@@ -237,12 +237,12 @@ class _Loading:
         return self.groups[members.read("group", one_of("group", self.groups), ROOT)]
 
     def _numbers_of(self, value: object) -> frozenset[int]:
-        """The unknowns in a list of names."""
+        """Returns the unknowns in a list of names."""
         names = list_of(one_of("unknown", self.notation.unknowns))(value)
         return frozenset(self.notation.unknowns[name] for name in names)
 
     def _groups_of(self, value: object) -> frozenset[int]:
-        """The groups in a list of names."""
+        """Returns the groups in a list of names."""
         return frozenset(self.groups[name] for name in list_of(one_of("group", self.groups))(value))
 
     # -- constraints and observables
@@ -274,7 +274,7 @@ class _Loading:
         return self.notation.row(as_text(value))
 
     def _observables(self, members: Members) -> tuple[tuple[int, int], ...]:
-        """Those that are given; else all unknowns but those of frames."""
+        """Returns those that are given; else all unknowns but those of frames."""
         if "observed" in members:
             return tuple(members.need("observed", list_of(self._observable)))
         drawn = [(u.group, i) for i, u in enumerate(self.unknowns) if u.frame_of < 0]
@@ -309,7 +309,7 @@ class _Loading:
         return homes
 
     def _common(self, a: int, b: int) -> int:
-        """The innermost group that holds both; parents have lower numbers than their children."""
+        """Returns the innermost group that holds both; parents have lower numbers than their children."""
         if a < 0:
             return b
         while a != b:

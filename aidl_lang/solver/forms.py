@@ -69,7 +69,7 @@ class Forms:
         return self._find(node) if found is None else found
 
     def below(self, form: Form) -> list[int]:
-        """The slots of the knots in a form."""
+        """Returns the slots of the knots in a form."""
         width = self.width
         return [] if isinstance(form, float) else [slot for slot in form.terms if slot >= width]
 
@@ -148,7 +148,7 @@ def scaled(form: Form, factor: float) -> Form:
 
 
 def applied(op: int, parts: Sequence[Form]) -> Form | None:
-    """The form of an operation without branches; None if it is not affine."""
+    """Returns the form of an operation without branches; None if it is not affine."""
     first, last = parts[0], parts[-1]
     if op == Op.ADD:
         return combined(first, last, 1.0)
@@ -167,7 +167,7 @@ def applied(op: int, parts: Sequence[Form]) -> Form | None:
 
 
 def branched(op: int, parts: Sequence[Form]) -> Form | None:
-    """The form of a branching operation if nothing is left to choose, else None."""
+    """Returns the form of a branching operation if nothing is left to choose, else None."""
     first = parts[0]
     if op == Op.SELECT:
         if isinstance(first, float):

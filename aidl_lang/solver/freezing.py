@@ -70,8 +70,8 @@ class Freezer:
         """Knots that hang on a choice, which free unknowns decide."""
 
     def choice(self, flipped: frozenset[int] = frozenset()) -> Choice:
-        """The branches that are active at the values at which they are first asked for, which must be up to
-        date; nodes in `flipped` take the other one.
+        """Returns the branches that are active at the values at which they are first asked for, which must be
+        up to date; nodes in `flipped` take the other one.
         """
         return Choice(self, flipped)
 
@@ -86,18 +86,18 @@ class Freezer:
         return None if self.hangs(form) else found
 
     def slopes(self, node: int) -> dict[int, float] | None:
-        """The slopes of a node in the branch that is active, by unknown; None where it bends."""
+        """Returns the slopes of a node in the branch that is active, by unknown; None where it bends."""
         form, width = self.choice().form(self.forms[node]), self.forms.width
         if isinstance(form, float):
             return {}
         return None if any(slot >= width for slot in form.terms) else dict(form.terms)
 
     def hangs(self, form: Form) -> bool:
-        """Whether a form of the tape hangs on a choice."""
+        """Tells whether a form of the tape hangs on a choice."""
         return not self.hanging.isdisjoint(self.forms.below(form))
 
     def choices(self, roots: Iterable[int]) -> list[int]:
-        """The nodes below `roots` at which free unknowns choose the branch, outermost first."""
+        """Returns the nodes below `roots` at which free unknowns choose the branch, outermost first."""
         forms, freezing = self.forms, self.choice()
         found: set[int] = set()
         stack: list[int] = []
@@ -167,14 +167,14 @@ class Choice:
         return Frozen(self._programs(rooted), constant, self._active(whole), steady)
 
     def _whole(self, root: Root) -> Form:
-        """The form with all unknowns free."""
+        """Returns the form with all unknowns free."""
         if isinstance(root, int):
             return self.forms[root]
         a, b = (0.0 if node == ZERO else self.forms[node] for node in root)
         return combined(a, b, -1.0)
 
     def _active(self, whole: Iterable[Form]) -> tuple[Branch, ...]:
-        """The choices that forms hang on, not those within branches that were not taken."""
+        """Returns the choices that forms hang on, not those within branches that were not taken."""
         found: set[int] = set()
         stack = [slot for form in whole for slot in self.forms.below(form)]
         while stack:
@@ -190,7 +190,7 @@ class Choice:
     # -- from forms over all unknowns to forms over what is free
 
     def form(self, whole: Form) -> Form:
-        """A form with what is not free put in."""
+        """Returns a form with what is not free put in."""
         free, width, unknowns = self.free, self.width, self.freezer.values.unknowns
         if isinstance(whole, float) or whole.terms.keys() <= free:
             return whole
@@ -267,7 +267,7 @@ class Choice:
     # -- recipes
 
     def _slot(self, form: Form) -> int:
-        """The slot that has the value of a form."""
+        """Returns the slot that has the value of a form."""
         if isinstance(form, float):
             return self._new(NUMBER, (), (), form)
         if len(form.terms) == 1 and form.constant == 0.0:

@@ -72,18 +72,18 @@ class Sparse:
         return np.asarray(np.sqrt(squares), dtype=np.float64)
 
     def scaled(self, rows: Floats, columns: Floats) -> Sparse:
-        """Every entry times the factors of its row and its column."""
+        """Returns every entry times the factors of its row and its column."""
         return Sparse(self.starts, self.columns, self.entries * rows[self.rows] * columns[self.columns])
 
     def take(self, rows: Ints) -> Sparse:
-        """The given rows, in their order."""
+        """Returns the given rows, in their order."""
         counts = self.starts[rows + 1] - self.starts[rows]
         starts = _starts(counts)
         picked = np.arange(starts[-1]) + np.repeat(self.starts[rows] - starts[:-1], counts)
         return Sparse(starts, self.columns[picked], self.entries[picked])
 
     def only(self, entries: NDArray[np.bool_]) -> Sparse:
-        """The same without the entries that are marked False."""
+        """Returns the same without the entries that are marked False."""
         starts = _starts(np.bincount(self.rows[entries], minlength=len(self)))
         return Sparse(starts, self.columns[entries], self.entries[entries])
 
@@ -100,7 +100,7 @@ class Sparse:
         return firsts, self.columns
 
     def dense(self, columns: Ints) -> Floats:
-        """The given columns, which are ascending and hold every entry."""
+        """Returns the given columns, which are ascending and hold every entry."""
         matrix = np.zeros((len(self), len(columns)))
         matrix[self.rows, np.searchsorted(columns, self.columns)] = self.entries
         return matrix
@@ -111,15 +111,15 @@ def _starts(counts: NDArray[np.intp]) -> Ints:
 
 
 def gradients(values: Valuation, roots: Iterable[int]) -> dict[int, Gradient]:
-    """The gradient of each root at the current node values, which must be up to date."""
+    """Returns the gradient of each root at the current node values, which must be up to date."""
     wanted = list(roots)
     found = _forward(values.tape, values.nodes, below(values.tape, wanted))
     return {root: found[root] for root in wanted}
 
 
 def linearise(tape: Tape, at: Floats, roots: Ints, among: Bools | None = None) -> tuple[Floats, Sparse]:
-    """The values (r,) of `roots` at the unknowns `at` (n,), and their finite partial derivatives; by the
-    unknowns `among` (n,) only, if these are given.
+    """Returns the values (r,) of `roots` at the unknowns `at` (n,), and their finite partial derivatives; by
+    the unknowns `among` (n,) only, if these are given.
 
     Unknowns without influence on a root have no entry; entries that cancel may be zeros, and products that
     overflow count as none.
@@ -169,7 +169,9 @@ def _slopes(op: int, args: tuple[int, ...], values: Values, node: int) -> tuple[
 def _forward(
     tape: Tape, values: Values, nodes: Iterable[int], among: Sequence[bool] | None = None
 ) -> dict[int, Gradient]:
-    """The gradient of each node from those of its operands; by the unknowns `among`, if these are given."""
+    """Returns the gradient of each node from those of its operands; by the unknowns `among`, if these are
+    given.
+    """
     ops, operands = tape.op_list, tape.operand_lists
     found: dict[int, Gradient] = {}
     for node in nodes:
@@ -192,8 +194,8 @@ def _forward(
 
 
 def _everything(tape: Tape, at: Floats, among: Bools | None) -> tuple[Floats, Floats]:
-    """The value (m,) of every node of the tape, and the slope (m, 4) of each along its operands; along those
-    that depend on an unknown `among` only, if these are given.
+    """Returns the value (m,) of every node of the tape, and the slope (m, 4) of each along its operands;
+    along those that depend on an unknown `among` only, if these are given.
     """
     schedule = Schedule(tape)
     values, slopes = schedule.evaluate(at), np.zeros((len(tape), BRANCHES))
@@ -211,7 +213,7 @@ def _everything(tape: Tape, at: Floats, among: Bools | None) -> tuple[Floats, Fl
 
 
 def _backward(tape: Tape, slopes: Floats, roots: Ints) -> Sparse:
-    """The adjoints of all roots at once, from the highest level of the tape to the unknowns."""
+    """Returns the adjoints of all roots at once, from the highest level of the tape to the unknowns."""
     operands, level = tape.operands.astype(np.int64), tape.levels
     pending: dict[int, list[_Adjoints]] = {}
     _sort_in(pending, level, (np.arange(len(roots)), roots, np.ones(len(roots))))

@@ -67,8 +67,8 @@ class Group:
         self._weigh_preferences(reached)
 
     def _solve_part(self, part: list[int]) -> Tier | None:
-        """The stage that satisfied everything; of a conflict the last one written is left out, and the rest
-        solved. None when it is not known what to leave out.
+        """Returns the stage that satisfied everything; of a conflict the last one written is left out, and
+        the rest solved. None when it is not known what to leave out.
         """
         hierarchy = self.hierarchy
         self.tiers.place(part)
@@ -89,7 +89,9 @@ class Group:
             self._refuted.clear()
 
     def _leave_out(self) -> int | None:
-        """The constraint to go on without after a failure; None if it is not known which would help."""
+        """Returns the constraint to go on without after a failure; None if it is not known which would
+        help.
+        """
         failure = self.hierarchy.failures[-1]
         own = [index for index in failure.conflict if index in self.hard]
         known = failure.minimal and own and not self.hierarchy.clock.expired
@@ -98,7 +100,7 @@ class Group:
     # -- stages
 
     def _deepen(self, part: list[int], violated: list[int]) -> Tier | None:
-        """The tier of the first stage that satisfies everything, None if there is none."""
+        """Returns the tier of the first stage that satisfies everything, None if there is none."""
         hierarchy = self.hierarchy
         everything = self.tiers.everything(part)
         before = hierarchy.save(everything.free)
@@ -135,8 +137,8 @@ class Group:
     def _from_elsewhere(
         self, failure: GroupFailure, part: list[int], before: dict[int, float]
     ) -> Tier | None:
-        """The stage that satisfies everything from the place at which those that failed hold; None if none
-        does.
+        """Returns the stage that satisfies everything from the place at which those that failed hold; None if
+        none does.
         """
         hierarchy = self.hierarchy
         for tier in (POSITIONS, (9, 0)) if failure.holds_elsewhere else ():
@@ -201,7 +203,9 @@ class Group:
     # -- what stands in the way
 
     def _is_refuted(self, seeds: Sequence[int]) -> bool:
-        """Whether it is shown that no stage can satisfy `seeds` and what binds all that is free for them."""
+        """Tells whether it is shown that no stage can satisfy `seeds` and what binds all that is free for
+        them.
+        """
         key = tuple(seeds)
         if key not in self._refuted:
             from aidl_lang.solver.refuting import is_refuted
@@ -218,7 +222,7 @@ class Group:
         return {rows[i].expression: factor for i, factor in verdict.proof.items()}
 
     def _stands(self, proof: Proof, free: frozenset[int]) -> bool:
-        """Whether the proof holds with more unknowns free: whether none of them has a share in it."""
+        """Tells whether the proof holds with more unknowns free: whether none of them has a share in it."""
         if not proof:
             return False
         values = self.hierarchy.values
@@ -259,8 +263,8 @@ class Group:
         return None
 
     def _cheapest(self, proof: Proof, freed: set[int]) -> int | None:
-        """The kept size that would mend what a proof says by the smallest part of itself, of the first stage
-        at which one has a share in it.
+        """Returns the kept size that would mend what a proof says by the smallest part of itself, of the
+        first stage at which one has a share in it.
         """
         hierarchy = self.hierarchy
         hierarchy.refresh(self.tiers.scope((9, 0), self.hard).constraints)

@@ -231,11 +231,11 @@ class Hierarchy:
         return self._hard[index]
 
     def is_kept(self, unknown: int) -> bool:
-        """Whether an unknown is a size."""
+        """Tells whether an unknown is a size."""
         return self._kept[unknown]
 
     def is_spanned(self, unknown: int) -> bool:
-        """Whether an unknown is a size that was read off two places."""
+        """Tells whether an unknown is a size that was read off two places."""
         return self._spanned[unknown]
 
     def held_by(self, group: int) -> list[int]:
@@ -262,7 +262,9 @@ class Hierarchy:
         self.values.update([row.expression for row in self.rows(indices)])
 
     def unmet(self, indices: Collection[int]) -> list[int]:
-        """Those of the constraints that do not hold by the original expressions at the current values."""
+        """Returns those of the constraints that do not hold by the original expressions at the current
+        values.
+        """
         self.refresh(indices)
         constraints, values, tolerance = self.problem.constraints, self.values, self.settings.tolerance
         return [i for i in indices if not all(holds(row, values, tolerance) for row in constraints[i].rows)]
@@ -300,7 +302,7 @@ class Hierarchy:
         return {unknown: self.values.unknowns[unknown] for unknown in unknowns}
 
     def since(self, before: Mapping[int, float], unknowns: Iterable[int]) -> dict[int, float]:
-        """The values that `unknowns` had; `before` may lack those that have not moved since."""
+        """Returns the values that `unknowns` had; `before` may lack those that have not moved since."""
         return {unknown: before.get(unknown, self.values.unknowns[unknown]) for unknown in unknowns}
 
     def moved(self, unknown: int, before: float) -> bool:

@@ -55,7 +55,7 @@ def settled(
 
 
 def residual(problem: Problem, settings: Settings, constraint: int, place: Mapping[int, float]) -> float:
-    """The row of a constraint that is furthest from zero in some place, with its sign."""
+    """Returns the row of a constraint that is furthest from zero in some place, with its sign."""
     hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
     hierarchy.values.assign(place.items())
     hierarchy.refresh([constraint])

@@ -89,7 +89,7 @@ class Levels:
         return pairs
 
     def nodes(self) -> Floats:
-        """The value (m,) of each node of the tape at `x`."""
+        """Returns the value (m,) of each node of the tape at `x`."""
         if self._evaluated is None or not np.array_equal(self._evaluated[0], self.x):
             self._evaluated = self.x.copy(), self.schedule.evaluate(self.x)
         return self._evaluated[1]
@@ -136,7 +136,7 @@ class Levels:
                 return
 
     def unsolved(self, depth: int) -> Ints:
-        """The groups at `depth` with a hard constraint that does not hold."""
+        """Returns the groups at `depth` with a hard constraint that does not hold."""
         holds = self._all(self._holding(self.nodes()))
         found: Ints = self.problem.holder[self.binding & (self._holder_depth == depth) & ~holds]
         return found
@@ -145,7 +145,7 @@ class Levels:
         return violations(self.problem, nodes) <= self.settings.tolerance * self.problem.rows.scale
 
     def _all(self, holding: Bools) -> Bools:
-        """Whether all rows of each constraint (c,) hold."""
+        """Tells whether all rows of each constraint (c,) hold."""
         found = np.ones(len(self.problem.holder), dtype=np.bool_)
         found[self.problem.rows.constraint[~holding]] = False
         return found
@@ -189,7 +189,9 @@ class Levels:
         return found
 
     def _scope(self, active: Bools, seeds: Bools, allowed: Bools) -> tuple[Bools, Bools]:
-        """The constraints and the free unknowns: what the seeds mention, what binds that, and so on."""
+        """Returns the constraints and the free unknowns: what the seeds mention, what binds that, and so
+        on.
+        """
         pairs = np.flatnonzero(active[self.constraints] & allowed[self.unknowns])
         constraints, unknowns = self.constraints[pairs], self.unknowns[pairs]
         scope, free = seeds.copy(), np.zeros(len(allowed), dtype=np.bool_)
@@ -260,8 +262,8 @@ class Levels:
     def _solve_rows(
         self, freezing: ArrayFreezing, rows: Ints, part: Ints, parts: int
     ) -> tuple[Floats, Bools, Bools]:
-        """The values (n,) that satisfy the rows, the parts in which some could not be satisfied, and those in
-        which they certainly cannot be.
+        """Returns the values (n,) that satisfy the rows, the parts in which some could not be satisfied, and
+        those in which they certainly cannot be.
         """
         program = freezing.program(self.problem.rows.expression[rows])
         systems = _systems(program)
@@ -317,7 +319,9 @@ class Levels:
 
 
 def _systems(program: ArrayProgram) -> batch.Systems:
-    """The rows and columns that hang together, and those systems that are small enough to be stacked."""
+    """Returns the rows and columns that hang together, and those systems that are small enough to be
+    stacked.
+    """
     rows, columns = program.shape
     labels = components(program.entry_rows, program.indices + rows, rows + columns)
     of_row, of_column = labels[:rows], labels[rows:]

@@ -34,7 +34,7 @@ class DampedSteps(Protocol):
 
 
 def least_norm(jacobian: Matrix, y: Floats) -> LeastNorm:
-    """The shortest z with J z = y for J (m, n), y (m,)."""
+    """Returns the shortest z with J z = y for J (m, n), y (m,)."""
     if isinstance(jacobian, np.ndarray):
         return dense.least_norm(jacobian, y)
     from aidl_lang.solver import sparse
@@ -51,7 +51,7 @@ def damped_steps(jacobian: Matrix, residuals: Floats) -> DampedSteps:
 
 
 def with_slacks(jacobian: Matrix, slacks: Floats) -> Matrix:
-    """The Jacobian (m, n) with further columns (m, s) for slacks that are subtracted."""
+    """Returns the Jacobian (m, n) with further columns (m, s) for slacks that are subtracted."""
     if isinstance(jacobian, np.ndarray):
         return np.hstack((jacobian, -slacks))
     return jacobian.beside(-slacks)

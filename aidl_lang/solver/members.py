@@ -23,7 +23,7 @@ class Members:
         return name in self._values
 
     def read(self, name: str, convert: Callable[[object], T], default: T) -> T:
-        """The member `name` as `convert` makes it; `default` if there is none."""
+        """Returns the member `name` as `convert` makes it; `default` if there is none."""
         if name not in self._values:
             return default
         with within(name):
@@ -34,7 +34,7 @@ class Members:
         return self.read(name, as_object, empty)
 
     def need(self, name: str, convert: Callable[[object], T]) -> T:
-        """The same for a member that must be there."""
+        """Returns the same for a member that must be there."""
         if name not in self._values:
             raise FormError(f"{quoted(name)} is missing")
         with within(name):

@@ -75,7 +75,9 @@ class Recollection:
 
 
 def subtree_keys(problem: Problem, settings: Settings) -> tuple[int, ...]:
-    """A number for each group (g,) that depends on all that the solution of its subtree depends on."""
+    """Returns a number for each group (g,) that depends on all that the solution of its subtree depends
+    on.
+    """
     nodes = _node_keys(problem)
     rows, longest = problem.rows, problem.longest
     own: list[list[object]] = [[] for _ in problem.parent]
@@ -111,7 +113,7 @@ def subtree_keys(problem: Problem, settings: Settings) -> tuple[int, ...]:
 
 
 def _node_keys(problem: Problem) -> list[int]:
-    """A number for each node of the tape that depends on everything below it."""
+    """Returns a number for each node of the tape that depends on everything below it."""
     tape = problem.tape
     keys: list[int] = []
     for op, operands, constant in zip(tape.op_list, tape.operand_lists, tape.constants.tolist(), strict=True):

@@ -290,7 +290,7 @@ def _times(matrix: Sparse, dense: Floats) -> Floats:
 
 
 def _ranks(rows: Floats, key: Ints, keys: int, least: float) -> Ints:
-    """The rank of the rows (p, d) of each key."""
+    """Returns the rank of the rows (p, d) of each key."""
     order = Sorted(key, keys)
     found = np.zeros(keys, dtype=np.int64)
     for members in lots(order.count):

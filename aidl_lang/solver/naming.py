@@ -73,6 +73,6 @@ def _marked(numbers: Ints, count: int) -> Bools:
 
 
 def mentioned(problem: Problem) -> Bools:
-    """The unknowns (n,) that occur in any row."""
+    """Returns the unknowns (n,) that occur in any row."""
     found = expression.mentioned(problem.tape, problem.rows.expression.tolist())
     return _marked(np.array(found, dtype=np.int64), len(problem.initial))

@@ -190,7 +190,7 @@ def solve(
     start: Floats | None = None,
     restarts: int = 1,
 ) -> Outcome:
-    """The feasible point nearest to z = 0, searched from `start` (default 0).
+    """Returns the feasible point nearest to z = 0, searched from `start` (default 0).
 
     `restarts` is the number of perturbed starts tried if the search ends at a singular place.
     """
@@ -260,7 +260,9 @@ class _Newton:
         return self._refine(self._polish(reached) if self._isolated is None else reached)
 
     def _refine(self, found: Outcome) -> Outcome:
-        """A last step for the last digits: a tolerance says when to stop, not what a drawing shall show."""
+        """Returns a last step for the last digits: a tolerance says when to stop, not what a drawing shall
+        show.
+        """
         system = self.system
         if found.violation <= ROUNDED:
             return found
@@ -275,7 +277,9 @@ class _Newton:
         return Outcome(z, found.end, violation) if violation < found.violation else found
 
     def _project(self) -> Outcome:
-        """The solution of an affine system: one projection, and another for the rounding of the first."""
+        """Returns the solution of an affine system: one projection, and another for the rounding of the
+        first.
+        """
         system = self.system
         z = np.zeros(system.size)
         for _ in range(2):
@@ -329,7 +333,9 @@ class _Newton:
         return Outcome(z, End.CONVERGED if converged else End.EXHAUSTED, violation)
 
     def _step(self, z: Floats, residuals: Floats, damping: float) -> tuple[Floats, Floats, float] | None:
-        """The next point, its residuals and the damping to go on with; None if there is no way down."""
+        """Returns the next point, its residuals and the damping to go on with; None if there is no way
+        down.
+        """
         system = self.system
         jacobian = system.jacobian()
         merit = _squares(system.violations(residuals))
@@ -361,7 +367,7 @@ class _Newton:
         return None
 
     def _bounded(self, step: Floats) -> tuple[Floats, float]:
-        """The step, or the share of it in which no unknown moves further than it may at once."""
+        """Returns the step, or the share of it in which no unknown moves further than it may at once."""
         longest = self.system.longest
         if longest is None:
             return step, 1.0

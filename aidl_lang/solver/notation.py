@@ -83,14 +83,14 @@ class Notation:
         self.lets: dict[str, int] = {}
 
     def value(self, text: str) -> int:
-        """The node of an expression without a relation."""
+        """Returns the node of an expression without a relation."""
         reader = _Reader(self, text)
         node = reader.sum()
         reader.finish()
         return node
 
     def row(self, text: str) -> tuple[int, Relation]:
-        """The node that is compared with 0, and how."""
+        """Returns the node that is compared with 0, and how."""
         reader = _Reader(self, text)
         left = reader.sum()
         relation = reader.take("==", "<=", ">=")
@@ -118,7 +118,7 @@ class _Reader:
     # -- tokens
 
     def take(self, *signs: str) -> str | None:
-        """The next token, if it is one of these."""
+        """Returns the next token, if it is one of these."""
         token = self._tokens[self._next].text
         if token not in signs:
             return None
@@ -126,7 +126,7 @@ class _Reader:
         return token
 
     def is_last(self, text: str) -> bool:
-        """Whether nothing is left but this token, which is taken then."""
+        """Tells whether nothing is left but this token, which is taken then."""
         return self._next == len(self._tokens) - 2 and self.take(text) is not None
 
     def finish(self) -> None:
@@ -227,7 +227,7 @@ class _Token(NamedTuple):
 
 
 def _tokens(text: str) -> Iterator[_Token]:
-    """The tokens of `text`, with an empty one at the end."""
+    """Yields the tokens of `text`, with an empty one at the end."""
     at = 0
     while found := _TOKEN.match(text, at):
         kind = found.lastgroup or ""

@@ -124,13 +124,13 @@ def whole_turns(a: float, b: float) -> float:
 
 
 def bernstein_weights(t: float) -> tuple[float, float, float, float]:
-    """The four cubic Bernstein polynomials at `t`."""
+    """Returns the four cubic Bernstein polynomials at `t`."""
     s = 1.0 - t
     return s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t
 
 
 def cubic_maximiser(p0: float, p1: float, p2: float, p3: float) -> float:
-    """The t in [0, 1] at which the cubic with Bernstein coefficients p0 … p3 is greatest.
+    """Returns the t in [0, 1] at which the cubic with Bernstein coefficients p0 … p3 is greatest.
 
     Critical points are the roots of the derivative, a quadratic with Bernstein coefficients
     p1 - p0, p2 - p1, p3 - p2 (Farin, Curves and Surfaces for CAGD, section 5.3). Of equals the least wins.

@@ -57,7 +57,7 @@ def _meet_exactly(hierarchy: Hierarchy, scope: Scope, hard: list[int], soft: tup
 
 
 def _cost(hierarchy: Hierarchy, soft: tuple[int, ...]) -> float:
-    """The weighted squares of what the preferences lack."""
+    """Returns the weighted squares of what the preferences lack."""
     total = 0.0
     hierarchy.refresh(soft)
     for index in soft:

@@ -173,7 +173,7 @@ class Problem:
         )
 
     def with_constraints(self, constraints: Sequence[Constraint]) -> Problem:
-        """The same unknowns under other constraints."""
+        """Returns the same unknowns under other constraints."""
         return replace(self, **constraint_arrays(constraints))
 
 
@@ -220,7 +220,7 @@ def constraint_arrays(constraints: Sequence[Constraint]) -> ConstraintArrays:
 
 
 def depths(parent: NDArray[np.int64]) -> NDArray[np.int64]:
-    """The depth (g,) of each group, 0 for the root; parents (g,) come before children."""
+    """Returns the depth (g,) of each group, 0 for the root; parents (g,) come before children."""
     found: list[int] = []
     for above in parent.tolist():
         found.append(0 if above < 0 else found[above] + 1)

@@ -53,13 +53,13 @@ class AffineProgram:
     linear: ClassVar[bool] = True
 
     def residuals(self, x: Floats) -> Floats:
-        """The r rows at the k unknowns `x`."""
+        """Returns the r rows at the k unknowns `x`."""
         with np.errstate(all="ignore"):
             values: Floats = self.matrix @ x + self.constant
         return values
 
     def jacobian(self, row_factors: Floats, column_factors: Floats) -> Floats:
-        """The (r, k) partial derivatives, times these factors."""
+        """Returns the (r, k) partial derivatives, times these factors."""
         with np.errstate(all="ignore"):
             matrix: Floats = self.matrix * row_factors[:, None] * column_factors
         return matrix
@@ -86,7 +86,7 @@ class Program:
     scatter: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp), repr=False)
 
     def residuals(self, x: Floats) -> Floats:
-        """The r rows at the k unknowns `x`."""
+        """Returns the r rows at the k unknowns `x`."""
         values = self.values
         for slot, value in zip(self.slots, x.tolist(), strict=True):
             values[slot] = value
@@ -94,7 +94,9 @@ class Program:
         return np.array([values[root] for root in self.roots])
 
     def jacobian(self, row_factors: Floats, column_factors: Floats) -> Floats:
-        """The (r, k) partial derivatives where `residuals` was last evaluated, times these factors."""
+        """Returns the (r, k) partial derivatives where `residuals` was last evaluated, times these
+        factors.
+        """
         values, weights = self.values, self.weights
         for partial, operands, out, edges in self.partials:
             slopes = partial(*[values[i] for i in operands], values[out])

@@ -48,7 +48,9 @@ class Nearest:
 
 
 def nearest(jacobian: Matrix, y: Floats, inequality: NDArray[np.bool_]) -> Nearest:
-    """The nearest point for `jacobian` (m, n), `y` (m,); `inequality` (m,) marks the rows that are <=."""
+    """Returns the nearest point for `jacobian` (m, n), `y` (m,); `inequality` (m,) marks the rows that are
+    <=.
+    """
     if not inequality.any():
         found = least_norm(jacobian, y)
         outside = None if found.outside is None else _scaled(found.outside)
@@ -61,7 +63,8 @@ def nearest(jacobian: Matrix, y: Floats, inequality: NDArray[np.bool_]) -> Neare
 
 
 def plainly_hold(jacobian: Floats, y: Floats, inequality: NDArray[np.bool_]) -> bool:
-    """Whether the rows can hold together, by a point at which they do; False too where none is soon found.
+    """Tells whether the rows can hold together, by a point at which they do; False too where none is soon
+    found.
 
     The squares of what they lack are made least, by Newton's method for that (Mangasarian, A finite Newton
     method for classification, 2002, doi:10.1080/1055678021000028375).
@@ -135,7 +138,9 @@ class _DualActiveSet:
     def _first_to_vanish(
         self, rows: NDArray[np.intp], direction: Floats, length: float
     ) -> tuple[int | None, float]:
-        """The inequality whose multiplier reaches zero before `length` along `direction`, and where."""
+        """Returns the inequality whose multiplier reaches zero before `length` along `direction`, and
+        where.
+        """
         current = self.multipliers[rows]
         falling = self.inequality[rows] & (current + direction < 0.0 if length == 1.0 else direction < 0.0)
         candidates = np.flatnonzero(falling)

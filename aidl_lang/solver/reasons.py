@@ -49,8 +49,8 @@ def reasons(problem: Problem, settings: Settings, gave: Giving, solved: Floats) 
 def _bound(
     hierarchy: Hierarchy, constraints: list[int], unknowns: frozenset[int], gave: Giving, solved: Floats
 ) -> frozenset[int]:
-    """The unknowns on which it depends, at the solution, that the constraints hold: where one of these is put
-    back, they do not.
+    """Returns the unknowns on which it depends, at the solution, that the constraints hold: where one of
+    these is put back, they do not.
     """
     if len(unknowns) < 2:
         return unknowns

@@ -62,7 +62,7 @@ def redundancies(
     relations: Mapping[int, Relation],
     whole: Iterable[int],
 ) -> list[Redundancy]:
-    """The constraints all of whose rows follow from others.
+    """Returns the constraints all of whose rows follow from others.
 
     whole  those that have nothing but equations with a slope
     """
@@ -110,7 +110,7 @@ class _Trial:
         return [set(self._unknowns([row]).tolist()) for row in range(len(self.expressions))]
 
     def _around(self, row: int, others: Sequence[int]) -> list[int]:
-        """The independent rows that share unknowns with these, or with those that do, the nearest."""
+        """Returns the independent rows that share unknowns with these, or with those that do, the nearest."""
         near = {row, *others}
         columns = set().union(*(self._mentions[each] for each in near))
         found: list[int] = []
@@ -128,7 +128,7 @@ class _Trial:
         return found
 
     def _is_sum(self, row: int, relation: Relation) -> bool:
-        """Whether the row is the same sum of others everywhere, as between affine rows."""
+        """Tells whether the row is the same sum of others everywhere, as between affine rows."""
         rows = np.array([*relation, row], dtype=np.int64)
         columns = self._unknowns(rows)
         gradient = linearise(self.problem.tape, self.values, self.expressions[rows])[1]
@@ -167,7 +167,7 @@ class _Trial:
         return True
 
     def _holds_at(self, rows: Ints, columns: Ints, move: Floats) -> bool:
-        """Whether the last of `rows` holds where the others hold again, after a move away."""
+        """Tells whether the last of `rows` holds where the others hold again, after a move away."""
         place = self.values.copy()
         scale = self.problem.scale[columns]
         place[columns] += move * scale

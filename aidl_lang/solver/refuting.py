@@ -175,7 +175,9 @@ class Relaxation:
     # -- forms over what is free
 
     def _plain(self, node: int) -> Form:
-        """The form of a node with numbers for what is not free, and in place of knots that are decided."""
+        """Returns the form of a node with numbers for what is not free, and in place of knots that are
+        decided.
+        """
         return self._put_in(self._forms[node])
 
     def _put_in(self, form: Form) -> Form:
@@ -254,7 +256,9 @@ class Relaxation:
         return found
 
     def _is_never_behind(self, ahead: Form) -> bool:
-        """Whether a form is nowhere negative, by what is known of each slot or by what is never positive."""
+        """Tells whether a form is nowhere negative, by what is known of each slot or by what is never
+        positive.
+        """
         if self._range(ahead)[0] >= 0.0:
             return True
         if isinstance(ahead, float) or not (self._above or self._below):
@@ -269,8 +273,8 @@ class Relaxation:
         return known
 
     def _is_granted(self, ahead: Affine) -> bool:
-        """Whether a form is nowhere negative where nothing is positive that never is: slots are put at their
-        limits, one after another.
+        """Tells whether a form is nowhere negative where nothing is positive that never is: slots are put at
+        their limits, one after another.
         """
         waiting: list[Form] = [ahead]
         for form in waiting:
@@ -283,7 +287,7 @@ class Relaxation:
         return False
 
     def _at_limits(self, form: Form) -> Iterator[Form]:
-        """A form with a slot that makes it endless, or any, put where it makes the form least."""
+        """Yields a form with a slot that makes it endless, or any, put where it makes the form least."""
         terms = form.terms if isinstance(form, Affine) else {}
         endless = [s for s, slope in terms.items() if s not in (self._most if slope < 0.0 else self._least)]
         for slot in endless[:1] or terms:
@@ -355,14 +359,14 @@ class Relaxation:
 
 
 def is_refuted(values: Valuation, rows: Sequence[Row], free: Iterable[int], tolerance: float) -> bool:
-    """Whether it is shown that rows cannot hold together; what each says of one unknown alone helps with the
-    others.
+    """Tells whether it is shown that rows cannot hold together; what each says of one unknown alone helps
+    with the others.
     """
     return Relaxation(values, rows, free, tolerance, rows).is_refuted
 
 
 def _arrays(forms: Sequence[Form]) -> tuple[Floats, Floats]:
-    """The slopes (m, n) and constants (m,) of m forms in n slots."""
+    """Returns the slopes (m, n) and constants (m,) of m forms in n slots."""
     columns: dict[int, int] = {}
     for form in forms:
         for slot in form.terms if isinstance(form, Affine) else ():
@@ -407,7 +411,9 @@ def _multipliers(jacobian: Floats, constant: Floats, inequality: Bools) -> Float
 
 
 def _many_multipliers(jacobian: Floats, constant: Floats, inequality: Bools) -> Floats | None:
-    """The same for many rows: what it costs to bring each of them nearer, where they lack least together."""
+    """Returns the same for many rows: what it costs to bring each of them nearer, where they lack least
+    together.
+    """
     if len(constant) <= SOME and plainly_hold(jacobian, -constant, inequality):
         return None
     from scipy.optimize import linprog

@@ -41,8 +41,8 @@ class Riding:
         return self.carried & ~own
 
     def pins(self, problem: Problem, jacobian: Sparse) -> Sparse:
-        """A row for each direction in which all that a carried group draws can shift together, which is its
-        place: they hold one coordinate each.
+        """Returns a row for each direction in which all that a carried group draws can shift together, which
+        is its place: they hold one coordinate each.
         """
         held: list[int] = []
         if problem.axis is not None:
@@ -53,7 +53,7 @@ class Riding:
 
 
 def _pinned(home: Ints, jacobian: Sparse, groups: int) -> list[int]:
-    """A coordinate of each group of which all coordinates, those at `home` in it, can shift alike."""
+    """Returns a coordinate of each group of which all coordinates, those at `home` in it, can shift alike."""
     entries = np.flatnonzero(home[jacobian.columns] >= 0)
     key = jacobian.rows[entries] * groups + home[jacobian.columns[entries]]
     pairs, place = np.unique(key, return_inverse=True)
@@ -77,8 +77,8 @@ def rides(problem: Problem) -> Riding:
 
 
 def _stirred(problem: Problem, named: Naming, movable: Bools) -> Bools:
-    """The unknowns of what groups draw that are only named as a whole, where these do not move with their
-    frame.
+    """Returns the unknowns of what groups draw that are only named as a whole, where these do not move with
+    their frame.
     """
     axis = np.full(len(movable), -1) if problem.axis is None else problem.axis
     moved = np.where(movable, problem.frame_of, -1)

@@ -74,7 +74,7 @@ class Schedule:
         return np.split(order, bounds[:-1])[1:] if len(order) else []
 
     def evaluate(self, x: Floats) -> Floats:
-        """The value (m,) of each node at the unknowns `x` (n,)."""
+        """Returns the value (m,) of each node at the unknowns `x` (n,)."""
         values = self.tape.constants.copy()
         values[self.inputs] = x[self.unknowns]
         with np.errstate(all="ignore"):

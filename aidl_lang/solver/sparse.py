@@ -84,12 +84,12 @@ class SparseMatrix:
         return float((size @ (size.T @ np.ones(self.shape[0]))).max(initial=0.0)) or 1.0
 
     def beside(self, right: Floats) -> SparseMatrix:
-        """This matrix with further columns (m, s)."""
+        """Returns this matrix with further columns (m, s)."""
         return SparseMatrix(sp.hstack((self.matrix, sp.csr_array(right)), format="csr"))
 
 
 def least_norm(jacobian: SparseMatrix, y: Floats) -> LeastNorm:
-    """The shortest z with J z = y for J (m, n), y (m,)."""
+    """Returns the shortest z with J z = y for J (m, n), y (m,)."""
     if solved := _square(jacobian, y):
         return solved
     solver = jacobian.augmented

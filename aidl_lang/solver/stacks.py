@@ -42,7 +42,7 @@ def lots(*sizes: Ints) -> list[Ints]:
 
 
 def stacked(matrix: Sparse, of_row: Ints, rows: Sorted, columns: Sorted, slot: Ints) -> Floats:
-    """The rows of each part that has a slot as one matrix of a stack, filled up with zeros.
+    """Returns the rows of each part that has a slot as one matrix of a stack, filled up with zeros.
 
     of_row  the part of each row, -1 for none
     slot    of each part, -1 for none

@@ -68,7 +68,7 @@ class Linearised:
         self.reach = FAR * float(size.max(initial=1.0))
 
     def accused(self) -> list[int]:
-        """The constraints in the left null space of the rows that are violated or tight."""
+        """Returns the constraints in the left null space of the rows that are violated or tight."""
         rows = ~self.inequality | (self.distance > -1e-9 * self.reach)
         jacobian, distance = self.jacobian[rows], self.distance[rows]
         gram = jacobian @ jacobian.T + FAINT**2 * np.eye(len(jacobian))
@@ -77,7 +77,7 @@ class Linearised:
         return sorted(set(self.owner[rows][part].tolist()))
 
     def can_hold(self, constraints: Iterable[int]) -> bool:
-        """Whether the linearised rows of these constraints hold together within a sensible distance."""
+        """Tells whether the linearised rows of these constraints hold together within a sensible distance."""
         rows: NDArray[np.bool_] = np.isin(self.owner, list(constraints))
         target: Floats = -self.distance[rows]
         step = nearest(self.jacobian[rows], target, self.inequality[rows])
@@ -85,8 +85,8 @@ class Linearised:
 
 
 def suspects(hierarchy: Hierarchy, constraints: Sequence[int], free: Iterable[int]) -> list[int]:
-    """A set of constraints whose linearised rows contradict each other at the current values, each of them
-    needed for that; empty if there is none.
+    """Returns a set of constraints whose linearised rows contradict each other at the current values, each of
+    them needed for that; empty if there is none.
     """
     rows = Linearised(hierarchy, constraints, free)
     accused = rows.accused()
@@ -96,8 +96,8 @@ def suspects(hierarchy: Hierarchy, constraints: Sequence[int], free: Iterable[in
 
 
 def needed(failing: Sequence[int], holds: Callable[[list[int]], bool]) -> list[int]:
-    """A smallest part of a set that fails which still does: halves of a large set are tried first, then each
-    member is left out in turn.
+    """Returns a smallest part of a set that fails which still does: halves of a large set are tried first,
+    then each member is left out in turn.
     """
     found = list(failing)
     if len(found) > MANY:
@@ -112,9 +112,9 @@ def needed(failing: Sequence[int], holds: Callable[[list[int]], bool]) -> list[i
 def _halved(
     background: list[int], grown: bool, candidates: list[int], holds: Callable[[list[int]], bool]
 ) -> list[int]:
-    """A smallest part of `candidates` that fails together with the `background`, which has `grown` since it
-    last held, by QuickXplain (Junker, AAAI 2004): halves are background for one another, so that k culprits
-    among n are found in about k log(n / k) trials.
+    """Returns a smallest part of `candidates` that fails together with the `background`, which has `grown`
+    since it last held, by QuickXplain (Junker, AAAI 2004): halves are background for one another, so that k
+    culprits among n are found in about k log(n / k) trials.
     """
     if grown and not holds(background):
         return []

@@ -64,8 +64,8 @@ def thin(hierarchy: Hierarchy, scope: Scope, before: dict[int, float], rank: Ran
 
 
 def _as_expected(moved: dict[int, float], furthest: float, expected: dict[int, float]) -> bool:
-    """Whether what bends moved about as far as its slopes promised, and not through a singular place; nothing
-    there further than `furthest`.
+    """Tells whether what bends moved about as far as its slopes promised, and not through a singular place;
+    nothing there further than `furthest`.
     """
     if expected and max(map(abs, moved.values()), default=0.0) > furthest:
         return False
@@ -83,8 +83,8 @@ def _moved(hierarchy: Hierarchy, before: dict[int, float]) -> dict[int, float]:
 def _needed(
     hierarchy: Hierarchy, scope: Scope, moved: dict[int, float], rank: Rank
 ) -> tuple[set[int], dict[int, float]]:
-    """The unknowns among those that moved that are enough, and how far those in curved rows would have to
-    move by the slopes of these.
+    """Returns the unknowns among those that moved that are enough, and how far those in curved rows would
+    have to move by the slopes of these.
     """
     tolerance, values = hierarchy.settings.tolerance, hierarchy.values
     rows = hierarchy.rows(scope.constraints)
@@ -130,8 +130,8 @@ def _needed(
 
 
 def _tied(matrix: Floats, share: list[bool], members: list[int]) -> list[int]:
-    """The columns of a thing that have a share, and those that a row ties to one of them: a coordinate that
-    the others do not depend on can stay by itself.
+    """Returns the columns of a thing that have a share, and those that a row ties to one of them: a
+    coordinate that the others do not depend on can stay by itself.
     """
     slopes = np.abs(matrix)
     sloping = slopes > REACHED * slopes.max(axis=1, initial=0.0, keepdims=True)

@@ -105,8 +105,8 @@ class Tiers:
         return found
 
     def scope(self, last: Tier, seeds: Iterable[int], further: Collection[int] = ()) -> Scope:
-        """The unknowns up to tier `last`, or in `further`, that `seeds` mention, what binds those, what that
-        mentions, …
+        """Returns the unknowns up to tier `last`, or in `further`, that `seeds` mention, what binds those,
+        what that mentions, …
         """
         hierarchy = self.hierarchy
         constraints, free = set(seeds), set[int]()
@@ -123,14 +123,14 @@ class Tiers:
         return Scope(frozenset(free), tuple(sorted(constraints)))
 
     def everything(self, seeds: Sequence[int]) -> Scope:
-        """The scope of `seeds` with all free."""
+        """Returns the scope of `seeds` with all free."""
         key = tuple(seeds)
         if key not in self._everything:
             self._everything[key] = self.scope((9, 0), seeds)
         return self._everything[key]
 
     def beyond_positions(self, constraints: list[int]) -> list[int]:
-        """The constraints among these that hang on kept sizes alone, as `same_width` does."""
+        """Returns the constraints among these that hang on kept sizes alone, as `same_width` does."""
         mentions, found = self.hierarchy.mentions, list[int]()
         resizing = [i for i in constraints if any(self.tier(unknown) > POSITIONS for unknown in mentions[i])]
         for index, reached in self.reached(resizing, ()):
@@ -140,7 +140,9 @@ class Tiers:
         return found
 
     def _choices(self, index: int) -> bool:
-        """Whether positions choose a branch in a constraint, so that they may come to have a share in it."""
+        """Tells whether positions choose a branch in a constraint, so that they may come to have a share in
+        it.
+        """
         hierarchy = self.hierarchy
         positions = [unknown for unknown in hierarchy.mentions[index] if self.tier(unknown) <= POSITIONS]
         freezer = Freezer(hierarchy.values, positions)
@@ -171,19 +173,19 @@ class Tiers:
             yield index, [[u for u, slope in gradient.items() if abs(slope) > FLAT] for gradient in found]
 
     def promising(self, violated: list[int], tier: Tier) -> bool:
-        """Whether each violated constraint mentions something free."""
+        """Tells whether each violated constraint mentions something free."""
         mentions = self.hierarchy.mentions
         return all(any(self.tier(unknown) <= tier for unknown in mentions[index]) for index in violated)
 
     def is_dear(self, unknown: int) -> bool:
-        """Whether it is told that an unknown moved: a kept size, what rides along, and a frame that stood
-        where its content is exact, unless a constraint places it.
+        """Tells whether it is told that an unknown moved: a kept size, what rides along, and a frame that
+        stood where its content is exact, unless a constraint places it.
         """
         tier = self.tier(unknown)
         return tier > RIDING or (tier > PLACED and bool(self.hierarchy.problem.standing[unknown]))
 
     def independent(self, constraints: Iterable[int]) -> list[list[int]]:
-        """The constraints by what they share that could ever move, in their order."""
+        """Returns the constraints by what they share that could ever move, in their order."""
         parts: list[list[int]] = []
         left = list(constraints)
         while left:

@@ -193,7 +193,7 @@ class _Writing:
         return repr(value).removesuffix(".0"), SIGNED if value < 0.0 else ATOM
 
     def _joined(self, op: int, operands: tuple[int, ...]) -> tuple[str, int]:
-        """An operation as text, and how firmly it holds together."""
+        """Returns an operation as text, and how firmly it holds together."""
         if op in _INFIX:
             sign, level = _INFIX[op]
             return f"{self._at(level, operands[0])} {sign} {self._at(level + 1, operands[1])}", level
@@ -209,7 +209,7 @@ class _Writing:
 
 
 def _entry(main: str, **members: object) -> object:
-    """The members that are not None; the value of `main` if it is the only one."""
+    """Returns the members that are not None; the value of `main` if it is the only one."""
     given = {name: value for name, value in members.items() if value is not None}
     return given[main] if given.keys() == {main} else given
 
@@ -219,7 +219,7 @@ def _unless(default: float, value: float) -> float | None:
 
 
 def _names(problem: Problem) -> list[str]:
-    """A name for each unknown, its own if it can be."""
+    """Returns a name for each unknown, its own if it can be."""
     given = problem.names or [""] * len(problem.initial)
     times = Counter(given)
     taken = {

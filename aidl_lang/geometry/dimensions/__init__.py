@@ -34,7 +34,7 @@ def sizes(model: Model, solved: SolvedModel, evaluate: Evaluator) -> tuple[Dimen
 
 
 def _param_names(root: Structure) -> dict[Expression, str]:
-    """The params by their numbers: one that is passed on as it is stays the same expression."""
+    """Returns the params by their numbers: one that is passed on as it is stays the same expression."""
     names: dict[Expression, str] = {}
     for structure in root.walk():
         assert isinstance(structure.scope, Scope)
@@ -46,8 +46,8 @@ def _param_names(root: Structure) -> dict[Expression, str]:
 
 
 def dimensions(model: SolvedModel, drawing: Drawing) -> list[tuple[Dimension, ...]]:
-    """All dimensions, each place once; equal ones of one group stand together and are to be shown once. The
-    more important come first, that of the whole before all.
+    """Returns all dimensions, each place once; equal ones of one group stand together and are to be shown
+    once. The more important come first, that of the whole before all.
     """
     tolerance = 1e-6 * drawing.size
     stated = _grouped([*overall(drawing), *model.sizes], tolerance)
@@ -74,7 +74,7 @@ def _grouped(found: Iterable[Dimension], tolerance: float) -> list[tuple[Dimensi
 
 
 def _spans(circle: Circle | Arc, whole: Dimension, tolerance: float) -> bool:
-    """Whether a circle reaches as far as all there is."""
+    """Tells whether a circle reaches as far as all there is."""
     assert isinstance(whole, Length)
     middle = circle.center[0] * whole.along[0] + circle.center[1] * whole.along[1]
     start = whole.start[0][0] * whole.along[0] + whole.start[0][1] * whole.along[1]

@@ -146,7 +146,7 @@ class _Statement:
                 yield from self._size(of, word.text, abs(value.value))
 
     def _call(self, call: ast.Call) -> Iterator[tuple[Dimension, Num]]:
-        """A relation, or a measure that is called with its value."""
+        """Yields a relation, or a measure that is called with its value."""
         name, given = self._callee(call), self._positional(call)
         named = {a.name.text: a.value for a in call.arguments if a.name is not None}
         if name in _FACING and len(given) == 2 and "gap" in named:
@@ -243,7 +243,7 @@ class _Statement:
     def _terms(
         self, node: ast.Expression, sign: int
     ) -> Iterator[tuple[int, ast.Expression, Num | PointVal | None]]:
-        """The signed terms of a sum, with their values where these are constant."""
+        """Yields the signed terms of a sum, with their values where these are constant."""
         match node:
             case ast.Binary(operator="+" | "-" as operator, left=left, right=right):
                 yield from self._terms(left, sign)
@@ -252,14 +252,14 @@ class _Statement:
                 yield sign, node, None if self._is_place(node) else self._constant(node)
 
     def _is_place(self, node: ast.Expression) -> bool:
-        """Whether a term is a point or coordinate of something, which may well be fixed."""
+        """Tells whether a term is a point or coordinate of something, which may well be fixed."""
         if not isinstance(node, ast.Member):
             return False
         is_of_thing = isinstance(self.wording.value(node.value), Geometry | Structure | Box)
         return (is_of_thing and node.name.text not in _SIZES) or self._is_place(node.value)
 
     def _coordinate(self, node: ast.Expression) -> tuple[int, tuple[Vec, ...]] | None:
-        """A place along an axis of the holder: the axis, and points that are there."""
+        """Returns a place along an axis of the holder: the axis, and points that are there."""
         match node:
             case ast.Member(value=of, name=word) if word.text in _AXIS:
                 points = self._side(of, word.text)
@@ -272,7 +272,7 @@ class _Statement:
         return int(is_upright > 1e-6 * math.dist(line.start, line.end)), (line.start, line.end)
 
     def _side(self, node: ast.Expression, side: str) -> tuple[Vec, ...]:
-        """The points of a thing on one side of its box, or its middle."""
+        """Returns the points of a thing on one side of its box, or its middle."""
         curves = self.scene.curves(self.wording.value(node))
         u, v = self._way(_AXIS[side])
         if side in ("x", "y", "center_x", "center_y"):
@@ -290,7 +290,7 @@ class _Statement:
     # --- Values ------------------------------------------------------------------------------------
 
     def _constant(self, node: ast.Expression) -> Num | PointVal | None:
-        """The value of what does not depend on the solver."""
+        """Returns the value of what does not depend on the solver."""
         value = self.wording.value(node)
         match value:
             case Num(expression=e) if e.is_constant:
@@ -301,7 +301,7 @@ class _Statement:
                 return None
 
     def _point(self, node: ast.Expression) -> Vec | None:
-        """A point, or the middle of a thing, in coordinates of the root."""
+        """Returns a point, or the middle of a thing, in coordinates of the root."""
         value: Value | None = self.wording.value(node)
         if isinstance(value, Geometry) and value.type == "point":
             value = value.fields["at"]
@@ -326,7 +326,7 @@ class _Statement:
         return self.scene.evaluate(convert_angle(ZERO, self.constraint.holder, self.scene.root))
 
     def _way(self, axis: int) -> Vec:
-        """The direction of an axis of the holder in coordinates of the root."""
+        """Returns the direction of an axis of the holder in coordinates of the root."""
         here, root = self.constraint.holder, self.scene.root
         unit = (constant(1.0), ZERO) if axis == 0 else (ZERO, constant(1.0))
         (x0, y0), (x1, y1) = (map(self.scene.evaluate, convert(*p, here, root)) for p in ((ZERO, ZERO), unit))
@@ -341,7 +341,7 @@ class _Statement:
 
 
 def _agrees(found: Dimension, value: float) -> bool:
-    """Whether a dimension is what was stated; of what is round either the radius or the diameter."""
+    """Tells whether a dimension is what was stated; of what is round either the radius or the diameter."""
     sizes = [found.value]
     if isinstance(found, Roundness):
         sizes = [found.curve.radius, 2 * found.curve.radius]
@@ -353,7 +353,7 @@ def _middle(line: Line) -> Vec:
 
 
 def _total(offsets: Sequence[tuple[int, Num | PointVal]]) -> Num | PointVal | None:
-    """The sum of signed constants."""
+    """Returns the sum of signed constants."""
     numbers = [(sign, v) for sign, v in offsets if isinstance(v, Num)]
     if len(numbers) == len(offsets) and numbers:
         total = sum(sign * v.value for sign, v in numbers)

@@ -21,7 +21,7 @@ def direction(degrees: float) -> Vec:
 
 
 def readable(u: Vec) -> Vec:
-    """The direction or its opposite: to the right, or upwards; that of an axis is exact."""
+    """Returns the direction or its opposite: to the right, or upwards; that of an axis is exact."""
     if abs(u[1]) < _FLAT:
         return X_AXIS
     if abs(u[0]) < _FLAT:
@@ -34,7 +34,7 @@ def dot(p: Vec, q: Vec) -> float:
 
 
 def extreme(curves: Iterable[Piece | Vec], u: Vec) -> tuple[Vec, ...]:
-    """The points of curves that lie furthest in a direction."""
+    """Returns the points of curves that lie furthest in a direction."""
     spots = [spot for curve in curves for spot in _spots(curve, u)]
     furthest = max(dot(p, u) for p in spots)
     slack = 1e-9 * max(max(map(abs, p)) for p in spots)
@@ -61,7 +61,9 @@ def length_along(curves: Sequence[Piece | Vec], u: Vec) -> Length:
 
 
 def length_between(start: Sequence[Vec], end: Sequence[Vec], u: Vec) -> Length:
-    """The length along a direction from any of some points to any of others, all of which agree in it."""
+    """Returns the length along a direction from any of some points to any of others, all of which agree in
+    it.
+    """
     u = readable(u)
     low, high = sorted((tuple(start), tuple(end)), key=lambda points: dot(points[0], u))
     return Length(dot(high[0], u) - dot(low[0], u), "", start=low, end=high, along=u)
@@ -73,13 +75,13 @@ def length_of_line(a: Vec, b: Vec) -> Length | None:
 
 
 def unit(a: Vec, b: Vec) -> Vec | None:
-    """The direction from one point to another."""
+    """Returns the direction from one point to another."""
     reach = math.dist(a, b)
     return ((b[0] - a[0]) / reach, (b[1] - a[1]) / reach) if reach else None
 
 
 def foot(p: Vec, line: Line) -> Vec:
-    """The point of an endless line that is nearest to a point."""
+    """Returns the point of an endless line that is nearest to a point."""
     dx, dy = line.end[0] - line.start[0], line.end[1] - line.start[1]
     square = dx * dx + dy * dy
     t = ((p[0] - line.start[0]) * dx + (p[1] - line.start[1]) * dy) / square if square else 0.0
@@ -87,7 +89,7 @@ def foot(p: Vec, line: Line) -> Vec:
 
 
 def angle_of(a: Line, b: Line, degrees: float) -> Opening | None:
-    """The angle between two lines that is as large as stated, rather between arms that are drawn."""
+    """Returns the angle between two lines that is as large as stated, rather between arms that are drawn."""
     corner = meeting(a, b)
     if corner is None:
         return None
@@ -117,7 +119,7 @@ def meeting(a: Line, b: Line) -> Vec | None:
 
 
 def _arm(line: Line, side: float, corner: Vec) -> tuple[float, tuple[float, float]]:
-    """The direction of a line to one side, and from where to where it is drawn there."""
+    """Returns the direction of a line to one side, and from where to where it is drawn there."""
     ux, uy = side * (line.end[0] - line.start[0]), side * (line.end[1] - line.start[1])
     reach = math.hypot(ux, uy)
     u = ux / reach, uy / reach

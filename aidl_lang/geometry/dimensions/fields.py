@@ -46,7 +46,7 @@ _PARALLEL = 1 - 1e-9
 def field_sizes(
     model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
 ) -> Iterator[Dimension]:
-    """The sizes of all geometry that is drawn; of copies only what is round, to be counted."""
+    """Yields the sizes of all geometry that is drawn; of copies only what is round, to be counted."""
     for structure, read in zip(model.root.walk(), solved.root.walk(), strict=True):
         checkpoint()
         turned = evaluate(convert_angle(ex.ZERO, structure, model.root))
@@ -67,7 +67,7 @@ def original(geometry: Geometry) -> Geometry:
 
 
 def origin_of(value: Num, holder: Geometry | None = None) -> str | None:
-    """Whether a size is exact (`param`) or written as a number (`size`), maybe as the argument of a
+    """Tells whether a size is exact (`param`) or written as a number (`size`), maybe as the argument of a
     template; None if it follows from others.
     """
     if value.expression.is_constant:
@@ -116,7 +116,7 @@ class Sized:
                 yield name, value
 
     def _is_listed(self) -> bool:
-        """Whether the outline is given by its points."""
+        """Tells whether the outline is given by its points."""
         if not self.built.is_compound or not self._curves():
             return False
         assert isinstance(self.built.scope, Scope)
@@ -160,7 +160,9 @@ class Sized:
             yield found
 
     def _straight(self, name: str, word: str, value: float) -> Length | None:
-        """The edge that the name speaks of, else the way the shape reaches as far, else any edge as long."""
+        """Returns the edge that the name speaks of, else the way the shape reaches as far, else any edge as
+        long.
+        """
         curves = self._curves()
         lines = [
             (g.name, g.curve) for g in self.solved.walk() if isinstance(g.curve, Line) and not g.construction
@@ -198,7 +200,7 @@ class Sized:
 
 
 def level_angle(edge: Line, turned: float) -> Iterator[Dimension]:
-    """The angle of a line to the level through its lower end."""
+    """Yields the angle of a line to the level through its lower end."""
     low, high = sorted((edge.start, edge.end), key=lambda p: dot(p, direction(turned + 90)))
     ux, uy = direction(turned)
     reach = math.dist(low, high)
@@ -225,7 +227,7 @@ def _same(a: float, b: float) -> bool:
 def _fillets(
     structure: Structure, read: SolvedStructure, names: Mapping[Expression, str]
 ) -> Iterator[Dimension]:
-    """The radii of rounded corners, at the arcs that were drawn for them."""
+    """Yields the radii of rounded corners, at the arcs that were drawn for them."""
     arcs = [c for g in read.drawn for c in g.curves() if isinstance(c, Arc)] if read.finishes else []
     for built, done in zip(structure.finishes, read.finishes, strict=False):  # copies have more of them
         origin = origin_of(built.sizes[0])

@@ -29,7 +29,7 @@ def pattern_pitches(group: Sequence[Dimension], tolerance: float) -> Iterator[Di
 
 
 def _levels(values: Sequence[float], tolerance: float) -> list[float]:
-    """The different ones of some numbers, from the smallest."""
+    """Returns the different ones of some numbers, from the smallest."""
     found: list[float] = []
     for value in sorted(values):
         if not found or value - found[-1] > tolerance:
@@ -52,7 +52,7 @@ def _steps(centers: Sequence[Vec], levels: Sequence[float], axis: int, tolerance
 
 
 def _ring(centers: Sequence[Vec], tolerance: float) -> Circle | None:
-    """The circle through all of at least three points."""
+    """Returns the circle through all of at least three points."""
     if len(centers) < 3:
         return None
     (ax, ay), (bx, by), (cx, cy) = centers[0], centers[len(centers) // 3], centers[2 * len(centers) // 3]

@@ -74,8 +74,8 @@ class Bending:
         return Valuation(self.problem.tape, self.at.tolist())
 
     def goes_on(self, part: Part, rates: Floats, wanted: Floats) -> bool:
-        """Whether the observables of the problem can have the accelerations `wanted` (o,) where the unknowns
-        of a part change at these rates.
+        """Tells whether the observables of the problem can have the accelerations `wanted` (o,) where the
+        unknowns of a part change at these rates.
         """
         columns = part.unknowns
         has_part = np.zeros(len(self.at), dtype=np.bool_)

@@ -59,13 +59,15 @@ class Reach:
         return len(self.taken) == int(self.reach.shape[1])
 
     def at(self, observables: Ints) -> Ints:
-        """The place of each of the scene's observables in the part, -1 for those that are not in it."""
+        """Returns the place of each of the scene's observables in the part, -1 for those that are not in
+        it.
+        """
         own = self.part.observables
         place = np.minimum(np.searchsorted(own, observables), len(own) - 1)
         return np.where(own[place] == observables, place, -1)
 
     def of_all(self, axis: int) -> Floats:
-        """The velocity of everything along an axis, or in a turn about the origin of the root."""
+        """Returns the velocity of everything along an axis, or in a turn about the origin of the root."""
         if axis != NUMBER:
             found: Floats = ((self.axis == axis) & (self.anchor == 0)).astype(float)
             return found
@@ -102,7 +104,9 @@ class Reach:
         return way / left if left > POSSIBLE else None
 
     def goes_on(self, velocity: Floats, spin: float) -> bool:
-        """Whether a possible motion goes on as it begins: straight, or in a circle by `spin` radians."""
+        """Tells whether a possible motion goes on as it begins: straight, or in a circle by `spin`
+        radians.
+        """
         wanted = np.zeros(len(self.scene.places))
         if spin:
             at_x = self.part.observables[self.axis == X]
@@ -135,7 +139,7 @@ class Reach:
     # --- What may move as a whole ------------------------------------------------------------------
 
     def _clusters(self, anchor: int, axis: int) -> Iterator[Ints]:
-        """The coordinates of the places that have the same velocity along an axis in every motion."""
+        """Yields the coordinates of the places that have the same velocity along an axis in every motion."""
         at = np.flatnonzero((self.axis == axis) & (self.anchor == anchor))
         if not len(at):
             return
@@ -149,7 +153,7 @@ class Reach:
             yield np.sort(np.concatenate((first, first + 1)))
 
     def _inside(self, thing: Thing | None) -> Floats:
-        """The observables of a thing, or all, as 0 and 1."""
+        """Returns the observables of a thing, or all, as 0 and 1."""
         found = np.zeros(len(self.axis)) if thing else np.ones(len(self.axis))
         if thing is not None:
             local = self.at(self.scene.own(thing))
@@ -157,7 +161,9 @@ class Reach:
         return found
 
     def _near(self) -> list[Thing]:
-        """The things that something of the part belongs to; not the small ones where they are too many."""
+        """Returns the things that something of the part belongs to; not the small ones where they are too
+        many.
+        """
         found = {thing for o in self.part.observables.tolist() for thing in self.scene.of[o]}
         for ranks in ((ROOT, WHOLE), ()):
             if len(found) * self.reach.size > WORK:
@@ -165,7 +171,7 @@ class Reach:
         return sorted(found, key=lambda t: (-t.rank, t.start, -t.stop))
 
     def _whole(self, own: Ints, axis: int) -> Floats:
-        """The observables of a thing along an axis as 0 and 1; none if some of them do not move."""
+        """Returns the observables of a thing along an axis as 0 and 1; none if some of them do not move."""
         at = self.at(own)[self.scene.axis[own] == axis]
         mask = np.zeros(len(self.axis))
         if (at >= 0).all():
@@ -175,7 +181,7 @@ class Reach:
     # --- Naming ------------------------------------------------------------------------------------
 
     def _whole_things(self, thing: Thing | None, mask: Floats) -> list[str]:
-        """The names of what moves as a whole; none if some of it does not."""
+        """Returns the names of what moves as a whole; none if some of it does not."""
         if thing:
             return [thing.path]
         found = self._cover(mask > 0.0)
@@ -204,5 +210,7 @@ class Reach:
 
 
 def _gladly(thing: Thing) -> tuple[bool, int, int]:
-    """The order in which things are named: structures before geometry and points, large before small."""
+    """Returns the order in which things are named: structures before geometry and points, large before
+    small.
+    """
     return thing.rank in (GEOMETRY, POINT), thing.start - thing.stop, -thing.rank

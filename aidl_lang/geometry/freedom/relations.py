@@ -28,9 +28,9 @@ class Relations:
         }
 
     def against(self, things: Sequence[str], moving: Ints) -> str:
-        """The path of what is related to things and does not go along where these observables move, be it
-        free itself or held: by the constraint that stands first, one of another array if there is one; for
-        structures without such, the part beside them. "" if there is nothing.
+        """Returns the path of what is related to things and does not go along where these observables move,
+        be it free itself or held: by the constraint that stands first, one of another array if there is one;
+        for structures without such, the part beside them. "" if there is nothing.
         """
         flags = np.zeros(len(self.scene.places), dtype=np.bool_)
         flags[moving] = True
@@ -89,5 +89,5 @@ def _beside(path: str, other: str) -> str:
 
 
 def pattern(path: str) -> str:
-    """A path without its indices: the members of an array have the same."""
+    """Returns a path without its indices: the members of an array have the same."""
     return _INDEX.sub("[]", path)

@@ -69,7 +69,7 @@ class Scene:
                     self.of[observable].append(thing)
 
     def own(self, thing: Thing) -> Ints:
-        """The observables of a thing, but for what rides along in it."""
+        """Returns the observables of a thing, but for what rides along in it."""
         found: Ints = np.flatnonzero(self.anchor[thing.start : thing.stop] == thing.anchor) + thing.start
         return found
 

@@ -72,8 +72,8 @@ def _interest(told: _Told, scene: Scene) -> tuple[int, int, int, int]:
 
 
 def _own_place(scene: Scene, tellings: Sequence[_Telling], root: str) -> Iterator[Motion]:
-    """The ways in which everything moves as one. They are known to that part of the model to which most
-    belongs, so that what moves is told of the others, and of what is small in it.
+    """Yields the ways in which everything moves as one. They are known to that part of the model to which
+    most belongs, so that what moves is told of the others, and of what is small in it.
     """
     size = np.zeros(len(scene.places) + 1)
     for axis, words in ((X, "slide along x"), (Y, "slide along y"), (NUMBER, "turn")):
@@ -95,7 +95,7 @@ def _own_place(scene: Scene, tellings: Sequence[_Telling], root: str) -> Iterato
 
 
 def _is_one(scene: Scene, tellings: Sequence[_Telling]) -> bool:
-    """Whether parts hang together by the places whose x is in one of them and whose y is in another."""
+    """Tells whether parts hang together by the places whose x is in one of them and whose y is in another."""
     part = np.full(len(scene.places) + 1, -1)
     for number, telling in enumerate(tellings):
         part[telling.part.observables] = number
@@ -104,7 +104,7 @@ def _is_one(scene: Scene, tellings: Sequence[_Telling]) -> bool:
 
 
 def _all_move(scene: Scene, tellings: Sequence[_Telling], axis: int) -> bool:
-    """Whether no place stays where it is along an axis; for a turn, along both."""
+    """Tells whether no place stays where it is along an axis; for a turn, along both."""
     stays = scene.anchor == 0
     stays &= (scene.axis == axis) if axis != NUMBER else (scene.axis != NUMBER)
     for telling in tellings:
@@ -171,9 +171,9 @@ class _Telling(Reach):
         moving: Flags | None = None,
         spin: float = 0.0,
     ) -> Iterator[_Told]:
-        """The motion, if it is possible and no combination of those that were told; with what moves in it.
-        One that soon leaves its line or its centre is told as such; growth and change that soon take along
-        something else are not told.
+        """Yields the motion, if it is possible and no combination of those that were told; with what moves in
+        it. One that soon leaves its line or its centre is told as such; growth and change that soon take
+        along something else are not told.
         """
         if self.is_done or not velocity.any() or not self.is_possible(velocity):
             return
@@ -316,7 +316,7 @@ class _Telling(Reach):
                 yield from self._told(velocity, "slide", things, words, mask)
 
     def _is_turn(self, path: str, velocity: Floats) -> bool:
-        """Whether all places of a thing turn about one."""
+        """Tells whether all places of a thing turn about one."""
         if (thing := self.scene.known.get(path)) is None:
             return False
         own = self.scene.own(thing)
@@ -344,8 +344,8 @@ def _try(tried: dict[bytes, _Masked], thing: Thing | None, xs: Floats, ys: Float
 
 
 def _reduced(basis: Floats) -> Floats:
-    """The same space by vectors each of which has an unknown of its own, and so few entries. They do not
-    depend on the basis: these unknowns are pivots of the projection onto the space.
+    """Returns the same space by vectors each of which has an unknown of its own, and so few entries. They do
+    not depend on the basis: these unknowns are pivots of the projection onto the space.
     """
     rest = np.linalg.qr(basis)[0]
     own: list[int] = []

@@ -43,7 +43,7 @@ def report(model: SolvedModel, most: int | None = None) -> list[str]:
 
 
 def _chosen(lines: Sequence[_Line], most: int) -> Iterator[_Line]:
-    """The first of each kind, and as many others as there is room for; in their order."""
+    """Yields the first of each kind, and as many others as there is room for; in their order."""
     kinds: dict[frozenset[str], _Line] = {}
     for line in lines:
         kinds.setdefault(line.kinds, line)
