@@ -20,7 +20,7 @@ SHOW = ("names", "points", "bbox", "constraints", "dof", "plan")
 
 @record()
 class Options:
-    """How to write. A format takes what concerns it.
+    """The options of an export; each format reads those that concern it.
 
     show       what explains the drawing on top of it, some of `SHOW`
     dimension  whether to draw dimensions
@@ -49,13 +49,13 @@ class Options:
 
     @property
     def for_cutter(self) -> bool:
-        """Whether outlines alone are wanted."""
+        """True if only outlines are wanted."""
         return self.cut or self.sheet is not None or self.kerf > 0
 
 
 @record()
 class Job:
-    """What a writer may draw on."""
+    """The solved model, the drawing and the options that a writer works from."""
 
     model: SolvedModel
     drawing: Drawing
@@ -65,7 +65,7 @@ class Job:
 
 @record()
 class Exported:
-    """The content of a file, that of further ones beside it, and what there is to say of them."""
+    """The content of a file, the contents of further files beside it, and diagnostics about them."""
 
     data: bytes
     further: tuple[bytes, ...] = ()
@@ -73,7 +73,7 @@ class Exported:
 
 
 class ExportError(ValueError):
-    """A drawing cannot be written in a format; the diagnostic says why, and what would help."""
+    """Raised if a format cannot hold a drawing; the diagnostic gives the reason and a remedy."""
 
     def __init__(self, code: str, message: str, *hints: str) -> None:
         super().__init__(message)
@@ -82,7 +82,7 @@ class ExportError(ValueError):
 
 @record()
 class Format:
-    """A writer. `extra` names the optional extra of the package that brings the module it needs.
+    """A writer. `extra` names the optional extra of the package that installs the module it needs.
 
     `label` says in menus what comes of it; what has none is asked for by its suffix alone.
     `cuts` says whether it holds outlines for a cutter, `tiles` whether it can be printed over several pages.
@@ -99,7 +99,7 @@ class Format:
 
 
 def export(job: Job, suffix: str) -> Exported:
-    """The drawing in the format of a file suffix (`.svg`).
+    """Writes the drawing in the format of a file suffix (`.svg`).
 
     Raises KeyError for an unknown suffix, ExportError where the format cannot hold the drawing or a package
     for it is missing.
@@ -131,7 +131,7 @@ def export(job: Job, suffix: str) -> Exported:
 
 
 def _emptiness(job: Job) -> list[Diagnostic]:
-    """A warning about a drawing without anything to be seen."""
+    """Returns a warning if the drawing has nothing visible."""
     drawing = job.drawing
     plans = [f"`{plan.path}`" for plan in drawing.plans[:3]]
     if drawing.bodies or drawing.strokes or (plans and "plan" in job.options.show):
@@ -149,7 +149,7 @@ def _refuse(suffix: str, option: str, is_refused: bool) -> None:
 
 
 def _files(parts: Sequence[Exported]) -> Exported:
-    """Several contents as one file and those beside it."""
+    """Joins several contents to one file with the others beside it."""
     data, *further = (content for part in parts for content in (part.data, *part.further))
     return Exported(data, tuple(further), tuple(note for part in parts for note in part.notes))
 
@@ -227,11 +227,11 @@ FORMATS: dict[str, Format] = {
 }
 
 OFFERED = {suffix[1:]: made.label for suffix, made in FORMATS.items() if made.label}
-"""The formats that menus and tools offer, without the dot, and what they say of them."""
+"""The formats that menus and tools offer, without the dot, with their labels."""
 
 
 def render(picture: Picture, suffix: str, options: Options) -> bytes:
-    """A single picture in the format of a file suffix among `PICTURES`. Raises as `export` does."""
+    """Writes a single picture in the format of a file suffix among `PICTURES`. Raises as `export` does."""
     return PICTURES[suffix](picture, options)
 
 

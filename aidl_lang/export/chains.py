@@ -1,4 +1,4 @@
-"""Lines put end to end, for machines that draw them in one go."""
+"""Joins curves end to end, for machines that draw them in one go."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Chain = tuple[Piece, ...]
 
 
 def chains(pieces: Sequence[Piece], tolerance: float) -> list[Chain]:
-    """Each piece once, turned around where its neighbours need it, in chains as long as they get.
+    """Joins pieces to chains as long as possible; each piece occurs once, reversed if its neighbours need it.
 
     A chain ends where nothing follows within the tolerance (mm) and where more than two ends meet. Whole
     circles and ellipses stand alone.
@@ -27,7 +27,7 @@ def chains(pieces: Sequence[Piece], tolerance: float) -> list[Chain]:
     left = dict.fromkeys(range(len(pieces)))
 
     def follow(node: int) -> list[Piece]:
-        """What runs on from a node."""
+        """Removes and returns the pieces that continue from a node."""
         found = []
         while len(meeting[node]) == 2 and (more := [n for n in meeting[node] if n in left]):
             (number,) = more

@@ -1,4 +1,4 @@
-"""A picture for few pixels: nothing thinner than one, and where there is no colour, black lines on white."""
+"""Pictures for few pixels: no line thinner than one, and black lines on white without colours."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _SHORTEST_DASH = 2.0
 
 
 def framed(picture: Picture, proportion: float) -> Picture:
-    """The picture with white around it, so that it is `proportion` times as wide as high."""
+    """Returns the picture with white around it, `proportion` times as wide as high."""
     left, bottom, right, top = picture.box
     x = max(0.0, picture.height * proportion - picture.width) / 2
     y = max(0.0, picture.width / proportion - picture.height) / 2
@@ -21,17 +21,17 @@ def framed(picture: Picture, proportion: float) -> Picture:
 
 
 def coarse(picture: Picture, pixel: float) -> Picture:
-    """The picture with no line thinner than a `pixel`, mm."""
+    """Returns the picture with no line thinner than a `pixel`, mm."""
     return _redrawn(picture, lambda mark: _thickened(mark, pixel))
 
 
 def outlined(picture: Picture) -> Picture:
-    """The picture in black and white: outlines hide what is below them, and seams are left out."""
+    """Returns the picture in black and white: outlines hide what is below them, and seams are left out."""
     return _redrawn(picture, _plain)
 
 
 def separated(picture: Picture) -> tuple[Picture, tuple[Text, ...]]:
-    """The picture without its texts, and they."""
+    """Returns the picture without its texts, and the texts."""
     texts = tuple(mark for group in picture.groups for mark in group.marks if isinstance(mark, Text))
     return _redrawn(picture, lambda mark: None if isinstance(mark, Text) else mark), texts
 

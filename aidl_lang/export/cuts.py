@@ -1,4 +1,4 @@
-"""What a machine follows, in the order in which it should: what is drawn on parts, then their outlines.
+"""The outlines that a machine follows, in order: drawings on parts first, then the outlines of parts.
 
 Outlines come from the inside out: holes before the outline around them, and a part that lies in the hole of
 another before that hole, so that nothing is cut in a piece that has come loose.
@@ -28,7 +28,7 @@ HOLE, OPEN = "hole", "open"
 
 @record()
 class Outline:
-    """Pieces end to end, and what is said of them.
+    """Pieces joined end to end, with their layer, colour and owner.
 
     path   of the body, or of the structure that draws the lines
     layer  what `@layer` says, else the kind of the structure, `open` for curves that were to bound something
@@ -45,7 +45,7 @@ class Outline:
 
 
 def outlines(model: SolvedModel, drawing: Drawing) -> list[Outline]:
-    """All of a drawing in the order in which it should be drawn and cut."""
+    """Returns all outlines of a drawing in the order of drawing and cutting."""
     return [*_lines(drawing), *_cuts(model, drawing)]
 
 
@@ -79,7 +79,7 @@ def _cuts(model: SolvedModel, drawing: Drawing) -> Iterator[Outline]:
 
 
 class _HoleEdges:
-    """The outlines of all holes of a model, to tell which hole an inner loop of a body comes from."""
+    """The outlines of all holes of a model, to find the hole that an inner loop of a body comes from."""
 
     def __init__(self, model: SolvedModel, drawing: Drawing) -> None:
         self._tolerance = RELATIVE_TOLERANCE * drawing.size
@@ -95,7 +95,7 @@ class _HoleEdges:
         self._low, self._high = boxes[:, :2] - self._tolerance, boxes[:, 2:] + self._tolerance
 
     def owner(self, loop: Loop) -> str | None:
-        """The hole with an edge where the loop has its first, the innermost if there are several."""
+        """Returns the hole that shares the loop's first edge, the innermost of several."""
         if (path := self._same.get(loop.pieces[0])) is not None:
             return path
         p = point(loop.pieces[0], 0.5)

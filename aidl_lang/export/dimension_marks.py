@@ -1,4 +1,4 @@
-"""How one dimension looks at a given place, in the manner of ISO 129-1: extension lines, a dimension line
+"""The marks of one dimension at a given place, in the manner of ISO 129-1: extension lines, a dimension line
 with arrowheads, and the value above it, to be read from below or from the right.
 """
 
@@ -33,8 +33,8 @@ DIGIT = 0.64
 
 @record()
 class Placed:
-    """A dimension at its place: lines with arrowheads (tip and direction), what leads to them, the value,
-    crosses (centre and length of arms) at places that are not on an outline, a circle through centres.
+    """A dimension at its place: lines with arrowheads (tip and direction), extension lines, the value,
+    crosses (centre and length of arms) at ends off any outline, a circle through centres.
     """
 
     lines: tuple[Segment, ...]
@@ -48,7 +48,7 @@ class Placed:
 
 @record()
 class Block:
-    """A rectangle that is turned by `angle` degrees about `at`; `sides` as seen from there."""
+    """A rectangle turned by `angle` degrees about `at`; `sides` in its own frame."""
 
     at: Vec
     angle: float
@@ -72,7 +72,7 @@ class Block:
         return min(xs), min(ys), max(xs), max(ys)
 
     def overlaps(self, other: Block) -> bool:
-        """Two rectangles are apart where a side of one has the other beyond it."""
+        """Tells whether two rectangles overlap: no side of one has the other beyond it."""
         a, b = self.box, other.box
         if a[0] >= b[2] or b[0] >= a[2] or a[1] >= b[3] or b[1] >= a[3]:
             return False
@@ -90,7 +90,7 @@ def _range(points: tuple[Vec, ...], axis: Vec) -> tuple[float, float]:
 
 @record()
 class Pen:
-    """`mm`: what a millimetre on paper is in the drawing."""
+    """The scale of the marks. `mm`: a millimetre on paper in units of the drawing."""
 
     mm: float
 
@@ -102,7 +102,7 @@ class Pen:
         return DIGIT * self.font * len(text)
 
     def block(self, text: Text, clear: float = 0.4) -> Block:
-        """The place a text of digits takes, with so much air (mm on paper) around it."""
+        """Returns the rectangle of a text of digits with `clear` (mm on paper) around it."""
         air, half = clear * self.mm, DIGIT * text.size * len(text.text) / 2
         return Block(text.at, text.angle, (-half - air, -air, half + air, CAPITAL * text.size + air))
 
@@ -112,7 +112,7 @@ class Pen:
         return Block(tip, math.degrees(math.atan2(v, u)), (-HEAD * self.mm, -half, 0.0, half))
 
     def _triangle(self, tip: Vec, way: Vec) -> tuple[Vec, Vec, Vec]:
-        """An arrowhead that points along `way`."""
+        """Returns an arrowhead that points along `way`."""
         (x, y), (u, v) = tip, way
         back, half = HEAD * self.mm, HEAD_WIDTH / 2 * self.mm
         return (
@@ -152,8 +152,8 @@ class Pen:
     # --- Kinds -------------------------------------------------------------------------------------
 
     def straight(self, of: Length, words: str, level: float, after: bool) -> Placed:
-        """A length with its line at `level` across its direction. A value without room between the ends
-        stands after the second, or before the first.
+        """Places a length with its line at `level` across its direction. A value without room between the
+        ends stands after the second, or before the first.
         """
         mm, (u, v) = self.mm, of.along
         n = -v, u
@@ -191,7 +191,7 @@ class Pen:
         return Placed((line,), tuple(extensions), heads, text)
 
     def leader(self, tip: Vec, way: Vec, reach: float, to_right: bool, words: str) -> Placed:
-        """A leader from the outline of something round along `way`, with the value on its shoulder."""
+        """Places a leader from a round outline along `way`, with the value on its shoulder."""
         mm, width = self.mm, self.width(words)
         elbow = tip[0] + reach * way[0], tip[1] + reach * way[1]
         side = 1.0 if to_right else -1.0
@@ -201,7 +201,7 @@ class Pen:
         return Placed(((tip, elbow), (elbow, end)), (), (head,), text)
 
     def angle(self, of: Opening, words: str, radius: float) -> Placed:
-        """An arc between the two arms."""
+        """Places an angle as an arc between its two arms."""
         mm, corner = self.mm, of.corner
         first, last = math.radians(of.first), math.radians(of.first + of.value)
 
@@ -231,7 +231,7 @@ class Pen:
 
 
 def words_of(of: Dimension, count: int = 1) -> str:
-    """`10× ⌀8`: the value with at most two decimals, more only where nothing would be left."""
+    """Returns `10× ⌀8`: the value with at most two decimals, more only if nothing would be left."""
     decimals = 2 if of.value >= 0.1 else min(12, 1 - math.floor(math.log10(of.value)))
     number = fixed(of.value, decimals)
     match of:

@@ -1,4 +1,4 @@
-"""What is on a sheet already, and what a further dimension would cover or cross."""
+"""The marks on a sheet so far, and what a further dimension would cover or cross."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _FINE, _COARSE, _MANY = 24, 8, 800
 
 
 class Sheet:
-    """Outlines as short segments; values and arrowheads as boxes; lines of dimensions placed so far."""
+    """Outlines as short segments; values and arrowheads as boxes; lines of the dimensions placed so far."""
 
     def __init__(self, drawing: Drawing, pen: Pen) -> None:
         bodies = {
@@ -53,7 +53,7 @@ class Sheet:
         self.lines, self.extensions = _array(self._lines), _array(self._extensions)
 
     def is_free(self, placed: Placed) -> bool:
-        """Whether its value keeps clear of others' values, arrowheads and lines, and theirs of its own."""
+        """True if its value keeps clear of others' values, arrowheads and lines, and theirs of its own."""
         text = self.pen.block(placed.text)
         heads = list(map(self.pen.head_block, placed.heads))
         if any(text.overlaps(other) for other in (*self.texts, *self.heads, *heads)):
@@ -64,7 +64,7 @@ class Sheet:
         return not any(crossings(lines, other) for other in self.texts)
 
     def harm(self, placed: Placed) -> float:
-        """How badly a place reads: what its value covers, what its lines cross."""
+        """Returns the cost of a place: what its value covers and its lines cross."""
         checkpoint()
         text, lines = self.pen.block(placed.text, CLEAR), _array(_all_lines(placed))
         extensions = _array(placed.extensions)
@@ -78,7 +78,7 @@ class Sheet:
         return cost + 1.2 * min(self._crossed(lines, self.outlines), 8)
 
     def _lane(self, line: Segment, room: float) -> Block:
-        """What a line should have for itself."""
+        """Returns the strip that a line should have for itself."""
         (x0, y0), (x1, y1) = line
         short, across = 0.5 * self.pen.mm, room * self.pen.mm
         angle = math.degrees(math.atan2(y1 - y0, x1 - x0))
@@ -89,11 +89,11 @@ class Sheet:
         return self.is_material(((left + right) / 2, (bottom + top) / 2))
 
     def is_material(self, p: Vec) -> bool:
-        """Whether a place lies in a body: an odd number of edges is above it."""
+        """True for a point in a body: an odd number of edges is above it."""
         return bool(_inside(np.array([p]), self.edges)[0])
 
     def is_drawn(self, p: Vec) -> bool:
-        """Whether an outline runs through a point."""
+        """True if an outline runs through the point."""
         checkpoint()
         reach = 1.2 * self.pen.mm
         near = _within(self.outlines, (p[0] - reach, p[1] - reach, p[0] + reach, p[1] + reach))
@@ -106,7 +106,9 @@ class Sheet:
         return bool((away * away).sum(axis=1).min() < reach * reach)
 
     def seen(self, points: tuple[Vec, ...]) -> tuple[Vec, ...]:
-        """Those that lie on an outline, or such places between them: the end of an edge may be hidden."""
+        """Returns the points on an outline, else such points between them: the end of an edge may be
+        hidden.
+        """
         (x0, y0), (x1, y1) = points[0], points[-1]
         between = tuple((x0 + k / 12 * (x1 - x0), y0 + k / 12 * (y1 - y0)) for k in range(1, 12))
         return next(filter(None, (tuple(filter(self.is_drawn, spots)) for spots in (points, between))), ())
@@ -117,7 +119,7 @@ class Sheet:
 
 
 def _inside(spots: NDArray[np.float64], edges: Segments) -> NDArray[np.bool_]:
-    """Which points lie in what the edges bound: an odd number of them is above."""
+    """Marks the points inside the edges: an odd number of edges is above them."""
     x0, y0, x1, y1 = edges.T
     found = np.zeros(len(spots), dtype=bool)
     for k, (x, y) in enumerate(spots):
@@ -129,7 +131,7 @@ def _inside(spots: NDArray[np.float64], edges: Segments) -> NDArray[np.bool_]:
 
 
 def _uncovered(outline: Segments, cover: Segments) -> Segments:
-    """The segments that what is drawn later does not hide."""
+    """Returns the segments of an outline that `cover`, drawn later, does not hide."""
     middles = (outline[:, :2] + outline[:, 2:]) / 2
     ends = cover.reshape(-1, 2)
     near = np.all((middles > ends.min(axis=0)) & (middles < ends.max(axis=0)), axis=1)
@@ -139,7 +141,7 @@ def _uncovered(outline: Segments, cover: Segments) -> Segments:
 
 
 def crossings(segments: Segments, block: Block) -> int:
-    """How many segments meet a rectangle."""
+    """Counts the segments that meet a rectangle."""
     segments = _within(segments, block.box)
     if not len(segments):
         return 0
@@ -149,7 +151,7 @@ def crossings(segments: Segments, block: Block) -> int:
     with np.errstate(divide="ignore", invalid="ignore"):
         low = (np.array(box[:2]) - start) / way
         high = (np.array(box[2:]) - start) / way
-    # Along an axis on which a segment does not move it is in the box always or never.
+    # Along an axis in which a segment does not extend, it is in the box always or never.
     still = way == 0
     within = (start > np.array(box[:2])) & (start < np.array(box[2:]))
     enter = np.where(still, np.where(within, -np.inf, np.inf), np.minimum(low, high)).max(axis=1)
@@ -158,7 +160,7 @@ def crossings(segments: Segments, block: Block) -> int:
 
 
 def broken(segment: Segment, blocks: Iterable[Block]) -> list[Segment]:
-    """What is left of a line that is interrupted by values."""
+    """Returns the parts of a line that blocks do not interrupt."""
     parts = [segment]
     for block in blocks:
         parts = [piece for part in parts for piece in _around(part, block)]
@@ -184,7 +186,7 @@ def _around(segment: Segment, block: Block) -> list[Segment]:
 
 
 def _within(segments: Segments, box: Bounds) -> Segments:
-    """Those whose own boxes meet a box: all others are out of the question."""
+    """Returns the segments whose own boxes meet `box`; the others cannot meet it."""
     if not len(segments):
         return segments
     x0, y0, x1, y1 = segments.T
@@ -195,7 +197,7 @@ def _within(segments: Segments, box: Bounds) -> Segments:
 
 
 def _cross(line: NDArray[np.float64], others: Segments) -> int:
-    """How many others a segment truly crosses, not merely touches."""
+    """Counts the segments that a line truly crosses, not merely touches."""
     x, y = sorted(line[::2].tolist()), sorted(line[1::2].tolist())
     others = _within(others, (x[0], y[0], x[1], y[1]))
     p, r = line[:2], line[2:] - line[:2]

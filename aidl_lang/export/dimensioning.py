@@ -1,4 +1,4 @@
-"""Dimensions in a picture: where each stands, so that all can be read.
+"""Places dimensions in a picture so that all can be read.
 
 Sizes along the axes stand in rows outside the drawing, short ones nearer to it, or in the free space beside
 what they measure; leaders and slanted sizes look for the place where they cover and cross least.
@@ -40,8 +40,8 @@ _TURNS = tuple(a + b for a in (0, 90, 180, 270) for b in (45, 60, 30, 75, 15))
 
 
 def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Bounds, tuple[Group, ...]]:
-    """A group of marks for each dimension, as large as can be read when the whole is seen, and the box that
-    holds what `box` does and them.
+    """Returns the box that holds `box` and all dimensions, and a group of marks for each dimension, sized to
+    be read when the whole is seen.
     """
     wanted = _visible(dimensions(model, drawing), Sheet(drawing, Pen(0.005 * drawing.size)))
     size = max(box[2] - box[0], box[3] - box[1])
@@ -58,7 +58,7 @@ def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Boun
 
 
 def _visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tuple[Dimension, ...]]:
-    """Without those that end where there is nothing: a hole may reach beyond what it cuts."""
+    """Drops dimensions that end where nothing is drawn: a hole may reach beyond what it cuts."""
     centers = {d.curve.center for group in wanted for d in group if isinstance(d, Roundness)}
 
     def ends_at_something(points: tuple[Vec, ...]) -> bool:
@@ -75,7 +75,7 @@ def _visible(wanted: Sequence[tuple[Dimension, ...]], sheet: Sheet) -> list[tupl
 
 @record(frozen=False)
 class _Row:
-    """A dimension line outside the drawing: on which side, from where to where, in which row."""
+    """The place of a dimension line outside the drawing: side, range and row."""
 
     side: tuple[Vec, int]
     low: float
@@ -147,7 +147,9 @@ class _Layout:
                 return replace(found, crosses=tuple(centers), ring=ring)
 
     def _length(self, of: Length, words: str) -> Placed | None:
-        """Measured from what is seen where there is something; a cross marks an end that is not."""
+        """Places a length, measured from a visible point if there is one; a cross marks an end that is
+        not.
+        """
         start, end = self.sheet.seen(of.start), self.sheet.seen(of.end)
         of = replace(of, start=start or of.start, end=end or of.end)
         is_straight = of.along in (X_AXIS, Y_AXIS)
@@ -157,7 +159,7 @@ class _Layout:
         return replace(placed, crosses=crosses) if placed is not None else None
 
     def _best(self, candidates: Iterator[tuple[float, Placed]]) -> Placed | None:
-        """The candidate that costs least, of those that keep clear of all values."""
+        """Returns the cheapest candidate that keeps clear of all values."""
         best, least = None, math.inf
         for cost, candidate in sorted(candidates, key=lambda c: c[0]):
             if cost >= least:
@@ -192,11 +194,11 @@ class _Layout:
         return best[1]
 
     def _stretch(self, placed: Placed) -> float:
-        """What long extension lines cost."""
+        """Returns the cost of long extension lines."""
         return sum(math.dist(*e) for e in placed.extensions) / (20 * self.pen.mm)
 
     def _row(self, of: Length, words: str, side: int, after: bool) -> tuple[Placed, _Row] | None:
-        """The first row on a side of the drawing that is free, beyond those of shorter lengths there."""
+        """Returns the first free row on a side of the drawing, beyond those of shorter lengths there."""
         mm, axis = self.pen.mm, int(of.along == X_AXIS)
         # Across a vertical length is towards the left.
         bounds = (self.box[axis], self.box[axis + 2]) if axis else (-self.box[2], -self.box[0])
@@ -215,7 +217,7 @@ class _Layout:
         return None
 
     def _near(self, of: Length, words: str) -> Iterator[tuple[float, Placed]]:
-        """In the free space right beside what is measured, within the drawing."""
+        """Yields places right beside what is measured, in free space within the drawing."""
         mm, axis = self.pen.mm, int(of.along == X_AXIS)
         if of.value > 0.999 * (self.box[3 - axis] - self.box[1 - axis]):
             return  # what spans the whole stands outside
@@ -233,7 +235,7 @@ class _Layout:
     # --- Free places -------------------------------------------------------------------------------
 
     def _beside(self, of: Length, words: str) -> Iterator[tuple[float, Placed]]:
-        """A slanted length beside what it measures, rather on the outside."""
+        """Yields places of a slanted length beside what it measures, preferably outside."""
         u, v = of.along
         mm, n = self.pen.mm, (-v, u)
         across = [p[0] * n[0] + p[1] * n[1] for p in (*of.start, *of.end)]
@@ -273,14 +275,16 @@ class _Layout:
 
 
 def _turn(of: Dimension) -> tuple[int, float]:
-    """The order in which places are taken: lengths along the axes from the shortest, then what can evade."""
+    """Returns the sort key for placing: lengths along the axes from the shortest, then those with more
+    choice.
+    """
     if isinstance(of, Length):
         return int(of.along not in (X_AXIS, Y_AXIS)), of.value
     return 2 + isinstance(of, Roundness), of.value
 
 
 def _ways(curve: Circle | Arc) -> list[Vec]:
-    """Directions from the centre to places where a leader may end."""
+    """Returns directions from the centre to places where a leader may end."""
     if isinstance(curve, Circle):
         return [(math.cos(math.radians(a)), math.sin(math.radians(a))) for a in _TURNS]
     spots = [point(curve, t) for t in (0.5, 0.4, 0.6, 0.25, 0.75, 0.1, 0.9)]

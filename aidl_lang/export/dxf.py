@@ -36,7 +36,7 @@ TEXT_BYTES = 255
 
 
 def to_dxf(job: Job) -> Exported:
-    """The outlines and lines of a drawing as a DXF document."""
+    """Writes the outlines and lines of a drawing as a DXF document."""
     import ezdxf
 
     library: Any = ezdxf
@@ -74,7 +74,7 @@ def _written(document: Any, job: Job) -> Exported:
 
 
 def _order_classes(document: Any) -> None:
-    """The library goes through a set when it registers classes, in another order in each process."""
+    """Orders the registered classes: the library goes through a set, in another order in each process."""
     document.classes.add_required_classes(document.dxfversion)
     classes = document.classes.classes
     for key in sorted(classes):
@@ -82,7 +82,7 @@ def _order_classes(document: Any) -> None:
 
 
 def _set_view(document: Any, drawing: Drawing) -> None:
-    """Extents, limits and a first view that show the drawing."""
+    """Sets extents, limits and a first view that show the drawing."""
     left, bottom, right, top = drawing.box
     space = document.modelspace()
     space.dxf.extmin, space.dxf.extmax = (left, bottom, 0.0), (right, top, 0.0)
@@ -91,7 +91,7 @@ def _set_view(document: Any, drawing: Drawing) -> None:
 
 
 def _split(path: str) -> list[str]:
-    """A path in texts of the length that XDATA allows."""
+    """Splits a path into texts of the length that XDATA allows."""
     count = TEXT_BYTES if path.isascii() else TEXT_BYTES // 4
     return [path[k : k + count] for k in range(0, len(path), count)]
 
@@ -110,7 +110,7 @@ class _Entities:
         return self._rounded(p[0]), self._rounded(p[1])
 
     def add(self, outline: Outline, attributes: dict[str, Any]) -> Iterator[Any]:
-        """The entities of an outline, made one by one."""
+        """Yields the entities of an outline, made one by one."""
         pieces = outline.pieces
         if len(pieces) > 1 and all(isinstance(piece, Line | Arc) for piece in pieces):
             yield self._polyline(pieces, outline.closed, attributes)
@@ -125,7 +125,9 @@ class _Entities:
         return self._space.add_lwpolyline(corners, "xyb", close=closed, dxfattribs=attributes)
 
     def _corners(self, piece: Piece) -> Iterator[tuple[float, float, float]]:
-        """x, y and bulge where a piece starts, and where it is split. The bulge is tan(sweep / 4)."""
+        """Yields x, y and bulge at the start of a piece and where it is split. The bulge is tan(sweep /
+        4).
+        """
         if not isinstance(piece, Arc):
             yield (*self._at(ends(piece)[0]), 0.0)
             return
@@ -150,7 +152,7 @@ class _Entities:
                 return self._ellipse(piece, attributes)
 
     def _arc(self, arc: Arc, attributes: dict[str, Any]) -> Any:
-        """DXF runs from the first angle to the last counter-clockwise."""
+        """Adds an arc; DXF runs from the first angle to the last counter-clockwise."""
         center, radius = self._at(arc.center), self._rounded(arc.radius)
         if abs(arc.sweep) >= TAU:
             return self._space.add_circle(center, radius, dxfattribs=attributes)
@@ -161,8 +163,8 @@ class _Entities:
         return self._space.add_arc(center, radius, first, last, dxfattribs=attributes)
 
     def _ellipse(self, piece: Ellipse | EllipseArc, attributes: dict[str, Any]) -> Any:
-        """DXF has the larger half-axis first, and runs from the first eccentric anomaly to the last
-        counter-clockwise.
+        """Adds an ellipse. DXF has the larger half-axis first, and runs from the first eccentric anomaly to
+        the last counter-clockwise.
         """
         major, minor, angle = piece.rx, piece.ry, piece.angle
         first, sweep = round_range(piece)

@@ -10,8 +10,8 @@ from aidl_lang.common.source import Span
 from aidl_lang.geometry.solved import SolvedModel
 
 OWN = {"solid": 7, "assembly": 7, "hole": 1, "drawing": 5, "open": 6}
-"""Layers for what has none of its own, with their colours (AutoCAD Color Index): outlines black or white,
-holes red, what is drawn on parts blue, what bounds nothing magenta.
+"""Layers for outlines (black or white), holes (red), drawings on parts (blue) and what bounds nothing
+(magenta) without a layer of their own; colours in the AutoCAD Color Index.
 """
 FURTHER = (3, 4, 30, 200, 140, 54, 8)
 """Colours for layers of the author, in turn, since some programs tell layers apart by colour alone."""
@@ -21,7 +21,7 @@ _NEVER_PLOTTED = "defpoints"
 
 
 class Layers:
-    """The layers in use. DXF takes names that differ in case only for the same, so one of them is changed."""
+    """The layers in use. DXF ignores case in names, so one of two that differ only in case is changed."""
 
     def __init__(self, document: Any, model: SolvedModel) -> None:
         self.notes: list[Diagnostic] = []
@@ -31,7 +31,7 @@ class Layers:
         self._taken = {_NEVER_PLOTTED, *OWN}
 
     def name(self, wanted: str) -> str:
-        """The name in the document of a layer of the program; the layer is made on first use."""
+        """Returns the document's name for a layer of the program, which is made on first use."""
         if wanted not in self._names:
             self._names[wanted] = name = wanted if wanted in OWN else self._free(wanted)
             if name not in self._document.layers:
@@ -41,7 +41,7 @@ class Layers:
         return self._names[wanted]
 
     def _free(self, wanted: str) -> str:
-        """A name like the wanted one that DXF allows and that is not in use."""
+        """Returns a free name like the wanted one that DXF allows."""
         allowed = _REFUSED.sub("_", wanted).strip()[:LONGEST_NAME] or "_"
         name, count = allowed, 1
         while name.casefold() in self._taken:

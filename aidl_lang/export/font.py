@@ -1,4 +1,4 @@
-"""The font that texts in pictures are drawn with, where the file carries its own."""
+"""The font of texts in pictures, for formats that embed it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def font_file() -> str:
 
 
 def character_notes(pages: Iterable[Picture]) -> tuple[Diagnostic, ...]:
-    """A warning about characters of the texts that the font does not have."""
+    """Warns of characters in the texts that the font lacks."""
     texts = (
         mark.text for page in pages for group in page.groups for mark in group.marks if isinstance(mark, Text)
     )

@@ -1,4 +1,4 @@
-"""The solved model as JSON, a stable contract: `docs/model.schema.json`, told in `docs/json.md`.
+"""The solved model as JSON, a stable contract: `docs/model.schema.json`, described in `docs/json.md`.
 
 Numbers carry 12 significant digits; the same program gives the same bytes.
 """
@@ -47,7 +47,7 @@ def to_json(
     diagnostics: Iterable[Diagnostic] = (),
     timings: Mapping[str, float] | None = None,
 ) -> str:
-    """The document as text with one member per line, lists of numbers and polygons in one line."""
+    """Returns the document as text with one member per line, lists of numbers and polygons in one line."""
     document = to_dict(model, drawing, diagnostics, timings)
     polygons = _cut_out(document)
     text = json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False)
@@ -57,7 +57,7 @@ def to_json(
 
 
 def _cut_out(document: Json) -> list[str]:
-    """The polygons of the regions as text; the document is left with their numbers in that list."""
+    """Replaces the polygons of regions by their numbers in the list of texts it returns."""
     polygons = []
     for region in document["regions"].values():
         polygons.append(json.dumps(region["geometry"]["coordinates"]))
@@ -71,7 +71,7 @@ def to_dict(
     diagnostics: Iterable[Diagnostic] = (),
     timings: Mapping[str, float] | None = None,
 ) -> Json:
-    """The document as plain dicts and lists, its numbers rounded."""
+    """Returns the document as plain dicts and lists, its numbers rounded."""
     tolerance = TOLERANCE * drawing.size
     document: Json = {
         "aidl": VERSION,
@@ -150,7 +150,7 @@ def _structure(s: SolvedStructure) -> Json:
 
 
 def _finishes(f: Finish) -> Iterator[Json]:
-    """One entry for each corner that is finished."""
+    """Yields one entry for each finished corner."""
     names = ("radius",) if f.kind == "fillet" else ("size", "second")
     for at in f.corners:
         yield {"kind": f.kind, "at": at} | dict(zip(names, f.sizes, strict=False))
@@ -161,7 +161,7 @@ def _box(box: Box) -> Json:
 
 
 def _region(region: Region, measures: Measures, tolerance: float) -> Json:
-    """What it measures, its exact outlines, and polygons of them in the form of RFC 7946 (GeoJSON)."""
+    """Returns measures, exact outlines, and polygons of them in the form of RFC 7946 (GeoJSON)."""
     return {
         "area": measures.area,
         "perimeter": measures.perimeter,
@@ -187,7 +187,7 @@ def _pieces(loop: Loop) -> list[Json]:
 
 
 def _geometry(g: SolvedGeometry) -> Json:
-    """A primitive with its fields, a compound shape with its parts."""
+    """Returns a primitive with its fields, a compound shape with its parts."""
     checkpoint()
     fields = _FIELDS.get(g.type)
     entry: Json = {"type": g.type}

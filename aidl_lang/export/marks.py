@@ -1,4 +1,4 @@
-"""What pictures are made of, as data: areas, curves, texts, dots and frames. Coordinates in mm, y upwards."""
+"""The marks of pictures, as data: areas, curves, texts, dots and frames. Coordinates in mm, y upwards."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CHARACTER = 0.6
 
 @record()
 class Ink:
-    """How a line looks: a CSS colour, width in mm, dash and gap in mm, opacity, round ends."""
+    """The look of a line: a CSS colour, width in mm, dash and gap in mm, opacity, round ends."""
 
     color: str
     width: float
@@ -28,7 +28,7 @@ class Ink:
 
 @record()
 class Area:
-    """A face with its holes cut out, filled, outlined, or both. `role` is told to readers of the SVG."""
+    """A face with its holes cut out, filled, outlined, or both. Readers of the SVG find `role` in it."""
 
     face: Face
     fill: str | None
@@ -98,8 +98,8 @@ Mark: TypeAlias = Area | Curves | Text | Dot | Frame
 
 @record()
 class Group:
-    """Marks that belong together, seen only within `clip`. `name` is unique in a picture; `attributes` tell
-    programs what it is.
+    """Marks that belong together, visible only within `clip`. `name` is unique in a picture; `attributes`
+    identify it to programs.
     """
 
     name: str
@@ -110,7 +110,7 @@ class Group:
 
 @record()
 class Picture:
-    """All that is to be drawn, from back to front, and what of the plane is in sight."""
+    """Everything to be drawn, from back to front, and the visible part of the plane."""
 
     box: Bounds
     groups: tuple[Group, ...]

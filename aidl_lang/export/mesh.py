@@ -1,4 +1,4 @@
-"""Triangles around the bodies that have a thickness, for STL and 3MF.
+"""Triangle meshes of the bodies that have a thickness, for STL and 3MF.
 
 A triangle mesh has no curves: chords depart from the outline by at most `FINENESS` of the size of a body, or
 by `FINEST` if that is more. Manifold extrudes, so a mesh is closed and does not cross itself.
@@ -24,9 +24,9 @@ FINENESS = 1e-4
 FINEST = 0.001
 """mm"""
 _MANY = 2000
-"""Outlines of a face, above which holes are cut out of it one by one."""
+"""Outlines of a face above which its holes are cut out one by one."""
 _FEW = 20
-"""Holes in a triangle then."""
+"""Holes per triangle in that case."""
 
 
 @record()
@@ -43,20 +43,20 @@ class Mesh:
 
     @property
     def corners(self) -> NDArray[np.float64]:
-        """The corners of each triangle, shape (n, 3, 3)."""
+        """Returns the corners of each triangle, shape (n, 3, 3)."""
         return self.points[self.triangles]
 
 
 def meshes(job: Job) -> tuple[list[Mesh], tuple[Diagnostic, ...]]:
-    """The meshes of the bodies in order of drawing, and what there is to say of them. Raises ExportError
-    where no body has a thickness (E0917), or one cannot be made solid (E0918).
+    """Returns the meshes of the bodies in order of drawing, with diagnostics about them. Raises ExportError
+    if no body has a thickness (E0917), or one cannot be made solid (E0918).
     """
     bodies, notes = thick_bodies(job)
     return [_mesh(placed) for placed in bodies], (*notes, *placement_notes(job.model.root, job.drawing))
 
 
 def printable(name: str) -> str:
-    """A name without what XML and lines of text cannot hold."""
+    """Returns a name without characters that XML and lines of text cannot hold."""
     return "".join(c if c.isprintable() else "_" for c in name)
 
 
@@ -82,7 +82,7 @@ def _mesh(placed: Placed) -> Mesh:
 
 
 def _extruded(faces: list[list[NDArray[np.float64]]], thickness: float) -> manifold3d.Mesh64 | None:
-    """What stands on faces, each given by its outline and its holes; None where Manifold's numbers do not
+    """Extrudes faces, each given by its outline and its holes; returns None if Manifold's numbers do not
     reach.
     """
     try:
@@ -98,8 +98,8 @@ def _extruded(faces: list[list[NDArray[np.float64]]], thickness: float) -> manif
 def _drilled(
     outline: NDArray[np.float64], *holes: NDArray[np.float64], thickness: float
 ) -> manifold3d.Manifold:
-    """What stands on a face, by cutting the holes out of many small triangles. Triangles over the whole face
-    need a bridge from each hole to the outline, and to find them takes a time that grows with their square.
+    """Extrudes a face and cuts its holes out of many small triangles: triangles over the whole face need a
+    bridge from each hole to the outline, which takes a time that grows with their square.
     """
     solid = _upright([outline], thickness)
     if not holes:

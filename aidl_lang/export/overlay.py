@@ -39,7 +39,7 @@ class Overlay:
 
 
 class Taken:
-    """Boxes of what stands on the picture already. Few of many meet another: those are looked for first."""
+    """Boxes of what is on the picture already. Few of many overlap another: those are looked for first."""
 
     def __init__(self) -> None:
         self._boxes = np.empty((64, 4))
@@ -52,7 +52,7 @@ class Taken:
         self._count += 1
 
     def overlap(self, box: Bounds) -> float:
-        """The area by which a box covers others."""
+        """Returns the area by which a box covers others."""
         left, bottom, right, top = self._boxes[: self._count].T
         met = (left < box[2]) & (right > box[0]) & (bottom < box[3]) & (top > box[1])
         return sum(_overlap(box, (a, b, c, d)) for a, b, c, d in self._boxes[: self._count][met].tolist())
@@ -60,7 +60,7 @@ class Taken:
 
 @record(frozen=False)
 class Explainer:
-    """The state of one overlay: what is taken already, and the font size and line width that fit."""
+    """The state of one overlay: the boxes taken, font size and line width."""
 
     model: SolvedModel
     drawing: Drawing
@@ -77,7 +77,7 @@ class Explainer:
         return 0.0012 * self.size
 
     def label(self, text: str, around: Bounds, color: str, size: float, bold: bool = False) -> Text:
-        """The text at the first free place around and in a box, else where it hides least."""
+        """Returns the text at the first free place around and in a box, else where it hides least."""
         candidates = [Text(at, text, size, color, anchor, bold) for at, anchor in _places(around, size)]
         return self.first_free(candidates)
 
@@ -90,7 +90,7 @@ class Explainer:
 
 
 def explain(model: SolvedModel, drawing: Drawing, show: frozenset[str], box: Bounds, size: float) -> Overlay:
-    """The layers asked for, in a fixed order from the back to the front."""
+    """Returns the layers asked for, in a fixed order from the back to the front."""
     overlay = Overlay(box)
     if not show:
         return overlay
@@ -114,7 +114,7 @@ def explain(model: SolvedModel, drawing: Drawing, show: frozenset[str], box: Bou
 
 
 def _places(box: Bounds, size: float) -> Iterator[tuple[Vec, str]]:
-    """Baselines for a label: above the left corner, centred above, inside, below, beside."""
+    """Yields baselines for a label: above the left corner, centred above, inside, below, beside."""
     left, bottom, right, top = box
     middle, gap = (left + right) / 2, 0.35 * size
     yield (left, top + gap), "start"
@@ -143,7 +143,7 @@ def _bounds(structure: SolvedStructure) -> Bounds | None:
 
 
 def _names(at: Explainer) -> Iterator[Mark]:
-    """Names of structures at their boxes, the root's first and bold."""
+    """Yields names of structures at their boxes, the root's first and bold."""
     for structure in at.model.root.walk():
         box = _bounds(structure)
         if box is not None:
@@ -152,7 +152,9 @@ def _names(at: Explainer) -> Iterator[Mark]:
 
 
 def _name(at: Explainer, structure: SolvedStructure, box: Bounds, size: float) -> Text:
-    """In the upper left corner of a structure without parts, if it fits; else around its box."""
+    """Places a name in the upper left corner of a structure without parts, if it fits; else around its
+    box.
+    """
     inside = Text((box[0] + 0.35 * size, box[3] - 1.1 * size), structure.name, size, palette.NAME)
     fits = inside.box[2] < box[2] and box[3] - box[1] > 2.5 * size
     if fits and not structure.structures and not at.taken.overlap(inside.box):
@@ -168,7 +170,7 @@ def _boxes(at: Explainer) -> Iterator[Mark]:
 
 
 def _plans(at: Explainer) -> Iterator[Mark]:
-    """Empty structures as dashed boxes with their names."""
+    """Yields empty structures as dashed boxes with their names."""
     for plan in at.drawing.plans:
         yield Frame(plan.box, palette.PLAN, 1.6 * at.hair, 8 * at.hair)
         left, bottom, right, top = plan.box
@@ -182,7 +184,7 @@ def _plans(at: Explainer) -> Iterator[Mark]:
 
 
 def _points(at: Explainer) -> Iterator[Mark]:
-    """Dots at all named points; names that fall together share a label."""
+    """Yields dots at all named points; names that coincide share a label."""
     names: dict[tuple[int, int], list[str]] = defaultdict(list)
     places: dict[tuple[int, int], Vec] = {}
     step = 1e-6 * at.size
@@ -206,9 +208,7 @@ def _points(at: Explainer) -> Iterator[Mark]:
 
 
 def _named_points(geometry: SolvedGeometry, name: str) -> Iterator[tuple[str, Vec]]:
-    """The points of a geometry by name. Of compound shapes those with a name of their own, no ends of
-    edges.
-    """
+    """Yields the points of a geometry by name; of compound shapes only named ones, no ends of edges."""
     if geometry.type == "point":
         value = geometry.values.get("at")
         if _is_point(value):
@@ -227,7 +227,7 @@ def _is_point(value: object) -> TypeGuard[Vec]:
 
 
 def _constraints(at: Explainer, corner: Vec) -> list[Mark]:
-    """Numbers near what the constraints mention, and their texts in a list; what does not hold is red."""
+    """Returns numbers near what the constraints mention, and their texts in a list; violated ones in red."""
     marks: list[Mark] = []
     size, (left, top) = 0.7 * at.font, corner
     for number, constraint in enumerate(at.model.constraints, 1):
@@ -261,7 +261,7 @@ def _wrapped(text: str) -> list[str]:
 
 
 def _spot(model: SolvedModel, constraint: ConstraintReport) -> Bounds | None:
-    """A place between the things that a constraint mentions."""
+    """Returns a place between the things that a constraint mentions."""
     boxes = [box for path in constraint.mentions if (box := _box_of(model.root, path)) is not None]
     if not boxes:
         boxes = [box for box in [_box_of(model.root, constraint.path)] if box is not None]
@@ -273,8 +273,8 @@ def _spot(model: SolvedModel, constraint: ConstraintReport) -> Bounds | None:
 
 
 def _box_of(structure: SolvedStructure, path: str) -> Bounds | None:
-    """The box of the structure, geometry or point that a path leads to, or of the last of it that is
-    known.
+    """Returns the box of the structure, geometry or point that a path leads to, or of its last known
+    element.
     """
     if path != structure.path and not path.startswith((structure.path + ".", structure.path + "[")):
         return None
@@ -307,7 +307,7 @@ def _all_curves(geometry: SolvedGeometry) -> Iterator[Piece]:
 
 
 def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
-    """Degrees of freedom at each structure that has any, and the free parameters in a list."""
+    """Returns the degrees of freedom at each structure that has any, and the free parameters in a list."""
     marks: list[Mark] = []
     size, (left, top) = 0.7 * at.font, corner
     structures = list(at.model.root.walk())
@@ -329,7 +329,7 @@ def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
 
 
 def _free_by_structure(structures: list[SolvedStructure], free: Iterable[str]) -> dict[str, list[str]]:
-    """The free parameters by the innermost structure whose path they begin with, named from there."""
+    """Groups free parameters by the innermost structure whose path they begin with, named from there."""
     paths = {s.path for s in structures}
     result: dict[str, list[str]] = defaultdict(list)
     for name in free:

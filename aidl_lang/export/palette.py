@@ -30,15 +30,15 @@ BAD = "#dc2626"
 FREE = "#b45309"
 
 _DARK = 112
-"""Brightness, of 255, up to which a dark line is not seen well."""
+"""Brightness, of 255, up to which a dark line is hard to see."""
 
 
 def body_fill(index: int) -> str:
-    """The colour of the body that is drawn as number `index`."""
+    """Returns the colour of the body drawn as number `index`."""
     return FILLS[index % len(FILLS)]
 
 
 def contrasting(fill: str) -> str:
-    """An ink that is seen on a fill of this colour, and on white beside it."""
+    """Returns an ink that is visible on a fill of this colour, and on white beside it."""
     red, green, blue = rgb(fill)
     return OUTLINE if 0.299 * red + 0.587 * green + 0.114 * blue > _DARK else LIGHT

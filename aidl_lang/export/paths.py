@@ -16,7 +16,7 @@ def xy(p: Vec) -> str:
 
 
 def face_path(face: Face) -> str:
-    """All loops of a face in one path, its holes really cut out."""
+    """Returns all loops of a face as one path, its holes really cut out."""
     return "".join(loop_path(loop) for loop in face.loops)
 
 
@@ -30,7 +30,9 @@ def loop_path(loop: Loop) -> str:
 
 
 def open_path(pieces: Sequence[Piece]) -> str:
-    """Curves one after the other, moving only where one does not start at the end of the one before."""
+    """Returns curves one after the other, moving only where one does not start at the end of the one
+    before.
+    """
     return "".join(_chain(pieces))
 
 
@@ -49,7 +51,7 @@ def _chain(pieces: Iterable[Piece]) -> Iterable[str]:
 
 
 def _whole(piece: Piece, clockwise: bool) -> str:
-    """A closed curve as two halves, since an `A` that ends where it starts draws nothing."""
+    """Returns a closed curve as two halves, since an `A` that ends where it starts draws nothing."""
     assert isinstance(piece, Circle | Ellipse)
     start, middle = xy(point(piece, 0.0)), xy(point(piece, 0.5))
     flag = int(clockwise)
@@ -64,7 +66,7 @@ def _radii(piece: Arc | Circle | Ellipse | EllipseArc) -> str:
 
 
 def _segment(piece: Piece) -> str:
-    """The path command that continues from the start of a piece."""
+    """Returns the path command that continues from the start of a piece."""
     if isinstance(piece, Line):
         return f"L{xy(piece.end)}"
     if isinstance(piece, Bezier):

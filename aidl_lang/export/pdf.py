@@ -33,7 +33,7 @@ _WHITE = "#ffffff"
 
 
 def to_pdf(pages: Sequence[Picture], title: str) -> bytes:
-    """The pictures as a document. Raises ExportError (E0921) for one that is larger than a page may be."""
+    """Writes the pictures as a document. Raises ExportError (E0921) for one larger than a page may be."""
     from reportlab.pdfbase import pdfmetrics
     from reportlab.pdfbase.ttfonts import TTFont
     from reportlab.pdfgen.canvas import Canvas
@@ -170,7 +170,7 @@ def _add_loop(path: Any, loop: Loop) -> None:
 
 
 def _add_pieces(path: Any, pieces: Iterable[Piece]) -> None:
-    """Curves one after the other, moving only where one does not start at the end of the one before."""
+    """Adds curves one after the other, moving only where one does not start at the end of the one before."""
     at: Vec | None = None
     for piece in pieces:
         start, end = ends(piece)
@@ -185,7 +185,7 @@ def _add_pieces(path: Any, pieces: Iterable[Piece]) -> None:
 
 
 def _cubics(piece: Piece) -> Iterator[tuple[Vec, Vec, Vec, Vec]]:
-    """A curve by the control points of cubic Bézier curves."""
+    """Yields the control points of cubic Bézier curves for a piece."""
     if isinstance(piece, Bezier):
         yield piece.p0, piece.p1, piece.p2, piece.p3
         return

@@ -1,4 +1,4 @@
-"""From a drawing to a picture: what is filled, outlined and written, in which ink.
+"""Turns a drawing into a picture: what is filled, outlined and written, in which ink.
 
 One group for each structure in order of writing, so that later siblings lie over earlier ones; what explains
 the picture lies above them all.
@@ -27,7 +27,7 @@ NAME_SIZE = 5.0
 
 
 def picture(job: Job) -> Picture:
-    """The drawing as the options want it seen."""
+    """Returns the drawing as a picture by the options."""
     options = job.options
     if options.sheet is not None:
         return _sheet(job)
@@ -50,7 +50,7 @@ def picture(job: Job) -> Picture:
 
 
 def pages(job: Job) -> list[Picture]:
-    """The picture, over as many pages as the options ask for."""
+    """Returns the picture, over as many pages as the options ask for."""
     whole, options = picture(job), job.options
     if options.tile is None:
         return [whole]
@@ -60,7 +60,7 @@ def pages(job: Job) -> list[Picture]:
 
 
 def _sheet(job: Job) -> Picture:
-    """Parts laid on a sheet; the picture is the sheet."""
+    """Returns the picture of a sheet with parts laid on it."""
     marks = _cut_marks(job.drawing)
     groups = [group for group in _groups(job.model, job.drawing, marks) if group.marks]
     if "names" in job.options.show:
@@ -70,7 +70,7 @@ def _sheet(job: Job) -> Picture:
 
 
 def _part_names(drawing: Drawing, root: str) -> Iterator[Text]:
-    """The name of each part as large as it allows, up to what is read easily."""
+    """Yields the name of each part as large as it allows, up to what is read easily."""
     for body in drawing.bodies:
         name = body.path.removeprefix(f"{root}.")
         left, bottom, right, top = body.box
@@ -80,7 +80,7 @@ def _part_names(drawing: Drawing, root: str) -> Iterator[Text]:
 
 
 def _picture_box(model: SolvedModel, drawing: Drawing, show: frozenset[str]) -> Bounds:
-    """What must be in sight. The box of the root stands in for a drawing without curves."""
+    """Returns the box that must be in sight. The box of the root stands in for a drawing without curves."""
     boxes = []
     if drawing.bodies or drawing.strokes:
         boxes.append(drawing.box)
@@ -105,14 +105,14 @@ def _groups(model: SolvedModel, drawing: Drawing, marks: Iterable[tuple[str, Mar
 
 
 def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:
-    """The attributes by which programs find a structure in the picture."""
+    """Returns the attributes by which programs find a structure in the picture."""
     style = drawing.styles[structure.path]
     identity = {"data-kind": structure.kind, "data-path": structure.path}
     return identity if style.layer is None else {**identity, "data-layer": style.layer}
 
 
 def _marks(drawing: Drawing, size: float) -> Iterator[tuple[str, Mark]]:
-    """Everything, with the path of the structure it belongs to."""
+    """Yields all marks, with the path of the structure they belong to."""
     for index, body in enumerate(drawing.bodies):
         for area in _areas(body, index, size):
             yield body.path, area
@@ -123,7 +123,7 @@ def _marks(drawing: Drawing, size: float) -> Iterator[tuple[str, Mark]]:
 
 
 def _cut_marks(drawing: Drawing) -> Iterator[tuple[str, Mark]]:
-    """Outlines to cut and drawings to engrave. Curves that bound nothing have had their warning."""
+    """Yields outlines to cut and drawings to engrave. Curves that bound nothing have had their warning."""
     for body in drawing.bodies:
         for face in body.region.faces:
             yield body.path, Area(face, None, Ink(palette.CUT, HAIRLINE), "cut")

@@ -1,4 +1,4 @@
-"""PNG: the SVG of a picture as pixels on white, with the font that comes along and no other."""
+"""PNG: the SVG of a picture as pixels on white, with the bundled font and no other."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from aidl_lang.export.scaling import scaled
 from aidl_lang.export.svg import to_svg
 
 SLIMMEST = 1 / 100
-"""A picture that is longer than that gets more white along its sides."""
+"""Largest ratio of the sides; a longer picture gets more white along its sides."""
 LARGEST = 1e5
 """mm. A larger picture is drawn in another scale."""
 MM_PER_INCH = 25.4
@@ -20,7 +20,7 @@ _DENSITIES = (0.1, 1e6)
 
 
 def to_png(picture: Picture, pixels: int) -> bytes:
-    """The picture with so many pixels along its larger side, and its resolution stated."""
+    """Returns the picture with so many pixels along its larger side, and its resolution stated."""
     import resvg_py
     from PIL import Image
 

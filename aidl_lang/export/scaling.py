@@ -1,4 +1,4 @@
-"""A picture in another scale."""
+"""Scales a picture."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from aidl_lang.geometry.region import Face, Loop
 
 
 def scaled(picture: Picture, factor: float) -> Picture:
-    """The picture with all its lengths multiplied."""
+    """Returns the picture with all its lengths multiplied."""
     scale = _Scale(factor)
     return Picture(scale.box(picture.box), tuple(map(scale.group, picture.groups)))
 

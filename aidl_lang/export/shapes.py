@@ -1,4 +1,4 @@
-"""Shapes of Open CASCADE from exact outlines: solids, plane faces and curves.
+"""Builds shapes of Open CASCADE from exact outlines: solids, plane faces and curves.
 
 Where two pieces of an outline meet they share one vertex, so that solids are watertight by construction.
 Lines become planes and arcs cylinders, all else linear extrusions; nothing is approximated.
@@ -29,8 +29,8 @@ _WHOLE_TURN = TAU - 1e-12
 
 
 class Shapes:
-    """Makes what stands from 0 to `thickness` over a plane, or lies in it. `tolerance`, mm, is how well ends
-    meet.
+    """Makes extrusions from 0 to `thickness` over a plane, or shapes in it. Ends meet within `tolerance`,
+    mm.
     """
 
     def __init__(self, plane: Plane, tolerance: float, thickness: float = 0.0) -> None:
@@ -55,7 +55,7 @@ class Shapes:
         return made
 
     def curves(self, pieces: Iterable[Piece]) -> list[TopoDS_Edge]:
-        """An edge for each piece."""
+        """Returns an edge for each piece."""
         self._vertices.clear()
         return [self._edge(piece, *self._ends(piece)) for piece in map(_upright, pieces)]
 
@@ -74,14 +74,14 @@ class Shapes:
         return made.Reversed() if loop.reversed else made
 
     def _vertex(self, p: Vec) -> TopoDS_Vertex:
-        """One for each place: outlines that touch share it."""
+        """Returns the vertex of a place; outlines that touch share it."""
         if p not in self._vertices:
             made = self._vertices[p] = TopoDS_Vertex()
             self._build.MakeVertex(made, _point(p).Transformed(self._motion), self._tolerance)
         return self._vertices[p]
 
     def _edge(self, piece: Piece, start: TopoDS_Vertex, end: TopoDS_Vertex) -> TopoDS_Shape:
-        """Along its curve; a clockwise arc runs against a counter-clockwise circle."""
+        """Returns an edge along its curve; a clockwise arc runs against a counter-clockwise circle."""
         curve, first, last = _curve(piece)
         curve.Transform(self._motion)
         is_clockwise = isinstance(piece, Arc | EllipseArc) and piece.sweep < 0
@@ -96,7 +96,7 @@ class Shapes:
 
 
 def together(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Shape:
-    """A compound; what is alone stays so."""
+    """Returns a compound of several shapes, and a single shape itself."""
     if len(shapes) == 1:
         return shapes[0]
     made, build = TopoDS_Compound(), BRep_Builder()
@@ -107,8 +107,8 @@ def together(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Shape:
 
 
 def _curve(piece: Piece) -> tuple[Any, float, float]:
-    """The curve of a piece in the plane z = 0 and the parameters where it begins and ends. Round ones run
-    counter-clockwise; a whole turn begins where its angle is 0.
+    """Returns the curve of a piece in the plane z = 0 and the parameters where it begins and ends. Round ones
+    run counter-clockwise; a whole turn begins where its angle is 0.
     """
     match piece:
         case Line((x0, y0), (x1, y1)):
@@ -140,7 +140,7 @@ def _point(p: Vec) -> gp_Pnt:
 
 
 def _upright(piece: Piece) -> Piece:
-    """Ellipses have their longer half-axis first, as Open CASCADE and STEP want."""
+    """Returns ellipses with their longer half-axis first, as Open CASCADE and STEP want."""
     if not isinstance(piece, Ellipse | EllipseArc) or piece.rx >= piece.ry:
         return piece
     rx, ry, angle = piece.ry, piece.rx, piece.angle + math.pi / 2

@@ -17,11 +17,13 @@ from aidl_lang.geometry.sheets import Size, laid_out
 from aidl_lang.geometry.solved import SolvedModel
 
 MOST_PARTS = 5000
-"""Parts beyond this are a mistake, and would take minutes to pack."""
+"""More parts are a mistake, and would take minutes to pack."""
 
 
 def prepared(job: Job) -> tuple[list[Job], list[Diagnostic]]:
-    """The job as a cutter needs it, one for each sheet; raises ExportError where that cannot be."""
+    """Returns the job for a cutter, one for each sheet; raises ExportError if the parts cannot be laid
+    out.
+    """
     if job.options.kerf:
         job = replace(job, drawing=_widened(job, job.options.kerf / 2))
     if job.options.sheet is None:
@@ -77,7 +79,7 @@ def _oversize(parts: Sequence[tuple[str, Size]], sheet: Size, spacing: float) ->
 
 
 def _stray_note(model: SolvedModel, strays: Sequence[Stroke]) -> Diagnostic:
-    """The warning about what is engraved beside all parts."""
+    """Returns the warning about strokes engraved outside all parts."""
     spans = {g.path: g.span for s in model.root.walk() for geometry in s.drawn for g in geometry.walk()}
     names = list(dict.fromkeys(stroke.geometry for stroke in strays))
     return Diagnostic(
@@ -89,7 +91,9 @@ def _stray_note(model: SolvedModel, strays: Sequence[Stroke]) -> Diagnostic:
 
 
 def _widened(job: Job, by: float) -> Drawing:
-    """The drawing with all material grown by half the width of the cut, and holes shrunk by as much."""
+    """Returns the drawing with all material grown by half the width of the cut, and holes shrunk by as
+    much.
+    """
     drawing = job.drawing
     holes = {s.path for s in job.model.root.walk() if s.kind == "hole"}
     grown = dict.fromkeys(holes, -by) | {body.path: by for body in drawing.bodies}

@@ -1,4 +1,4 @@
-"""What the three-dimensional formats have in common: bodies in their planes, with their thickness."""
+"""Common to the three-dimensional formats: bodies in their planes, with their thickness."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from aidl_lang.geometry.evaluate import LARGEST
 from aidl_lang.geometry.placement import Plane, planes, thickness_of
 
 THINNEST = 1e-6
-"""mm. A thickness below this is lost among the tolerances of those who read the file."""
+"""mm. A smaller thickness is lost among the tolerances of programs that read the file."""
 
 _REMEDIES = ("say how thick: `@thickness(3mm)` before it or what is around it", "or for all: `--thickness 3`")
 _NAMED = 6
@@ -29,7 +29,7 @@ class Placed:
 
 
 def placed_bodies(job: Job) -> list[Placed]:
-    """The bodies in order of drawing. Raises ExportError for one that cannot be made a solid."""
+    """Returns the bodies in order of drawing. Raises ExportError for one that cannot be made a solid."""
     stand = planes(job.model.root)
     found = []
     for body in job.drawing.bodies:
@@ -41,7 +41,7 @@ def placed_bodies(job: Job) -> list[Placed]:
 
 
 def placed_strokes(job: Job) -> list[tuple[Stroke, Plane]]:
-    """The strokes with the planes they lie in."""
+    """Returns the strokes with the planes they lie in."""
     stand = planes(job.model.root)
     for stroke in job.drawing.strokes:
         _require_place(stroke.path, stand[stroke.path])
@@ -49,7 +49,7 @@ def placed_strokes(job: Job) -> list[tuple[Stroke, Plane]]:
 
 
 def thick_bodies(job: Job) -> tuple[list[Placed], tuple[Diagnostic, ...]]:
-    """The bodies that have a thickness, and a warning that names the others."""
+    """Returns the bodies that have a thickness, and a warning that names the others."""
     bodies = placed_bodies(job)
     thick = [p for p in bodies if p.thickness is not None]
     flat = [p.body.path for p in bodies if p.thickness is None]

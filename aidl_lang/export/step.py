@@ -1,5 +1,5 @@
-"""STEP (AP214), written by Open CASCADE: solids of those bodies that have a thickness, plane faces of the
-others, and the strokes.
+"""STEP (AP214), written by Open CASCADE: solids of bodies that have a thickness, plane faces of the others,
+and the strokes.
 
 Every body is a product of its own in an assembly named after the root.
 """
@@ -48,9 +48,9 @@ from aidl_lang.geometry.region import Face
 from aidl_lang.version import __version__
 
 _NO_TIME = "1970-01-01T00:00:00"
-"""Readers want a time; the same drawing is to be the same file at any."""
+"""A fixed time, which readers want: the same drawing gives the same file at any time."""
 _ACCURACY = 1e-9
-"""How well ends meet, relative to the size of the drawing."""
+"""Distance within which ends meet, relative to the size of the drawing."""
 _MILLIMETRE = 1e-3
 _SETTINGS = {
     "write.step.schema": "AP214IS",
@@ -59,7 +59,7 @@ _SETTINGS = {
     "write.precision.mode": "User",
 }
 _CHECKED = 500
-"""Faces with more edges are not checked: a thousand take 4 s, and the time grows with their square."""
+"""Most edges of a face that is checked: a thousand take 4 s, and the time grows with their square."""
 _REFUSALS = (
     *(c for c in vars(OCP.Standard).values() if isinstance(c, type) and issubclass(c, Exception)),
     StdFail_NotDone,
@@ -70,7 +70,7 @@ _REFUSALS = (
 
 @record()
 class _Part:
-    """A product: its name, its solids, faces or edges, and how it looks."""
+    """A product: its name, its solids, faces or edges, and its style."""
 
     name: str
     shapes: list[TopoDS_Shape]
@@ -79,7 +79,7 @@ class _Part:
 
 
 def to_step(job: Job) -> Exported:
-    """The STEP file. Raises ExportError (E0918) for a body that cannot be placed or made solid."""
+    """Writes the STEP file. Raises ExportError (E0918) for a body that cannot be placed or made solid."""
     tolerance = max(1e-7, _ACCURACY * job.drawing.size)
     parts = [*_bodies(job, tolerance), *_strokes(job, tolerance)]
     with _settings(tolerance):
@@ -105,7 +105,7 @@ def _strokes(job: Job, tolerance: float) -> Iterator[_Part]:
 
 
 def _valid(make: Callable[[Face], TopoDS_Shape], face: Face) -> TopoDS_Shape:
-    """The shape of a face; where outlines touch, they get a vertex in common."""
+    """Returns the shape of a face; where outlines touch, they get a common vertex."""
     made = make(face)
     if sum(len(loop.pieces) for loop in face.loops) > _CHECKED or BRepCheck_Analyzer(made).IsValid():
         return made
@@ -117,7 +117,7 @@ def _valid(make: Callable[[Face], TopoDS_Shape], face: Face) -> TopoDS_Shape:
 
 @contextmanager
 def _refusals(path: str) -> Iterator[None]:
-    """What Open CASCADE cannot make of a body is said of that body."""
+    """Raises errors of Open CASCADE as ExportError that names the body."""
     try:
         yield
     except _REFUSALS as reason:
@@ -130,8 +130,8 @@ def _refusals(path: str) -> Iterator[None]:
 
 @contextmanager
 def _settings(tolerance: float) -> Iterator[None]:
-    """The settings of Open CASCADE are of the whole process, and so are its messages, which are dropped; in
-    the end both are as before.
+    """Sets Open CASCADE's settings, which are global to the process, and drops its messages; restores both in
+    the end.
     """
     STEPCAFControl_Controller.Init_s()
     wanted = _SETTINGS | {"write.precision.val": repr(tolerance)}
@@ -154,6 +154,9 @@ def _settings(tolerance: float) -> Iterator[None]:
 class _File:
     """An XDE document of the parts, and the file that Open CASCADE writes of it.
 
+    A text is written as a number that `data` replaces, since Open CASCADE leaves non-ASCII text as it is and
+    breaks long texts anywhere.
+
     A text stands in it as its number, since Open CASCADE writes what is not ASCII as it is and breaks long
     texts anywhere; `data` puts the texts in.
     """
@@ -173,7 +176,7 @@ class _File:
             self._root = self._assembly()
 
     def data(self) -> bytes:
-        """The content of the file."""
+        """Returns the content of the file."""
         with _refusals(self._name):
             out = io.BytesIO()
             if self._transferred().WriteStream(out) != IFSelect_ReturnStatus.IFSelect_RetDone:
@@ -182,7 +185,10 @@ class _File:
         return re.sub(rb"'~(\d+)~'", lambda found: texts[int(found[1])], out.getvalue())
 
     def _transferred(self) -> STEPCAFControl_Writer:
-        """The writer with the entities of the document.
+        """Returns the writer with the entities of the document.
+
+        Its own controller leaves out the repair of shapes that Open CASCADE begins with otherwise: there is
+        nothing to repair, and it takes a time that grows with the square of the edges of a face.
 
         A controller of its own does without the repair of shapes that Open CASCADE begins with otherwise:
         there is nothing to repair, and it takes a time that grows with the square of the edges of a face.
@@ -214,8 +220,8 @@ class _File:
         header.SetAuthorisation(_ascii(""))
 
     def _describe(self, model: StepData_StepModel) -> None:
-        """Put materials into the descriptions of the products, and number the uses of products, which Open
-        CASCADE does for the whole process. (Of its own for materials the unit of density is g³ cm².)
+        """Puts materials into the descriptions of the products, and numbers the uses of products, which Open
+        CASCADE does for the whole process. (Its own unit for the density of materials is g³ cm².)
         """
         materials = {
             self._number(part.name): self._number(part.style.material)
@@ -231,7 +237,7 @@ class _File:
                 entity.SetId(_ascii(str(next(uses))))
 
     def _paint(self, session: XSControl_WorkSession, model: StepData_StepModel) -> None:
-        """Put in colours in the order of the parts; Open CASCADE would go by addresses in memory."""
+        """Adds colours in the order of the parts; Open CASCADE would go by addresses in memory."""
         styles = STEPConstruct_Styles(session)
         for part in self._parts:
             found = [STEPConstruct.FindEntity_s(styles.FinderProcess(), shape) for shape in part.shapes]
@@ -272,7 +278,7 @@ class _File:
         return TCollection_ExtendedString(self._number(text))
 
     def _number(self, text: str) -> str:
-        """What stands for a text."""
+        """Returns the placeholder of a text."""
         return f"~{self._numbers.setdefault(text, len(self._numbers))}~"
 
 
@@ -286,7 +292,7 @@ def _ascii(text: str) -> TCollection_HAsciiString:
 
 
 def _text(value: str) -> bytes:
-    """A string of STEP, with what is not printable ASCII as code points (ISO 10303-21, 6.4.3)."""
+    """Returns a string of STEP, with what is not printable ASCII as code points (ISO 10303-21, 6.4.3)."""
     return f"'{''.join(map(_encoded, value))}'".encode("ascii")
 
 

@@ -1,4 +1,4 @@
-"""STL: binary for one body; for several the text form, which can name them."""
+"""STL: binary for one body; text, which can name them, for several."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribut
 
 
 def to_stl(job: Job) -> Exported:
-    """The STL file. Raises ExportError as `meshes` does."""
+    """Writes the STL file. Raises ExportError as `meshes` does."""
     made, notes = meshes(job)
     return Exported(_binary(made[0]) if len(made) == 1 else _text(made), notes=notes)
 

@@ -20,7 +20,7 @@ _NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 def to_svg(picture: Picture, pixels: tuple[int, int] | None = None) -> str:
-    """The picture as an SVG document in its true size, or so many pixels wide and high."""
+    """Returns the picture as an SVG document in its true size, or so many pixels wide and high."""
     svg = svgwrite()
     left, _, _, top = picture.box
     width, height = fixed(picture.width), fixed(picture.height)
@@ -57,7 +57,7 @@ def _group(svg: Any, group: Group) -> Any:
 
 
 def _clean(text: str) -> str:
-    """Without the characters that XML cannot hold."""
+    """Removes the characters that XML cannot hold."""
     return _NOT_XML.sub("\ufffd", text)
 
 

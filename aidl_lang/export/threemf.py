@@ -15,14 +15,16 @@ from aidl_lang.export.mesh import Mesh, meshes, printable
 from aidl_lang.export.palette import body_fill
 
 _NAMES = uuid.UUID("6f0a1d5e-6f6b-5c1a-9c53-3d9a4f7b2c10")
-"""Ids of what is in a file are derived from its names, so that the same drawing is the same file."""
+"""Namespace for ids, which are derived from names, so that the same drawing gives the same file."""
 
 _LARGEST = 1e9
-"""mm. What lib3mf takes."""
+"""mm. Largest coordinate that lib3mf takes."""
 
 
 def to_3mf(job: Job) -> Exported:
-    """The 3MF file. Raises ExportError as `meshes` does, and for a body that reaches too far (E0918)."""
+    """Writes the 3MF file. Raises ExportError as `meshes` does, and for a body that reaches too far
+    (E0918).
+    """
     made, notes = meshes(job)
     wrapper = lib3mf.get_wrapper()
     model = wrapper.CreateModel()
@@ -57,14 +59,14 @@ def _mesh_object(model: Any, mesh: Mesh) -> Any:
 
 
 class _Materials:
-    """One group of materials, each there once: a name and a colour."""
+    """One group of materials, each a name and a colour, without duplicates."""
 
     def __init__(self, wrapper: Any, model: Any) -> None:
         self.wrapper, self.group = wrapper, model.AddBaseMaterialGroup()
         self.known: dict[tuple[str, str], int] = {}
 
     def of(self, name: str, color: str) -> tuple[int, int]:
-        """The ids of the group and of the material in it."""
+        """Returns the ids of the group and of the material in it."""
         if (name, color) not in self.known:
             paint = self.wrapper.RGBAToColor(*ImageColor.getrgb(color)[:3], 255)
             self.known[name, color] = self.group.AddMaterial(name, paint)

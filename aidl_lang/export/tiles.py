@@ -1,4 +1,4 @@
-"""Pictures that are larger than the paper, printed 1:1 over several pages that are joined afterwards.
+"""Splits pictures larger than the paper into several pages, printed 1:1 and joined afterwards.
 
 Pages overlap. Crosses in the middle of the overlaps lie on both pages, so that they can be laid over each
 other; a scale of 50 mm tells whether the printer kept the size. Pages on which nothing is drawn are left out.
@@ -23,7 +23,7 @@ from aidl_lang.geometry.sections import in_polygon
 from aidl_lang.geometry.tessellate import Polygon, face_polygons, piece_points
 
 MARGIN = 10.0
-"""Millimetres along each edge of a page: printers leave about 5 blank, labels stand in the rest."""
+"""Millimetres along each edge of a page: printers leave about 5 blank, the rest holds labels."""
 OVERLAP = 10.0
 MOST_PAGES = 500
 SMALLEST_PAGE = 100.0
@@ -33,16 +33,16 @@ HAIRLINE, FONT = 0.1, 2.8
 ARM, TICK = 3.0, 2.5
 """Half of a cross at most, and the length of the marks at the corners of the window, mm."""
 BLEED = 1.0
-"""By how much what is drawn runs over the edge of the window, so that no line there is halved, mm."""
+"""Distance by which drawings run over the edge of the window, so that no line there is halved, mm."""
 DEVIATION = 0.05
-"""How closely curves are followed to see which pages they touch, mm."""
+"""Accuracy of the polylines that tell which pages a curve touches, mm."""
 
 Size = tuple[float, float]
 
 
 @record()
 class _Row:
-    """How windows of one size lie along an axis: their number, their first edge and the step between them."""
+    """Windows of one size along an axis: their number, their first edge and the step between them."""
 
     count: int
     first: float
@@ -51,7 +51,7 @@ class _Row:
 
     @classmethod
     def over(cls, low: float, high: float, window: float, overlap: float) -> _Row:
-        """As few as cover the range, centred on it."""
+        """Returns the fewest windows that cover the range, centred on it."""
         step = window - overlap
         count = max(1, math.ceil((high - low - overlap) / step - 1e-9))
         return cls(count, (low + high - (count - 1) * step - window) / 2, step, window)
@@ -60,7 +60,7 @@ class _Row:
         return self.first + index * self.step
 
     def seams(self, overlap: float) -> list[float]:
-        """The middles of the overlaps."""
+        """Returns the middles of the overlaps."""
         return [self.start(k) + overlap / 2 for k in range(1, self.count)]
 
     def quarters(self) -> list[float]:
@@ -68,7 +68,7 @@ class _Row:
 
 
 def tiled(picture: Picture, page: Size, margin: float = MARGIN, overlap: float = OVERLAP) -> list[Picture]:
-    """The pages on which something is drawn, in reading order; the box of each is that of the paper.
+    """Returns the pages on which something is drawn, in reading order; the box of each is that of the paper.
 
     Raises ExportError if the page is too small, or too many would be needed.
     """
@@ -121,7 +121,7 @@ def _check(page: Size, window: Size, overlap: float) -> None:
 
 
 def _page_marks(sight: Bounds, crosses: Sequence[Vec], overlap: float, label: str) -> Iterator[Mark]:
-    """What helps to join the pages: marks at the corners, crosses, a label and a scale."""
+    """Yields the marks that help to join the pages: corners, crosses, a label and a scale."""
     left, bottom, right, top = sight
     ink = Ink(palette.PLAN, HAIRLINE)
     ticks: list[Piece] = []
@@ -143,7 +143,7 @@ def _page_marks(sight: Bounds, crosses: Sequence[Vec], overlap: float, label: st
 
 
 class _Shape:
-    """What a mark covers, closely enough to tell whether a page shows anything of it."""
+    """The area of a mark, accurate enough to tell whether a page shows any of it."""
 
     def __init__(self, mark: Mark) -> None:
         self._lines: list[Polygon] = []
@@ -172,7 +172,7 @@ class _Shape:
         self._low, self._high = spots.min(axis=0) - self._air, spots.max(axis=0) + self._air
 
     def meets(self, sight: Bounds) -> bool:
-        """Whether anything of it lies in a window."""
+        """True if any of it lies in a window."""
         low, high = np.array(sight[:2]), np.array(sight[2:])
         if (self._low > high).any() or (self._high < low).any():
             return False
@@ -183,7 +183,7 @@ class _Shape:
 
 
 def _reaches(line: Polygon, low: Polygon, high: Polygon) -> bool:
-    """Whether a polyline has points in a box: each side is cut to the box along both axes."""
+    """True if a polyline has points in a box: each side is clipped to the box along both axes."""
     start, way = line[:-1], np.diff(line, axis=0)
     level = way == 0
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,4 +1,4 @@
-"""What moved, turned, grew, appeared and vanished between two versions of a solved model.
+"""Comparison of two versions of a solved model: what moved, turned, grew, appeared and vanished.
 
 Things are compared by their paths. What went as a whole is told once: a structure speaks for its parts that
 went along, and a shape for its corners. Numbers are equal within 1e-6 of themselves, places within 1e-6 of

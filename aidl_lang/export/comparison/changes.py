@@ -1,4 +1,4 @@
-"""What a comparison finds, as data. Lengths in mm, areas in mm², angles in degrees, in the root frame.
+"""The result of a comparison as data. Lengths in mm, areas in mm², angles in degrees, in the root frame.
 
 Of two values the first is from before, the second from after; None stands for nothing.
 """
@@ -23,7 +23,7 @@ Sort: TypeAlias = Literal["changed", "appeared", "vanished"]
 
 @record()
 class Version:
-    """One side of a comparison."""
+    """One side of a comparison: a solved model and its drawing."""
 
     model: SolvedModel
     drawing: Drawing
@@ -31,7 +31,9 @@ class Version:
 
 @record()
 class GeometryChange:
-    """A named geometry. `is_outline_changed` if it did not move as a whole; `fields` then differ."""
+    """The change of a named geometry. `fields` differ if it did not move as a whole
+    (`is_outline_changed`).
+    """
 
     name: str
     type: str
@@ -44,7 +46,7 @@ class GeometryChange:
 
 @record()
 class StructureChange:
-    """A structure.
+    """The change of a structure.
 
     path      after; before for one that vanished
     was       its path before, if it was found by its shape under another name or elsewhere in the tree
@@ -67,14 +69,14 @@ class StructureChange:
 
     @property
     def is_one(self) -> bool:
-        """Whether there is anything to tell."""
+        """True if anything changed."""
         told = (self.was, self.move, self.sizes, self.params, self.settings, self.geometry)
         return self.sort != "changed" or any(told)
 
 
 @record()
 class ContactChange:
-    """Two bodies of both versions, by their paths after. A contact that is None is not listed: far apart."""
+    """The contact of two bodies before and after, named by their paths after; None for bodies far apart."""
 
     a: str
     b: str
@@ -84,7 +86,7 @@ class ContactChange:
 
 @record()
 class Comparison:
-    """What differs between two versions, in order of writing.
+    """The differences between two versions, in order of writing.
 
     freed, held  parameters that can move now and could not before, and the reverse, by their paths
     size         of the larger drawing, mm; `tolerance` is 1e-6 of it
@@ -104,12 +106,12 @@ class Comparison:
 
     @property
     def degrees(self) -> tuple[int | None, int | None]:
-        """Degrees of freedom."""
+        """Returns the degrees of freedom before and after."""
         return self.before.model.degrees, self.after.model.degrees
 
     @property
     def is_equal(self) -> bool:
-        """Whether there is nothing to tell."""
+        """True if the versions do not differ."""
         same = self.status[0] == self.status[1] and self.degrees[0] == self.degrees[1]
         return same and not (self.structures or self.contacts or self.freed or self.held)
 
@@ -119,7 +121,7 @@ class Comparison:
         return text(self)
 
     def to_dict(self) -> dict[str, object]:
-        """The same as plain dicts and lists, numbers to 12 digits."""
+        """Returns the comparison as plain dicts and lists, numbers to 12 digits."""
         from aidl_lang.export.comparison.data import to_dict
 
         return to_dict(self)

@@ -1,4 +1,4 @@
-"""Down both trees at once: what is to tell of each structure, given where what is around it went."""
+"""Compares two trees from the root down: each structure relative to the motion of its parent."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _CANDIDATES = 3
 
 
 def compare(before: Version, after: Version) -> Comparison:
-    """What differs between two versions."""
+    """Returns the differences between two versions."""
     size = max(_extent(before), _extent(after))
     with np.errstate(all="ignore"):  # a model that did not solve may hold numbers that are none
         root = match(before.model.root, after.model.root, TOLERANCE * size)
@@ -55,7 +55,7 @@ def _extent(version: Version) -> float:
 
 
 def _renamed(path: str, names: Mapping[str, str]) -> str:
-    """A path before as it is after: its longest beginning that is a structure decides."""
+    """Returns the path after of a path before, renamed by its longest beginning that is a structure."""
     beginning = path
     while beginning not in names and "." in beginning:
         beginning = beginning.rpartition(".")[0]
@@ -65,7 +65,7 @@ def _renamed(path: str, names: Mapping[str, str]) -> str:
 def _contact_changes(
     before: Version, after: Version, names: Mapping[str, str], tolerance: float
 ) -> Iterator[ContactChange]:
-    """Bodies of both versions that lie to each other in another way."""
+    """Yields the changed contacts between bodies of both versions."""
     bodies = {names.get(b.path, "") for b in before.drawing.bodies} & {b.path for b in after.drawing.bodies}
     first = {
         frozenset((names[c.a], names[c.b])): c for c in before.drawing.pairs if {c.a, c.b} <= names.keys()
@@ -80,7 +80,7 @@ def _contact_changes(
 
 
 def _is_same(a: Contact | None, b: Contact | None, tolerance: float) -> bool:
-    """Pairs that are not listed are apart."""
+    """True for equal contacts; pairs without one are apart."""
     if a is None or b is None:
         return all(c is None or c.relation == "apart" for c in (a, b))
     if a.gap is not None and b.gap is not None:
@@ -97,7 +97,9 @@ class _Walk:
     def changes(
         self, pair: StructurePair, expected: Move, *, is_root: bool = False, settled: bool = False
     ) -> Iterator[StructureChange]:
-        """What is to tell of a structure and all in it.
+        """Yields the changes of a structure and of all in it.
+
+        `expected` is the motion of its parent; `settled` says that all in it is known to have moved so.
 
         `expected` is where what is around it went; `settled` says that all in it is known to have gone there.
         """
@@ -128,7 +130,9 @@ class _Walk:
             yield replace(_alone(appeared), sort="appeared", sizes=self._sizes_alone(appeared, 1))
 
     def _majority(self, pair: StructurePair, expected: Move, is_root: bool) -> Move | None:
-        """Where most of what is in a structure went; of the root, nothing may have stayed."""
+        """Returns the motion of most things in a structure, if it is not `expected`; None for a root of which
+        something stayed.
+        """
         if pair.follows(expected) or (is_root and any(item.follows(STILL) for item in pair.items)):
             return None
         return next((move for move in self._candidates(pair) if pair.follows(move)), None)

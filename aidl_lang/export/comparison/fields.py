@@ -19,7 +19,9 @@ Changed = dict[str, tuple[Value, Value]]
 
 
 def changed(a: Values, b: Values, move: Move = STILL, tolerance: float = 0.0) -> Changed:
-    """The values that differ, in order of writing after. Points may have gone as `move` says."""
+    """Returns the values that differ, in order of writing after. Points that moved by `move` count as
+    equal.
+    """
     return {
         name: (a.get(name), b.get(name))
         for name in dict.fromkeys([*b, *a])
@@ -29,7 +31,7 @@ def changed(a: Values, b: Values, move: Move = STILL, tolerance: float = 0.0) ->
 
 
 def is_same(a: Value, b: Value, name: str = "") -> bool:
-    """Whether two values are equal, numbers to 1e-6 of themselves, angles up to whole turns."""
+    """True for equal values: numbers to 1e-6 of themselves, angles up to whole turns."""
     if isinstance(a, tuple) and isinstance(b, tuple):
         return len(a) == len(b) and all(map(is_same, a, b))
     if _is_number(a) and _is_number(b):
@@ -51,7 +53,7 @@ def _is_point(value: Value) -> TypeGuard[Vec]:
 
 
 def settings(s: SolvedStructure) -> dict[str, Value]:
-    """What was said of a structure: its kind, its attributes, its finished corners."""
+    """Returns the kind, the attributes and the finished corners of a structure."""
     found: dict[str, Value] = {"kind": s.kind}
     for name, values in s.attributes.items():
         found[f"@{name}"] = _plain(values) if values else True
@@ -68,7 +70,7 @@ def _plain(values: tuple[Scalar, ...]) -> Value:
 
 
 def sizes(s: SolvedStructure, region: Region | None) -> dict[str, Value]:
-    """Of the box and, where there is material or a hole, of the region."""
+    """Returns the size of the box and, for material or a hole, the measures of the region."""
     found: dict[str, Value] = {}
     if s.box is not None:
         found |= {"width": s.box.width, "height": s.box.height}
@@ -79,7 +81,9 @@ def sizes(s: SolvedStructure, region: Region | None) -> dict[str, Value]:
 
 
 def of_geometry(a: SolvedGeometry, b: SolvedGeometry, move: Move, tolerance: float) -> Changed:
-    """What differs in a geometry that did not go as a whole; of an outline its corners and radii."""
+    """Returns the changed fields of a geometry that did not move as a whole; for an outline its corners and
+    radii.
+    """
     if a.type != b.type:
         return {"type": (a.type, b.type)}
     first, last = _values(a), _values(b)

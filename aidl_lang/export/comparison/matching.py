@@ -1,4 +1,4 @@
-"""What in one version is what in the other: by path first, and where names went, by shape."""
+"""Pairs the structures and geometries of two versions: by path first, renamed ones by shape."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class GeometryPair:
 
 @record(frozen=False)
 class StructurePair:
-    """One structure in both versions, and what of it is in one of them only.
+    """One structure in both versions, with its paired, vanished and new members.
 
     `was` is the path before of a structure that was found by its shape under another name.
     """
@@ -63,7 +63,7 @@ class StructurePair:
 
     @cached_property
     def pose(self) -> Pose:
-        """Of everything in it that is in both; asked for once all pairs are found."""
+        """The pose of everything that is in both versions; valid once all pairs are found."""
         parts = [item.pose for item in self.items]
         return Pose.joined([*parts, *_plan(self.before, self.after, self.tolerance)], self.tolerance)
 
@@ -72,19 +72,19 @@ class StructurePair:
         return [*self.geometry, *self.structures]
 
     def leaves(self) -> Iterator[GeometryPair]:
-        """All geometry in it that is in both versions."""
+        """Yields all geometry in it that is in both versions."""
         for pair in self.walk():
             yield from pair.geometry
 
     def follows(self, move: Move) -> bool:
-        """Whether most of what is in it went as the move says."""
+        """True if most of its members moved by `move`."""
         if self.pose.fits(move):
             return True
         return 2 * sum(item.follows(move) for item in self.items) > len(self.items)
 
     @cached_property
     def is_altered(self) -> bool:
-        """Whether anything in it came, went, or became something else, wherever the rest is."""
+        """True if anything in it appeared, vanished or changed its kind, wherever the rest is."""
         a, b = self.before, self.after
         return (
             bool(self.gone or self.new or self.gone_geometry or self.new_geometry)
@@ -96,7 +96,7 @@ class StructurePair:
 
 
 def _plan(a: SolvedStructure, b: SolvedStructure, tolerance: float) -> Iterator[Pose]:
-    """The box of a structure that has nothing in it yet stands for what is to come."""
+    """Yields the pose of the box of two structures that are still empty."""
     if not (a.is_empty or b.is_empty):
         return
     if not (a.is_empty and b.is_empty and a.box and b.box):
@@ -107,7 +107,7 @@ def _plan(a: SolvedStructure, b: SolvedStructure, tolerance: float) -> Iterator[
 
 
 def match(before: SolvedStructure, after: SolvedStructure, tolerance: float) -> StructurePair:
-    """The pairs of two trees; `tolerance` in mm."""
+    """Pairs two trees; `tolerance` in mm."""
     enclosed = _enclosed(before, after)
     root = _by_name(enclosed, _enclosed(after, before) if enclosed is before else after, tolerance)
     is_named_by_file = all(s.span and _stem(s.span.source.name) == s.name for s in (before, after))
@@ -118,7 +118,7 @@ def match(before: SolvedStructure, after: SolvedStructure, tolerance: float) -> 
 
 
 def _enclosed(root: SolvedStructure, other: SolvedStructure) -> SolvedStructure:
-    """A root that stands inside the other version's root: put into an assembly of that name.
+    """Puts a root into an assembly of the other root's name if it stands inside that in the other version.
 
     A file with one structure has it as root; with a second one, both are in an assembly named after the file.
     """
@@ -129,7 +129,7 @@ def _enclosed(root: SolvedStructure, other: SolvedStructure) -> SolvedStructure:
 
 
 def _stem(file: str) -> str:
-    """The name that a file gives to an assembly without one of its own."""
+    """Returns the name that a file gives to an assembly without one of its own."""
     return re.sub(r"\W+", "_", PurePath(file).stem).strip("_") or "model"
 
 
@@ -147,14 +147,14 @@ def _by_name(a: SolvedStructure, b: SolvedStructure, tolerance: float) -> Struct
 
 
 def _split(a: Sequence[_T], b: Sequence[_T]) -> tuple[list[tuple[_T, _T]], list[_T], list[_T]]:
-    """Pairs of the same name in order of b, those in a alone, those in b alone."""
+    """Returns pairs of the same name in order of b, those only in a, those only in b."""
     before, after = {x.name: x for x in a}, {x.name for x in b}
     both = [(before[y.name], y) for y in b if y.name in before]
     return both, [x for x in a if x.name not in after], [y for y in b if y.name not in before]
 
 
 def _find_renamed(root: StructurePair, tolerance: float) -> None:
-    """Pair what vanished with what appeared in the same shape, anywhere in the tree."""
+    """Pairs what vanished with what appeared in the same shape, anywhere in the tree."""
     nodes = list(root.walk())
     gone = [s for node in nodes for s in node.gone]
     new = [s for node in nodes for s in node.new]
@@ -183,7 +183,7 @@ def _congruent(
     pose: Callable[[_T, _T, float], Pose],
     tolerance: float,
 ) -> list[tuple[_T, _T, Pose]]:
-    """Take those out of both lists that have the same shape, those that moved least before others."""
+    """Removes pairs of the same shape from both lists, those that moved least first."""
     by_form: dict[object, list[_T]] = {}
     for x in gone:
         by_form.setdefault(form(x), []).append(x)
@@ -203,7 +203,9 @@ def _congruent(
 def _nearest(
     y: _T, candidates: Sequence[_T], pose: Callable[[_T, _T, float], Pose], tolerance: float
 ) -> tuple[_T, _T, Pose] | None:
-    """The first few of a form are looked at: many that were renamed together come in their old order."""
+    """Returns the candidate of the same shape that moved least, among the first few: many that were renamed
+    together keep their order.
+    """
     found: list[tuple[float, float, int, _T, Pose]] = []
     for x in candidates[:_MOST]:
         p = pose(x, y, tolerance)
@@ -221,7 +223,7 @@ def _nearest(
 
 
 def _form(s: SolvedStructure) -> object:
-    """What two structures have in common that differ in name and place alone."""
+    """Returns a key that is equal for structures that differ only in name and place."""
     return (
         s.kind,
         tuple((g.name, g.type) for g in s.geometry),

@@ -1,4 +1,4 @@
-"""Rigid motions of the plane, and the one that takes things from where they were to where they are."""
+"""Rigid motions of the plane, and finding the one between two poses."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ _SAME_ANGLE = 1e-4
 
 @record(slots=True)
 class Move:
-    """x is reflected if `mirrored`, then all is turned about the origin by `turn` degrees, then shifted by
-    (dx, dy) mm.
+    """A rigid motion: reflects x if `mirrored`, turns about the origin by `turn` degrees, then shifts by (dx,
+    dy) mm.
     """
 
     dx: float = 0.0
@@ -36,7 +36,7 @@ class Move:
         return float(x), float(y)
 
     def all(self, points: Points) -> Points:
-        """The images of many points, shape (n, 2)."""
+        """Returns the images of many points, shape (n, 2)."""
         if not (self.turn or self.mirrored):
             shifted: Points = points + np.array((self.dx, self.dy))
             return shifted
@@ -61,7 +61,7 @@ STILL = Move()
 
 @record()
 class Pose:
-    """Places that belong to each other, before and after.
+    """The positions of a thing, before and after.
 
     tolerance  how far a place may be off, mm
     points     shape (2, n, 2)
@@ -87,7 +87,7 @@ class Pose:
         )
 
     def fits(self, move: Move) -> bool:
-        """Whether everything went as the move says."""
+        """True if everything moved by `move`."""
         before, after = self.points
         if not self.congruent or not bool(np.all(np.abs(move.all(before) - after) <= self.tolerance)):
             return False
@@ -96,20 +96,22 @@ class Pose:
         return bool(np.all(np.abs((turned - last + 90) % 180 - 90) <= _SAME_ANGLE))
 
     def follows(self, move: Move) -> bool:
-        """Whether it went as the move says; if it changed its shape, whether its centre did."""
+        """True if it moved by `move`; of a thing that changed its shape, if its centre did."""
         if self.centers is None or self.whole is not None:
             return self.fits(move)
         return bool(np.all(np.abs(move.all(self.centers[0]) - self.centers[1]) <= self.tolerance))
 
     def move(self, expected: Move = STILL) -> Move | None:
-        """The motion that takes all there, if there is one: `expected` if it does, else the simplest."""
+        """Returns the motion of all its points, if there is one: `expected` if that fits, else the
+        simplest.
+        """
         if not self.congruent:
             return None
         return next((m for m in self._candidates(expected) if self.fits(m)), None)
 
     @cached_property
     def whole(self) -> Move | None:
-        """The simplest motion of it all."""
+        """The simplest motion of all its points, if there is one."""
         return self.move()
 
     def shift(self) -> Move | None:
@@ -141,13 +143,13 @@ class Pose:
             yield self._clean(replace(about, dx=q[0] - about(p)[0], dy=q[1] - about(p)[1]))
 
     def _clean(self, move: Move) -> Move:
-        """Without shifts that are rounding."""
+        """Returns the motion without shifts that are rounding."""
         dx, dy = (0.0 if abs(d) <= self.tolerance else float(d) for d in (move.dx, move.dy))
         return replace(move, dx=dx, dy=dy)
 
 
 def pose_of(before: SolvedGeometry, after: SolvedGeometry, tolerance: float) -> Pose:
-    """Of two geometries; not congruent if they differ in kind, in parts or in radii."""
+    """Returns the pose of two geometries; not congruent if they differ in kind, in parts or in radii."""
     places: list[tuple[Vec, Vec]] = []
     axes: list[tuple[float, float]] = []
     centers = [g.values.get("center") for g in (before, after)]
@@ -169,7 +171,7 @@ def _gather(
     places: list[tuple[Vec, Vec]],
     axes: list[tuple[float, float]],
 ) -> bool:
-    """Collect places and axes; whether the two are alike so far."""
+    """Collects places and axes; returns False as soon as the two differ."""
     if a.type != b.type or [p.name for p in a.parts] != [p.name for p in b.parts]:
         return False
     first, last = _places(a), _places(b)
@@ -189,7 +191,9 @@ def _gather(
 
 
 def _places(g: SolvedGeometry) -> list[Vec]:
-    """Points that say where a primitive is and how it is turned; the middle of an arc its way."""
+    """Returns points that fix the place and direction of a primitive; the middle of an arc fixes its way
+    round.
+    """
     match g.curve:
         case Line(start, end):
             return [start, end]

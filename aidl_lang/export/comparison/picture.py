@@ -1,4 +1,4 @@
-"""Two versions drawn over each other: what is in both, in one of them only, and what went where.
+"""A picture of two versions drawn over each other: what is in both, in one of them only, and what moved.
 
 Grey is in both. What is gone is orange, hatched, with dashed outlines; what is new is blue, with solid ones:
 the two can be told apart without colours.
@@ -34,7 +34,7 @@ MOST_ARROWS = 100
 
 
 def overlay(comparison: Comparison) -> Picture:
-    """The picture of a comparison."""
+    """Draws a comparison."""
     before, after = comparison.before, comparison.after
     box = _box(before, after)
     size = max(box[2] - box[0], box[3] - box[1]) or 1.0
@@ -53,7 +53,7 @@ def overlay(comparison: Comparison) -> Picture:
 
 
 def parts(before: Sequence[Region], after: Sequence[Region]) -> dict[str, Region]:
-    """What is covered in both versions, only before, only after: exact regions."""
+    """Returns the exact regions covered in both versions, only before, only after."""
     pieces = [p for region in (*before, *after) for loop in region.loops for p in loop.pieces]
     if not pieces:
         return dict.fromkeys(FILLS, Region())
@@ -82,7 +82,7 @@ def _grown(box: Bounds, by: float) -> Bounds:
 
 
 def _ink(name: str, size: float) -> Ink:
-    """Dashed lines are a little thinner, so that they hide behind solid ones at the same place."""
+    """Returns the ink of a version; dashed lines are thinner, so that they hide behind solid ones."""
     if name == "before":
         return Ink(INKS[name], 0.8 * LINE * size, (DASH * size, 0.7 * DASH * size), is_round=True)
     return Ink(INKS[name], LINE * size, is_round=True)
@@ -96,7 +96,7 @@ def _filled(name: str, region: Region, size: float) -> Iterator[Mark]:
 
 
 def _hatch(face: Face, step: float) -> list[Piece]:
-    """Lines at 45° inside a face, at the same places in every face."""
+    """Returns lines at 45° inside a face, at the same places in every face."""
     turn = np.array([[1.0, 1.0], [-1.0, 1.0]]) / math.sqrt(2)
     polygons = [polygon @ turn.T for polygon in face_polygons(face, step / 50)]
     start = np.concatenate(polygons)
@@ -113,7 +113,7 @@ def _hatch(face: Face, step: float) -> list[Piece]:
 
 
 def _outlined(name: str, version: Version, shared: set[Stroke], size: float) -> Iterator[Mark]:
-    """Outlines of bodies, strokes and plans; strokes that are in both are drawn in grey."""
+    """Yields outlines of bodies, strokes and plans; strokes that are in both are drawn in grey."""
     ink = _ink(name, size)
     for body in version.drawing.bodies:
         for face in body.region.faces:
@@ -144,7 +144,9 @@ def _coincide(a: Sequence[Piece], b: Sequence[Piece], tolerance: float) -> bool:
 
 
 def _arrows(changes: Iterable[StructureChange], before: Version, size: float) -> Iterator[Mark]:
-    """From where the middle of a thing was to where it is: the centroid of its region, else of its box."""
+    """Yields arrows from the old to the new middle of a thing: the centroid of its region, else of its
+    box.
+    """
     ways = []
     for change in changes:
         region = before.drawing.regions.get(change.was or change.path)
@@ -173,12 +175,12 @@ def _arrow(at: Vec, to: Vec, size: float) -> Iterator[Mark]:
 
 
 def _polygon(*corners: Vec) -> Face:
-    """Of corners in counter-clockwise order."""
+    """Returns the face with these corners, counter-clockwise."""
     return Face(Loop(tuple(Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True))))
 
 
 def _legend(regions: dict[str, Region], box: Bounds, size: float) -> tuple[tuple[Mark, ...], Bounds]:
-    """One line for each kind of area that occurs, below the drawing, and the box of them all."""
+    """Returns one line for each kind of area that occurs, below the drawing, and the box of them all."""
     marks: list[Mark] = []
     text = TEXT * size
     left, top = box[0], box[1] - 2 * text

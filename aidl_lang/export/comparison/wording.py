@@ -40,7 +40,7 @@ _MEMBER = re.compile(r"(.*)\[(-?\d+)\]")
 
 
 def text(comparison: Comparison) -> str:
-    """The whole, without a line break at its end."""
+    """Returns the whole comparison as text, without a line break at its end."""
     if comparison.is_equal:
         return EQUAL
     root = comparison.after.model.root.path
@@ -68,7 +68,7 @@ def _laid_out(mark: str, path: str, lines: Sequence[str], width: int) -> Iterato
 def _gathered(
     changes: Iterable[_T], name: Callable[[_T], str], lines: Callable[[_T], list[str]]
 ) -> Iterator[tuple[Sort, str, list[str]]]:
-    """Each change with its lines; members of an array of which the same is to be told as one."""
+    """Yields each change with its lines; members of an array with the same lines as one."""
     told = [(c, name(c), lines(c)) for c in changes]
 
     def alike(entry: tuple[_T, str, list[str]]) -> object:
@@ -90,7 +90,7 @@ def _gathered(
 
 
 def _ranges(numbers: list[int]) -> str:
-    """`0..3, 7` for 0, 1, 2, 3, 7."""
+    """Returns `0..3, 7` for 0, 1, 2, 3, 7."""
     runs: list[list[int]] = []
     for n in numbers:
         if runs and n == runs[-1][-1] + 1:
@@ -101,7 +101,7 @@ def _ranges(numbers: list[int]) -> str:
 
 
 def _is_shift(change: StructureChange | GeometryChange) -> bool:
-    """Whether a shift is all there is to tell."""
+    """True if a shift is the whole change."""
     move = change.move
     if move is None or move.turn or move.mirrored or change.was:
         return False
@@ -138,7 +138,7 @@ def _dimensions(sizes: Fields, side: int) -> str:
 
 
 def _sizes(sizes: Fields) -> str:
-    """Width, height and area; perimeter and centroid only where they alone differ."""
+    """Returns width, height and area; perimeter and centroid if only they differ."""
     words = []
     main = {name: pair for name, pair in sizes.items() if name in _MAIN_SIZES}
     for name, (a, b) in (main or sizes).items():
@@ -205,7 +205,7 @@ def _field(name: str, a: Value, b: Value) -> str:
 
 
 def _move(move: Move, middle: Vec | None, size: float) -> str:
-    """About a point that is not far away a turn is told alone, else with the shift of the middle."""
+    """Describes a motion: a turn about a point nearby by that alone, else with the shift of the middle."""
     at = middle or (0.0, 0.0)
     to = move(at)
     steps = (to[0] - at[0], to[1] - at[1])
@@ -225,7 +225,9 @@ def _move(move: Move, middle: Vec | None, size: float) -> str:
 
 
 def _contacts(changes: Sequence[ContactChange], root: str) -> Iterator[str]:
-    """Those first that are of another kind now; gaps that became others only as far as there is room."""
+    """Yields lines on contacts, those of another kind now first; changed gaps only as far as there is
+    room.
+    """
     kinds = {id(c): len({lie.relation if lie else "apart" for lie in (c.before, c.after)}) for c in changes}
     ranked = sorted(changes, key=lambda c: -kinds[id(c)])
     most = max(_MOST_CONTACTS, sum(kind > 1 for kind in kinds.values()))
@@ -262,7 +264,7 @@ def _freedom(comparison: Comparison, root: str) -> Iterator[str]:
 
 
 def _pair(a: Value, b: Value) -> str:
-    """Both values, with as many digits as tell them apart."""
+    """Returns both values, with enough digits to tell them apart."""
     shown = [(_value(a, digits), _value(b, digits)) for digits in _DIGITS]
     return " → ".join(next((p for p in shown if p[0] != p[1]), shown[-1]))
 
