@@ -50,7 +50,7 @@ class Model:
 
     @property
     def ok(self) -> bool:
-        """Whether the program is right and every constraint and assertion holds."""
+        """True if the program is right and every constraint and assertion holds."""
         return self._compiled.ok
 
     @property
@@ -90,7 +90,7 @@ class Model:
         return self._compiled.timings
 
     def __getitem__(self, path: str) -> SolvedStructure:
-        """A structure by its dotted path, with or without the root's name. Raises KeyError."""
+        """Returns a structure by its dotted path, with or without the root's name. Raises KeyError."""
         root = self.solved.root
         found = root.find(path) or root.find(f"{root.path}.{path}")
         if found is None:
@@ -98,35 +98,35 @@ class Model:
         return found
 
     def measure(self, path: str | None = None, densities: Mapping[str, float] | None = None) -> Part:
-        """What a structure, a geometry or the whole measures: area, inertia, walls, gaps, mass.
+        """Measures a structure, a geometry or the whole: area, inertia, walls, gaps, mass.
 
-        `densities` adds to the known ones, in kg/m³. Raises KeyError where there is no area to measure, and
-        ValueError when the program is wrong or measuring takes longer than its settings allow.
+        `densities` adds to the known ones, in kg/m³. Raises KeyError if there is no area to measure, and
+        ValueError if the program is wrong or measuring takes longer than its settings allow.
         """
         return self._compiled.measured(path, densities)
 
     def to_svg(self, show: frozenset[str] = frozenset()) -> str:
-        """The drawing as SVG; `show` adds overlays: names, points, bbox, constraints, dof, plan."""
+        """Returns the drawing as SVG; `show` adds overlays: names, points, bbox, constraints, dof, plan."""
         from aidl_lang.export import Options
 
         return self._compiled.export(".svg", Options(show)).decode()
 
     def to_json(self, *, timings: bool = False) -> str:
-        """The solved model as JSON (docs/json.md)."""
+        """Returns the solved model as JSON (docs/json.md)."""
         from aidl_lang.export import Options
 
         options = Options(timings=self.timings if timings else None)
         return self._compiled.export(".json", options).decode()
 
     def export(self, suffix: str, options: Options | None = None) -> bytes:
-        """The drawing in the format of a file suffix (`.dxf`).
+        """Returns the drawing in the format of a file suffix (`.dxf`).
 
-        Raises KeyError for an unknown suffix, and ValueError where the format cannot hold the drawing.
+        Raises KeyError for an unknown suffix, and ValueError if the format cannot hold the drawing.
         """
         return self._compiled.export(suffix, options)
 
     def save(self, path: str | Path) -> None:
-        """Write the drawing in the format of the file's suffix; raises as `export` does."""
+        """Writes the drawing in the format of the file's suffix; raises as `export` does."""
         path = Path(path)
         path.write_bytes(self.export(path.suffix))
 
@@ -145,7 +145,9 @@ def _source(text_or_path: str | Path) -> tuple[SourceFile, Path | None]:
 
 
 def check(text: str | Path, settings: Settings | None = None) -> list[Diagnostic]:
-    """What is wrong with a program, without solving it. A `Path` is read, a string is the program itself."""
+    """Returns the diagnostics of a program, without solving it. A `Path` is read, a string is the program
+    itself.
+    """
     from aidl_lang import pipeline
     from aidl_lang.common.world import DiskWorld
 
@@ -159,7 +161,7 @@ def compile(
     params: Mapping[str, str | float | bool] | None = None,
     settings: Settings | None = None,
 ) -> Model:
-    """Compile and solve a program. A `Path` is read, a string is the program itself.
+    """Compiles and solves a program. A `Path` is read, a string is the program itself.
 
     `params` sets knobs by path, as `{"width": 200}`. Never raises for what a program says.
     """
@@ -172,16 +174,16 @@ def compile(
 
 
 def diff(before: Model, after: Model) -> Comparison:
-    """What moved, turned, grew, appeared and vanished between two models.
+    """Compares two models: what moved, turned, grew, appeared and vanished.
 
-    `str` of it is a text for a reader, `to_dict` the same as data. Raises ValueError when a program is wrong,
-    or comparing takes longer than its settings allow.
+    `str` of the comparison is a text for a reader, `to_dict` the same as data. Raises ValueError if a program
+    is wrong, or comparing takes longer than its settings allow.
     """
     return before._compiled.compared(after._compiled)
 
 
 def format(text: str) -> str:
-    """The canonical form of a program. Raises ValueError when it does not parse."""
+    """Returns the canonical form of a program. Raises ValueError if it does not parse."""
     from aidl_lang import pipeline
 
     printed, diagnostics = pipeline.formatted(SourceFile("<text>", text))

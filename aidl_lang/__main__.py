@@ -1,4 +1,4 @@
-"""`python -m aidl_lang` is `aidl`."""
+"""Entry point of `python -m aidl_lang`, which is `aidl`."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""What came of a program, and what can be done with that: write it, measure it, compare it."""
+"""The result of compiling a program, and the ways to write, measure and compare it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @record(frozen=False)
 class Compiled:
-    """What came of a program. `model` and `drawing` are None when it is wrong before solving."""
+    """The result of compiling a program. `model` and `drawing` are None if it is wrong before solving."""
 
     status: str
     diagnostics: list[Diagnostic]
@@ -37,13 +37,13 @@ class Compiled:
     drawing: Drawing | None = None
     show: frozenset[str] = field(default_factory=frozenset)
     stages: tuple[tuple[str, StageReport], ...] = ()
-    """What the solver tried, in order: the path of a structure, and one stage for it."""
+    """The attempts of the solver, in order: the path of a structure, and one stage for it."""
     conflicts: Callable[[], tuple[Conflict, ...]] = field(default=tuple, repr=False)
-    """What tells, for a program that does not solve, the constraints that do not hold together."""
+    """Works out, for a program that does not solve, the constraints that contradict each other."""
     follows: Callable[[Span], bool] = field(default=lambda span: False, repr=False)
-    """What tells, for a program that solves, whether what is stated in a place follows from the rest."""
+    """Tells, for a program that solves, whether the constraint at a place follows from the rest."""
     built: Model | None = field(default=None, repr=False)
-    """The structure tree with its expressions, of which `evaluate` tells the solved values."""
+    """The structure tree with its expressions, whose solved values `evaluate` gives."""
     evaluate: Evaluator | None = field(default=None, repr=False)
     limit: float = math.inf
     """Seconds of the processor's time for each thing that is done with the drawing."""
@@ -53,10 +53,10 @@ class Compiled:
         return self.status == "solved" and not has_errors(self.diagnostics)
 
     def exported(self, suffix: str, options: Options | None = None) -> Exported:
-        """The drawing in the format of a file suffix (`.svg`), with what there is to say of it.
+        """Returns the drawing in the format of a file suffix (`.svg`), with the notes on writing it.
 
-        Raises KeyError for an unknown suffix, `ExportError` where the format cannot hold the drawing, and
-        ValueError when there is nothing to export.
+        Raises KeyError for an unknown suffix, `ExportError` if the format cannot hold the drawing, and
+        ValueError if there is nothing to export.
         """
         from aidl_lang.export import ExportError, Job, Options, export
 
@@ -72,13 +72,13 @@ class Compiled:
             raise ExportError("E0955", message, hint) from None
 
     def export(self, suffix: str, options: Options | None = None) -> bytes:
-        """The content of the file alone (see `exported`)."""
+        """Returns the content of the file alone (see `exported`)."""
         return self.exported(suffix, options).data
 
     def surveyed(self, paths: Sequence[str] = (), densities: Mapping[str, float] | None = None) -> Survey:
-        """What the whole measures, and the parts at some paths or else each body.
+        """Measures the whole, and the parts at some paths or else each body.
 
-        Raises NothingThereError for a path at which nothing covers an area, TooLongError, and ValueError when
+        Raises NothingThereError for a path at which nothing covers an area, TooLongError, and ValueError if
         there is nothing to measure.
         """
         from aidl_lang.geometry.survey import survey
@@ -88,7 +88,7 @@ class Compiled:
             return survey(model, drawing, paths, densities)
 
     def measured(self, path: str | None = None, densities: Mapping[str, float] | None = None) -> Part:
-        """What the part at a path measures, or the whole. Raises as `surveyed` does."""
+        """Measures the part at a path, or the whole. Raises as `surveyed` does."""
         from aidl_lang.geometry.survey import measured
 
         model, drawing = self._finished
@@ -96,7 +96,7 @@ class Compiled:
             return measured(model, drawing, path, densities)
 
     def compared(self, after: Compiled) -> Comparison:
-        """What differs in a later version. Raises TooLongError, and ValueError where there is no drawing."""
+        """Compares with a later version. Raises TooLongError, and ValueError if there is no drawing."""
         from aidl_lang.export.comparison import Version, compare
 
         with within(self.limit, "comparing"):

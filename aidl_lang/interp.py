@@ -34,7 +34,9 @@ from aidl_lang.typecheck import Program
 
 @record()
 class Interpretation:
-    """`written`: values at the first guesses of the expressions that break a rule of validity."""
+    """The model that a program builds; `written` holds the values, at the first guesses, of the expressions
+    that break a rule of validity.
+    """
 
     model: Model
     diagnostics: list[Diagnostic]
@@ -48,11 +50,10 @@ def interpret(
     turned: Mapping[int, int] | None = None,
     states_constants: bool = False,
 ) -> Interpretation:
-    """Run a program. Never raises for what a program says; errors are among the diagnostics.
+    """Runs a program. Never raises for what a program says; errors are among the diagnostics.
 
-    turned            readings of ambiguous calls, by number, and how many places from the nearest they are to
-                      be taken
-    states_constants  conditions over constants, which are decided at once, are constraints all the same
+    turned            for ambiguous calls, by number, how many places from the nearest reading to take
+    states_constants  conditions over constants, which are decided at once, become constraints all the same
     """
     it = Interpreter(program, overrides or {}, limits, EXECUTORS, evaluate, call)
     it.turned = turned or {}
@@ -73,14 +74,14 @@ def interpret(
 
 
 def _speaks_of_rotation(module: ast.Module) -> bool:
-    """Whether a file asks something for its rotation."""
+    """Tells whether a file reads the rotation of something."""
     if fold(ROTATION) not in fold(module.source.text):
         return False
     return any(isinstance(n, ast.Member) and fold(n.name.text) == ROTATION for n in ast.walk(module))
 
 
 def nothing_built() -> Interpretation:
-    """What comes of a program that is not run."""
+    """Returns the interpretation of a program that is not run."""
     return Interpretation(Model(_nothing(), [], [], [], [], [], []), [], {})
 
 
@@ -89,7 +90,7 @@ def _nothing() -> Structure:
 
 
 def _library_scope(program: Program) -> Scope:
-    """The outermost scope: built-in and library names. Library code sees no names of the program."""
+    """Returns the outermost scope: built-in and library names. Library code sees no names of the program."""
     library = program.library
     scope = Scope(None)
 

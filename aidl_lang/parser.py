@@ -28,7 +28,7 @@ from aidl_lang.syntax.warnings import lines_joined_by_minus
 
 @record()
 class Limits:
-    """What a program may ask for: its length, the levels of its tree, and how many errors are told."""
+    """The limits on a program: its length, the levels of its tree, and how many errors are reported."""
 
     max_characters: int = 2_000_000
     max_nesting: int = 200
@@ -40,21 +40,23 @@ DEFAULT_LIMITS = Limits()
 
 @record()
 class Parsed:
-    """What was understood, and everything that was not."""
+    """The tree of what could be read, and diagnostics for the rest."""
 
     module: ast.Module
     diagnostics: list[Diagnostic]
 
 
 def parse(source: SourceFile, limits: Limits = DEFAULT_LIMITS) -> Parsed:
-    """The tree of a file. Never raises: what cannot be read is reported (E01xx, E08xx) and left out."""
+    """Returns the tree of a file. Never raises: what cannot be read is reported (E01xx, E08xx) and left
+    out.
+    """
     parsed, tokens = _read(source, limits)
     joined = lines_joined_by_minus(parsed.module, tokens, lambda part: _read(part, limits)[0])
     return Parsed(parsed.module, ordered(parsed.diagnostics + joined))
 
 
 def standing_before(source: SourceFile, offset: int, limits: Limits = DEFAULT_LIMITS) -> Automaton:
-    """The automaton when it has read what stands before an offset, mended where that is broken: it tells what
+    """Returns the automaton after reading the text before an offset, mended where it is broken; it tells what
     may come next there.
     """
     tokens = tokenize(source, 0, offset)
@@ -64,7 +66,7 @@ def standing_before(source: SourceFile, offset: int, limits: Limits = DEFAULT_LI
 
 
 def _read(source: SourceFile, limits: Limits) -> tuple[Parsed, list[Token]]:
-    """What `parse` gives, warnings aside, and the tokens it came from."""
+    """Returns what `parse` does, without warnings, and the tokens it came from."""
     everything = Span(source, 0, len(source.text))
     if len(source.text) > limits.max_characters:
         return Parsed(ast.Module(source, (), (), span=everything), [_too_long(source, limits)]), []
@@ -90,7 +92,7 @@ def _spaced_calls(source: SourceFile, tokens: Tokens) -> list[Diagnostic]:
 
 
 class _Reader:
-    """Reads one file: feeds the automaton, and mends or skips where a token cannot stand."""
+    """Reads one file: feeds the automaton, and mends or skips at a token that cannot stand."""
 
     _MOST_REPAIRS = 20  # of one statement; beyond that it is not a statement with slips in it
 
@@ -111,7 +113,7 @@ class _Reader:
         self.passed_braces: list[int] = []  # for each `{` passed over, how many blocks were open around it
 
     def run(self, *, to_end: bool = True) -> tuple[ast.Statement, ...]:
-        """The statements of the text; none where it is not read `to_end`, so that more could follow."""
+        """Returns the statements of the text; none unless it is read `to_end`, as more could follow."""
         automaton, tokens, limits = self.automaton, self.tokens, self.limits
         position = 0
         while True:
@@ -143,20 +145,20 @@ class _Reader:
             position += 1
 
     def _is_item(self, position: int) -> bool:
-        """Whether a `-` begins a constraint below one that is whole."""
+        """Tells whether a `-` begins a constraint below one that is whole."""
         if not begins_with_sign(self.source.text, self.tokens, position):
             return False
         return self.automaton.accepts((",", "-"))  # commas stand among constraints alone
 
     def _begin_item(self, position: int) -> None:
-        """End the constraint above, as a comma does."""
+        """Ends the constraint above, as a comma does."""
         start = self.tokens[position].start
         self.automaton.feed(Token(",", "", start, start))
         self.last = self.automaton.checkpoint(position)
         self.repairs = 0
 
     def _stop(self, why: Diagnostic) -> tuple[ast.Statement, ...]:
-        """Give up on the rest of the text; blocks end where they are."""
+        """Gives up on the rest of the text; blocks end where they are."""
         self.diagnostics.append(why)
         self.automaton.drop_statement()
         end = self.automaton.end
@@ -168,7 +170,7 @@ class _Reader:
     # --- Recovery ---
 
     def _recover(self, position: int) -> int:
-        """Report the token that cannot stand; the position to go on from."""
+        """Reports the token that cannot stand. Returns the position to go on from."""
         automaton = self.automaton
         if not automaton.between_statements:
             # Rules may have been recognised on the way to the failure: return to just before the token, where
@@ -198,7 +200,7 @@ class _Reader:
         return self._skip(position, problem.with_block)
 
     def _ends_statement(self, position: int) -> bool:
-        """Whether a statement is complete and the token plainly belongs to what follows it."""
+        """Tells whether a statement is complete and the token plainly belongs to what follows it."""
         before, token = self.tokens[max(position - 1, 0)], self.tokens[position]
         is_next = token.kind in _CERTAIN_WORDS or token.kind in ("}", ")", "]", "@", "else")
         if not is_next and before.kind != "}":
@@ -206,7 +208,7 @@ class _Reader:
         return not self.automaton.between_statements and self.automaton.accepts([";"])
 
     def _report(self, diagnostic: Diagnostic) -> None:
-        """Keep a diagnostic; a reserved word is told once, with a fix that renames it wherever it is met."""
+        """Keeps a diagnostic; a reserved word is reported once, with a fix that renames it everywhere."""
         for i, said in enumerate(self.diagnostics):
             if said.code == diagnostic.code == "E0104" and said.message == diagnostic.message:
                 if said.fix and diagnostic.fix:
@@ -216,7 +218,9 @@ class _Reader:
         self.diagnostics.append(diagnostic)
 
     def _statement_begin(self, position: int) -> int:
-        """The number of the first token of the statement under way, or `position` between statements."""
+        """Returns the number of the first token of the statement under way, or `position` between
+        statements.
+        """
         automaton = self.automaton
         statement_states = automaton.tables.statement_states
         level = len(automaton.states) - 1
@@ -234,7 +238,7 @@ class _Reader:
         return False
 
     def _skip(self, position: int, with_block: bool) -> int:
-        """Leave out the statement under way: the position where the next one may begin.
+        """Leaves out the statement under way. Returns the position where the next one may begin.
 
         The statements of its block are read on as if they stood in the block around it, unless `with_block`.
         """
@@ -245,7 +249,7 @@ class _Reader:
         automaton.drop_statement()
         begun = position
         braces = 0
-        # A comment that takes in the rest is told, however much is left out before it.
+        # A comment that is not closed is reported, however much is left out before it.
         while (kind := tokens[position].kind) != END and (
             position == begun or not is_open_comment(tokens[position])
         ):
@@ -273,7 +277,7 @@ class _Reader:
         return position
 
     def _may_begin(self, position: int, depth: int) -> bool:
-        """Whether a token looks like the start of a statement, inside so many open brackets."""
+        """Tells whether a token looks like the start of a statement, inside so many open brackets."""
         tokens = self.tokens
         token, before = tokens[position], tokens[position - 1]
         if token.kind == ";":
@@ -314,7 +318,7 @@ _POSSIBLE_STARTS = frozenset(["NAME", "CALL", "NUMBER", "(", "@", "for", "if"])
 
 
 def _depth(root: ast.Node) -> int:
-    """The levels of a tree."""
+    """Returns the number of levels of a tree."""
     deepest = 0
     stack: list[tuple[ast.Node, int]] = [(root, 1)]
     while stack:

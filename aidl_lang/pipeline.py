@@ -45,13 +45,13 @@ if TYPE_CHECKING:
 
 
 def front(source: SourceFile, world: World | None = None, settings: Settings = Settings()) -> Front:
-    """Text → Program: parsed, resolved and type-checked. What `compile` can go on from."""
+    """Reads a text into a Program: parsed, resolved and type-checked. `compile` can go on from it."""
     with working:
         return read(source, world, settings, Stopwatch())
 
 
 def _conflicts(failures: Sequence[Explanation]) -> Callable[[], tuple[Conflict, ...]]:
-    """What tells the conflicts of a program, worked out when they are asked for."""
+    """Returns a function that works out the conflicts of a program when it is called."""
 
     def conflicts() -> tuple[Conflict, ...]:
         with working:
@@ -62,7 +62,7 @@ def _conflicts(failures: Sequence[Explanation]) -> Callable[[], tuple[Conflict, 
 
 @record()
 class _Tries:
-    """Tries a program in other ways, and other texts of it."""
+    """Ways to try a program again: other texts of it, other readings of its calls."""
 
     source: SourceFile
     world: World | None
@@ -70,7 +70,7 @@ class _Tries:
     settings: Settings
 
     def trials(self, lowered: Lowered, solution: Solution, states_constants: bool = False) -> Trials:
-        """What tries other texts of the program whose problem and solution these are."""
+        """Returns what tries other texts of the program with this problem and solution."""
         from aidl_lang.building.lower import lower
         from aidl_lang.explaining.trials import Trials
 
@@ -90,7 +90,9 @@ class _Tries:
     def answered(
         self, found: list[Diagnostic], everything: Sequence[Diagnostic], stated: Model
     ) -> list[Diagnostic]:
-        """Findings among everything that is said of a program, those on constants with what would fit."""
+        """Returns the diagnostics, those on constants with values that would fit. `everything` is all that is
+        reported.
+        """
         solving = self.settings.solving
         if not (solving.explain and has_errors(found)):
             return found
@@ -110,8 +112,8 @@ class _Tries:
     def built(
         self, turned: Mapping[int, int] | None = None, states_constants: bool = False
     ) -> Interpretation | None:
-        """The program with ambiguous calls taken otherwise, or conditions over constants stated; None where
-        it is wrong then.
+        """Builds the program with ambiguous calls read otherwise, or conditions over constants stated. None
+        if it is wrong then.
         """
         built, found = build(
             self.source,
@@ -126,7 +128,7 @@ class _Tries:
 
 
 def _beside(notes: Sequence[Diagnostic], errors: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
-    """Remarks on places of which nothing worse is said."""
+    """Returns the notes on places at which no error is reported."""
     places = [d.span for d in errors if d.is_error and d.span is not None]
     return (n for n in notes if n.span is None or not any(n.span.overlaps(p) for p in places))
 
@@ -134,13 +136,15 @@ def _beside(notes: Sequence[Diagnostic], errors: Sequence[Diagnostic]) -> Iterat
 def check(
     source: SourceFile, world: World | None = None, settings: Settings = Settings()
 ) -> list[Diagnostic]:
-    """Everything that can be said of a program without solving it."""
+    """Returns every diagnostic of a program that needs no solving."""
     with working:
         return build(source, world, {}, settings, Stopwatch())[1]
 
 
 def formatted(source: SourceFile, world: World | None = None) -> tuple[str | None, list[Diagnostic]]:
-    """The canonical form of a program, names spelled as they are defined; None if it does not parse."""
+    """Returns the canonical form of a program, names spelled as they are defined; None if it does not
+    parse.
+    """
     from aidl_lang.syntax.printer import format_module
 
     with working:
@@ -149,7 +153,7 @@ def formatted(source: SourceFile, world: World | None = None) -> tuple[str | Non
             return None, parsed.diagnostics
         names = typecheck(resolve(parsed.module, world, library_module.load())).resolution
         stated = {node for node, symbol in names.uses.items() if symbol.kind is SymbolKind.CONSTRAINT}
-        # What has a new name on its left was meant to declare it: that is said of `=`, not of `==`.
+        # An equation with a new name on its left was meant to declare it: the error is about `=`, not `==`.
         declaring = {
             node
             for node in ast.walk(parsed.module)
@@ -163,7 +167,7 @@ def formatted(source: SourceFile, world: World | None = None) -> tuple[str | Non
 def knobs(
     source: SourceFile, world: World | None = None, settings: Settings = Settings()
 ) -> tuple[tuple[Knob, ...], list[Diagnostic]]:
-    """The `param`s of a program in order of writing."""
+    """Returns the `param`s of a program in order of writing."""
     with working:
         built, diagnostics = build(source, world, {}, settings, Stopwatch())
     return tuple(built.model.knobs), diagnostics
@@ -178,10 +182,10 @@ def compile(
     memory: Memory | None = None,
     checked: Front | None = None,
 ) -> Compiled:
-    """Run the whole road. A program that is wrong, or does not solve, says so in `diagnostics`.
+    """Takes a program through all stages. The `diagnostics` say if it is wrong, or does not solve.
 
     With a `memory` of the last run, structures that no change since then concerns are not solved again; with
-    what `front` gave for this very program, it is not checked again. Raises Cancelled where the run is given
+    the result of `front` for this very program, it is not checked again. Raises Cancelled if the run is given
     up (see `cancelling`).
     """
     watch = Stopwatch()
@@ -199,9 +203,7 @@ def compile(
 def placed(
     program: Program, params: Mapping[str, str | float | bool], settings: Settings = Settings()
 ) -> tuple[Model, Evaluator] | None:
-    """Where the parts of a program come to lie with these params, which are not drawn; None where it does not
-    solve.
-    """
+    """Solves a program with these params, without drawing it. None if it does not solve."""
     from aidl_lang.building.expression import Evaluator
     from aidl_lang.building.lower import lower
     from aidl_lang.solver import Status, solve
@@ -218,10 +220,10 @@ def placed(
 
 
 def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled:
-    """An outcome with its parts where another solution of the same model has them, as while one is dragged.
+    """Returns an outcome with its parts placed by another solution of the same model, as while one is
+    dragged.
 
-    What was said of the outcome stands as it was. Raises TooLongError, and ValueError where nothing was
-    built.
+    The diagnostics of the outcome stay. Raises TooLongError, and ValueError if nothing was built.
     """
     from aidl_lang.solver.analysis import analyse
 
@@ -244,7 +246,9 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
 
 @record()
 class _Troubles:
-    """What gave way in a solution, why it failed, and what holds elsewhere than the first guesses have it."""
+    """The troubles of a solution: constraints that gave way, failures, and those that hold only far from the
+    first guesses.
+    """
 
     given: tuple[GaveWay, ...] = ()
     failures: Sequence[Explanation] = ()
@@ -252,7 +256,7 @@ class _Troubles:
 
 
 def _is_troubled(solution: Solution) -> bool:
-    """Whether something failed, gave way, or was found in another place only."""
+    """Tells whether something failed, gave way, or holds only far from the first guesses."""
     return bool(solution.failures) or any(s.gave is not None or s.despite for s in solution.stages)
 
 
@@ -277,7 +281,9 @@ def _explained(
 
 
 def _follows(lowered: Lowered, solution: Solution) -> Callable[[Span], bool]:
-    """What tells whether what is stated in a place follows from the rest, loaded when it is asked."""
+    """Returns a function that tells whether the constraint at a place follows from the rest, loaded when it
+    is called.
+    """
 
     def is_told(span: Span) -> bool:
         from aidl_lang.explaining.repetitions import follows
@@ -330,7 +336,7 @@ def _finish(
 
         found = list(map(refused, found))
     if solution.status is not Status.SOLVED:
-        notes = []  # the parts are not where they belong
+        notes = []  # nothing to note on parts that are not in place
     notes = list(_beside([*troubles.elsewhere, *notes], found))
     told = adapted([*found, *notes], settings.variant)
     if settings.solving.explain:
@@ -367,7 +373,9 @@ def _drawn(
     troubles: _Troubles,
     watch: Stopwatch,
 ) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic], list[Diagnostic]]:
-    """The solved model and its drawing; what there is to say of the solution, and of what is drawn."""
+    """Returns the solved model, its evaluator and drawing, the diagnostics on the solution, and those on the
+    drawing.
+    """
     from aidl_lang.explaining.outcome import assertion_notes, solution_notes
 
     model, evaluator, drawing, notes = pictured(built.model, lowered, solution, freedom, watch)

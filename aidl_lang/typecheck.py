@@ -1,8 +1,7 @@
 """The static check: types, dimensions and validity of a whole program, executed or not.
 
 Every body is checked: branches that are not taken, templates and shapes that nothing uses. Facts about
-expressions come from `infer`; this file goes through the statements and says what each wants of its
-expressions.
+expressions come from `infer`; this file goes through the statements and checks which expressions each takes.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
 _EVALUATED = ast.Expression | ast.Equation
-"""What is worked out while building, or left if it is wrong."""
+"""The nodes that the builder evaluates, or leaves out if they are wrong."""
 
 
 @record(eq=False)
@@ -52,9 +51,9 @@ class Program:
 
     violations   breaches of the rules of validity; their diagnostics need values as written, and are made
                  after building (`Violation.diagnostic`)
-    rejected     what was reported as wrong; to the builder it is nothing, of which it says nothing
+    rejected     nodes with a reported error, which the builder treats as NOTHING without another report
     diagnostics  everything else that resolving and checking found, in text order
-    inference    what is known of the expressions, for those who ask about one later
+    inference    the facts about expressions, for later questions
     """
 
     main: ast.Module
@@ -68,7 +67,7 @@ class Program:
 
 
 def check(resolution: Resolution, variant: Variant = Variant.FULL) -> Program:
-    """Check every body of a program, and that it keeps to a variant. Never raises for what it says."""
+    """Checks every body of a program, and that it keeps to a variant. Never raises for what it says."""
     inference = Inference(resolution)
     checker = Checker(inference)
     violations: list[Violation] = []
@@ -93,7 +92,9 @@ def check(resolution: Resolution, variant: Variant = Variant.FULL) -> Program:
 
 
 def _rejected(modules: Sequence[ast.Module], found: Sequence[Diagnostic]) -> Iterator[ast.Node]:
-    """Yields for each error the innermost expression or equation that it was found in, and its name."""
+    """Yields for each error the innermost expression or equation around it, and the names on the way
+    there.
+    """
     for error in found:
         for module in modules:
             if error.is_error and error.span is not None and error.span.source is module.source:
@@ -115,7 +116,7 @@ def _innermost(module: ast.Module, place: Span) -> Iterator[ast.Node]:
 
 
 class Checker:
-    """Goes through the statements of a file."""
+    """Checks the statements of a file."""
 
     def __init__(self, inference: Inference) -> None:
         self.infer = inference
@@ -154,7 +155,7 @@ class Checker:
                 self._simple(node)
 
     def _simple(self, node: ast.Statement) -> None:
-        """A statement without a body."""
+        """Checks a statement without a body."""
         infer = self.infer
         match node:
             case ast.Let(value=value):
@@ -200,7 +201,7 @@ class Checker:
         infer.homes = before
 
     def _default(self, parameter: ast.Parameter) -> None:
-        """A default has to be what the parameter's own type asks for."""
+        """Reports a default that is not of the parameter's own type (E0302)."""
         if parameter.default is None:
             return
         fact = self.infer.fact(parameter.default)
@@ -214,7 +215,7 @@ class Checker:
             )
 
     def _items(self, block: ast.Block) -> None:
-        """What stands in `constrain { }` or in the body of a constraint."""
+        """Checks the items of `constrain { }` or of the body of a constraint."""
         for item in block.statements:
             if isinstance(item, ast.ExpressionStatement):
                 check_item(self.infer, item.value)
@@ -252,7 +253,7 @@ class Checker:
             self.infer.serves(fact, wanted.dimension, node)
 
     def _unknown(self, node: ast.Expression) -> None:
-        """The first guess of a `var`."""
+        """Checks the first guess of a `var`."""
         kind = self.infer.fact(node).type
         if all(accepts(k, kind) is None for k in (NumberType(LENGTH), NumberType(ANGLE), PointType())):
             message = f"a `var` wants a number or a point, and this is {a(kind)}"
@@ -270,7 +271,7 @@ class Checker:
             infer.same_dimension(fact, step, node.step, "the step does not fit the value:")
 
     def _domain(self, node: ast.Param, fact: Fact, domain: ast.Expression) -> None:
-        """What may stand behind `in`: a range of such numbers, or a list of choices."""
+        """Checks the value behind `in`: a range of such numbers, or a list of choices."""
         infer = self.infer
         match infer.fact(domain).type:
             case RangeType() if not isinstance(fact.type, NumberType | AnyType):

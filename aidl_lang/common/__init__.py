@@ -1,1 +1,1 @@
-"""What all rooms share: text and places in it, diagnostics, files, time, names, letters."""
+"""Modules that all rooms share: text and places in it, diagnostics, files, time, names, letters."""

@@ -1,5 +1,5 @@
-"""Few things that numpy has as well, where asking numpy for them loads a part of it that nothing else needs:
-`np.unique(x)` loads `numpy.ma`, and `np.random` as much again, each longer than most programs take to solve.
+"""Stand-ins for functions of numpy that load parts of it which nothing else needs: `np.unique(x)` loads
+`numpy.ma`, and `np.random` as much again, each longer than most programs take to solve.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 
 def each_once(values: NDArray[np.int64]) -> NDArray[np.int64]:
-    """The numbers (k,) that occur among some, each once and in order."""
+    """Returns the distinct numbers (k,) of an array, in order."""
     found = np.sort(values, axis=None)
     if len(found) > 1:
         found = found[np.concatenate(([True], found[1:] != found[:-1]))]
@@ -20,15 +20,15 @@ def each_once(values: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def others(count: int, left_out: Iterable[int]) -> NDArray[np.int64]:
-    """The numbers (k,) from 0 to `count` that are not left out, in order."""
+    """Returns the numbers (k,) from 0 to `count` that are not left out, in order."""
     kept = np.ones(count, dtype=np.bool_)
     kept[np.fromiter(left_out, dtype=np.int64)] = False
     return np.flatnonzero(kept)
 
 
 def scattered(count: int, seed: int = 0) -> NDArray[np.float64]:
-    """Numbers (count,) from -1 to 1 that follow no rule one could hit upon, the same for the same seed: the
-    bits of a counter mixed (splitmix64).
+    """Returns numbers (count,) from -1 to 1 without a pattern, the same for the same seed: the bits of a
+    counter mixed (splitmix64).
     """
     z: NDArray[Any] = np.arange(1, count + 1, dtype=np.uint64) + np.uint64(seed << 32)
     z *= np.uint64(0x9E3779B97F4A7C15)

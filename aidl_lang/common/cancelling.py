@@ -1,8 +1,8 @@
-"""Ending a run before it is done: nobody waits for it any more, as when an editor's text has changed again,
-or it takes longer than a run may.
+"""Ending a run early: because its result is no longer wanted, as when an editor's text has changed again, or
+because it takes longer than it may.
 
-Whoever starts a run says how to find out; the stages ask in passing, wherever they go through something that
-a program makes as long as it likes.
+Whoever starts a run sets the condition; the stages call `checkpoint` in every loop whose length depends on
+the program.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from contextlib import contextmanager
 
 
 class Cancelled(Exception):  # noqa: N818 (nothing went wrong)
-    """The run was given up. What it has made so far is dropped."""
+    """Raised in a run that is given up. What it has made so far is dropped."""
 
 
 class OutOfTime(Exception):  # noqa: N818 (not an error of ours: a program asks for too much, which is reported)
-    """The work takes longer than it may."""
+    """Raised in work that takes longer than it may."""
 
 
 class _Asked(threading.local):
     unwanted: Callable[[], bool] | None = None
     deadline: float = math.inf
     next_look: float = 0.0
-    """the wall clock before which the deadline cannot be over; to read it costs a tenth of a look at what the
-    thread has used"""
+    """the wall clock before which the deadline cannot be over; reading it costs a tenth of reading the time
+    that the thread has used"""
 
 
 _asked = _Asked()
@@ -35,7 +35,7 @@ _asked = _Asked()
 
 @contextmanager
 def cancelled_when(unwanted: Callable[[], bool]) -> Iterator[None]:
-    """Runs in this thread raise Cancelled soon after `unwanted` says so."""
+    """Makes runs in this thread raise Cancelled soon after `unwanted` returns True."""
     before, _asked.unwanted = _asked.unwanted, unwanted
     try:
         yield
@@ -45,8 +45,8 @@ def cancelled_when(unwanted: Callable[[], bool]) -> Iterator[None]:
 
 @contextmanager
 def limited_to(seconds: float) -> Iterator[None]:
-    """Work in this thread raises OutOfTime soon after it has taken so much of the processor's time: what else
-    the machine does is not held against it.
+    """Makes work in this thread raise OutOfTime soon after it has taken so many seconds of the processor's
+    time, whatever else the machine does.
     """
     before, used = _asked.deadline, time.thread_time()
     _asked.deadline, _asked.next_look = min(before, used + seconds), 0.0
@@ -57,15 +57,15 @@ def limited_to(seconds: float) -> Iterator[None]:
 
 
 def give_up() -> None:
-    """Raises OutOfTime where there is a limit: what is to be done plainly takes longer, and may fill the
-    memory before that is noticed.
+    """Raises OutOfTime if there is a limit. For work that plainly takes longer, and may fill the memory
+    before a checkpoint notices.
     """
     if _asked.deadline < math.inf:
         raise OutOfTime
 
 
 def checkpoint() -> None:
-    """Raises Cancelled if the run in this thread is not wanted any more, OutOfTime if it takes too long."""
+    """Raises Cancelled if the run in this thread is no longer wanted, OutOfTime if it takes too long."""
     if _asked.unwanted is not None and _asked.unwanted():
         raise Cancelled
     if _asked.deadline < math.inf and (now := time.monotonic()) > _asked.next_look:

@@ -1,4 +1,4 @@
-"""One diagnostic value for terminal, JSON, editor and language model; renderers live apart from it.
+"""The diagnostic, one value for terminal, JSON, editor and language model; renderers live apart from it.
 
 Codes are `E`, `W` or `N` (error, warning, note) and four digits whose first two name the family:
 
@@ -37,7 +37,7 @@ class Label:
 
 @record()
 class Edit:
-    """Replace the text of `span` (empty for an insertion)."""
+    """A replacement of the text of `span` (empty for an insertion)."""
 
     span: Span
     replacement: str
@@ -47,8 +47,8 @@ class Edit:
 class Fix:
     """Edits that together mend the program without losing what its author meant.
 
-    One that `is_sure` leaves the program its meaning whatever was meant, or mends what can have meant nothing
-    else: it is applied unasked. All others are offered, and applied where somebody chooses them.
+    A fix that `is_sure` is applied unasked: it keeps the meaning of the program, or mends what can have meant
+    nothing else. All others are offered, and applied when somebody chooses them.
     """
 
     title: str
@@ -58,8 +58,8 @@ class Fix:
 
 @record()
 class Diagnostic:
-    """What is wrong, where, why and what to do about it. The headline must stand alone. `points` are the
-    places in the drawing that it is about, in mm.
+    """An error, warning or note: what is wrong, where, why and what to do about it. The headline must stand
+    alone. `points` are the places in the drawing that it is about, in mm.
     """
 
     code: str
@@ -81,16 +81,16 @@ class Diagnostic:
 
 
 MOST_ERRORS = 100
-"""Errors of a program that are told. A stage need not look for more once it has found one more than these."""
+"""Errors of a program that are reported. A stage may stop looking once it has found one more than these."""
 
 
 def is_too_many(diagnostics: Iterable[Diagnostic]) -> bool:
-    """Whether there are more errors than are told."""
+    """Tells whether there are more errors than are reported."""
     return sum(d.is_error for d in diagnostics) > MOST_ERRORS
 
 
 def within_limit(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """Diagnostics in order, up to the first error that is too many, in whose place that is said (E0803)."""
+    """Returns the diagnostics in order, up to the first error beyond MOST_ERRORS, which E0803 replaces."""
     errors = 0
     for index, found in enumerate(diagnostics):
         errors += found.is_error
@@ -113,7 +113,7 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 
 def ordered(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """By place, each said once."""
+    """Returns the diagnostics in order of place, without duplicates."""
     seen: set[tuple[object, ...]] = set()
     unique: list[Diagnostic] = []
     for d in diagnostics:
@@ -125,7 +125,8 @@ def ordered(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def apply_fixes(source: SourceFile, diagnostics: Iterable[Diagnostic]) -> tuple[str, int]:
-    """The text with every fix applied that does not overlap an earlier one, and how many were.
+    """Returns the text with every fix applied that does not overlap an earlier one, and the number of those
+    applied.
 
     Insertions at one place are kept in the order of the diagnostics.
     """

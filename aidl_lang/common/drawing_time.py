@@ -1,4 +1,4 @@
-"""How long anything may take that is done with a drawing: working it out, measuring it, comparing it."""
+"""The limit on the time that working out, measuring or comparing a drawing may take."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from aidl_lang.common.source import Span
 
 
 class TooLongError(ValueError):
-    """What is done with a drawing takes longer than it may; the diagnostic says what that is, and what of the
-    program is to blame where that is known.
+    """Raised when working on a drawing takes too long, with a diagnostic that names the work and, if it is
+    known, the part of the program to blame.
     """
 
     def __init__(self, doing: str, seconds: float, span: Span | None = None, label: str = "") -> None:
@@ -28,8 +28,8 @@ class TooLongError(ValueError):
 
 @contextmanager
 def within(seconds: float, doing: str) -> Iterator[None]:
-    """Raises TooLongError where the work takes more than so much of the processor's time; `doing` is what is
-    done, as in `drawing`.
+    """Raises TooLongError if the work takes more than so many seconds of the processor's time; `doing` names
+    the work, as `drawing`.
     """
     try:
         with limited_to(seconds):
@@ -41,7 +41,7 @@ def within(seconds: float, doing: str) -> Iterator[None]:
 
 
 class _Blamed(OutOfTime):
-    """The time ran out in work on a part of the program."""
+    """Raised when the time runs out in work on a known part of the program."""
 
     def __init__(self, span: Span, label: str) -> None:
         super().__init__()
@@ -50,8 +50,8 @@ class _Blamed(OutOfTime):
 
 @contextmanager
 def blaming(span: Callable[[], Span | None], label: str) -> Iterator[None]:
-    """Work on a part of the program, which is named where the time runs out meanwhile; of parts within others
-    the innermost.
+    """Names a part of the program as the one to blame if the time runs out meanwhile; of nested parts the
+    innermost is blamed.
     """
     try:
         yield

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 Vec = tuple[float, float]
 Curve = tuple[Vec, ...]
-"""The two ends of a line, or the four control points of a cubic Bézier curve; a place is one of one point."""
+"""The two ends of a line, or the four control points of a cubic Bézier curve; a single point is a place."""
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top."""
 
@@ -46,14 +46,14 @@ class Glyph:
 
 
 def box_around(glyphs: Sequence[Glyph]) -> Box:
-    """The box of all of their ink."""
+    """Returns the box around the ink of all glyphs."""
     lefts, bottoms, rights, tops = zip(*(g.box for g in glyphs), strict=True)
     return min(lefts), min(bottoms), max(rights), max(tops)
 
 
 def silhouette(glyphs: Sequence[Glyph]) -> tuple[Curve, ...]:
-    """Corners of the convex hull of the ink, each alone, and the curves of which a part may lie on it. In
-    whatever direction one of these reaches furthest; all that is left out lies between them.
+    """Returns the corners of the convex hull of the ink, each alone, and the curves of which a part may lie
+    on it. In every direction the furthest point of the ink belongs to one of these.
     """
     curves = [curve for glyph in glyphs for curve in glyph.curves]
     hull = _Hull([p for curve in curves for p in _samples(curve)])
@@ -63,7 +63,7 @@ def silhouette(glyphs: Sequence[Glyph]) -> tuple[Curve, ...]:
 
 
 def _point(curve: Curve, t: float) -> Vec:
-    """The point of a cubic Bézier curve at a parameter."""
+    """Returns the point of a cubic Bézier curve at a parameter."""
     s = 1.0 - t
     a, b, c, d = s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t
     (x0, y0), (x1, y1), (x2, y2), (x3, y3) = curve
@@ -71,11 +71,11 @@ def _point(curve: Curve, t: float) -> Vec:
 
 
 _SAMPLES = 16
-"""Points of a curve by which it is judged which curves lie inside the hull of all."""
+"""Points of a curve that are tested for lying inside the hull of all."""
 
 
 def _samples(curve: Curve) -> Sequence[Vec]:
-    """Points of a curve, its exact ends among them."""
+    """Returns points of a curve, its exact ends among them."""
     if len(curve) == 2:
         return curve
     between = [_point(curve, k / _SAMPLES) for k in range(1, _SAMPLES)]
@@ -83,8 +83,8 @@ def _samples(curve: Curve) -> Sequence[Vec]:
 
 
 class _Hull:
-    """The convex hull of points (Andrew, 1979): its corners counter-clockwise, and its chains
-    from left to right, by which it is quickly told what lies in it.
+    """The convex hull of points (Andrew, 1979): its corners counter-clockwise, and its chains from left to
+    right, in which points are found by bisection.
     """
 
     def __init__(self, points: Sequence[Vec]) -> None:
@@ -94,7 +94,7 @@ class _Hull:
         self._chains = [(chain, [x for x, _ in chain]) for chain in (lower, upper[::-1])]
 
     def __contains__(self, p: Vec) -> bool:
-        """Whether a point lies in it or on its outline."""
+        """Tells whether a point lies inside the hull or on its outline."""
         for sense, (chain, lefts) in zip((1.0, -1.0), self._chains, strict=True):
             if not lefts[0] <= p[0] <= lefts[-1]:
                 return False
@@ -105,7 +105,7 @@ class _Hull:
 
 
 def _chain(ordered: Sequence[Vec]) -> list[Vec]:
-    """Those of sorted points that have all others to their left, as one goes along them."""
+    """Returns the chain of those sorted points that have all others to their left, as one goes along it."""
     chain: list[Vec] = []
     for p in ordered:
         while len(chain) > 1 and _turn(chain[-2], chain[-1], p) <= 0.0:
@@ -115,19 +115,19 @@ def _chain(ordered: Sequence[Vec]) -> list[Vec]:
 
 
 def _turn(a: Vec, b: Vec, c: Vec) -> float:
-    """Twice the signed area of a triangle: positive where c lies left of the way from a to b."""
+    """Returns twice the signed area of a triangle: positive if c lies left of the way from a to b."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def unknown_characters(text: str) -> list[str]:
-    """The characters that the font does not have, each once; line breaks are no characters."""
+    """Returns the characters that the font does not have, each once; line breaks are no characters."""
     known = _font().getBestCmap()
     return [c for c in dict.fromkeys(_composed(text)) if ord(c) not in known and c != "\n"]
 
 
 @lru_cache(maxsize=1024)
 def typeset(text: str, align: str, line_spacing: float) -> tuple[Glyph, ...]:
-    """The characters of a text that have ink, in order, with known characters only.
+    """Returns the characters of a text that have ink, in order, with known characters only.
 
     The origin lies on the baseline of the first line, at the left end, the middle or the right end of every
     line, as `align` says. Baselines are `line_spacing` apart.
@@ -143,7 +143,7 @@ def typeset(text: str, align: str, line_spacing: float) -> tuple[Glyph, ...]:
 
 
 def _composed(text: str) -> str:
-    """Letters with their accents as one character, and one kind of line break."""
+    """Returns a text with each accented letter as one character, and one kind of line break."""
     return unicodedata.normalize("NFC", text).replace("\r\n", "\n")
 
 
@@ -169,13 +169,13 @@ def _font() -> TTFont:
 
 @cache
 def _capital_height() -> float:
-    """The height of an H in font units."""
+    """Returns the height of an H in font units."""
     return float(_font()["glyf"][_font().getBestCmap()[ord("H")]].yMax)
 
 
 @cache
 def _glyph(character: str) -> tuple[Glyph | None, float]:
-    """The outline of a character at the origin, None for a blank one, and its advance width."""
+    """Returns the outline of a character at the origin (None for a blank) and its advance width."""
     from fontTools.pens.recordingPen import DecomposingRecordingPen
 
     glyphs, name = _font().getGlyphSet(), _font().getBestCmap()[ord(character)]
@@ -190,7 +190,7 @@ def _glyph(character: str) -> tuple[Glyph | None, float]:
 
 
 def _curves(commands: Sequence[tuple[str, Any]]) -> Iterator[Curve]:
-    """The curves of what a pen drew, contour by contour, in font units."""
+    """Yields the curves of what a pen drew, contour by contour, in font units."""
     from fontTools.pens.basePen import decomposeQuadraticSegment
 
     first = here = (0.0, 0.0)
@@ -215,7 +215,7 @@ def _curves(commands: Sequence[tuple[str, Any]]) -> Iterator[Curve]:
 
 
 def _raised(a: Vec, b: Vec, c: Vec) -> Curve:
-    """A quadratic Bézier curve as the same cubic one."""
+    """Returns a quadratic Bézier curve as the same cubic one."""
     one = (a[0] + 2 * b[0]) / 3, (a[1] + 2 * b[1]) / 3
     two = (c[0] + 2 * b[0]) / 3, (c[1] + 2 * b[1]) / 3
     return a, one, two, c
@@ -236,13 +236,15 @@ def _ink(curves: Sequence[Curve]) -> Box:
 
 
 def described(character: str) -> str:
-    """A character for a message: itself where it can be seen, and its number."""
+    """Returns a character for a message: itself where it can be seen, and its number."""
     code = f"U+{ord(character):04X}"
     return f"`{character}` ({code})" if character.isprintable() else code
 
 
 def replacement(character: str) -> str | None:
-    """What may stand for a character that the font does not have."""
+    """Returns a text to write for a character that the font lacks: spaces for a tab, a letter without its
+    accent; None for any other.
+    """
     if character == "\t":
         return "    "
     known = _font().getBestCmap()

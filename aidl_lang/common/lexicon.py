@@ -1,4 +1,4 @@
-"""Words that are no misspellings, however near they are to a name."""
+"""Words that are never taken for misspellings, however near they are to a name."""
 
 from __future__ import annotations
 
@@ -62,10 +62,9 @@ vert vertex vertical vertically vertices verts vesa vesica via viewport vline vo
 wedge weight west wheel wheels where wide wider width widths with within without word words working
 workplane written xmax xmin xshift ymax ymin yshift zip
 """)
-"""Those that say something of a drawing: the words in the names of the language and the library, those of the
+"""Words that say something of a drawing: those in the names of the language and the library, those of the
 tables of synonyms, and those that other languages and people have for the same things. Names that differ in
-one of them mean different things.
-"""
+one of them mean different things."""
 
 NEAR_WORDS = _words("""
 aground alighted alined alinement angel angels anglers annexation annuls anther asset assigned assignment
@@ -108,4 +107,4 @@ tousling tow transmute trapped trickier trickiness trough trucking tsar tuned un
 vertexes verticals vestiges viewpoint vortices wedgie wets wight wilder won workplace worlds worrying
 worsting
 """)
-"""English words that would be a slip for one of those above if they were no words."""
+"""English words one slip away from one of WORDS."""

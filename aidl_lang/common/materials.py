@@ -15,7 +15,7 @@ _TABLE = "aidl_lang/common/materials.toml"
 
 @cache
 def densities() -> Mapping[str, float]:
-    """kg/m³ by name, other names included, all in lower case."""
+    """Returns kg/m³ by name, other names included, all in lower case."""
     table = tomllib.loads(resource(_TABLE).read_text("utf-8"))
     found: dict[str, float] = {}
     for group in table.values():
@@ -25,9 +25,9 @@ def densities() -> Mapping[str, float]:
 
 
 def density(material: str, own: Mapping[str, float] | None = None) -> float | None:
-    """Of a material as it is written, kg/m³: that of the longest name in the text, `own` ones first.
+    """Returns the density in kg/m³ of the longest known name in a text, `own` names first.
 
-    None where no name is known: `6 mm birch plywood` has one, `unobtainium` has none.
+    None if the text has no known name: `6 mm birch plywood` has one, `unobtainium` has none.
     """
     text = _plain(material)
     for table in ({_plain(name): value for name, value in (own or {}).items()}, densities()):
@@ -38,7 +38,7 @@ def density(material: str, own: Mapping[str, float] | None = None) -> float | No
 
 
 def similar(material: str) -> list[str]:
-    """Known names that a text, or a word in it, may be a misspelling of, best first."""
+    """Returns known names that a text, or a word in it, may be a misspelling of, best first."""
     text = _plain(material)
     words = [word for word in re.findall(r"\w+", text) if len(word) > 2]
     found = (name for part in (text, *words) for name in nearest(part, densities(), 3))
@@ -46,5 +46,5 @@ def similar(material: str) -> list[str]:
 
 
 def _plain(text: str) -> str:
-    """Without regard to case, and with `-`, `_` and any run of spaces as one space."""
+    """Returns a name in lower case, with `-`, `_` and any run of spaces as one space."""
     return re.sub(r"[\s_-]+", " ", text).strip().casefold()

@@ -14,23 +14,23 @@ T = TypeVar("T")
 
 _NUMBER = re.compile(r"\d+")
 _FEWEST_LETTERS = 3
-"""That a name must have for one that is wrong to leave no doubt."""
+"""Letters that a name must have before a near one is taken for it without asking."""
 _WIDER = 6
-"""Names beyond those wanted that are compared letter by letter."""
+"""Names beyond the count asked for that are compared letter by letter."""
 _MOST_LETTERS = 200_000
-"""Pairs of letters that are compared in search of a name: some hundred names of ordinary length and more."""
+"""Pairs of letters that one search for a name compares: enough for some hundred names of ordinary length."""
 
 
 @lru_cache(maxsize=4096)
 def fold(name: str) -> str:
-    """The form in which `CenterInside`, `centerInside` and `center_inside` are one name."""
+    """Returns the form that `CenterInside`, `centerInside` and `center_inside` have in common."""
     return name.replace("_", "").casefold()
 
 
 def find(name: str, table: Mapping[str, T]) -> str | None:
-    """The key of `table` that `name` means: as written if it is there, else the one that folds alike.
+    """Returns the key of `table` that `name` means: as written if it is there, else the one that folds alike.
 
-    None when there is none, or when two keys fold alike and neither is written so.
+    None if there is none, or if two keys fold alike and neither is written so.
     """
     if name in table:
         return name
@@ -77,14 +77,14 @@ positive | negative
 )
 """Words that mean the reverse of those on the other side of the bar, or its counterpart."""
 _TURNING = ("no", "not", "non", "never", "without", "by")
-"""Words that turn the meaning of the rest round."""
+"""Words that reverse the meaning of the rest."""
 _PART_OF_A_NAME = 4
-"""Letters from which on a word is known inside a longer one: `alignleft`."""
+"""Letters that a word must have to be recognised inside a longer one: `alignleft`."""
 
 
 def are_opposite(a: str, b: str) -> bool:
-    """Whether two names differ by a word and the reverse of it, as `align_left` and `align_right` do, or one
-    of them denies or turns round what the other says: `no_overlap`, `contained_by`.
+    """Tells whether two names differ by a word and its reverse, as `align_left` and `align_right` do, or one
+    denies or reverses the other: `no_overlap`, `contained_by`.
     """
     if any(_says(a, word) != _says(b, word) for word in _TURNING) or any(
         _denies(*p) for p in _differing(a, b)
@@ -99,7 +99,7 @@ def are_opposite(a: str, b: str) -> bool:
 
 
 def _denies(a: str, b: str) -> bool:
-    """Whether one of two words is the other with a syllable before it that turns it round."""
+    """Tells whether one of two words is the other behind a syllable that reverses it, as `un`."""
     return any(a == before + b or b == before + a for before in ("anti", "counter", "dis", "non", "un"))
 
 
@@ -108,20 +108,20 @@ def _says(name: str, word: str) -> bool:
 
 
 def means_otherwise(name: str, other: str) -> bool:
-    """Whether two names differ in a word that says something else in each: `same_side` and `same_size`."""
+    """Tells whether two names differ in words of unlike meaning: `same_side` and `same_size`."""
     return any(
         a in WORDS and b in WORDS and not _are_forms(a, b) for a, b in _differing(name, other) if a and b
     )
 
 
 def _differing(name: str, other: str) -> list[tuple[str, str]]:
-    """The words at one place that are not the same; none where the names have not as many words."""
+    """Returns the pairs of unlike words of two names, place by place; empty if the names differ in length."""
     words, others = name.casefold().split("_"), other.casefold().split("_")
     return [(a, b) for a, b in zip(words, others, strict=True) if a != b] if len(words) == len(others) else []
 
 
 def _are_forms(a: str, b: str) -> bool:
-    """Whether two words are one: `center`, `centre`, `centers`, `centered`."""
+    """Tells whether two words are forms of one: `center`, `centre`, `centers`, `centered`."""
     a, b = (word.replace("centre", "center").replace("centr", "center") for word in (a, b))
     return not {a, _ENDING.sub("", a)}.isdisjoint((b, _ENDING.sub("", b)))
 
@@ -130,7 +130,7 @@ _ENDING = re.compile(r"(?:e?s|e?d)$")
 
 
 class Spellings:
-    """Answers `find` for a table that grows, without looking through the whole of it each time."""
+    """A growing table of names that answers `find` without looking through the whole of it each time."""
 
     def __init__(self, table: Mapping[str, object]) -> None:
         self._table = table
@@ -150,7 +150,7 @@ class Spellings:
 
 
 def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
-    """Known names that `name` may be a misspelling of, best first; never one that means the reverse, or is
+    """Returns known names that `name` may be a misspelling of, best first; none that means the reverse, or is
     another word. A single letter is a misspelling of nothing.
     """
     if len(name) < 2:
@@ -170,7 +170,9 @@ def nearest(name: str, known: Iterable[str], count: int = 1) -> list[str]:
 
 
 def _may_be_meant(name: str, other: str) -> bool:
-    """Whether one may ask if a name was meant for another: they are near, and do not say different things."""
+    """Tells whether a name is near enough to another, and similar enough in meaning, to ask if that was
+    meant.
+    """
     if are_opposite(name, other) or means_otherwise(name, other):
         return False
     wanted, match = fold(name), fold(other)
@@ -181,23 +183,25 @@ def _may_be_meant(name: str, other: str) -> bool:
 
 
 def _within(names: Mapping[str, str], length: int, letters: int) -> list[str]:
-    """The names that are about so long, as many of them as have so many letters together."""
+    """Returns the names whose length is nearest to `length`, as many as have so many letters together."""
     by_length = sorted(names, key=lambda each: abs(len(each) - length))
     ends = accumulate(map(len, by_length))
     return [each for each, end in zip(by_length, ends, strict=True) if end <= letters]
 
 
 def is_spelled_in(letters: str, word: str) -> bool:
-    """Whether the letters stand in a word in their order, as those do that somebody types to find it."""
+    """Tells whether the letters occur in a word in their order, as when somebody types some of them to find
+    it.
+    """
     rest = iter(fold(word))
     return all(letter in rest for letter in fold(letters))
 
 
 def is_like(name: str, meant: str) -> bool:
-    """Whether one name is so near to the other that it may be put in its place where that is asked for: a
-    letter wrong, missing, too many or exchanged with its neighbour, two in a long name but not in a short
-    word of it. A word more is too much: `same_center_x`; so is another number: `hole3` is not `hole2`; or a
-    letter of one or two: `x10`, `s10`.
+    """Tells whether a name is near enough to the other to be replaced by it on request: a letter wrong,
+    missing, too many or exchanged with its neighbour; two in a long name, but not in a short word of it. Not
+    if it has a word more (`same_center_x`), another number (`hole3`, `hole2`), or only one or two letters
+    (`x10`, `s10`).
     """
     if fold(name) == fold(meant):
         return True
@@ -210,8 +214,8 @@ def is_like(name: str, meant: str) -> bool:
 
 
 def is_slip(name: str, meant: str) -> bool:
-    """Whether nobody need be asked what a name was to be: it is like the other one, and the words in which
-    they differ are no words as they are written, but slips of the pen in those that are meant.
+    """Tells whether a name is certainly a slip for another, so that nobody need be asked: it is like it, and
+    the words in which they differ are no words as written, but slips of the pen.
     """
     if not is_like(name, meant) or are_opposite(name, meant):
         return False
@@ -219,9 +223,10 @@ def is_slip(name: str, meant: str) -> bool:
 
 
 def _is_slip_in(written: str, word: str) -> bool:
-    """Whether a word was meant for another: letters exchanged, one doubled or not, one missing or too many
-    within the word, or in a long word another one there. A short word may as well be another, as may be one
-    with another beginning or ending: `fat` and `flat`, `plate` and `slate`, `bolt` and `bolts`.
+    """Tells whether a word is certainly a slip for another: letters exchanged, one doubled or not, one
+    missing or too many within the word, or in a long word another one there. A short word may be another
+    word, and so may one with another beginning or ending: `fat` and `flat`, `plate` and `slate`, `bolt` and
+    `bolts`.
     """
     if written in WORDS or written in NEAR_WORDS or min(len(written), len(word)) < _FEWEST_LETTERS:
         return False
@@ -239,9 +244,9 @@ def _is_slip_in(written: str, word: str) -> bool:
 
 _LETTERS = re.compile(r"(.)\1+")
 _INFLECTIONS = "sdry"
-"""Letters that make another form of a word."""
+"""Letters whose addition makes another form of a word."""
 _SHORT, _LONG = 5, 8
-"""Letters from which on a word is no other word for one letter missing, and for another letter."""
+"""Letters that a word must have for one missing letter, and for one wrong letter, to be a mere slip."""
 
 
 def _most_slips(word: str) -> int:
@@ -249,7 +254,9 @@ def _most_slips(word: str) -> int:
 
 
 def _distance(a: str, b: str) -> int:
-    """Slips between two words, a letter that stands at most one place off counting once."""
+    """Returns the number of slips between two words; a letter that stands at most one place off counts
+    once.
+    """
     above: list[int] = []
     row = list(range(len(b) + 1))
     for i, x in enumerate(a, 1):

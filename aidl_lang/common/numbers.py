@@ -10,7 +10,9 @@ _MOST_DECIMALS = 15
 
 
 def fixed(value: float, decimals: int = 6) -> str:
-    """At most this many decimals, without trailing zeros and without a minus before zero."""
+    """Returns a number with at most so many decimals, without trailing zeros and without a minus before
+    zero.
+    """
     text = f"{value:.{decimals}f}"
     if "." in text:
         text = text.rstrip("0").rstrip(".")
@@ -18,7 +20,7 @@ def fixed(value: float, decimals: int = 6) -> str:
 
 
 def shortest(value: float, tolerance: float) -> str:
-    """The decimal with the fewest places that is this near."""
+    """Returns the decimal with the fewest places that is within `tolerance`."""
     for places in range(_MOST_DECIMALS):
         if abs(round(value, places) - value) <= tolerance:
             return fixed(value, places)
@@ -43,14 +45,14 @@ def literal(value: float | str | bool, digits: int = 6, unit: str = "") -> str:
 
 
 def significant(value: float) -> float:
-    """Rounded to 12 significant digits, past which rounding errors begin; -0 becomes 0."""
+    """Returns a number rounded to 12 significant digits, past which rounding errors begin; -0 becomes 0."""
     if value == 0 or not math.isfinite(value):
         return 0.0 if value == 0 else value
     return float(f"{value:.12g}")
 
 
 def rounded(value: Any) -> Any:
-    """Data for JSON with its numbers rounded so; what is not finite becomes null."""
+    """Returns data for JSON with its numbers as `significant` rounds them; infinities and NaN become null."""
     if isinstance(value, float):
         value = significant(value)
         return value if value - value == 0 else None
@@ -62,5 +64,5 @@ def rounded(value: Any) -> Any:
 
 
 def size_text(size: Sequence[float]) -> str:
-    """Width and height in mm for a sentence: `600 × 400 mm`."""
+    """Returns width and height in mm for a sentence: `600 × 400 mm`."""
     return f"{fixed(size[0], 3)} × {fixed(size[1], 3)} mm"

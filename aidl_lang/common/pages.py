@@ -11,23 +11,23 @@ from aidl_lang.common.resources import resource
 
 
 def codes() -> list[str]:
-    """All codes, errors first, then warnings, then notes."""
+    """Returns all codes, errors first, then warnings, then notes."""
     return list(_pages())
 
 
 def page(code: str) -> str:
-    """The page of a code as Markdown. Raises KeyError for a code that does not exist."""
+    """Returns the page of a code as Markdown. Raises KeyError for a code that does not exist."""
     return _pages()[code].read_text(encoding="utf-8")
 
 
 def title(code: str) -> str:
-    """What the page of a code is headed with."""
+    """Returns the heading of the page of a code, without the code."""
     heading = page(code).partition("\n")[0]
     return heading.removeprefix(f"# {code}:").strip()
 
 
 def near(code: str) -> list[str]:
-    """Codes that may have been meant: those that look alike, else those of the same digits."""
+    """Returns codes that may have been meant: those that look alike, else those of the same digits."""
     digits = "".join(char for char in code if char.isdigit())
     same = [known for known in _pages() if digits and known[1:] == digits]
     return same or get_close_matches(code, _pages(), n=3, cutoff=0.7)

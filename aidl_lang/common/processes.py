@@ -1,4 +1,4 @@
-"""Processes for work that may hang, crash or devour memory: what breaks one harms nothing else."""
+"""Processes for work that may hang, crash or devour memory without harming anything else."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 MEMORY = 3_000_000_000
-"""Bytes that a worker may have, where the system can be told so."""
+"""Bytes that a worker may use, on systems that can limit it."""
 
 
 class Limit(Enum):
-    """What a call met that broke it: its limit of time, the end of its process, the limit of memory."""
+    """The limit that a call met: that of time, the end of its process, or that of memory."""
 
     TIME = "time"
     DEATH = "death"
@@ -31,12 +31,12 @@ class Limit(Enum):
 
 
 class Guarded:
-    """Processes that carry out calls side by side, each within limits of time and memory. A call that breaks
-    its process takes no other along; the process is replaced.
+    """A pool of processes that carry out calls side by side, each within limits of time and memory. A call
+    that breaks its process takes no other along; the process is replaced.
     """
 
     def __init__(self, workers: int, preload: str, memory: int = MEMORY) -> None:
-        """`preload` is the module that they have loaded from the start."""
+        """Starts the processes; `preload` is the module that they load at the start."""
         from pebble import ProcessPool
 
         if sys.platform == "win32":
@@ -49,13 +49,13 @@ class Guarded:
         )
 
     def submit(self, seconds: float, task: Callable[..., T], *arguments: object) -> Future[T]:
-        """Have a call carried out; see `limit_met` for how it may end. Cancelling ends its process. The task,
-        its arguments and what it returns can be pickled.
+        """Has a call carried out; `limit_met` tells how it broke. Cancelling ends its process. The task, its
+        arguments and its result must be picklable.
         """
         return self._pool.schedule(task, arguments, timeout=seconds)
 
     def close(self) -> None:
-        """End all processes, whatever they do."""
+        """Ends all processes, busy or not."""
         self._pool.stop()  # type: ignore[no-untyped-call]
         self._pool.join()
 
@@ -72,15 +72,15 @@ def limit_met(error: BaseException) -> Limit | None:
 
 
 def count() -> int:
-    """The processors that there are for this process."""
+    """Returns the number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0)) or 1
     return os.cpu_count() or 1
 
 
 def _prepare(memory: int) -> None:
-    """What a worker does first: it limits its memory, leaves an interrupt to the main process, and sees to it
-    that it ends with that.
+    """Prepares a worker: limits its memory, leaves interrupts to the main process, and makes it end with
+    that.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_server, daemon=True).start()

@@ -1,4 +1,4 @@
-"""Words as sentences have them: lists, counts, articles."""
+"""Parts of sentences: lists, counts, articles."""
 
 from __future__ import annotations
 

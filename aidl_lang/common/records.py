@@ -1,4 +1,4 @@
-"""Records: dataclasses that cost little to define, and those that are frozen no more to make than others.
+"""Records: dataclasses that are quick to define and, if frozen, as quick to make as others.
 
 The methods that `dataclasses` writes for a class are compiled while the class is defined, which for a few
 hundred classes takes longer than to draw a part. Those of a record are compiled when they are first called.
@@ -22,12 +22,14 @@ T = TypeVar("T")
 def record(
     *, frozen: bool = True, eq: bool = True, repr: bool = True, kw_only: bool = False, slots: bool = False
 ) -> Callable[[type[T]], type[T]]:
-    """What `dataclass(frozen=True, …)` is; with `eq` hashed by its fields if it is frozen, and else not."""
+    """Makes a class a record, as `dataclass(frozen=True, …)` would; one with `eq` is hashed by its fields if
+    it is frozen, and otherwise not hashable.
+    """
 
     def made(cls: type[T]) -> type[T]:
-        written = {name for name, value in vars(cls).items() if value is not None}  # that stands
-        cls.__doc__ = cls.__doc__ or cls.__name__  # it would be worded of the signature
-        # Left to itself: what a field is, inheritance, slots.
+        written = {name for name, value in vars(cls).items() if value is not None}  # its own methods stay
+        cls.__doc__ = cls.__doc__ or cls.__name__  # dataclass would put the signature there
+        # `dataclass` itself works out the fields, inheritance and slots.
         known = dataclass(init=False, repr=False, eq=False, kw_only=kw_only, slots=slots)(cls)
         if "__init__" not in written:
             _compiled_later(known, "__init__", _maker)
@@ -46,7 +48,7 @@ def record(
 
 
 def _compiled_later(cls: type, name: str, source: Callable[[type, dict[str, object]], str]) -> None:
-    """Give a class a method whose source is written and compiled when it is first called."""
+    """Gives a class a method whose source is written and compiled when it is first called."""
 
     def first(self: object, *args: object, **named: object) -> Any:
         space: dict[str, Any] = {}
@@ -66,7 +68,7 @@ def _add(cls: type, name: str, method: Any) -> None:
 
 
 def _maker(cls: type, space: dict[str, object]) -> str:
-    """The source of `__init__`; what it needs beside its arguments is put into its space."""
+    """Returns the source of `__init__`; puts the defaults that it needs into its space."""
     space["MISSING"] = MISSING
     positional, named, body = ["self"], ["*"], []
     for each in fields(cls):
@@ -108,7 +110,7 @@ def _hash(cls: type, _: dict[str, object]) -> str:
 
 
 def _gathered(owner: str, names: list[str]) -> str:
-    """The source of a tuple of fields."""
+    """Returns the source of a tuple of fields."""
     return f"({''.join(f'{owner}.{name}, ' for name in names)})"
 
 

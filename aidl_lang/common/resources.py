@@ -1,8 +1,8 @@
-"""Where the files that ship with the package are: grammar, standard library, pages on diagnostics.
+"""The places of the files that ship with the package: grammar, standard library, pages on diagnostics.
 
-In a wheel they lie in `aidl_lang/_data/`, in a checkout beside the package; nothing else needs to know. What
-is worked out from them once (the parser's tables, the parsed library) is built into the wheel; a checkout
-keeps it in its own `build/derived/`. All of it is data, and nothing is kept anywhere else.
+In a wheel they lie in `aidl_lang/_data/`, in a checkout beside the package; nothing else needs to know. Data
+derived from them (the parser's tables, the parsed library) is built into the wheel; a checkout keeps it in
+its own `build/derived/`. All of it is data, and nothing is kept anywhere else.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ _CHECKOUT = _PACKAGE.parent
 
 @cache
 def resource(name: str) -> Path:
-    """The file or folder `name`, as `grammar/aidl.lark`, `stdlib` or `docs/diagnostics`.
+    """Returns the path of the file or folder `name`, as `grammar/aidl.lark`, `stdlib` or `docs/diagnostics`.
 
-    Raises FileNotFoundError when the installation is incomplete.
+    Raises FileNotFoundError if the installation is incomplete.
     """
     for root in (_SHIPPED, _CHECKOUT):
         if (path := root / name).exists():
@@ -31,10 +31,10 @@ def resource(name: str) -> Path:
 
 
 def derived(name: str, inputs: Callable[[], Iterable[Path]], make: Callable[[], bytes]) -> bytes:
-    """What `make` gives, worked out once.
+    """Returns the bytes that `make` returns, worked out once.
 
-    An installation has it among its files. A checkout makes it again when one of the `inputs` has changed;
-    what `make` raises is passed on.
+    An installation has them among its files. A checkout makes them again when one of the `inputs` has
+    changed; errors that `make` raises are passed on.
     """
     if _SHIPPED.exists():
         return resource(f"derived/{name}").read_bytes()
@@ -50,7 +50,7 @@ def derived(name: str, inputs: Callable[[], Iterable[Path]], make: Callable[[], 
 
 
 def _kept(name: str, inputs: Iterable[Path]) -> Path:
-    """The file of a checkout whose name holds a digest of everything its content depends on."""
+    """Returns the file of a checkout whose name holds a digest of everything its content depends on."""
     import hashlib
 
     digest = hashlib.sha256()
@@ -63,8 +63,8 @@ def _kept(name: str, inputs: Iterable[Path]) -> Path:
 
 
 def _keep(path: Path, data: bytes) -> None:
-    """Write beside the file and move into place, so that a reader sees the whole or nothing; what an older
-    state of the checkout left goes.
+    """Writes a temporary file and moves it into place, so that a reader sees the whole or nothing; deletes
+    what an older state of the checkout left.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}")

@@ -1,4 +1,4 @@
-"""What stands around a run of a program: the time of its stages, room for nesting, no pauses."""
+"""The surroundings of a run of a program: the time of its stages, room for nesting, no pauses."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from contextlib import contextmanager
 from aidl_lang.common.cancelling import checkpoint
 
 _RECURSION = 20_000
-"""Python frames for deeply nested programs; the limits on nesting and calls end sooner."""
+"""Python frames for deeply nested programs; the limits on nesting and calls are reached sooner."""
 
 
 class Stopwatch:
-    """Adds up the seconds of each stage by its name; a run that is given up ends where a stage begins."""
+    """The seconds that each stage took, by its name; a run that is given up ends where a stage begins."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
@@ -32,8 +32,9 @@ class Stopwatch:
 
 
 class _Working:
-    """What runs need of the interpreter: room for nested programs, and no pauses to look for cycles in a heap
-    that only grows until the run ends. Several threads may run at once; the last to leave tidies up.
+    """The settings of the Python interpreter that runs need: room for nested programs, and no pauses to look
+    for cycles in a heap that only grows until the run ends. Several threads may run at once; the last to
+    leave restores them.
     """
 
     def __init__(self) -> None:

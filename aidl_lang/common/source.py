@@ -25,13 +25,13 @@ class SourceFile:
         return [0] + [i + 1 for i, char in enumerate(self.text) if char == "\n"]
 
     def position(self, offset: int) -> tuple[int, int]:
-        """Line and column of an offset, both from 1."""
+        """Returns line and column of an offset, both from 1."""
         offset = max(0, min(offset, len(self.text)))
         line = bisect_right(self.line_starts, offset)
         return line, offset - self.line_starts[line - 1] + 1
 
     def line(self, number: int) -> str:
-        """The text of a line (from 1) without its line break."""
+        """Returns the text of a line (from 1) without its line break."""
         start = self.line_starts[number - 1]
         end = self.line_starts[number] - 1 if number < len(self.line_starts) else len(self.text)
         return self.text[start:end].rstrip("\r")
@@ -64,7 +64,9 @@ class Span:
 
     @property
     def with_separator(self) -> Span:
-        """A statement with the `;` or `,` behind it, and with its line where nothing else is on it."""
+        """The span of a statement with the `;` or `,` behind it, and of its whole line if nothing else is on
+        it.
+        """
         text, start, end = self.source.text, self.start, self.end
         end += len(text[end:]) - len(text[end:].lstrip(" \t;,"))
         begin = text.rfind("\n", 0, start) + 1
@@ -73,7 +75,7 @@ class Span:
         return Span(self.source, start, end)
 
     def to(self, other: Span) -> Span:
-        """The range from the start of this span to the end of the other."""
+        """Returns the range from the start of this span to the end of the other."""
         return Span(self.source, self.start, max(self.end, other.end))
 
     def overlaps(self, other: Span) -> bool:

@@ -1,4 +1,4 @@
-"""Every file is read through a World, so that the core is one for disk, memory, editor and browser.
+"""The world that all files are read through, so that the core is one for disk, memory, editor and browser.
 
 Paths are relative to the root of a project and written with `/`. Nothing outside the root can be read,
 whatever `..`, absolute paths or symbolic links say.
@@ -15,7 +15,7 @@ MAX_BYTES = 10_000_000  # of one file; a program is far smaller, and a device fi
 
 
 class Reason(StrEnum):
-    """Why a file cannot be read."""
+    """The reason why a file cannot be read."""
 
     MISSING = "there is no such file"
     OUTSIDE = "it lies outside the project"
@@ -27,7 +27,7 @@ class Reason(StrEnum):
 
 
 class FileError(OSError):
-    """A file that cannot be read: `path` as asked for, and the reason in words."""
+    """Raised for a file that cannot be read: `path` as asked for, and the reason in words."""
 
     def __init__(self, path: str, reason: Reason) -> None:
         super().__init__(f"{path}: {reason}")
@@ -36,15 +36,15 @@ class FileError(OSError):
 
 
 class World(Protocol):
-    """What a program can see of the world outside."""
+    """The files that a program can read."""
 
     def read(self, path: str) -> str:
-        """The text of a file, the path relative to the root. Raises FileError."""
+        """Returns the text of a file; the path is relative to the root. Raises FileError."""
         ...
 
 
 def normalize(path: str) -> str:
-    """A path without `.` and `..`, relative to the root. Raises FileError where it leaves the root."""
+    """Returns a path without `.` and `..`, relative to the root. Raises FileError if it leaves the root."""
     pure = PurePosixPath(path.replace("\\", "/"))
     parts: list[str] = []
     for part in pure.parts:
@@ -58,7 +58,9 @@ def normalize(path: str) -> str:
 
 
 def relative_to(path: str, importer: str) -> str:
-    """What a path written in the file `importer` means from the root. Raises FileError as `normalize`."""
+    """Returns the path from the root for one written in the file `importer`. Raises FileError as `normalize`
+    does.
+    """
     if PurePosixPath(path).is_absolute():
         raise FileError(path, Reason.OUTSIDE)
     return normalize(str(PurePosixPath(importer).parent / path))
@@ -90,7 +92,9 @@ class DiskWorld:
                 raise FileError(path, Reason.OUTSIDE)
             if not file.is_file():
                 raise FileError(path, Reason.MISSING)
-            if file.suffix != PurePosixPath(path).suffix:  # by a link: what is no program is not shown as one
+            if (
+                file.suffix != PurePosixPath(path).suffix
+            ):  # a link to a file of another kind, which is no program
                 raise FileError(path, Reason.ANOTHER_KIND)
             if file.stat().st_size > MAX_BYTES:
                 raise FileError(path, Reason.TOO_LARGE)

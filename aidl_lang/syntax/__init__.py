@@ -1,1 +1,3 @@
-"""Text becomes a tree (`ast`), and a tree its canonical text (`printer`). `parser` is the door."""
+"""The syntax: text becomes a tree (`ast`), and a tree its canonical text (`printer`). `parser` is the
+door.
+"""

@@ -20,7 +20,9 @@ class Node:
     span: Span = field(repr=False)
 
     def __repr__(self) -> str:
-        """As dataclasses have it, without the span; one for all, as making one for each slows the start."""
+        """Returns what dataclasses print, without the span; one for all, as making one for each slows the
+        start.
+        """
         shown = (f"{f.name}={getattr(self, f.name)!r}" for f in dataclasses.fields(self) if f.repr)
         return f"{type(self).__name__}({', '.join(shown)})"
 
@@ -150,7 +152,9 @@ class Membership(Node):
 
 @record(eq=False, repr=False)
 class Range(Node):
-    """`start..end` (both ends) or `start..<end` (without the last); what is run through may have a `step`."""
+    """`start..end` (both ends) or `start..<end` (without the last); one that a `for` counts through may have
+    a `step`.
+    """
 
     start: Expression
     end: Expression
@@ -386,7 +390,7 @@ class Alias(Node):
 
 @record(eq=False, repr=False)
 class Todo(Node):
-    """`todo`: this body is to be filled in later, and its author knows."""
+    """`todo`: a body that its author knows is still to be filled in."""
 
 
 Statement: TypeAlias = (
@@ -420,7 +424,7 @@ DEFINITIONS = (
     ConstraintDefinition,
     Todo,
 )
-"""What may stand beside the one structure of a file without making an assembly around both."""
+"""Statements that may stand beside the one structure of a file without making an assembly around both."""
 
 Callable: TypeAlias = FunctionDefinition | ShapeDefinition | ConstraintDefinition | Structure
 
@@ -443,7 +447,7 @@ class Module(Node):
 
 
 def children(node: Node) -> Iterator[Node]:
-    """The nodes directly below one, in text order of their fields."""
+    """Yields the nodes directly below one, in text order of their fields."""
     names: tuple[str, ...] = node.__match_args__  # every field but the span
     for name in names:
         value = getattr(node, name)
@@ -456,7 +460,7 @@ def children(node: Node) -> Iterator[Node]:
 
 
 def walk(node: Node) -> Iterator[Node]:
-    """A node and all nodes below it, parents first."""
+    """Yields a node and all nodes below it, parents first."""
     stack = [node]
     while stack:
         yield (top := stack.pop())
@@ -464,7 +468,7 @@ def walk(node: Node) -> Iterator[Node]:
 
 
 def same(a: object, b: object) -> bool:
-    """Whether two trees have the same content, spans, comments and source aside."""
+    """Tells whether two trees have the same content, spans, comments and source aside."""
     if isinstance(a, Node) and isinstance(b, Node):
         return type(a) is type(b) and all(
             same(getattr(a, f.name), getattr(b, f.name))

@@ -18,12 +18,14 @@ class Checkpoint(NamedTuple):
     states: list[int]
     values: list[Any]
     starts: list[int]
-    statements: int  # of the block so far
+    statements: int  # read in the block so far
 
 
 @cache
 def _reductions(tables: Tables) -> list[tuple[int, int | None, tuple[int, ...], Callable[..., Any] | None]]:
-    """For each rule its size, what it passes on, what it keeps, and the method that makes its node."""
+    """Returns for each rule its size, what it passes on, what it keeps, and the method that makes its
+    node.
+    """
     return [
         (rule.size, rule.passes, rule.kept, action(rule.action) if rule.action else None)
         for rule in tables.rules
@@ -31,19 +33,21 @@ def _reductions(tables: Tables) -> list[tuple[int, int | None, tuple[int, ...], 
 
 
 class Automaton:
-    """States, values and places of what has been read so far, as three stacks of one length."""
+    """The states, values and places of the tokens read so far, as three stacks of one length."""
 
     def __init__(self, tables: Tables, builder: Builder) -> None:
         self.tables = tables
         self.states: list[int] = [tables.start]
         self.values: list[Any] = [None]
         self.starts: list[int] = [0]
-        self.end = 0  # of the last token taken
+        self.end = 0  # offset behind the last token taken
         self.builder = builder
         self.reductions = _reductions(tables)
 
     def feed(self, token: Token) -> bool:
-        """Take one token. False if it cannot stand here; the statement before it may be complete by then."""
+        """Takes one token. Returns False if it cannot stand here; the statement before it may be complete by
+        then.
+        """
         states, values, starts = self.states, self.values, self.starts
         actions, steps = self.tables.actions, self.tables.steps
         kind = token.kind
@@ -82,7 +86,7 @@ class Automaton:
         return True
 
     def _gather(self, kept: tuple[int, ...], size: int) -> list[Any]:
-        """The values of the kept symbols in one list, which is that of the first where there is one."""
+        """Returns the values of the kept symbols in one list, reusing that of the first if it is one."""
         gathered: list[Any] | None = None
         for i in kept:
             part = self.values[i - size]
@@ -95,8 +99,8 @@ class Automaton:
         return [] if gathered is None else gathered
 
     def _reduced(self, below: int, reduction: int, kind: str) -> int:
-        """The state after a reduction and all those behind it that only pass on one value: chains of these (a
-        name is a product is a sum is …) are most of the work, so they are one step.
+        """Returns the state after a reduction and all those behind it that only pass on one value: chains of
+        these (a name is a product is a sum is …) are most of the work, so they are one step.
         """
         rules, actions = self.tables.rules, self.tables.actions
         state = actions[below][rules[~reduction].origin]
@@ -111,16 +115,16 @@ class Automaton:
 
     @property
     def between_statements(self) -> bool:
-        """Whether a statement may begin here: none is under way."""
+        """True if a statement may begin here: none is under way."""
         return self.states[-1] in self.tables.statement_states
 
     @property
     def began_statement(self) -> bool:
-        """Whether the token just taken was the first of a statement."""
+        """True if the token just taken was the first of a statement."""
         return len(self.states) > 1 and self.states[-2] in self.tables.statement_states
 
     def checkpoint(self, position: int) -> Checkpoint:
-        """To be taken when `began_statement`."""
+        """Returns the stacks before the statement under way. Only when `began_statement`."""
         return Checkpoint(
             position, self.states[:-1], self.values[:-1], self.starts[:-1], len(self.values[-2])
         )
@@ -133,7 +137,7 @@ class Automaton:
             del self.values[-1][checkpoint.statements :]
 
     def enter_block(self) -> None:
-        """Begin the list of statements of a block in which there are none yet."""
+        """Begins the list of statements of a block in which there are none yet."""
         target = self.tables.actions[self.states[-1]].get(";", 0)
         if target < 0 and not (rule := self.tables.rules[~target]).size:
             self.states.append(self.tables.actions[self.states[-1]][rule.origin])
@@ -141,14 +145,14 @@ class Automaton:
             self.starts.append(self.end)
 
     def drop_statement(self) -> None:
-        """Forget the statement under way, keeping all that stands before it in its block."""
+        """Forgets the statement under way, keeping all that stands before it in its block."""
         self.enter_block()
         while not self.between_statements:
             del self.states[-1], self.values[-1], self.starts[-1]
             self.enter_block()
 
     def open_brackets(self) -> list[Token]:
-        """The `(`, `[`, `{` and calls that are not closed yet, outermost first."""
+        """Returns the `(`, `[`, `{` and calls that are not closed yet, outermost first."""
         opened: list[Token] = []
         for value in self.values:
             if isinstance(value, Token):
@@ -159,11 +163,13 @@ class Automaton:
         return opened
 
     def open_blocks(self) -> int:
-        """How many `{` are not closed yet."""
+        """Returns the number of `{` that are not closed yet."""
         return sum(1 for token in self.open_brackets() if token.kind == "{")
 
     def accepts(self, kinds: Iterable[str], from_statement: bool = False) -> bool:
-        """Whether tokens of these kinds could come next, or in the place of the whole statement under way."""
+        """Tells whether tokens of these kinds could come next, or in the place of the whole statement under
+        way.
+        """
         states = list(self.states)
         while from_statement and states[-1] not in self.tables.statement_states:
             states.pop()
@@ -175,7 +181,7 @@ class Automaton:
         return True
 
     def _advance(self, states: list[int], kind: str) -> bool:
-        """Move a stack of states over a token; False where it cannot stand."""
+        """Moves a stack of states over a token. Returns False if it cannot stand there."""
         actions, rules = self.tables.actions, self.tables.rules
         while (target := actions[states[-1]].get(kind)) is not None and target < 0:
             rule = rules[~target]

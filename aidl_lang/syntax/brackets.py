@@ -1,4 +1,4 @@
-"""Brackets and blocks that are not closed, or closed without being open; commas between what they hold."""
+"""Brackets and blocks that are not closed, or closed without being open; commas between their items."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ _VALUE_ENDS = ("NAME", "NUMBER", ")", "]")
 
 
 def lists_as_statements(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
-    """E0125 for each line such as `[a, b].above(c)` that goes on with the line above as an index, and E0101
-    where a statement would begin with a list. Both are read as the statements they were meant to be.
+    """Reports E0125 for each line such as `[a, b].above(c)`, which would go on with the line above as an
+    index, and E0101 for a statement that begins with a list. Rewrites both as the statements they were meant
+    to be.
     """
     found: list[tuple[int, Diagnostic]] = []
     opened: list[str] = []
@@ -60,7 +61,7 @@ def _list_as_statement(source: SourceFile, token: Token, joined: bool) -> Diagno
 
 
 def wrong_closer(t: Trouble) -> Problem | None:
-    """A closing bracket of another kind than the one that is open."""
+    """Recognises a closing bracket of another kind than the one that is open."""
     if t.token.kind not in (")", "]") or not t.open or _CLOSER[t.open[-1].kind] == t.token.kind:
         return None
     opener = t.open[-1]
@@ -81,7 +82,7 @@ def wrong_closer(t: Trouble) -> Problem | None:
 
 
 def unclosed_bracket(t: Trouble) -> Problem | None:
-    """The statement ends, or another begins, inside an open bracket."""
+    """Recognises a bracket left open at the end of its statement, or where another begins."""
     if not t.open or not (t.begins_statement() or t.token.kind in (";", "{", "at", "rotated")):
         return None
     closers = [_CLOSER[opener.kind] for opener in reversed(t.open)]
@@ -103,7 +104,9 @@ def unclosed_bracket(t: Trouble) -> Problem | None:
 
 
 def unclosed_block(t: Trouble) -> Problem | None:
-    """The file ends inside a block; indentation tells which one was meant to end, and where."""
+    """Recognises a block left open at the end of the file; indentation tells which one was to end, and
+    where.
+    """
     if t.token.kind != END or not t.between:
         return None
     blocks = [token for token in t.automaton.open_brackets() if token.kind == "{"]
@@ -127,7 +130,7 @@ def unclosed_block(t: Trouble) -> Problem | None:
 
 
 def _misindented(t: Trouble, outermost: Token) -> Token | None:
-    """The first block that ends with a brace indented less than the line on which it begins."""
+    """Returns the first block that ends with a brace indented less than the line on which it begins."""
     opened: list[Token] = []
     for token in t.tokens:
         if token.kind == "{" and token.start >= outermost.start:
@@ -142,7 +145,7 @@ def _misindented(t: Trouble, outermost: Token) -> Token | None:
 
 
 def _place_for_brace(t: Trouble, opener: Token) -> Span:
-    """The end of the last line in a block before one that is indented no deeper than its head."""
+    """Returns the end of the last line of a block: the next one is indented no deeper than its head."""
     head = t.indentation(opener.start)
     last = opener
     for token in t.tokens:

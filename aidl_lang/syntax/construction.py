@@ -1,7 +1,8 @@
-"""From the grammar file to tables: Lark reads `grammar/aidl.lark` and works out the LALR(1) automaton.
+"""The construction of the parser's tables: Lark reads `grammar/aidl.lark` and works out the LALR(1)
+automaton.
 
-Runs when the package is built and, in a checkout, when the grammar has changed; never at a user's. That the
-grammar is strictly LALR(1), and that no two terminals overlap, is for the tests to show.
+Runs when the package is built and, in a checkout, when the grammar has changed; never at a user's. Tests show
+that the grammar is strictly LALR(1), and that no two terminals overlap.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def build_tables(grammar: str) -> Tables:
-    """Have Lark read the grammar (about half a second). Raises lark's GrammarError where it cannot."""
+    """Has Lark read the grammar (about half a second). Raises lark's GrammarError if it cannot."""
     from lark import Lark
     from lark.lexer import PatternStr
     from lark.parsers.lalr_analysis import Shift
@@ -63,7 +64,9 @@ def build_tables(grammar: str) -> Tables:
 
 
 def _plain_rule(rule: LarkRule) -> Rule:
-    """What Lark's own tree builder would make of a rule: `?`, `!`, `_` and `->` mean what they mean there."""
+    """Returns a rule that builds what Lark's own tree builder would: `?`, `!`, `_` and `->` mean what they
+    mean there.
+    """
     from lark.grammar import Terminal
 
     origin, expansion = str(rule.origin.name), rule.expansion

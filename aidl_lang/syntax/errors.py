@@ -1,4 +1,4 @@
-"""What is wrong where a token cannot stand: questions are asked in order, the more particular first."""
+"""Explanations of tokens that cannot stand: questions are asked in order, the more particular first."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ _QUESTIONS: tuple[Callable[[Trouble], Problem | None], ...] = (
     brackets.stray_comma,
 )
 
-# What could come next, in words, in the order in which it is worth saying.
+# Names of what could come next, the most useful first.
 _EXPECTED = (
     ("a value", ("NUMBER",)),
     ("a name", ("NAME",)),
@@ -75,7 +75,9 @@ _EXPECTED = (
 
 
 def explain(trouble: Trouble) -> Problem:
-    """The first answer to the questions; where none has one, what stands here and what could."""
+    """Returns the first answer to the questions, or else a problem that names the token and what could stand
+    here.
+    """
     for question in _QUESTIONS:
         if (problem := question(trouble)) is not None:
             return problem
@@ -103,7 +105,9 @@ def _unexpected(t: Trouble) -> Problem:
 
 
 def spaced_call(source: SourceFile, token: Token) -> Diagnostic:
-    """E0114 for a call whose `(` does not touch its name; it is read as the call it was meant to be."""
+    """Returns E0114 for a call whose `(` does not touch its name; it is read as the call it was meant to
+    be.
+    """
     name = token.text[:-1]
     gap = Span(source, token.start + len(name), token.end - 1)
     return Diagnostic(

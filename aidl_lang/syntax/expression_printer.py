@@ -1,4 +1,4 @@
-"""Expressions in canonical form: parentheses only where they are needed, line breaks where they help.
+"""Expressions in canonical form: parentheses only if needed, line breaks if they help.
 
 An expression becomes a `Doc`: text with groups in it, the bracketed lists that may be broken over lines.
 """
@@ -49,7 +49,7 @@ class Doc:
 
 
 def doc(*parts: str | Group | Doc) -> Doc:
-    """The parts one after another."""
+    """Joins parts to one document."""
     pieces: list[str | Group] = []
     width = 0
     for part in parts:
@@ -72,7 +72,7 @@ def _group_width(group: Group) -> int:
 
 
 def render(document: Doc, indent: int, column: int | None = None, after: int = 0) -> str:
-    """The text, beginning at `column`, with `after` more characters to follow on its last line."""
+    """Lays a document out, beginning at `column`, with `after` more characters to follow on its last line."""
     column = indent if column is None else column
     if column + document.width + after <= WIDTH:
         return document.flat()
@@ -82,7 +82,7 @@ def render(document: Doc, indent: int, column: int | None = None, after: int = 0
             out.append(piece)
             column += len(piece)
             continue
-        # What must follow on the same line whatever happens: the text up to the next group, and its bracket.
+        # The text up to the next group, and its bracket, must follow on the same line.
         tail = 0
         for later in document.pieces[i + 1 :]:
             tail += len(later) if isinstance(later, str) else len(later.opening)
@@ -105,7 +105,9 @@ def render(document: Doc, indent: int, column: int | None = None, after: int = 0
 
 
 class ExpressionPrinter:
-    """`names` gives spellings that differ from what was written, for names, members and callees."""
+    """A printer of expressions. `names` gives spellings that differ from the written ones, for names, members
+    and callees.
+    """
 
     def __init__(self, names: Mapping[ast.Node, str] | None = None) -> None:
         self.names = names or {}
@@ -114,12 +116,12 @@ class ExpressionPrinter:
         return self.names.get(node, node.text)
 
     def expression(self, node: ast.Expression, level: int = CHOICE) -> Doc:
-        """A node where at least `level` is asked for."""
+        """Returns a node in a place that asks for at least `level`: in parentheses if it binds less."""
         own, document = self._print(node)
         return document if own >= level else doc("(", document, ")")
 
     def iterable(self, node: ast.Expression) -> Doc:
-        """What may follow `in`: a range without parentheses, or a sum."""
+        """Returns the expression behind `in`: a range without parentheses, or a sum."""
         return self.expression(node, CONDITION if isinstance(node, ast.Range) else SUM)
 
     def arguments(self, opening: str, arguments: Sequence[ast.Argument]) -> Doc:
@@ -130,7 +132,7 @@ class ExpressionPrinter:
         return doc(Group(opening, items, ")"))
 
     def _print(self, node: ast.Expression) -> tuple[int, Doc]:  # noqa: C901 (one case a node)
-        """How tightly a node binds, and its text."""
+        """Returns how tightly a node binds, and its text."""
         match node:
             case ast.Number():
                 return ATOM, doc(node.text + (node.unit or ""))
@@ -181,7 +183,9 @@ class ExpressionPrinter:
                 return CHOICE, doc("if ", self.expression(node.test, OR), " then ", then, " else ", otherwise)
 
     def _owner(self, node: ast.Expression) -> Doc:
-        """What stands before `.` or `[`; a number would swallow the point."""
+        """Returns the expression before `.` or `[`; a number gets parentheses, as it would swallow the
+        point.
+        """
         document = self.expression(node, ATOM)
         return doc("(", document, ")") if isinstance(node, ast.Number) else document
 
@@ -190,12 +194,12 @@ _ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\
 
 
 def string_text(value: str) -> str:
-    """A text with its quotes."""
+    """Returns a text with its quotes."""
     return '"' + value.translate(_ESCAPES) + '"'
 
 
 def begins_statement(node: ast.Expression) -> bool:
-    """Whether an expression, as printed, may stand as a statement of its own."""
+    """Tells whether an expression, as printed, may stand as a statement of its own."""
     match node:
         case ast.Binary(operator="and" | "or"):
             left = _BINARY[node.operator][1]
@@ -213,7 +217,9 @@ def begins_statement(node: ast.Expression) -> bool:
 
 
 def _begins(node: ast.Expression, level: int) -> bool:
-    """Whether the text of an operand begins with what may begin a statement; parentheses may."""
+    """Tells whether the text of an operand begins with something that may begin a statement; parentheses
+    may.
+    """
     match node:
         case ast.Name() | ast.Number() | ast.Point():
             return True
@@ -236,5 +242,5 @@ def _begins(node: ast.Expression, level: int) -> bool:
 
 
 def format_expression(node: ast.Expression, names: Mapping[ast.Node, str] | None = None) -> str:
-    """The canonical text of an expression, on one line."""
+    """Returns the canonical text of an expression, on one line."""
     return ExpressionPrinter(names).expression(node).flat()

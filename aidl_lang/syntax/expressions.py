@@ -14,7 +14,7 @@ _UNITS = ("turn", "deg", "rad", "mm", "cm", "in", "ft", "m", "°")
 
 
 class ExpressionBuilder:
-    """One method for each rule of the grammar that makes an expression."""
+    """Builder of expression nodes, with a method for each rule of the grammar that makes one."""
 
     def __init__(self, source: SourceFile, docs: dict[int, str]) -> None:
         self.source = source
@@ -60,7 +60,7 @@ class ExpressionBuilder:
         return ast.Member(value, self.identifier(name), span=Span(self.source, start, end))
 
     def index_of(self, start: int, end: int, value: ast.Expression, *indices: ast.Expression) -> ast.Index:
-        """`a[i, j]` is `a[i][j]`."""
+        """Builds `a[i, j]` as `a[i][j]`."""
         span = Span(self.source, start, end)
         for index in indices[:-1]:
             value = ast.Index(value, index, span=span)
@@ -181,14 +181,16 @@ class _Generator:
 
 
 def arguments_of(value: Any) -> tuple[ast.Argument, ...]:
-    """The arguments of a call; a comprehension may be its only one without brackets: `sum(a for a in b)`."""
+    """Returns the arguments of a call; a comprehension may be its only one without brackets: `sum(a for a in
+    b)`.
+    """
     if isinstance(value, _Generator):
         return (ast.Argument(None, value.comprehension(value.span), span=value.span),)
     return tuple(value)
 
 
 def number_parts(text: str) -> tuple[str, str | None]:
-    """Digits and unit of a number as written; `°` is `deg`."""
+    """Returns digits and unit of a number as written; `°` is `deg`."""
     for unit in _UNITS:
         if text.endswith(unit):
             return text[: -len(unit)], "deg" if unit == "°" else unit
@@ -196,7 +198,7 @@ def number_parts(text: str) -> tuple[str, str | None]:
 
 
 def string_value(text: str) -> str:
-    """The value of a string token, quotes and escapes undone."""
+    """Returns the value of a string token, without its quotes and escapes."""
     inner = text[1:-1]
     if "\\" not in inner:
         return inner

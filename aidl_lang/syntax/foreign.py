@@ -1,4 +1,4 @@
-"""Whole constructs of other languages: their loops, blocks, functions, points and imports."""
+"""Constructs of other languages: their loops, blocks, functions, points and imports."""
 
 from __future__ import annotations
 
@@ -33,7 +33,9 @@ _LOOP = re.compile(
 
 
 def foreign_loop(t: Trouble) -> Problem | None:
-    """`for (i = 0; i < 4; i++)`, `for i = [0:3]`, `for (i in list)`, `for i of list`, `for i = 0 to 3`"""
+    """Recognises `for (i = 0; i < 4; i++)`, `for i = [0:3]`, `for (i in list)`, `for i of list`, `for i = 0
+    to 3`.
+    """
     if t.first.kind != "for" or t.between:
         return None
     end = min(line_end(t.source.text, t.first.start), t.first.start + LONGEST)
@@ -41,7 +43,7 @@ def foreign_loop(t: Trouble) -> Problem | None:
     if found is None or found.end() < t.token.start or bool(found["open"]) != bool(found["close"]):
         return None
     if found["word"] == "in" and not found["open"]:
-        return None  # as it should be: the trouble lies elsewhere
+        return None  # correct so far: the trouble lies elsewhere
     start, end = found.start(), found.end("close") if found["close"] else _last(found)
     if found["list"]:
         inner, text = _slice(t, *found.span("list")), found["list"]
@@ -84,7 +86,7 @@ def _slice(t: Trouble, start: int, end: int) -> list[Token]:
 
 
 def indented_block(t: Trouble) -> Problem | None:
-    """`for i in 0..3:` and an indented block, as in Python"""
+    """Recognises `for i in 0..3:` and an indented block, as in Python."""
     if (
         t.between
         or t.open
@@ -129,7 +131,7 @@ def indented_block(t: Trouble) -> Problem | None:
 
 
 def object_literal(t: Trouble) -> Problem | None:
-    """`{x: 1, y: 2}`"""
+    """Recognises `{x: 1, y: 2}`."""
     if t.token.kind != "{" or t.between or not t.accepts("NUMBER"):
         return None
     close = closing(t.tokens, t.position)
@@ -180,7 +182,7 @@ def object_literal(t: Trouble) -> Problem | None:
 
 
 def question_mark(t: Trouble) -> Problem | None:
-    """`c ? a : b`"""
+    """Recognises `c ? a : b`."""
     if t.token.text != "?" or t.between:
         return None
     begin = _operand(t.tokens, t.position, -1, max(t.begin, t.position - LONGEST) - 1) + 1
@@ -204,7 +206,9 @@ def question_mark(t: Trouble) -> Problem | None:
 
 
 def _operand(tokens: Sequence[Token], at: int, step: int, limit: int) -> int:
-    """Where what stands before or behind a token ends: at a separator, or the bracket around it."""
+    """Returns the number of the token at which the operand before or behind a token ends: a separator, or the
+    bracket around it.
+    """
     depth, n = 0, at + step
     while n != limit:
         kind = tokens[n].kind
@@ -217,7 +221,7 @@ def _operand(tokens: Sequence[Token], at: int, step: int, limit: int) -> int:
 
 
 def inches(t: Trouble) -> Problem | None:
-    """`5"` and `5 in`"""
+    """Recognises `5"` and `5 in`."""
     token, before = t.token, t.before
     if before is None:
         return None
@@ -245,7 +249,7 @@ def inches(t: Trouble) -> Problem | None:
 
 
 def _has_no_unit(token: Token) -> bool:
-    """Whether a token is a number to which a unit could be added."""
+    """Tells whether a token is a number to which a unit could be added."""
     return token.kind == "NUMBER" and token.text[-1].isdigit()
 
 
@@ -253,7 +257,7 @@ _ENDS = frozenset([")", "]", "}", ",", ";", "+", "-", "*", "/", "==", "<=", ">="
 
 
 def loose_point(t: Trouble) -> Problem | None:
-    """`5.`"""
+    """Recognises `5.`."""
     before = t.before
     if t.token.kind != "." or before is None or before.kind != "NUMBER" or not t.touches:
         if (
@@ -274,7 +278,7 @@ def loose_point(t: Trouble) -> Problem | None:
 
 
 def word_for_sign(t: Trouble) -> Problem | None:
-    """`if a is b`, `5 mod 3`"""
+    """Recognises `if a is b`, `5 mod 3`."""
     sign = {"is": "==", "mod": "%", "equals": "=="}.get(t.token.text)
     if sign is None or t.between or t.token.kind != "NAME" or not t.accepts(sign):
         return None
@@ -311,7 +315,7 @@ _MODULES = frozenset(
 
 
 def import_of_module(t: Trouble) -> Problem | None:
-    """`import math`, `from build123d import *`"""
+    """Recognises `import math`, `from build123d import *`."""
     words = [token.text for token in t.tokens[t.begin : t.begin + 2]]
     if len(words) < 2 or words[0] not in ("import", "from") or words[1] not in _MODULES:
         return None
@@ -329,7 +333,7 @@ def import_of_module(t: Trouble) -> Problem | None:
 
 
 def several_names(t: Trouble) -> Problem | None:
-    """`x, y = 3, 4` and `let (x, y) = …`"""
+    """Recognises `x, y = 3, 4` and `let (x, y) = …`."""
     has_let = t.first.kind in ("let", "var", "param") and t.token.kind in ("(", "[") and len(t.statement) == 1
     bare = (
         t.token.kind == ","
@@ -350,7 +354,7 @@ def several_names(t: Trouble) -> Problem | None:
 
 
 def documentation_text(t: Trouble) -> Problem | None:
-    """A text as a statement: `\"\"\"A bracket.\"\"\"` or `"A bracket."`"""
+    """Recognises a text as a statement: `\"\"\"A bracket.\"\"\"` or `"A bracket."`."""
     if (
         t.token.kind not in ("STRING", UNKNOWN)
         or t.token.text[0] not in "\"'"

@@ -1,4 +1,4 @@
-"""What is plain from its tokens alone: functions as other languages write them, and a few words too many."""
+"""Functions as other languages write them, and words too many, recognised by their tokens alone."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from aidl_lang.syntax.trouble import (
 
 
 def understood(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
-    """Rewrite what is plain from its tokens alone, and would be read as something else: functions with a
-    body, `new`, `between`, texts marked as in Python, and what follows a `todo`. Repairs count from the token
-    they begin with.
+    """Rewrites tokens that have one plain meaning but would be read as another: functions with a body, `new`,
+    `between`, texts marked as in Python, and what follows a `todo`. Repairs count from the token they begin
+    with.
     """
     found: list[Diagnostic] = []
     places = [n for n, token in enumerate(tokens) if token.text in _WORDS]
-    for at in places[: -_MOST_PLACES - 1 : -1]:  # from the end, so that what is before keeps its number
+    for at in places[: -_MOST_PLACES - 1 : -1]:  # from the end, so that earlier tokens keep their numbers
         problem = _answer(source, tokens, at)
         if problem is not None and problem.repair is not None and len(found) < _MOST_REWRITTEN:
             tokens[at + problem.repair.start : at + problem.repair.stop] = problem.repair.tokens
@@ -69,7 +69,9 @@ def _left_out(source: SourceFile, word: Token, after: Token, message: str, hint:
 
 
 def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | None:
-    """`todo "the lid"`, `todo: the lid`, `todo()`: what follows the word on its line is a remark."""
+    """Recognises `todo "the lid"`, `todo: the lid`, `todo()`: what follows the word on its line is a
+    remark.
+    """
     word, after = tokens[at], tokens[at + 1]
     before = tokens[at - 1].kind if at else ";"
     if before not in ("{", "}", ";") and not begins_line(source.text, word.start):
@@ -99,7 +101,7 @@ def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | Non
 
 
 def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int) -> Problem | None:
-    """`def f(x): return 2 * x`, `function f(x) { return 2 * x }`, `fn f(x) { 2 * x }`"""
+    """Recognises `def f(x): return 2 * x`, `function f(x) { return 2 * x }`, `fn f(x) { 2 * x }`."""
     close = closing(tokens, begin + 1)
     at = close + 1
     if close < 0 or tokens[at].kind not in (":", "{"):
@@ -133,7 +135,7 @@ def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int)
 
 
 def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | None:
-    """`x between 3 and 5`"""
+    """Recognises `x between 3 and 5`."""
     end, last = line_end(source.text, tokens[at].start), min(at + LONGEST, len(tokens) - 1)
     middle = next((n for n in range(at + 2, last) if tokens[n].kind == "and"), last)
     if middle == last or tokens[middle + 1].start > end or tokens[at - 1].kind not in _VALUE_ENDS:
@@ -156,7 +158,7 @@ _VALUE_ENDS = frozenset(["NAME", "NUMBER", ")", "]"])
 
 
 def _lambda(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | None:
-    """`let f = lambda x: 2 * x`"""
+    """Recognises `let f = lambda x: 2 * x`."""
     last = min(at + LONGEST, len(tokens))
     colon = next((n for n in range(at, last) if tokens[n].kind not in ("NAME", ",")), at)
     stop = statement_end(source, tokens, colon + 1)
@@ -169,7 +171,7 @@ def _lambda(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | N
 
 
 def arrow_function(t: Trouble) -> Problem | None:
-    """`let f = (x) => 2 * x`"""
+    """Recognises `let f = (x) => 2 * x`."""
     at = t.position if t.token.kind == "=" else t.position - 1
     if t.tokens[at].kind != "=" or t.tokens[at + 1].kind != ">" or t.tokens[at].end != t.tokens[at + 1].start:
         return None

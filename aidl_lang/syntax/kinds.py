@@ -14,5 +14,5 @@ KIND_OF_WORD: dict[str, str] = {word: kind for kind, words in _WORDS.items() for
 
 
 def kind_of(word: str) -> str | None:
-    """The kind a word means, without regard to case and underscores; None if it is no kind."""
+    """Returns the kind a word means, without regard to case and underscores; None if it is no kind."""
     return KIND_OF_WORD.get(word.lower().replace("_", ""))

@@ -1,7 +1,7 @@
-"""Lines of `constrain { }` that begin with a sign: where one begins a constraint of its own.
+"""Lines of `constrain { }` that begin with a sign, and the question if one begins a constraint of its own.
 
-Newlines mean nothing to the grammar, so `-` goes on with what is above. Where it touches what is behind it,
-and the line compares, people read it as the next constraint.
+Newlines mean nothing to the grammar, so `-` goes on with the line above. If it touches its operand, and the
+line compares, people read it as the next constraint.
 """
 
 from __future__ import annotations
@@ -14,12 +14,14 @@ from aidl_lang.syntax.words import STATEMENT_WORDS
 _COMPARING = frozenset({"==", "<=", ">=", "<", ">", "!=", "=", "in"})
 _ENDING = STATEMENT_WORDS | {END, ";", ",", "{", "}", "and", "or", "&&", "||", "else"}
 _FARTHEST = 500
-"""Tokens that are looked at: nobody writes longer sums by hand."""
+"""Tokens to look at: nobody writes longer sums by hand."""
 _OPERANDS = frozenset({"NAME", "NUMBER", "STRING"})
 
 
 def begins_with_sign(text: str, tokens: Sequence[Token], position: int) -> bool:
-    """Whether a token is a `-` that begins a line, touches its operand and stands before a comparison."""
+    """Tells whether a token is a `-` that begins a line, touches its operand and stands before a
+    comparison.
+    """
     if not _is_sign(text, tokens, position):
         return False
     depth, after_operand = 0, False

@@ -1,4 +1,6 @@
-"""What is missing, left over or in the wrong place: equals signs, values, names, blocks, statements."""
+"""Parts that are missing, left over or in the wrong place: equals signs, values, names, blocks,
+statements.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ _EXAMPLE_VALUE = {"param": "80", "var": "5", "let": "w / 2"}
 
 
 def equation_for_definition(t: Trouble) -> Problem | None:
-    """`let x == 3`"""
+    """Recognises `let x == 3`."""
     if t.token.kind != "==" or not t.accepts("="):
         return None
     return Problem(
@@ -32,7 +34,7 @@ def equation_for_definition(t: Trouble) -> Problem | None:
 
 
 def definition_for_equation(t: Trouble) -> Problem | None:
-    """`a.x = b.x` outside `constrain`, `assert a = b`"""
+    """Recognises `a.x = b.x` outside `constrain`, `assert a = b`."""
     if t.token.kind != "=" or not t.accepts("==", "NAME"):
         return None
     definition = t.first.kind not in STATEMENT_WORDS and not t.open
@@ -52,7 +54,7 @@ def definition_for_equation(t: Trouble) -> Problem | None:
 
 
 def colon_for_equals(t: Trouble) -> Problem | None:
-    """`param w: 80` and `param w: length = 80`"""
+    """Recognises `param w: 80` and `param w: length = 80`."""
     if t.token.kind != ":" or not t.accepts("="):
         return None
     after_next = t.tokens[min(t.position + 2, len(t.tokens) - 1)]
@@ -79,7 +81,7 @@ def colon_for_equals(t: Trouble) -> Problem | None:
 
 
 def missing_equals(t: Trouble) -> Problem | None:
-    """`param w 80`"""
+    """Recognises `param w 80`."""
     if t.first.kind not in ("param", "var", "let", "fn", "alias") or t.on_new_line:
         return None
     if t.token.kind not in VALUE_STARTS or not t.accepts("=", t.token.kind):
@@ -99,7 +101,7 @@ def missing_equals(t: Trouble) -> Problem | None:
 
 
 def missing_value(t: Trouble) -> Problem | None:
-    """A statement that ends before its value."""
+    """Recognises a statement that ends before its value."""
     if t.between or t.open or t.complete:
         return None
     first, before = t.first, t.before
@@ -127,7 +129,7 @@ def _lacking(t: Trouble, message: str) -> Problem:
 
 
 def choice_without_parentheses(t: Trouble) -> Problem | None:
-    """`a == if c then b else d`"""
+    """Recognises `a == if c then b else d`."""
     if t.token.kind != "if" or t.between or t.complete or not t.accepts("(", "if"):
         return None
     return Problem(
@@ -142,7 +144,7 @@ def choice_without_parentheses(t: Trouble) -> Problem | None:
 
 
 def typed_definition(t: Trouble) -> Problem | None:
-    """`circle rim = circle(…)`"""
+    """Recognises `circle rim = circle(…)`."""
     if len(t.statement) != 2 or t.token.kind != "=" or not t.accepts("{"):
         return None
     kind, name = t.statement
@@ -161,7 +163,7 @@ def typed_definition(t: Trouble) -> Problem | None:
 
 
 def import_without_path(t: Trouble) -> Problem | None:
-    """`import gears`"""
+    """Recognises `import gears`."""
     if t.first.kind != "import" or t.before is None or t.before.kind != "NAME" or not t.accepts("from"):
         return None
     name = t.before.text
@@ -177,7 +179,7 @@ def import_without_path(t: Trouble) -> Problem | None:
 
 
 def nameless_structure(t: Trouble) -> Problem | None:
-    """`hole { … }` and `solid "base" { … }`"""
+    """Recognises `hole { … }` and `solid "base" { … }`."""
     if len(t.statement) != 1 or t.first.kind != "NAME":
         return None
     word = t.first.text
@@ -220,7 +222,7 @@ def _fresh_name(t: Trouble, word: str) -> str:
 
 
 def missing_block(t: Trouble) -> Problem | None:
-    """A head without its `{`, or with Python's colon."""
+    """Recognises a head without its `{`, or with Python's colon."""
     if t.between or t.open or not t.accepts("{", "}") or t.token.kind in ("(", "="):
         return None
     colon = t.token.kind == ":"
@@ -258,7 +260,7 @@ def repeated_placement(t: Trouble) -> Problem | None:
 
 
 def out_of_place_in_constrain(t: Trouble) -> Problem | None:
-    """A statement inside `constrain { }` that is no constraint."""
+    """Recognises a statement inside `constrain { }` that is no constraint."""
     definition = len(t.statement) == 1 and kind_of(t.first.text) and t.token.kind in ("NAME", "CALL")
     if not t.in_constraints or not (definition or (t.between and t.token.kind in STATEMENT_WORDS | {"@"})):
         return None
@@ -290,7 +292,7 @@ def attribute_out_of_place(t: Trouble) -> Problem | None:
 
 
 def bare_value(t: Trouble) -> Problem | None:
-    """An expression as a statement that neither constrains nor does anything."""
+    """Recognises an expression as a statement that neither constrains nor does anything."""
     if (
         t.between
         or t.open

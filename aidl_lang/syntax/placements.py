@@ -1,4 +1,4 @@
-"""Placements where none can stand: in lists and in arguments."""
+"""Placements in lists and arguments, where none can stand."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _OPENING, _CLOSING = ("CALL", "(", "[", "{"), (")", "]", "}")
 
 
 def placement_in_expression(t: Trouble) -> Problem | None:
-    """`[rib(h: 6) at (8, 8), …]`, `mirror(rib() at (8, 8), …)`"""
+    """Recognises `[rib(h: 6) at (8, 8), …]`, `mirror(rib() at (8, 8), …)`."""
     if t.token.kind not in ("at", "rotated") or not t.open or t.before is None or t.before.kind != ")":
         return None
     opening = t.tokens.index(t.open[-1], t.begin)
@@ -40,7 +40,9 @@ def placement_in_expression(t: Trouble) -> Problem | None:
 
 
 def _as_members(t: Trouble, opening: int, close: int) -> tuple[Fix, Repair] | None:
-    """`ribs = [a() at p, b()]` as `ribs[0] = a() at p` and `ribs[1] = b()`."""
+    """Returns the fix and repair that write `ribs = [a() at p, b()]` as `ribs[0] = a() at p` and `ribs[1] =
+    b()`.
+    """
     name, after = t.first, t.tokens[close + 1]
     is_list = [token.kind for token in t.tokens[t.begin : opening + 1]] == ["NAME", "=", "["]
     is_last = after.kind in ("}", ";", END) or begins_line(t.source.text, after.start)
@@ -68,7 +70,7 @@ def _as_members(t: Trouble, opening: int, close: int) -> tuple[Fix, Repair] | No
 
 
 def _item_end(tokens: Sequence[Token], start: int, close: int) -> int:
-    """The number of the `,` or `for` behind an item, or of the bracket that closes the list."""
+    """Returns the number of the `,` or `for` behind an item, or of the bracket that closes the list."""
     depth = 0
     for n in range(start, close):
         if depth == 0 and tokens[n].kind in (",", "for"):
@@ -78,7 +80,7 @@ def _item_end(tokens: Sequence[Token], start: int, close: int) -> int:
 
 
 def _call_start(tokens: Sequence[Token], close: int) -> int:
-    """The number of the token that opened the bracket closed at one."""
+    """Returns the number of the token that opens the bracket closed at `close`."""
     depth = 0
     for n in range(close, -1, -1):
         depth += (tokens[n].kind in _CLOSING) - (tokens[n].kind in _OPENING)

@@ -20,7 +20,9 @@ _NUMBERS = {kind: number for number, kind in enumerate(_CLASSES)}
 
 
 def encoded(value: object) -> object:
-    """A tree as data, without the text it was parsed from. Raises TypeError for what is no part of a tree."""
+    """Returns a tree as data, without the text it was parsed from. Raises TypeError for a value that no tree
+    has.
+    """
     if isinstance(value, ast.Node):
         names: tuple[str, ...] = value.__match_args__  # every field but the span
         fields = [encoded(getattr(value, name)) for name in names]
@@ -33,7 +35,7 @@ def encoded(value: object) -> object:
 
 
 def decoded(data: Any, source: SourceFile) -> Any:
-    """The tree that `encoded` made into data, in the text it was parsed from."""
+    """Returns the tree that `encoded` made into data, in the text it was parsed from."""
     if type(data) is not list:
         return data
     number = data[0]

@@ -36,12 +36,14 @@ def format_module(
     stated: Collection[ast.Node] = (),
     declaring: Collection[ast.Node] = (),
 ) -> str:
-    """The text of a program in canonical form.
+    """Returns the text of a program in canonical form.
 
-    `stated` are calls known to state a constraint, which get the keyword where they stand alone, `declaring`
-    equations that mean nothing as such and stay as they are.
-    `names` maps nodes (names, identifiers of members and callees) to the spelling to print in their place.
-    What could not be parsed is not in the tree: do not write the text back over a program with syntax errors.
+    stated     calls known to state a constraint, which get the keyword if they stand alone
+    declaring  equations that mean nothing as such and stay as they are
+    names      the spelling to print for nodes (names, identifiers of members and callees)
+
+    Parts that could not be parsed are not in the tree: do not write the text back over a program with syntax
+    errors.
     """
     module = parsed if isinstance(parsed, ast.Module) else parsed.module
     printer = _Printer(module, names, stated, declaring)
@@ -50,7 +52,7 @@ def format_module(
 
 
 def format_statement(statement: ast.Statement, names: Mapping[ast.Node, str] | None = None) -> str:
-    """The text of one statement, without comments."""
+    """Returns the text of one statement, without comments."""
     module = ast.Module(statement.span.source, (statement,), (), span=statement.span)
     return format_module(module, names).rstrip("\n")
 
@@ -80,7 +82,7 @@ class _Printer:
         self.expressions = ExpressionPrinter(names)
 
     def text(self) -> str:
-        """All lines, the trailing comments of neighbouring lines in one column."""
+        """Returns all lines, the trailing comments of neighbouring lines in one column."""
         out: list[str] = []
         run: list[_Line] = []
         for line in [*self.lines, _Line("")]:
@@ -99,7 +101,7 @@ class _Printer:
     def statements(
         self, statements: Sequence[ast.Statement], start: int, end: int, indent: int, constraints: bool
     ) -> None:
-        """The statements and comments of the range `start:end`, each on its own lines."""
+        """Prints the statements and comments of the range `start:end`, each on its own lines."""
         place, first = start, True
         for statement in statements:
             place, first = self._comments_before(statement.span.start, place, indent, first)
@@ -112,7 +114,7 @@ class _Printer:
         self._comments_before(end, place, indent, first)
 
     def _comments_before(self, offset: int, place: int, indent: int, first: bool) -> tuple[int, bool]:
-        """Print the comments up to an offset on lines of their own."""
+        """Prints the comments up to an offset on lines of their own."""
         while (comment := self._peek(offset)) is not None:
             self._blank_line(place, comment.span.start, first)
             first = False
@@ -122,7 +124,7 @@ class _Printer:
         return place, first
 
     def _peek(self, before: int) -> ast.Comment | None:
-        """The next comment, if it begins before an offset."""
+        """Returns the next comment, if it begins before an offset."""
         if self.next_comment < len(self.comments) and self.comments[self.next_comment].span.start < before:
             return self.comments[self.next_comment]
         return None
@@ -132,7 +134,7 @@ class _Printer:
             self.lines.append(_Line(""))
 
     def _comments_inside(self, statement: ast.Statement, indent: int, mark: int) -> None:
-        """Comments in the middle of a statement move in front of it."""
+        """Moves comments in the middle of a statement in front of it."""
         moved = []
         while (comment := self._peek(statement.span.end)) is not None:
             moved.append(_Line(" " * indent + comment.text.rstrip()))
@@ -140,7 +142,9 @@ class _Printer:
         self.lines[mark:mark] = moved
 
     def _trailing_comment(self, place: int) -> int:
-        """Put the comment that follows on the same line behind the last line; where reading goes on."""
+        """Puts a comment that follows on the same line behind the last line. Returns the offset to go on
+        from.
+        """
         comment = self._peek(len(self.source) + 1)
         if comment is None or comment.span.start < place or "\n" in comment.text:
             return place
@@ -181,13 +185,13 @@ class _Printer:
         self.lines += [_Line(line) for line in (" " * indent + text).split("\n")]
 
     def _long_assert(self, node: ast.Assert, message: ast.Expression, indent: int) -> None:
-        """The reason on a line of its own, before the test is broken up."""
+        """Prints an assert with its reason on a line of its own, which saves breaking up the test."""
         test = doc("assert ", self.expressions.expression(node.test, OR), ",")
         self._leaf(test, indent)
         self._leaf(self.expressions.expression(message, OR), indent + INDENT)
 
     def _long_function(self, node: ast.FunctionDefinition, document: Doc, indent: int) -> None:
-        """The value on a line of its own if that is enough."""
+        """Prints a function with its value on a line of its own if that is enough."""
         head = doc("fn ", self._parameters(node.name, node.parameters), " =")
         value = self.expressions.expression(node.value)
         if indent + head.width <= WIDTH and indent + INDENT + value.width <= WIDTH:
@@ -197,7 +201,7 @@ class _Printer:
             self._leaf(document, indent)
 
     def _long(self, node: ast.Statement, indent: int, constraints: bool) -> None:
-        """A statement whose blocks stand on lines of their own."""
+        """Prints a statement whose blocks stand on lines of their own."""
         head = render(doc(self._head(node, constraints), " {"), indent)
         self.lines += [_Line(line) for line in (" " * indent + head).split("\n")]
         block, *others = self._blocks(node)
@@ -220,7 +224,7 @@ class _Printer:
         self.lines += [_Line(line) for line in (" " * indent + text).split("\n")]
 
     def _block(self, block: ast.Block, indent: int, constraints: bool) -> None:
-        """What stands between the braces."""
+        """Prints the inside of the braces."""
         start, end = block.span.start + 1, max(block.span.end - 1, block.span.start + 1)
         # Comments of the head stand before its brace in the text; they move into the block.
         place = self._trailing_comment(start) if self._first_line_comment(start, end) else start
@@ -231,7 +235,9 @@ class _Printer:
         return comment is not None and comment.span.start >= start
 
     def _one_line(self, node: ast.Statement, constraints: bool) -> str | None:
-        """The statement on one line, if its blocks were written so; attributes aside."""
+        """Returns the statement on one line, without attributes; None if its blocks were not written on
+        one.
+        """
         for block in self._blocks(node):
             if "\n" in block.span.text or self._has_comment(node.span.start, block.span.end):
                 return None
@@ -262,7 +268,7 @@ class _Printer:
         return "{ " + "; ".join(parts) + " }" if parts else "{}"
 
     def _blocks(self, node: ast.Statement) -> list[ast.Block]:
-        """The blocks of a statement, in order."""
+        """Returns the blocks of a statement, in order."""
         match node:
             case ast.Structure() | ast.For() | ast.ShapeDefinition() | ast.ConstraintDefinition():
                 return [node.body]
@@ -355,7 +361,7 @@ class _Printer:
         return self.expressions.arguments(name + "(", node.arguments) if node.arguments else doc(name)
 
     def _constrain(self, node: ast.Constrain) -> Doc:
-        """`constrain` with its one item."""
+        """Returns `constrain` with its one item."""
         item = node.items.statements[0]
         if isinstance(item, ast.Equation):
             return doc("constrain ", self._equation(item))

@@ -1,4 +1,4 @@
-"""Characters, signs and words that are written otherwise here: units, quotes, operators, reserved words."""
+"""Characters, signs and words of other spelling: units, quotes, operators, reserved words."""
 
 from __future__ import annotations
 
@@ -119,12 +119,12 @@ def foreign_character(t: Trouble) -> Problem | None:
     hints = (words,) if words else ()
     repair: Repair | None = Repair(t.position, t.position + 1, stand_in)
     if not stand_in and t.complete and t.following.kind != END:
-        repair = None  # it stood for something, and what follows makes no sense without
+        repair = None  # the rest makes no sense without the character
     return Problem(Diagnostic("E0108", message, t.span(), hints=hints, fix=fix), repair)
 
 
 def _curly_quote(t: Trouble) -> Problem:
-    """Text in typographic quotes: the fix makes both of them straight."""
+    """Recognises a text in typographic quotes: the fix makes both of them straight."""
     quote = "'" if t.token.text in SINGLE_QUOTES else '"'
     line_end = t.source.text.find("\n", t.token.start)
     line_end = len(t.source.text) if line_end < 0 else line_end
@@ -150,7 +150,7 @@ def _curly_quote(t: Trouble) -> Problem:
 
 
 def spaced_unit(t: Trouble) -> Problem | None:
-    """`5 mm`: found at the unit itself, or behind it where a name may stand after a number."""
+    """Recognises `5 mm`: found at the unit itself, or behind it where a name may stand after a number."""
     for at in (t.position, t.position - 1):
         token, number = t.tokens[at], t.tokens[at - 1]
         if at < 1 or token.kind != "NAME" or token.text not in UNITS or number.kind != "NUMBER":
@@ -190,7 +190,7 @@ _SPELLINGS = {
 
 
 def operator_spelling(t: Trouble) -> Problem | None:
-    """`=>`, `===`, `:=` and the like, whose first half may well have been taken already."""
+    """Recognises `=>`, `===`, `:=` and the like, whose first half may have been taken already."""
     for at in (t.position, t.position - 1):
         one, two = t.tokens[at], t.tokens[min(at + 1, len(t.tokens) - 1)]
         if at < 0 or one.end != two.start or (right := _SPELLINGS.get((one.kind, two.kind))) is None:
@@ -230,7 +230,7 @@ def operator_spelling(t: Trouble) -> Problem | None:
 
 
 def foreign_statement(t: Trouble) -> Problem | None:
-    """A statement that begins with a word of another language, as `def` or `const`."""
+    """Recognises a statement that begins with a word of another language, as `def` or `const`."""
     first = t.first
     word = first.text.rstrip("(")
     if first.kind not in ("NAME", "CALL") or (entry := FOREIGN_WORDS.get(word.lower())) is None:
@@ -242,7 +242,7 @@ def foreign_statement(t: Trouble) -> Problem | None:
     fix = repair = None
     following = [token.kind for token in t.tokens[t.begin + 1 : t.begin + 4]]
     if right == "let" and following == ["NAME", "=", "CALL"] and not t.in_constraints:
-        # What is made by a call is drawn if it is defined without `let`.
+        # Geometry made by a call is drawn if it is defined without `let`.
         rest = Span(t.source, first.start, t.tokens[t.begin + 1].start)
         name = t.tokens[t.begin + 1].text
         return Problem(
@@ -264,19 +264,21 @@ def foreign_statement(t: Trouble) -> Problem | None:
 
 
 def _would_take(t: Trouble, stand_in: Sequence[Token]) -> bool:
-    """Whether the statement could be read up to the trouble and with it, its first word exchanged."""
+    """Tells whether the statement could be read up to and with the trouble if its first word were
+    exchanged.
+    """
     rest = [*stand_in, *t.tokens[t.begin + 1 : t.position + 1]]
     return t.automaton.accepts((token.kind for token in rest), from_statement=True)
 
 
 def reserved_word(t: Trouble) -> Problem | None:
-    """A word that begins statements, used as a name or called."""
+    """Recognises a word that begins statements, used as a name or called."""
     tables = t.automaton.tables
     token, at = t.token, t.position
     before = t.before
     alone = len(t.statement) == 1 and before is not None and before.kind in tables.reserved
     if alone and before is not None and token.kind in ("=", ".", "[", "==", "<=", ">=", ":"):
-        # `shape = circle(…)`: the word was taken for what it is, and the trouble is what follows.
+        # `shape = circle(…)`: the word was taken as reserved, and the trouble is the token behind it.
         token, at = before, t.position - 1
     if token.kind not in tables.reserved or (at == t.position and not _used_as_name(t)):
         return None
@@ -317,7 +319,7 @@ def reserved_word(t: Trouble) -> Problem | None:
 
 
 def _used_as_name(t: Trouble) -> bool:
-    """Whether what follows a reserved word shows that it is meant as a name."""
+    """Tells whether the tokens behind a reserved word show that it is meant as a name."""
     after = t.following.kind
     if t.between:
         return after in ("=", ".", "[", "==", "<=", ">=") and t.token.kind != "else"

@@ -59,27 +59,27 @@ class Tables:
 
 @cache
 def load_tables() -> Tables:
-    """The tables of the grammar of this installation, or of this checkout as it stands."""
+    """Returns the tables of the grammar of this installation, or of this checkout as it stands."""
     return decoded(derived(DERIVED, _inputs, built))
 
 
 def built() -> bytes:
-    """The tables as data. Raises lark's GrammarError where the grammar cannot be read."""
+    """Returns the tables as data. Raises lark's GrammarError if the grammar cannot be read."""
     from aidl_lang.syntax.construction import build_tables
 
     return encoded(build_tables(resource("grammar/aidl.lark").read_text(encoding="utf-8")))
 
 
 def _inputs() -> Iterator[Path]:
-    """What the tables look like is decided in these."""
+    """Yields the files that the tables depend on."""
     here = Path(__file__).parent
     yield from (here / name for name in ("tables.py", "construction.py"))
     yield resource("grammar/aidl.lark")
 
 
 def encoded(tables: Tables) -> bytes:
-    """The tables as JSON. A state has its reductions by the sets of symbols they are made before: there are
-    few such sets, and they are most of an automaton.
+    """Returns the tables as JSON. A state groups its reductions by the sets of symbols before which they are
+    made: there are few such sets, and they are most of an automaton.
     """
     sets: dict[tuple[str, ...], int] = {}
     states: list[list[object]] = []
@@ -110,7 +110,7 @@ def encoded(tables: Tables) -> bytes:
 
 
 def decoded(text: bytes) -> Tables:
-    """The tables that `encoded` made into JSON."""
+    """Returns the tables that `encoded` turned into JSON."""
     data = json.loads(text)
     sets: list[list[str]] = data["sets"]
     actions: list[dict[str, int]] = []

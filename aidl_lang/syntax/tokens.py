@@ -1,7 +1,7 @@
 """Text to tokens, by the terminals of the grammar.
 
-Newlines and indentation are no tokens. What belongs to no token becomes one of kind UNKNOWN, which the parser
-cannot accept and so reports.
+Newlines and indentation are no tokens. Characters outside any token become one of kind UNKNOWN, which the
+parser cannot accept and so reports.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ UNKNOWN = "?"
 
 
 class Token(NamedTuple):
-    """`kind` is the text itself for words and signs of the grammar, else the terminal's name."""
+    """A token; `kind` is the text itself for words and signs of the grammar, else the terminal's name."""
 
     kind: str
     text: str
@@ -31,7 +31,7 @@ class Token(NamedTuple):
 
 @record(frozen=False)
 class Tokens:
-    """What a text consists of.
+    """The tokens of a text.
 
     `tokens` ends with one of kind END; `docs` holds `///` texts by the offset of the token they stand before;
     `spaced_calls` are the calls whose `(` does not touch the name, which is understood and reported.
@@ -44,7 +44,7 @@ class Tokens:
 
 
 def tokenize(source: SourceFile, start: int = 0, end: int | None = None) -> Tokens:
-    """The tokens of a text or a part of it. Never fails: see UNKNOWN."""
+    """Returns the tokens of a text or a part of it. Never fails: see UNKNOWN."""
     text, tables = source.text, load_tables()
     match, words, soft = _scanner().match, tables.reserved | tables.soft_words, tables.soft_words
     result = Tokens()
@@ -54,7 +54,7 @@ def tokenize(source: SourceFile, start: int = 0, end: int | None = None) -> Toke
     while position < length and (found := match(text, position, length)) is not None:
         kind = found.lastgroup
         if kind is None:
-            position = found.end()  # of the blanks
+            position = found.end()  # the end of the blanks
             if position == length:
                 break
             token = _unknown(text, position, length)
@@ -84,7 +84,7 @@ def tokenize(source: SourceFile, start: int = 0, end: int | None = None) -> Toke
 
 
 def is_open_comment(token: Token) -> bool:
-    """Whether a token is a comment that is not closed: it takes in the rest of the text."""
+    """Tells whether a token is a comment that is not closed, which takes in the rest of the text."""
     return token.kind == UNKNOWN and token.text.startswith("/*")
 
 
@@ -95,7 +95,9 @@ def _take_comment(source: SourceFile, start: int, text: str, comments: list[Comm
 
 
 def _call_or_name(text: str, name: Token, length: int, result: Tokens) -> Token:
-    """The grammar's CALL, read as what it is: a name that is not reserved, and the `(` that touches it."""
+    """Returns the grammar's CALL: a name that is not reserved, with the `(` that touches it; else the
+    name.
+    """
     if text.startswith("(", name.end):
         return Token("CALL", name.text + "(", name.start, name.end + 1)
     if name.kind == "NAME" and (spaced := _BLANKS_AND_PARENTHESIS.match(text, name.end, length)):
@@ -106,7 +108,7 @@ def _call_or_name(text: str, name: Token, length: int, result: Tokens) -> Token:
 
 
 def _touching(tokens: list[Token], token: Token) -> Token:
-    """What a token is that touches a number or `..`: letters behind a number are meant as a unit."""
+    """Splits a token that touches a number or `..`: letters behind a number are meant as a unit."""
     before = tokens[-1]
     if before.kind == "NUMBER" and token.kind in ("NAME", "CALL", "NUMBER"):
         digits = before.text.rstrip(_LETTERS) if token.kind != "NUMBER" else before.text
@@ -119,7 +121,7 @@ def _touching(tokens: list[Token], token: Token) -> Token:
 
 
 def begins_line(text: str, offset: int) -> bool:
-    """Whether only white space stands before an offset on its line."""
+    """Tells whether only white space stands before an offset on its line."""
     return not text[text.rfind("\n", 0, offset) + 1 : offset].strip()
 
 
@@ -129,7 +131,7 @@ _BLANKS_AND_PARENTHESIS = re.compile(r"[ \t]+\(")
 
 @cache
 def _scanner() -> re.Pattern[str]:
-    """Blanks, and the comment or token behind them if one begins there."""
+    """Returns the pattern for blanks, and the comment or token behind them if one begins there."""
     tables = load_tables()
     patterns = tables.patterns
     signs = sorted((s for s in tables.literals if not s.isidentifier()), key=lambda s: (-len(s), s))
@@ -146,7 +148,7 @@ def _scanner() -> re.Pattern[str]:
 
 
 def _unknown(text: str, start: int, length: int) -> Token:
-    """What begins no token: an open string, up to the end of its line, or one character."""
+    """Returns characters that begin no token: an open string, up to the end of its line, or one character."""
     end = start + 1
     if text[start] in "\"'":
         end = text.find("\n", start, length)

@@ -1,7 +1,7 @@
-"""From rules of the grammar to nodes: the parser calls the method of `Builder` that bears the rule's name.
+"""The builder of nodes: for each rule of the grammar, the parser calls the method of `Builder` with its name.
 
-Every method takes the range of the rule in the text and the values of its symbols. What the grammar cannot
-say (a second `at`, an unknown kind) is said here, as a diagnostic beside a node that keeps what was meant.
+Every method takes the range of the rule in the text and the values of its symbols. It reports mistakes that
+the grammar cannot exclude (a second `at`, an unknown kind), beside a node that keeps what was meant.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class ThenIf:
 
 
 class Builder(ExpressionBuilder):
-    """Makes the nodes of one file; see the module."""
+    """The nodes of one file in the making; see the module."""
 
     # --- Files and blocks ---
 
@@ -81,7 +81,7 @@ class Builder(ExpressionBuilder):
         )
 
     def _unknown_kind(self, word: ast.Identifier) -> str:
-        """Report a word that is no kind; the nearest one is assumed."""
+        """Reports a word that is no kind. Returns the nearest kind, which is assumed."""
         if foreign := FOREIGN_WORDS.get(word.text.lower()):
             fix = Fix(f"write `{foreign[1]}`", (Edit(word.span, foreign[1]),)) if foreign[1] else None
             self.diagnostics.append(
@@ -162,7 +162,7 @@ class Builder(ExpressionBuilder):
     def _ending_in(
         self, start: int, end: int, value: ast.Expression | ThenIf, make: Callable[[Any, Span], ast.Statement]
     ) -> ast.Statement | list[ast.Statement]:
-        """The statement that ends in `value`, and the `if` after it if there is one."""
+        """Builds the statement that ends in `value`, and the `if` after it if there is one."""
         if isinstance(value, ThenIf):
             return [make(value.value, self.span(start, value.value.span.end)), value.following]
         return make(value, self.span(start, end))
@@ -255,7 +255,7 @@ class Builder(ExpressionBuilder):
         )
 
     def item_constrain(self, start: int, end: int, value: Any) -> Any:
-        """`constrain` inside `constrain` adds nothing: its items stand for themselves."""
+        """Returns the items of a `constrain` inside `constrain`, which adds nothing."""
         made = self.constrain(start, end, value)
         statements: list[ast.Statement] = []
         for statement in made if isinstance(made, list) else [made]:
@@ -293,7 +293,7 @@ class Builder(ExpressionBuilder):
         iterable: ast.Expression,
         *rest: Any,
     ) -> ast.For:
-        """`for x in a, y in b { … }` is one loop in another."""
+        """Builds `for x in a, y in b { … }` as one loop in another."""
         span, body = self.span(start, end), rest[-1]
         if len(rest) > 1:
             inner = self.for_(start, end, *rest)
@@ -322,7 +322,7 @@ class Builder(ExpressionBuilder):
         then: ast.Block,
         otherwise: ast.Block | ast.If | None = None,
     ) -> ThenIf:
-        """An expression, and the `if` statement that begins with `word`."""
+        """Builds an expression, and the `if` statement that begins with `word`."""
         return ThenIf(value, self.if_(word.start, end, test, then, otherwise))
 
     def conditional(
@@ -340,12 +340,12 @@ class Builder(ExpressionBuilder):
 
 
 def action(name: str) -> Callable[..., Any]:
-    """The method for a rule; a trailing underscore keeps clear of Python's own words."""
+    """Returns the method for a rule; a trailing underscore keeps clear of Python's own words."""
     return cast(Callable[..., Any], getattr(Builder, name + "_" if iskeyword(name) else name))
 
 
 def _split(parts: tuple[Any, ...]) -> tuple[tuple[ast.Attribute, ...], list[Any]]:
-    """The leading attributes and what follows them."""
+    """Returns the leading attributes and what follows them."""
     return (
         tuple(p for p in parts if isinstance(p, ast.Attribute)),
         [p for p in parts if not isinstance(p, ast.Attribute)],

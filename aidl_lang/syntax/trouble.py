@@ -1,4 +1,4 @@
-"""The place where the parser cannot go on, and what it is told about it."""
+"""The place where the parser cannot go on, with questions about it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from aidl_lang.syntax.words import STATEMENT_WORDS
 
 @record()
 class Repair:
-    """Read on with the tokens `start:stop` exchanged for others."""
+    """Tokens that replace those at `start:stop`, to read on with."""
 
     start: int
     stop: int
@@ -24,7 +24,9 @@ class Repair:
 
 @record()
 class Problem:
-    """`with_block`: where there is no repair, the block of the statement is left out as well."""
+    """A diagnostic and its repair. `with_block`: if there is no repair, the block of the statement is left
+    out as well.
+    """
 
     diagnostic: Diagnostic
     repair: Repair | None = None
@@ -33,7 +35,9 @@ class Problem:
 
 @record()
 class Trouble:
-    """Token number `position` cannot stand where the automaton is; `begin` is the first of its statement."""
+    """The token number `position`, which cannot stand in the automaton's state; `begin` is the first of its
+    statement.
+    """
 
     source: SourceFile
     tokens: list[Token]
@@ -73,7 +77,7 @@ class Trouble:
 
     @cached_property
     def complete(self) -> bool:
-        """Whether the statement could end here."""
+        """True if the statement could end here."""
         return self.accepts(";")
 
     @property
@@ -83,12 +87,12 @@ class Trouble:
 
     @property
     def touches(self) -> bool:
-        """Whether the token touches the one before it."""
+        """True if the token touches the one before it."""
         return self.before is not None and self.before.end == self.token.start
 
     @property
     def in_constraints(self) -> bool:
-        """Whether the innermost block is one of constraints."""
+        """True if the innermost block is one of constraints."""
         states = self.automaton.states
         inner = next(s for s in reversed(states) if s in self.automaton.tables.statement_states)
         return self.automaton.tables.actions[inner].get(",", -1) >= 0
@@ -101,7 +105,7 @@ class Trouble:
         return Span(self.source, token.start, (to or token).end)
 
     def gap(self) -> Span:
-        """The empty place behind the last token taken, where something is missing."""
+        """Returns the empty place behind the last token taken, where something is missing."""
         end = self.before.end if self.before else 0
         return Span(self.source, end, end)
 
@@ -113,7 +117,7 @@ class Trouble:
         return len(line := self.source.line(self.source.position(offset)[0])) - len(line.lstrip())
 
     def begins_statement(self) -> bool:
-        """Whether the token, on a line of its own, looks like the start of another statement."""
+        """Tells whether the token, on a line of its own, looks like the start of another statement."""
         if self.token.kind in ("}", END):
             return True
         if not self.on_new_line:
@@ -124,7 +128,7 @@ class Trouble:
 
 
 def replaced(title: str, span: Span, text: str, *, is_sure: bool = True) -> Fix:
-    """The fix that puts a text in the place of another; where nothing else can have been meant it is sure."""
+    """Returns the fix that replaces a text; `is_sure` if nothing else can have been meant."""
     return Fix(title, (Edit(span, text),), is_sure)
 
 
@@ -133,13 +137,15 @@ LONGEST = 500
 
 
 def line_end(text: str, offset: int) -> int:
-    """The offset at which the line of another ends."""
+    """Returns the offset at which the line around an offset ends."""
     end = text.find("\n", offset)
     return len(text) if end < 0 else end
 
 
 def statement_end(source: SourceFile, tokens: Sequence[Token], begin: int) -> int:
-    """The number of the token behind a statement that goes from one to the end of its line at most."""
+    """Returns the number of the token behind the statement at `begin`, which ends with its line at the
+    latest.
+    """
     stop = min(begin, len(tokens) - 1)
     end = line_end(source.text, tokens[stop].start)
     last = min(begin + LONGEST, len(tokens) - 1)
@@ -149,7 +155,7 @@ def statement_end(source: SourceFile, tokens: Sequence[Token], begin: int) -> in
 
 
 def closing(tokens: Sequence[Token], opening: int) -> int:
-    """The number of the bracket that closes one; -1 if none does within a reasonable number of tokens."""
+    """Returns the number of the bracket that closes one; -1 if it is missing, or beyond LONGEST tokens."""
     depth = 0
     for n in range(opening, min(len(tokens), opening + LONGEST)):
         depth += (tokens[n].kind in ("CALL", "(", "[", "{")) - (tokens[n].kind in (")", "]", "}"))

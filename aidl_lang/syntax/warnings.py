@@ -1,4 +1,4 @@
-"""What reads well and yet may not be what was meant."""
+"""Warnings on programs that parse and yet may mean something else."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class _Parsed(Protocol):
 def lines_joined_by_minus(
     module: ast.Module, tokens: Sequence[Token], read: Callable[[SourceFile], _Parsed]
 ) -> list[Diagnostic]:
-    """W0101 for each line that begins with `-` where it and what stands above read as whole statements."""
+    """Returns W0101 for each line that begins with `-` if it and the lines above read as whole statements."""
     source, text = module.source, module.source.text
     places = [
         t.start for t in tokens if t.kind == "-" and begins_line(text, t.start) and text[: t.start].strip()
@@ -44,7 +44,7 @@ def lines_joined_by_minus(
 
 
 def _leaves(statements: Sequence[ast.Statement]) -> list[ast.Node]:
-    """The statements that hold no others, wherever they stand."""
+    """Returns the statements that hold no others, at any depth."""
     leaves: list[ast.Node] = []
     stack: list[ast.Node] = list(statements)
     while stack:
@@ -63,7 +63,7 @@ def _whole(text: str, read: Callable[[SourceFile], _Parsed]) -> bool:
 
 
 def _says_something(text: str, read: Callable[[SourceFile], _Parsed]) -> bool:
-    """Whether an expression would constrain anything by itself."""
+    """Tells whether an expression would constrain anything by itself."""
     parsed = read(SourceFile("", f"constrain {text}\n"))
     if parsed.diagnostics or len(parsed.module.statements) != 1:
         return False

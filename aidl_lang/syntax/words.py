@@ -1,4 +1,4 @@
-"""Words and signs that are written by habit, and what they are here; how tokens are named in messages."""
+"""Words and signs written by habit, and their counterparts here; names of tokens in messages."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ VALUE_STARTS = frozenset(
     ["NAME", "NUMBER", "STRING", "CALL", "(", "[", "true", "false", "True", "False", "if", "not"]
 )
 
-# A sign of other languages or of typography, the sign it stands for here, and a word about it.
+# A sign of other languages or of typography, its counterpart here, and a word about it.
 SIGNS: dict[str, tuple[str | None, str]] = {
     "≤": ("<=", ""), "≥": (">=", ""), "≠": ("!=", ""), "×": ("*", ""), "·": ("*", ""), "÷": ("/", ""),
     "−": ("-", ""), "–": ("-", ""), "—": ("-", ""), "…": ("..", "`a..b` includes both ends"),
@@ -57,7 +57,7 @@ SIGNS: dict[str, tuple[str | None, str]] = {
     "π": (None, "write `pi`"), "`": (None, ""), "\\": (None, "statements go on below without a sign"),
 }  # fmt: skip
 
-# A word that begins statements elsewhere: what is done here instead, and the word to put in its place if any.
+# A word that begins statements elsewhere: advice, and the word to put in its place if any.
 FOREIGN_WORDS: dict[str, tuple[str, str | None]] = {
     "def": ("functions are defined as `fn f(x) = 2 * x`", "fn"),
     "function": ("functions are defined as `fn f(x) = 2 * x`", "fn"),
@@ -89,7 +89,7 @@ FOREIGN_WORDS: dict[str, tuple[str, str | None]] = {
     "end": ("a block ends with `}`", None),
 }  # fmt: skip
 TWO_WAYS = frozenset({"require", "ensure"})
-"""Those of the words above that may mean another one, too."""
+"""Words above that may also be meant otherwise."""
 
 _EXAMPLES = {
     "param": "`param` declares a parameter: `param w = 80`",
@@ -118,12 +118,12 @@ _EXAMPLES = {
 
 
 def example(word: str) -> str:
-    """What a word of the language is for."""
+    """Returns the use of a word of the language, with an example."""
     return _EXAMPLES.get(word, "")
 
 
 def describe(token: Token) -> str:
-    """A token as it is spoken of."""
+    """Returns the name of a token in a message."""
     if token.kind == END:
         return "the end of the file"
     if token.kind == "CALL":

@@ -20,17 +20,17 @@ from aidl_lang.common.render.text import escape
 from aidl_lang.common.source import Span
 
 _MOST = 12
-"""Diagnostics that are told at length; of the others it is said how many there are."""
+"""Diagnostics that are written in full; the others are counted."""
 _ALIKE = 3
-"""Diagnostics of one code that are told at length: the rest are mended alike."""
+"""Diagnostics of one code that are written in full: the rest are mended alike."""
 _LONGEST = 200
 """Characters of a line that are shown."""
 
 
 def compact(diagnostics: Sequence[Diagnostic]) -> str:
-    """The diagnostics in their order, errors first, with an empty line between two; empty for none.
+    """Returns the diagnostics in their order, errors first, with an empty line between two; empty for none.
 
-    Places are lines of the file that most of them are about; others are told by name.
+    Places are lines of the file that most of them are about; other files are named.
     """
     ranked = sorted(diagnostics, key=lambda d: "EWN".index(d.code[0]))
     shown: list[Diagnostic] = []
@@ -72,7 +72,7 @@ def _remark(label: Label, main: str) -> str:
 
 
 def _fix(fix: Fix, main: str) -> Iterator[str]:
-    """The lines as they read afterwards; those in between that stay are not repeated."""
+    """Yields the lines as the fix leaves them, without unchanged ones in between."""
     lead = f"  fix ({_one_line(fix.title)}): "
     for hunk in hunks(fix):
         file = "" if hunk.source.name == main else f"{escape(hunk.source.name)} "

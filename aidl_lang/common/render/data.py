@@ -9,7 +9,7 @@ from aidl_lang.common.source import Span
 
 
 def to_dict(diagnostic: Diagnostic) -> dict[str, Any]:
-    """Every field of a diagnostic; `file` and the places are None where it has no place."""
+    """Returns every field of a diagnostic; `file` and the places are None for one without a place."""
     return {
         "code": diagnostic.code,
         "severity": str(diagnostic.severity),

@@ -1,8 +1,8 @@
-"""The lines of a source that labels speak of, with the labels drawn under them.
+"""The lines of a source that have labels, with the labels drawn under them.
 
-Labels within one line get carets (`^`, or `-` for a secondary one); the rightmost carries its text beside
-the carets, the others hang below it. A label over several lines is a bar at the left from its first line to
-its last.
+Labels within one line get carets (`^`, or `-` for a secondary one); the rightmost carries its text beside the
+carets, the others hang below it. A label over several lines is a bar at the left from its first line to its
+last.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Mark:
 
 
 def mark(label: Label, primary: bool) -> Mark:
-    """Where a label lies; one that ends with a line break ends on the line it breaks."""
+    """Returns the place of a label in lines; one that ends with a line break ends on the line it breaks."""
     source = label.span.source
     first, start = source.position(label.span.start)
     last, end = source.position(label.span.end)
@@ -81,7 +81,7 @@ class Excerpt:
     width: int
 
     def rows(self) -> Iterator[tuple[int | None, str]]:
-        """Rows with the line number of those that show source, None for those that annotate."""
+        """Yields rows with the line number of those that show source, None for annotations."""
         long = [m for m in self.marks if m.is_multiline]
         bars = Bars(tuple(sorted(long, key=lambda m: (m.first, -m.last))))
         previous = None
@@ -139,7 +139,7 @@ class Bars:
         return 2 * len(self.marks)
 
     def row(self, number: int, starting: str | None = None, ended: Iterable[Mark] = ()) -> Row:
-        """The bars that pass a line; with its text, also those that begin before its first word."""
+        """Returns the bars that pass a line; given its text, also those that begin before its first word."""
         row = Row()
         row.put(0, " " * self.width, "")
         for slot, m in enumerate(self.marks):
@@ -150,14 +150,14 @@ class Bars:
         return row
 
     def starting(self, number: int, text: str) -> list[Mark]:
-        """Labels that begin after the first word of a line."""
+        """Returns the labels that begin after the first word of a line."""
         return [m for m in self.marks if m.first == number and text[: m.start].strip()]
 
     def ending(self, number: int) -> list[Mark]:
         return [m for m in reversed(self.marks) if m.last == number]
 
     def below(self, number: int) -> Row:
-        """The bars under a line: those that began on it run on."""
+        """Returns the bars under a line, those that began on it included."""
         row = self.row(number)
         for slot, m in enumerate(self.marks):
             if m.first == number:
@@ -182,7 +182,7 @@ class Bars:
 
 
 def _annotations(marks: list[Mark], view: Window, bars: Bars, number: int) -> Iterator[Row]:
-    """The carets under one line and the texts that belong to them."""
+    """Yields the carets under one line and the texts that belong to them."""
     if not marks:
         return
     marks = sorted(marks, key=lambda m: (m.start, m.primary))

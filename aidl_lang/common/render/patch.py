@@ -1,4 +1,4 @@
-"""A fix as the lines that go and the lines that come."""
+"""A fix as the lines it removes and the lines it adds."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Hunk:
 
 
 def hunks(fix: Fix) -> Iterator[Hunk]:
-    """The fix in pieces, one for each run of touched lines, in order of files and lines."""
+    """Yields the fix in pieces, one for each run of touched lines, in order of files and lines."""
     sources = list(dict.fromkeys(edit.span.source for edit in fix.edits))
     for source in sources:
         edits = sorted((e for e in fix.edits if e.span.source is source), key=lambda e: e.span.start)
@@ -38,7 +38,7 @@ def hunks(fix: Fix) -> Iterator[Hunk]:
 
 
 def _clusters(edits: list[Edit]) -> Iterator[list[Edit]]:
-    """Edits that touch a common line belong together."""
+    """Yields groups of edits; those that touch a common line belong together."""
     cluster: list[Edit] = []
     last = 0
     for edit in edits:
@@ -70,7 +70,7 @@ def _changes(source: SourceFile, edits: list[Edit]) -> Iterator[Change]:
 
 
 def _context(source: SourceFile, number: int) -> Iterator[Change]:
-    """The line above an insertion."""
+    """Yields the line above an insertion."""
     if number > 1:
         yield Change(number - 1, " ", source.line(number - 1))
 
@@ -85,7 +85,7 @@ def _patched(source: SourceFile, edits: list[Edit], first: int, last: int) -> li
 
 
 def _common(a: list[str], b: list[str]) -> int:
-    """How many items two lists begin with in common."""
+    """Returns the number of items that two lists have in common at their beginning."""
     count = 0
     for x, y in zip(a, b, strict=False):
         if x != y:
@@ -95,7 +95,7 @@ def _common(a: list[str], b: list[str]) -> int:
 
 
 def _differing(a: str, b: str) -> tuple[tuple[int, int], tuple[int, int]]:
-    """The range of each text that the other does not share."""
+    """Returns the range of each text that the other does not share."""
     head = _common(list(a), list(b))
     tail = _common(list(a[head:])[::-1], list(b[head:])[::-1])
     return (head, len(a) - tail), (head, len(b) - tail)

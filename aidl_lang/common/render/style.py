@@ -1,4 +1,4 @@
-"""Colour, and when to use it."""
+"""Terminal colours, and the rule when to use them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SEVERITY = {Severity.ERROR: "\x1b[1;31m", Severity.WARNING: "\x1b[1;33m", Sever
 
 @record()
 class Style:
-    """Wraps text in terminal colours, or leaves it as it is."""
+    """A way to print: in terminal colours, or plain."""
 
     colour: bool = False
 
@@ -38,7 +38,9 @@ class Style:
 
 
 def wants_colour(stream: TextIO, environment: Mapping[str, str]) -> bool:
-    """Colour on a terminal only; `NO_COLOR` and `FORCE_COLOR` overrule, in that order (no-color.org)."""
+    """Tells whether to print in colour: on a terminal only; `NO_COLOR` and `FORCE_COLOR` overrule, in that
+    order (no-color.org).
+    """
     if environment.get("NO_COLOR"):
         return False
     if environment.get("FORCE_COLOR", "0") != "0":

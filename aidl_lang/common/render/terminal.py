@@ -14,29 +14,31 @@ from aidl_lang.common.render.text import escape, lay_out, window
 from aidl_lang.common.source import SourceFile, Span
 
 WIDTH = 110
-"""Columns used where the width of the terminal is not known."""
+"""Columns to use if the width of the terminal is not known."""
 
 
 def render(diagnostic: Diagnostic, style: Style | None = None, width: int = WIDTH) -> str:
-    """The diagnostic for a reader, without a line break at the end; plain text unless `style` has colour."""
+    """Returns the diagnostic for a reader, without a line break at the end; plain text unless `style` has
+    colour.
+    """
     return "\n".join(_Page(diagnostic, style or Style(), width).lines())
 
 
 def one_line(diagnostic: Diagnostic) -> str:
-    """`part.aidl:3:9: error[E0301]: …`: the headline with its place before it, for lists."""
+    """Returns `part.aidl:3:9: error[E0301]: …`: the headline with its place before it, for lists."""
     d = diagnostic
     place = f"{d.span.source.name}:{d.span.line}:{d.span.column}: " if d.span else ""
     return escape(f"{place}{d.severity}[{d.code}]: {d.message}").replace("\n", " ")
 
 
 def summary(diagnostics: Iterable[Diagnostic]) -> str:
-    """`2 errors and 1 warning`; empty if there is nothing to count."""
+    """Returns `2 errors and 1 warning`; empty if there is nothing to count."""
     counts = Counter(d.severity for d in diagnostics)
     return listed(counted(n, s) for s in Severity if (n := counts[s]))
 
 
 class _Page:
-    """One diagnostic being written, with what all its parts share."""
+    """One diagnostic being written: its settings, marks and hunks, which all its parts share."""
 
     def __init__(self, diagnostic: Diagnostic, style: Style, width: int) -> None:
         self.diagnostic = diagnostic
@@ -110,7 +112,7 @@ class _Page:
 
 
 def _by_source(diagnostic: Diagnostic) -> dict[SourceFile, list[Mark]]:
-    """The labels of each source, that of the primary one first."""
+    """Returns the labels of each source, that of the primary one first."""
     labels = [(label, False) for label in diagnostic.secondary]
     if diagnostic.span is not None:
         labels.insert(0, (Label(_shown(diagnostic.span), diagnostic.label), True))
@@ -121,5 +123,5 @@ def _by_source(diagnostic: Diagnostic) -> dict[SourceFile, list[Mark]]:
 
 
 def _shown(span: Span) -> Span:
-    """The span without the blank space that a recovering parser may have taken along at its end."""
+    """Returns the span without the blank space that a recovering parser may have taken along at its end."""
     return Span(span.source, span.start, max(span.start, span.start + len(span.text.rstrip())))

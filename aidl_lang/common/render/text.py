@@ -17,12 +17,14 @@ _BREAKING = {"Cc", "Cf", "Cs", "Zl", "Zp"}
 
 
 def escape(text: str) -> str:
-    """The text with every character that could disturb a terminal shown instead; line breaks are kept."""
+    """Returns the text with a visible stand-in for every character that could disturb a terminal; line breaks
+    are kept.
+    """
     return "".join(char if char == "\n" else _visible(char) for char in text)
 
 
 def width_of(text: str) -> int:
-    """Terminal columns that an escaped text takes."""
+    """Returns the terminal columns that an escaped text takes."""
     return sum(_width(char) for char in text)
 
 
@@ -38,12 +40,12 @@ class Line:
         return "".join(self.cells)
 
     def column(self, index: int) -> int:
-        """Terminal column at which a character begins; past the end, that of the end."""
+        """Returns the terminal column at which a character begins; past the end, that of the end."""
         return self.columns[min(index, len(self.cells))]
 
 
 def lay_out(text: str) -> Line:
-    """Cells of a line: tabs go to the next stop, controls are shown by their pictures or code points."""
+    """Returns a line as cells: tabs go to the next stop, controls become their pictures or code points."""
     cells: list[str] = []
     columns = [0]
     for char in text:
@@ -55,7 +57,7 @@ def lay_out(text: str) -> Line:
 
 @record()
 class Window:
-    """The part of a long line that is shown: characters `start:end`, with `…` where something is left out."""
+    """The part of a long line that is shown: characters `start:end`, with `…` in place of the rest."""
 
     line: Line
     start: int
@@ -68,7 +70,7 @@ class Window:
         return before + "".join(self.line.cells[self.start : self.end]) + after
 
     def column(self, index: int) -> int:
-        """Where a character of the line stands within `text`; what is left out is at its edge."""
+        """Returns the column of a character within `text`; a character left out counts as at the edge."""
         if index < self.start:
             return 0
         shift = self.line.column(self.start) - (1 if self.start else 0)
@@ -76,7 +78,7 @@ class Window:
 
 
 def window(line: Line, width: int, focus: tuple[int, int]) -> Window:
-    """Cut a line to `width` columns so that the characters of `focus`, or its first ones, can be seen."""
+    """Cuts a line to `width` columns so that the characters of `focus`, or its first ones, can be seen."""
     total = line.columns[-1]
     if total <= width:
         return Window(line, 0, len(line.cells))
