@@ -35,12 +35,12 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from OCP.XSControl import XSControl_WorkSession
-from PIL import ImageColor
 
 from aidl_lang.common.records import record
 from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.shapes import Shapes, together
 from aidl_lang.export.solids import placed_bodies, placed_strokes
+from aidl_lang.geometry.colors import rgb
 from aidl_lang.geometry.drawing import Style
 from aidl_lang.geometry.joints import jointed
 from aidl_lang.geometry.placement import placement_notes
@@ -283,8 +283,8 @@ class _File:
 
 
 def _color(css: str) -> Quantity_Color:
-    rgb = (value / 255 for value in ImageColor.getrgb(css)[:3])
-    return Quantity_Color(*rgb, Quantity_TypeOfColor.Quantity_TOC_sRGB)
+    parts = (value / 255 for value in rgb(css))
+    return Quantity_Color(*parts, Quantity_TypeOfColor.Quantity_TOC_sRGB)
 
 
 def _ascii(text: str) -> TCollection_HAsciiString:

@@ -7,12 +7,12 @@ from typing import Any
 
 import lib3mf
 import numpy as np
-from PIL import ImageColor
 
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.mesh import Mesh, meshes, printable
 from aidl_lang.export.palette import body_fill
+from aidl_lang.geometry.colors import rgb
 
 _NAMES = uuid.UUID("6f0a1d5e-6f6b-5c1a-9c53-3d9a4f7b2c10")
 """Namespace for ids, which are derived from names, so that the same drawing gives the same file."""
@@ -68,7 +68,7 @@ class _Materials:
     def of(self, name: str, color: str) -> tuple[int, int]:
         """Returns the ids of the group and of the material in it."""
         if (name, color) not in self.known:
-            paint = self.wrapper.RGBAToColor(*ImageColor.getrgb(color)[:3], 255)
+            paint = self.wrapper.RGBAToColor(*rgb(color), 255)
             self.known[name, color] = self.group.AddMaterial(name, paint)
         return self.group.GetResourceID(), self.known[name, color]
 

@@ -47,7 +47,8 @@ def loaded_by(*arguments: str) -> set[str]:
 
 PACKAGES = {"lark", "manifold3d", "numpy", "rich", "scipy", "svgwrite", "watchfiles"}
 STAGES = {
-    f"aidl_lang.{name}" for name in ("ast", "export", "geometry", "library", "parser", "pipeline", "solver")
+    f"aidl_lang.{name}"
+    for name in ("syntax", "checking", "building", "solver", "geometry", "export", "parser", "pipeline")
 }
 WEB = {"email", "http", "socket", "ssl", "urllib.request"}
 
