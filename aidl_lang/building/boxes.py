@@ -7,15 +7,15 @@ meets the box of one of its descendants there leaves that descendant out (paper,
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 
+from aidl_lang.building import curves
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Expression, Unknown
 from aidl_lang.building.model import Geometry, Measurement, Recipe, Structure, chain, convert
-from aidl_lang.building.primitives import clockwise, defining, direction, number, on_text, sweep, view, xy
-from aidl_lang.building.values import Array, ListVal, Num, PointVal, Value, length, members, point
-from aidl_lang.common.lettering import box_around
+from aidl_lang.building.primitives import defining, view, xy
+from aidl_lang.building.values import Array, ListVal, Num, PointVal, length, members, point
 from aidl_lang.common.records import record
 
 SIDES = ("left", "right", "top", "bottom")
@@ -233,56 +233,8 @@ def _structure(
 def _curve(primitive: Geometry, here: Structure, side: str) -> Iterator[Expression]:
     """Candidates for the extreme of one curve towards a side."""
     if primitive.recipe is not None and primitive.is_drawn_later:
-        yield from _made(primitive, primitive.recipe, here, side)
-        return
-    if primitive.type == "point":
-        return
-    core = view(primitive, here)
-    axis = side in ("top", "bottom")
-    positive = side in ("right", "top")
-    match primitive.type:
-        case "line":
-            yield xy(core["start"])[axis]
-            yield xy(core["end"])[axis]
-        case "circle":
-            yield (ex.add if positive else ex.sub)(xy(core["center"])[axis], number(core["radius"]))
-        case "arc":
-            yield _arc_extreme(primitive, here, side)
-        case "ellipse":
-            yield _ellipse_extreme(core, axis, positive)
-        case "glyphs" if primitive.glyphs:
-            yield from _text_extremes(primitive, here, side)
-        case "bezier":
-            yield _cubic_extreme([xy(core[p])[axis] for p in ("p0", "p1", "p2", "p3")], positive)
-
-
-def _cubic_extreme(controls: Sequence[Expression], positive: bool) -> Expression:
-    """The extreme of a cubic Bézier curve by one coordinate of its control points."""
-    if positive:
-        return ex.apply("cubic_max", *controls)
-    return ex.apply("neg", ex.apply("cubic_max", *[ex.apply("neg", c) for c in controls]))
-
-
-def _text_extremes(text: Geometry, here: Structure, side: str) -> Iterator[Expression]:
-    """Of a text that stands square to the axes, the corners of its ink; of one that is turned, what of its
-    silhouette reaches furthest, or all of that where it is not known how far it is turned.
-    """
-    at, angle = on_text(text, here), number(view(text, here)["angle"])
-    axis, positive = side in ("top", "bottom"), side in ("right", "top")
-    if angle.is_constant and angle.value % 90.0 == 0.0:
-        left, bottom, right, top = box_around(text.glyphs)
-        for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
-            yield at(corner)[axis]
-        return
-    reaching = [
-        reach[0] if len(reach) == 1 else _cubic_extreme(reach, positive)
-        for reach in ([at(p)[axis] for p in piece] for piece in text.silhouette)
-    ]
-    if angle.is_constant:
-        furthest = max if positive else min
-        yield furthest(reaching, key=lambda reach: reach.value)
-    else:
-        yield from reaching
+        return _made(primitive, primitive.recipe, here, side)
+    return curves.reach(primitive, here, side)
 
 
 _AS_WIDE = frozenset({"hull", "union", "shell"})
@@ -309,44 +261,6 @@ def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iter
     for source in recipe.sources:
         for extreme in _extremes(source, here, side, frozenset()):
             yield ex.apply("add" if side in ("right", "top") else "sub", extreme, grown)
-
-
-_TOWARDS = {"right": 0.0, "top": 90.0, "left": 180.0, "bottom": 270.0}
-
-
-def _arc_extreme(arc: Geometry, here: Structure, side: str) -> Expression:
-    """The quadrant point if the arc passes through it, else the further end."""
-    axis, positive = side in ("top", "bottom"), side in ("right", "top")
-    core = view(arc, here)
-    first, turn = _turn(arc, here)
-    reached = ex.apply("mod", ex.sub(ex.constant(_TOWARDS[side]), first), ex.constant(360.0))
-    passes = ex.sub(turn, reached)
-    outwards = ex.add if positive else ex.sub
-    quadrant = outwards(xy(core["center"])[axis], number(core["radius"]))
-    further = "maximum" if positive else "minimum"
-    ends = ex.apply(further, xy(core["start"])[axis], xy(core["end"])[axis])
-    return ex.apply("select", passes, quadrant, ends)
-
-
-def _turn(arc: Geometry, here: Structure) -> tuple[Expression, Expression]:
-    """Counter-clockwise, the direction in which an arc begins and its sweep, the same for all four sides."""
-    if (known := arc.turns.get(here)) is None:
-        core, is_clockwise = view(arc, here), clockwise(arc, here)
-        first = direction(core["center"], core["end" if is_clockwise else "start"])
-        known = arc.turns[here] = first, sweep(core, is_clockwise)
-    return known
-
-
-def _ellipse_extreme(core: Mapping[str, Value], axis: bool, positive: bool) -> Expression:
-    """Centre plus or minus sqrt((rx cos)^2 + (ry sin)^2), the half-width of a turned ellipse."""
-    angle = number(core["angle"])
-    along, across = (ex.sin, ex.cos) if axis else (ex.cos, ex.sin)
-    half_width = ex.apply(
-        "hypot",
-        ex.mul(number(core["rx"]), along(angle)),
-        ex.mul(number(core["ry"]), across(angle)),
-    )
-    return ex.apply("add" if positive else "sub", xy(core["center"])[axis], half_width)
 
 
 def box_of(value: object, here: Structure) -> Box | None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.arcs import ROUND, check_bare_points, differ
@@ -20,6 +21,9 @@ from aidl_lang.building.model import Constraint, Geometry, Measurement, Structur
 from aidl_lang.building.primitives import direction, distance, polar
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.values import Nothing, Num, PointVal, Status, Value, length, point
+from aidl_lang.checking.builtins import SIGNATURES
+from aidl_lang.checking.registry import PRIMITIVES
+from aidl_lang.checking.types import NumberType, PointType
 from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
@@ -323,36 +327,48 @@ def hold(it: Interpreter, g: Geometry, equations: Sequence[tuple[Num, Num]]) -> 
         it.hidden.append((g, comparisons))
 
 
-def _bezier(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
-    names = ("p0", "p1", "p2", "p3")
-    controls = positions(it, [_written(a, name) for name in names], g, names, g.owner, edges=False)
-    g.fields = dict(zip(names, controls, strict=True))
+def _plain(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
+    """Of a kind that is called in one way: the fields that it is given. Its points are no corners, and a
+    direction that may be left out stays 0 until something asks for another.
+    """
+    points, numbers = _given(g.type)
+    placed = positions(it, [_written(a, name) for name in points], g, points, g.owner, edges=False)
+    g.fields = dict(zip(points, placed, strict=True))
+    for name, kind, is_optional in numbers:
+        if is_optional and kind.dimension == ANGLE:
+            angle = a.get(name, Num(ex.ZERO, ANGLE))
+            assert isinstance(angle, Num)
+            g.fields[name] = turn(it, angle, g, name, rotatable=False)
+        else:
+            g.fields[name] = _size(it, g, a, name, kind.dimension)
 
 
-def _ellipse(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
-    g.fields = _points(it, g, a, ("center",))
-    g.fields |= {"rx": _size(it, g, a, "rx"), "ry": _size(it, g, a, "ry")}
-    angle = a.get("angle", Num(ex.ZERO, ANGLE))
-    assert isinstance(angle, Num)
-    g.fields["angle"] = turn(it, angle, g, "angle", rotatable=False)
+@cache
+def _given(kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, NumberType, bool], ...]]:
+    """The points and the numbers among the parameters of a kind that are its fields."""
+    (signature,) = SIGNATURES[kind]
+    fields = [each for each in signature.parameters if each[0] in PRIMITIVES[kind].types]
+    points = tuple(name for name, of, _ in fields if isinstance(of, PointType))
+    return points, tuple(
+        (name, of, is_optional) for name, of, is_optional in fields if isinstance(of, NumberType)
+    )
 
 
 def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     g.glyphs = typeset(it, a)
     it.count_entity(None, len(g.glyphs))
-    g.fields = _points(it, g, a, ("start",))
-    g.fields |= {"height": _size(it, g, a, "height"), "angle": _size(it, g, a, "angle", ANGLE)}
+    _plain(it, g, a, env)
 
 
-CONSTRUCTORS: dict[str, Callable[[Interpreter, Geometry, Arguments, Env], None]] = {
+_OWN: Mapping[str, Callable[[Interpreter, Geometry, Arguments, Env], None]] = {
     "point": _point,
     "line": _line,
     "circle": _circle,
     "arc": _arc,
-    "bezier": _bezier,
-    "ellipse": _ellipse,
     "glyphs": _glyphs,
 }
+
+CONSTRUCTORS = {kind: _OWN.get(kind, _plain) for kind in PRIMITIVES}
 
 
 def construct(it: Interpreter, kind: str, arguments: Arguments, node: ast.Node, env: Env) -> Geometry:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
+from aidl_lang.building import curves
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import box_of, spelled_out
 from aidl_lang.building.coerce import as_written
@@ -162,12 +163,7 @@ def _own_centre(it: Interpreter, g: Geometry, node: ast.Node, here: Structure) -
             return _own_centre(it, found, node, here)
         found = translate("center", found, g.owner, here) if isinstance(found, PointVal) else None
     else:
-        core = view(g, here)
-        found = core.get("center") or core.get("at")
-        if g.type == "line":
-            start, end = xy(core["start"]), xy(core["end"])
-            mid = [ex.half(ex.add(a, b)) for a, b in zip(start, end, strict=True)]
-            found = _at(mid[0], mid[1])
+        found = curves.field(g, "center", here)
     return found if isinstance(found, PointVal) else None
 
 

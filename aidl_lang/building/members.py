@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from aidl_lang.building import boxes, primitives
+from aidl_lang.building import boxes, curves, primitives
 from aidl_lang.building.boxes import Box
 from aidl_lang.building.coerce import as_written, may_read
 from aidl_lang.building.lists import entry
@@ -39,6 +39,7 @@ from aidl_lang.building.values import (
     members,
 )
 from aidl_lang.checking.builtins import FINISHES, ROTATION
+from aidl_lang.checking.registry import offered
 from aidl_lang.checking.synonyms import MEMBERS
 from aidl_lang.checking.units import ANGLE
 from aidl_lang.common.diagnostics import Edit, Fix, Label
@@ -141,7 +142,7 @@ def _member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env
         case Nothing():
             return NOTHING
         case Pattern(settings=settings) if (key := find(name, settings.fields)) is not None:
-            found = primitives.field(settings, key, env.here)
+            found = curves.field(settings, key, env.here)
             return found if found is None or may_read(it, settings.owner, node, env) else as_written(found)
         case PointVal(x, y):
             found = {"x": x, "y": y}.get(name.casefold())
@@ -195,7 +196,7 @@ def member_names(value: Value) -> list[str]:
         case Geometry(scope=Scope() as scope):
             return [*scope.values, "bb", *boxes.FIELDS]
         case Geometry():
-            return [*primitives.FIELDS.get(value.type, value.fields), "bb", *boxes.FIELDS]
+            return [*(offered(value.type) or value.fields), "bb", *boxes.FIELDS]
         case _:
             return []
 
@@ -229,10 +230,10 @@ def _geometry_member(it: Interpreter, g: Geometry, name: str, node: ast.Node, en
         if (key := find(name, g.scope.values)) is not None:
             return _shape_member(it, g, key, node, env)
     else:
-        fields = dict.fromkeys((*primitives.FIELDS.get(g.type, ()), *g.fields))
+        fields = dict.fromkeys((*offered(g.type), *g.fields))
         key = find(name, fields) or name
         reached = may_read(it, g.bound_to, node, env)
-        value = primitives.field(g, key, env.here)
+        value = curves.field(g, key, env.here)
         if value is not None:
             return value if reached else as_written(value)
     box = boxes.box_of(g, env.here)

@@ -1,13 +1,12 @@
-"""Fields of the primitives, seen from any structure (language reference: geometry).
+"""What defines a primitive, seen from any structure (language reference: geometry).
 
 A primitive stores what defines it in the frame of its owner; `view` converts that to the frame of the
-structure that asks, and everything else a primitive is asked for follows from the view.
+structure that asks, and everything else a primitive is asked for follows from the view (see `curves`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.building import expression as ex
@@ -21,14 +20,15 @@ from aidl_lang.building.model import (
     convert_point,
     own_geometry,
 )
-from aidl_lang.building.values import ListVal, Num, PointVal, Status, length, point
+from aidl_lang.building.values import Num, PointVal, point
+from aidl_lang.checking.registry import fields_of
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.lettering import Vec
 
 if TYPE_CHECKING:
     from aidl_lang.building.values import Value
 
-DIRECTIONS = frozenset({"angle", "start_angle", "end_angle"})
+DIRECTIONS = fields_of("direction")
 """Fields that are directions: they turn with the frame they are seen from."""
 
 
@@ -80,10 +80,6 @@ def number(value: Value) -> Expression:
     return value.expression
 
 
-def _angle(expression: Expression) -> Num:
-    return Num(expression, ANGLE, Status.REFERENCE)
-
-
 def direction(a: Value, b: Value) -> Expression:
     """The direction from one point to another in degrees."""
     (ax, ay), (bx, by) = xy(a), xy(b)
@@ -93,11 +89,6 @@ def direction(a: Value, b: Value) -> Expression:
 def distance(a: Value, b: Value) -> Expression:
     (ax, ay), (bx, by) = xy(a), xy(b)
     return ex.apply("hypot", ex.sub(bx, ax), ex.sub(by, ay))
-
-
-def _midpoint(a: Value, b: Value) -> PointVal:
-    (ax, ay), (bx, by) = xy(a), xy(b)
-    return point(ex.half(ex.add(ax, bx)), ex.half(ex.add(ay, by)))
 
 
 def sweep(core: Mapping[str, Value], is_clockwise: bool) -> Expression:
@@ -110,108 +101,6 @@ def sweep(core: Mapping[str, Value], is_clockwise: bool) -> Expression:
 def polar(center: Value, radius: Expression, angle: Expression) -> PointVal:
     x, y = xy(center)
     return point(ex.add(x, ex.mul(radius, ex.cos(angle))), ex.add(y, ex.mul(radius, ex.sin(angle))))
-
-
-def _line(name: str, core: dict[str, Value], _: bool) -> Value | None:
-    start, end = core["start"], core["end"]
-    match name:
-        case "midpoint" | "center":
-            return _midpoint(start, end)
-        case "length":
-            return length(distance(start, end))
-        case "angle":
-            return _angle(direction(start, end))
-        case "dx":
-            return length(ex.sub(xy(end)[0], xy(start)[0]))
-        case "dy":
-            return length(ex.sub(xy(end)[1], xy(start)[1]))
-        case _:
-            return None
-
-
-def _round(name: str, core: dict[str, Value], _: bool) -> Value | None:
-    if name == "diameter":
-        return length(ex.mul(number(core["radius"]), ex.constant(2.0)))
-    return None
-
-
-def _arc(name: str, core: dict[str, Value], is_clockwise: bool) -> Value | None:
-    match name:
-        case "start_angle":
-            return _angle(direction(core["center"], core["start"]))
-        case "end_angle":
-            return _angle(direction(core["center"], core["end"]))
-        case "sweep":
-            return _angle(sweep(core, is_clockwise))
-        case "length":
-            turn = ex.mul(sweep(core, is_clockwise), ex.constant(ex.DEGREE))
-            return length(ex.mul(number(core["radius"]), turn))
-        case "midpoint":
-            middle = ex.half(sweep(core, is_clockwise))
-            start = direction(core["center"], core["start"])
-            angle = ex.sub(start, middle) if is_clockwise else ex.add(start, middle)
-            return polar(core["center"], number(core["radius"]), angle)
-        case _:
-            return _round(name, core, is_clockwise)
-
-
-def _bezier(name: str, core: dict[str, Value], _: bool) -> Value | None:
-    return core.get({"start": "p0", "end": "p3"}.get(name, ""))
-
-
-def _point(name: str, core: dict[str, Value], _: bool) -> Value | None:
-    at = core["at"]
-    assert isinstance(at, PointVal)
-    fields: dict[str, Value] = {"x": at.x, "y": at.y, "center": at}
-    return fields.get(name)
-
-
-_DERIVED: dict[str, Callable[[str, dict[str, Value], bool], Value | None]] = {
-    "point": _point,
-    "line": _line,
-    "arc": _arc,
-    "circle": _round,
-    "bezier": _bezier,
-}
-
-FIELDS: dict[str, tuple[str, ...]] = {
-    "point": ("x", "y"),
-    "line": ("start", "end", "midpoint", "length", "angle", "dx", "dy"),
-    "arc": (
-        "center",
-        "start",
-        "end",
-        "midpoint",
-        "radius",
-        "diameter",
-        "start_angle",
-        "end_angle",
-        "sweep",
-        "length",
-    ),
-    "circle": ("center", "radius", "diameter"),
-    "bezier": ("p0", "p1", "p2", "p3", "start", "end"),
-    "ellipse": ("center", "rx", "ry", "angle"),
-    "glyphs": ("start", "height", "angle", "glyph"),
-}
-"""What each primitive can be asked for, for messages and completion."""
-
-
-def field(geometry: Geometry, name: str, here: Structure) -> Value | None:
-    """A field of a primitive as `here` sees it; None when it has none of that name."""
-    core = view(geometry, here)
-    if name in core:
-        return core[name]
-    if geometry.type == "glyphs" and name == "glyph":
-        return ListVal(tuple(_single(geometry, i) for i in range(len(geometry.glyphs))))
-    derive = _DERIVED.get(geometry.type)
-    sense = geometry.type == "arc" and clockwise(geometry, here)
-    return derive(name, core, sense) if derive else None
-
-
-def _single(text: Geometry, number: int) -> Geometry:
-    """One character of a text, to be measured: it is drawn with the others."""
-    return replace(text, glyphs=(text.glyphs[number],), name=f"glyph[{number}]", container=text, views={})
 
 
 def on_text(geometry: Geometry, here: Structure) -> Callable[[Vec], tuple[Expression, Expression]]:

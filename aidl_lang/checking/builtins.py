@@ -1,13 +1,15 @@
 """What is built in: the names that the standard library itself stands on, and what they take.
 
 Everything that AIDL can say is written in AIDL in `stdlib/`; this table holds what it cannot: the functions
-of a number, the primitives, the marks of exactness, and measurements of the finished drawing.
+of a number, the primitives (from their registry), the marks of exactness, and measurements of the finished
+drawing.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from aidl_lang.checking.registry import DECLARATIONS
 from aidl_lang.checking.synonyms import PARAMETERS
 from aidl_lang.checking.types import PARAMETER_TYPES, Signature, TextType
 from aidl_lang.common.names import fold
@@ -45,18 +47,6 @@ fixed(value)
 guess(value)
 written(value)
 nearest(value, candidates: list)
-point(x: length, y: length)
-point(at: point)
-line(start: point, end: point)
-line(start: point?, length: length, angle: angle)
-circle(center: point?, radius: length)
-circle(center: point?, diameter: length)
-arc(center: point, start: point, end: point, clockwise: bool?)
-arc(start: point, end: point, radius: length, large: bool?, clockwise: bool?)
-arc(center: point?, radius: length, start_angle: angle, end_angle: angle, clockwise: bool?)
-bezier(p0: point, p1: point, p2: point, p3: point)
-ellipse(center: point?, rx: length, ry: length, angle: turn?)
-glyphs(text: text, start: point, height: length, angle: angle, align: text, line_spacing: number)
 ink(text: text, align: text, line_spacing: number)
 where(value, positive, negative)
 shown(value)
@@ -113,10 +103,9 @@ def _signature(declaration: str) -> Signature:
 
 def _table() -> dict[str, tuple[Signature, ...]]:
     table: dict[str, list[Signature]] = {}
-    for line in _DECLARATIONS.split("\n"):
-        if line:
-            signature = _signature(line)
-            table.setdefault(signature.name, []).append(signature)
+    for line in (*DECLARATIONS, *filter(None, _DECLARATIONS.split("\n"))):
+        signature = _signature(line)
+        table.setdefault(signature.name, []).append(signature)
     return {name: tuple(signatures) for name, signatures in table.items()}
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from aidl_lang.checking.builtins import FINISHES, ROTATION
+from aidl_lang.checking.registry import PRIMITIVES
 from aidl_lang.checking.types import (
     ANY,
     BoxType,
@@ -30,14 +31,19 @@ def _fields(points: str = "", lengths: str = "", angles: str = "") -> dict[str, 
     }
 
 
+def _type(word: str) -> Type:
+    kind = word.removesuffix("[]")
+    return ListType(GeometryType(kind)) if kind != word else _TYPES[word]
+
+
+_TYPES: Mapping[str, Type] = {
+    **dict.fromkeys(("length", "size"), _LENGTH),
+    **dict.fromkeys(("angle", "direction"), _ANGLE),
+    "point": _POINT,
+}
+
 PRIMITIVE: Mapping[str, Mapping[str, Type]] = {
-    "point": _fields(points="at center", lengths="x y"),
-    "line": _fields("start end midpoint center", "length dx dy", "angle"),
-    "arc": _fields("center start end midpoint", "radius diameter length", "start_angle end_angle sweep"),
-    "circle": _fields("center", "radius diameter"),
-    "bezier": _fields("p0 p1 p2 p3 start end"),
-    "ellipse": _fields("center", "rx ry", "angle"),
-    "glyphs": _fields("start", "height", "angle") | {"glyph": ListType(GeometryType("glyphs"))},
+    kind: {name: _type(word) for name, word in each.types.items()} for kind, each in PRIMITIVES.items()
 }
 
 BOX: Mapping[str, Type] = _fields(
@@ -98,9 +104,7 @@ RESULTS: Mapping[str, Type] = {
     "ink": RecordType(),
     **dict.fromkeys(("str", "choice"), TextType()),
     **dict.fromkeys(("range", "enumerate", "zip", "reversed"), ListType(ANY)),
-    **dict.fromkeys(("line", "arc", "circle", "bezier", "ellipse"), ANY),
-    **{kind: GeometryType(kind) for kind in PRIMITIVE if kind != "point"},
-    "point": GeometryType("point"),
+    **{kind: GeometryType(kind) for kind in PRIMITIVES},
     "area": NumberType(None),
     "perimeter": _LENGTH,
     "clearance": _LENGTH,

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence, Set
 from functools import cached_property, lru_cache
 from typing import TypeAlias
 
+from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension, describe
 from aidl_lang.common import prose
 from aidl_lang.common.names import fold
@@ -126,7 +127,6 @@ Type: TypeAlias = (
 )
 
 ANY = AnyType()
-PRIMITIVES = ("point", "line", "arc", "circle", "bezier", "ellipse")
 
 PARAMETER_TYPES: Mapping[str, Type] = {
     "any": ANY,
@@ -149,7 +149,7 @@ PARAMETER_TYPES: Mapping[str, Type] = {
     "geometry": GeometryType(""),
     "structure": StructureType(),
     "box": BoxType(),
-    **{name: GeometryType(name) for name in PRIMITIVES if name != "point"},
+    **{kind: GeometryType(kind) for kind in PUBLIC if kind != "point"},
 }
 """The words that may stand behind `:` in a parameter; the name of a shape may stand there too."""
 

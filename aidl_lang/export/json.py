@@ -30,16 +30,6 @@ Json = dict[str, Any]
 TOLERANCE = 1e-3
 """Largest distance of the polygons of regions from their outlines, relative to the size of the drawing."""
 
-_FIELDS = {
-    "point": ("at",),
-    "line": ("start", "end"),
-    "circle": ("center", "radius"),
-    "arc": ("center", "radius", "start", "end", "clockwise"),
-    "bezier": ("points",),
-    "ellipse": ("center", "rx", "ry", "angle"),
-    "ellipse_arc": ("center", "rx", "ry", "angle", "start", "end", "clockwise"),
-}
-
 
 def to_json(
     model: SolvedModel,
@@ -187,15 +177,14 @@ def _pieces(loop: Loop) -> list[Json]:
 
 
 def _geometry(g: SolvedGeometry) -> Json:
-    """Returns a primitive with its fields, a compound shape with its parts."""
+    """Returns a point or a curve with its numbers, anything else with its parts."""
     checkpoint()
-    fields = _FIELDS.get(g.type)
     entry: Json = {"type": g.type}
-    if fields is None:
+    if g.curve is not None or g.type == "point":
+        entry |= g.values
+    else:
         entry["params"] = {name: list(v) if isinstance(v, tuple) else v for name, v in g.values.items()}
         entry["parts"] = {part.name: _geometry(part) for part in g.parts}
-    else:
-        entry |= {name: g.values[name] for name in fields if name in g.values}
     if g.construction:
         entry["construction"] = True
     if g.attributes:

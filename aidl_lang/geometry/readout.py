@@ -9,6 +9,7 @@ from functools import cached_property, partial
 from typing import TypeAlias
 
 from aidl_lang.building import expression as ex
+from aidl_lang.building.curves import pieces
 from aidl_lang.building.expression import DEGREE, Evaluator, Unknown
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import (
@@ -22,13 +23,14 @@ from aidl_lang.building.model import (
 )
 from aidl_lang.building.primitives import clockwise, number, translate, xy
 from aidl_lang.building.root_frame import FLOATS, Placing
-from aidl_lang.building.scopes import ParamBinding, PassedBinding, Scope, VarBinding
+from aidl_lang.building.scopes import Binding, ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.building.values import Num, PointVal, Text, Value
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawing_time import blaming
 from aidl_lang.common.records import record
 from aidl_lang.geometry import curves
 from aidl_lang.geometry.curves import Curve, Vec
+from aidl_lang.geometry.described import described
 from aidl_lang.geometry.evaluate import bounds
 from aidl_lang.geometry.solved import (
     Box,
@@ -248,13 +250,17 @@ class _Reader:
         recipe = self._recipe(g.recipe) if g.recipe is not None else None
         is_plain = not g.is_compound and not g.is_drawn_later and g.type != "point"
         curve = self._curve(g) if is_plain else None
+        if is_plain and curve is None:
+            parts = tuple(_edge(g, f"edge[{i}]", points) for i, points in enumerate(self._pieces(g)))
+        else:
+            parts = tuple(self.geometry(part) for part in own_geometry(g.parts, g))
         return SolvedGeometry(
             name=g.name or g.type,
             path=g.path,
             type=g.type,
             values=self._own_values(g, curve),
             curve=curve,
-            parts=tuple(self.geometry(part) for part in own_geometry(g.parts, g)),
+            parts=parts,
             construction=g.construction,
             span=g.span,
             recipe=recipe,
@@ -308,56 +314,44 @@ class _Reader:
         return self.evaluate(number(value))
 
     def _own_values(self, g: Geometry, curve: Curve | None) -> Values:
+        if curve is not None:
+            return described(curve)[1]
         if g.is_compound:
-            return self._shape_values(g)
-        if g.recipe is not None and g.is_drawn_later:
-            return {name: self._number(value) for name, value in g.recipe.numbers.items()}
-        return self._values(g, curve)
+            assert isinstance(g.scope, Scope)
+            return self._values({name: g.scope.values[name] for name in g.arguments}, g.owner)
+        return self._values(g.recipe.numbers if g.recipe and g.is_drawn_later else g.fields, g.owner)
 
-    def _shape_values(self, g: Geometry) -> Values:
-        """The number and point arguments of a compound shape."""
-        from aidl_lang.building.scopes import Scope
-
-        assert isinstance(g.scope, Scope)
+    def _values(self, values: Mapping[str, Binding], owner: Structure) -> Values:
+        """The numbers and points among values of `owner`."""
         found: Values = {}
-        for name in g.arguments:
-            value = g.scope.values[name]
+        for name, value in values.items():
             if isinstance(value, PointVal):
-                found[name] = self._at(value, g.owner)
+                found[name] = self._at(value, owner)
             elif isinstance(value, Num):
-                found[name] = self._number(translate(name, value, g.owner, self.model.root))
+                found[name] = self._number(translate(name, value, owner, self.model.root))
         return found
 
-    def _values(self, g: Geometry, curve: Curve | None) -> Values:
-        match curve:
-            case curves.Line(start, end):
-                return {"start": start, "end": end}
-            case curves.Circle(center, radius):
-                return {"center": center, "radius": radius}
-            case curves.Arc(center, radius, start, end, sweep):
-                ends: Values = {"start": start, "end": end}
-                return {"center": center, "radius": radius, **ends, "clockwise": sweep < 0}
-            case curves.Bezier(p0, p1, p2, p3):
-                return {"points": (p0, p1, p2, p3)}
-            case curves.Ellipse(center, rx, ry, angle):
-                return {"center": center, "rx": rx, "ry": ry, "angle": angle / DEGREE}
-            case _:
-                return {"at": self._at(g.fields["at"], g.owner)}
-
-    def _curve(self, g: Geometry) -> Curve:
+    def _curve(self, g: Geometry) -> Curve | None:
+        """The curve of a primitive; None of one that is made of lines and cubics."""
         core, at = g.fields, partial(self._at, owner=g.owner)
         match g.type:
-            case "line":
-                return curves.Line(at(core["start"]), at(core["end"]))
+            case "line" | "bezier":
+                (points,) = self._pieces(g)
+                return _through(points)
             case "circle":
                 return curves.Circle(at(core["center"]), self._number(core["radius"]))
-            case "bezier":
-                return curves.Bezier(*(at(core[p]) for p in ("p0", "p1", "p2", "p3")))
             case "ellipse":
                 rx, ry = self._number(core["rx"]), self._number(core["ry"])
                 return curves.Ellipse(at(core["center"]), rx, ry, self._direction(g) * DEGREE)
-            case _:
+            case "arc":
                 return self._arc(g)
+            case _:
+                return None
+
+    def _pieces(self, g: Geometry) -> Iterator[list[Vec]]:
+        """The ends of the lines and the control points of the cubics that a primitive is made of."""
+        for piece in pieces(g, g.owner):
+            yield [self.place(self.evaluate(x), self.evaluate(y), g.owner) for x, y in piece]
 
     def _arc(self, g: Geometry) -> Curve:
         center, start, end = (self._at(g.fields[n], g.owner) for n in ("center", "start", "end"))
@@ -380,14 +374,13 @@ def _glyph(
     return SolvedGeometry(name, f"{text.path}.{name}", "glyph", {}, None, edges, text.construction, text.span)
 
 
-def _edge(text: Geometry, path: str, points: Sequence[Vec]) -> SolvedGeometry:
-    """One curve of a character, by its path in the text."""
-    curve: Curve
-    if len(points) == 2:
-        curve, kind = curves.Line(*points), "line"
-        values: Values = {"start": curve.start, "end": curve.end}
-    else:
-        curve, kind = curves.Bezier(*points), "bezier"
-        values = {"points": tuple(points)}
-    name, whole = path.rpartition(".")[2], f"{text.path}.{path}"
-    return SolvedGeometry(name, whole, kind, values, curve, (), text.construction, text.span)
+def _edge(of: Geometry, path: str, points: Sequence[Vec]) -> SolvedGeometry:
+    """One of the lines and cubics that a primitive is made of, by its path in it."""
+    curve = _through(points)
+    kind, values = described(curve)
+    name, whole = path.rpartition(".")[2], f"{of.path}.{path}"
+    return SolvedGeometry(name, whole, kind, values, curve, (), of.construction, of.span)
+
+
+def _through(points: Sequence[Vec]) -> curves.Line | curves.Bezier:
+    return curves.Line(*points) if len(points) == 2 else curves.Bezier(*points)

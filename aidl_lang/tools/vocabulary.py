@@ -12,7 +12,8 @@ from dataclasses import fields
 from functools import cache
 
 from aidl_lang.checking import builtins, library
-from aidl_lang.checking.types import PARAMETER_TYPES, PRIMITIVES
+from aidl_lang.checking.registry import PUBLIC
+from aidl_lang.checking.types import PARAMETER_TYPES
 from aidl_lang.checking.units import UNITS
 from aidl_lang.common.records import record
 from aidl_lang.syntax.kinds import KIND_OF_WORD, KINDS
@@ -220,7 +221,7 @@ def _named() -> dict[str, tuple[str, ...]]:
 def _class(name: str, sort: str, topic: str) -> str:
     if sort in _SORTS:
         return _SORTS[sort]
-    if name in PRIMITIVES:
+    if name in PUBLIC:
         return "primitives"
     if name in builtins.DERIVING | builtins.PATTERNS | builtins.FINISHES:
         return "operations"

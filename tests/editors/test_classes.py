@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aidl_lang.checking.types import PRIMITIVES
+from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
@@ -71,7 +71,7 @@ def _named(node: ast.Node) -> Iterator[tuple[ast.Identifier, str]]:
 
 def _call(node: ast.Call) -> str:
     sort = SORTS.get(node.callee.text)
-    if sort in ("shape", "template") or node.callee.text in PRIMITIVES:
+    if sort in ("shape", "template") or node.callee.text in PUBLIC:
         return "call.shape"
     if sort in ("constraint", "relation"):
         return "call.constraint"

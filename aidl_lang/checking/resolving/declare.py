@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from aidl_lang.checking.builtins import DERIVING, EVERYWHERE, PATTERNS
 from aidl_lang.checking.library import signature
+from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.resolving import complaints
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, Scope, SymbolKind
-from aidl_lang.checking.types import PARAMETER_TYPES, PRIMITIVES, Signature
+from aidl_lang.checking.types import PARAMETER_TYPES, Signature
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import ticked
@@ -22,7 +23,7 @@ T = TypeVar("T")
 Branch: TypeAlias = tuple[tuple[int, bool], ...]
 """The `if`s around a declaration, and which way each has to go for it."""
 
-_MAKERS = DERIVING | PATTERNS | frozenset({"path", *PRIMITIVES})
+_MAKERS = DERIVING | PATTERNS | frozenset({"path", *PUBLIC})
 
 
 def is_definition(node: ast.Node) -> bool:

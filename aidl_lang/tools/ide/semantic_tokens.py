@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from aidl_lang.checking.builtins import PATTERNS
+from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.resolving.symbols import SymbolKind
-from aidl_lang.checking.types import PRIMITIVES
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
@@ -114,7 +114,7 @@ def _of_mention(view: View, mention: Mention) -> Colored:
     match mention.node:
         case ast.Call(receiver=receiver):
             if symbol.kind is SymbolKind.BUILTIN:
-                kind = "type" if symbol.name in PRIMITIVES and symbol.name not in PATTERNS else "function"
+                kind = "type" if symbol.name in PUBLIC and symbol.name not in PATTERNS else "function"
             if kind == "function" and receiver is not None:
                 kind = "method"
         case ast.Member() if symbol.kind is not SymbolKind.NAMESPACE:

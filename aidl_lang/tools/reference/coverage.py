@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
 
 from aidl_lang import pipeline
+from aidl_lang.checking.registry import PRIMITIVES
 from aidl_lang.common.diagnostics import MOST_ERRORS
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
@@ -18,12 +19,7 @@ from aidl_lang.geometry.solved import ConstraintReport
 from aidl_lang.tools.reference import collect
 
 KINDS: Mapping[str, str] = {
-    "point": "{n} = ({x}, {y})",
-    "line": "{n} = line(({x}, {y}), ({x} + 12, {y} + 3))",
-    "arc": "{n} = arc(center: ({x}, {y}), radius: 8, start_angle: 20deg, end_angle: 130deg)",
-    "circle": "{n} = circle(center: ({x}, {y}), radius: 6)",
-    "ellipse": "{n} = ellipse(center: ({x}, {y}), rx: 9, ry: 5)",
-    "bezier": "{n} = bezier(({x}, {y}), ({x} + 4, {y} + 6), ({x} + 8, {y} - 2), ({x} + 12, {y} + 3))",
+    **{kind: f"{{n}} = {each.sample}" for kind, each in PRIMITIVES.items() if each.sample},
     "rectangle": "{n} = rectangle(center: ({x}, {y}), width: 14, height: 8)",
     "shape": "{n} = star(center: ({x}, {y}), outer_radius: 8, inner_radius: 4)",
     "structure": "drawing {n} {{ body = ellipse(center: ({x}, {y}), rx: 7, ry: 5) }}",

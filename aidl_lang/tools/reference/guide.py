@@ -21,6 +21,7 @@ from itertools import groupby
 from pathlib import Path
 
 from aidl_lang.checking.builtins import CUTS
+from aidl_lang.checking.registry import PRIMITIVES, PUBLIC
 from aidl_lang.checking.variants import Variant
 from aidl_lang.common.prose import ticked
 from aidl_lang.common.resources import resource
@@ -133,10 +134,8 @@ def _names(variant: Variant, *topics: str) -> str:
 
 
 def _fields(variant: Variant) -> str:
-    from aidl_lang.building.primitives import FIELDS
-    from aidl_lang.checking.types import PRIMITIVES
-
-    return "\n".join(f"{kind}: {' '.join(fields)}" for kind, fields in FIELDS.items() if kind in PRIMITIVES)
+    kinds = [PRIMITIVES[name] for name in reference().entries if name in PUBLIC]
+    return "\n".join(f"{each.kind}: {' '.join(each.names)}" for each in kinds)
 
 
 def _reserved(variant: Variant) -> str:

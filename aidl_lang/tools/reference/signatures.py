@@ -8,10 +8,10 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from aidl_lang.checking import library
+from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.types import (
     PARAMETER_TYPES,
     PEERS,
-    PRIMITIVES,
     NumberType,
     Signature,
     TextType,
@@ -59,7 +59,7 @@ def parts(node: ast.Callable) -> list[Part]:
     """
     if isinstance(node, ast.FunctionDefinition):
         made = made_shape(node)
-        shape = library.load().callables[made][0].node if made and made not in PRIMITIVES else None
+        shape = library.load().callables[made][0].node if made and made not in PUBLIC else None
         return parts(shape) if isinstance(shape, ast.ShapeDefinition) else []
     if not isinstance(node, ast.ShapeDefinition | ast.Structure):
         return []
@@ -106,7 +106,7 @@ def _type(statement: ast.Assign | ast.Structure) -> str:
 
 def _is_shape(name: str) -> bool:
     known = library.load().callables.get(name)
-    return name in PRIMITIVES or (known is not None and isinstance(known[0].node, ast.ShapeDefinition))
+    return name in PUBLIC or (known is not None and isinstance(known[0].node, ast.ShapeDefinition))
 
 
 def made_shape(node: ast.FunctionDefinition) -> str | None:

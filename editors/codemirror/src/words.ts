@@ -4,7 +4,7 @@ export const words: Record<string, readonly string[]> = {
   "kinds": ["assembly", "solid", "hole", "drawing"],
   "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note"],
   "units": ["mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°"],
-  "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "peer", "peers", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "bezier", "ellipse"],
+  "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "peer", "peers", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "ellipse", "bezier"],
   "everywhere": ["self", "origin", "x_axis", "y_axis"],
   "constants": ["pi"],
   "statements": ["param", "var", "let", "fn", "shape", "constraint", "alias", "constrain", "prefer", "assert", "todo", "construction", "template", "for", "if", "import"],

@@ -13,18 +13,10 @@ from aidl_lang.building.model import Geometry, Model, Structure, convert, own_ge
 from aidl_lang.building.primitives import xy
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.values import PointVal, Value
+from aidl_lang.checking.registry import PRIMITIVES
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Vec
 
-_FIELDS = {
-    "point": ("at",),
-    "line": ("start", "end"),
-    "circle": ("center",),
-    "arc": ("center", "start", "end"),
-    "bezier": ("p0", "p1", "p2", "p3"),
-    "ellipse": ("center",),
-    "glyphs": ("start",),
-}
 MOST_PARTS = 16
 """Points of one shape; of a shape with more, only those that it is made by."""
 
@@ -112,7 +104,7 @@ def _arguments(geometry: Geometry) -> Iterator[tuple[str, PointVal]]:
 
 def _inside(geometry: Geometry, prefix: str) -> Iterator[tuple[str, PointVal]]:
     """The points of a primitive, and of the parts of a shape: named ones before the ends of edges."""
-    for name in _FIELDS.get(geometry.type, ()):
+    for name in PRIMITIVES[geometry.type].types if geometry.type in PRIMITIVES else ():
         value: Value | None = geometry.fields.get(name)
         if isinstance(value, PointVal):
             yield f"{prefix}{name}" if geometry.type != "point" else prefix.removesuffix("."), value

@@ -13,7 +13,7 @@ from aidl_lang.building.model import Condition, Geometry, Structure
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env
 from aidl_lang.building.values import Num, PointVal, Status, Text, Value
-from aidl_lang.checking.fields import PRIMITIVE
+from aidl_lang.checking.registry import PRIMITIVES
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension
 from aidl_lang.common.numbers import fixed
 from aidl_lang.common.source import Span
@@ -24,14 +24,6 @@ DECIMALS = 4
 _MOST_ITEMS = 4
 _TOLERANCE = 1e-6
 _UNITS = {LENGTH: " mm", ANGLE: "°", AREA: " mm²"}
-_FIELDS = {
-    "line": ("start", "end", "length", "angle"),
-    "arc": ("center", "radius", "start", "end", "sweep"),
-    "circle": ("center", "radius"),
-    "ellipse": ("center", "rx", "ry", "angle"),
-    "point": ("at",),
-    "glyphs": ("start", "height", "angle"),
-}
 _STATES = {
     "fully": "fully constrained",
     "under": "can still move",
@@ -155,8 +147,8 @@ def _frame(env: Env) -> str:
 
 
 def _geometry(solved: Solved, name: str, geometry: Geometry, env: Env) -> Iterator[str]:
-    fields = _FIELDS.get(geometry.type) or tuple(PRIMITIVE.get(geometry.type, ())) or geometry.arguments
-    for field in fields:
+    primitive = PRIMITIVES.get(geometry.type)
+    for field in primitive.shown if primitive is not None else geometry.arguments:
         value = solved.read(_member(geometry, field), _named(env, geometry))
         if isinstance(value, Num | PointVal):
             yield from _lines(solved, f"{name}.{field}", value, env)

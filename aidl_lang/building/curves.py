@@ -1,0 +1,267 @@
+"""Curves of the primitives in numbers that are not solved yet: what they can be asked for, what they are made
+of, and how far they reach.
+
+A curve of straight lines and cubics says what these are (`pieces`), and its box, its ends and its outline
+follow; any other says how far it reaches, and `geometry.readout` makes it of its numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeAlias
+
+from aidl_lang.building import expression as ex
+from aidl_lang.building.expression import Expression
+from aidl_lang.building.model import Geometry, Structure
+from aidl_lang.building.primitives import (
+    clockwise,
+    direction,
+    distance,
+    number,
+    on_text,
+    polar,
+    sweep,
+    view,
+    xy,
+)
+from aidl_lang.building.values import ListVal, Num, PointVal, Status, length, point
+from aidl_lang.checking.units import ANGLE
+from aidl_lang.common.lettering import box_around
+from aidl_lang.common.records import record
+
+if TYPE_CHECKING:
+    from aidl_lang.building.values import Value
+
+Piece: TypeAlias = tuple[tuple[Expression, Expression], ...]
+"""The two ends of a straight line, or the four control points of a cubic."""
+
+
+@record()
+class Formulas:
+    """What follows from the numbers that define a primitive, as a structure sees it.
+
+    field    a field by its name, beside those numbers; None if there is none
+    pieces   what its curve is made of, each piece from where the one before ends
+    reach    what may be its furthest coordinate towards a side, where it has no pieces
+    """
+
+    field: Callable[[str, Geometry, Structure], Value | None] = lambda name, g, here: None
+    pieces: Callable[[Geometry, Structure], Sequence[Piece]] | None = None
+    reach: Callable[[Geometry, Structure, str], Iterator[Expression]] = lambda g, here, side: iter(())
+
+
+def field(g: Geometry, name: str, here: Structure) -> Value | None:
+    """A field of a primitive as `here` sees it; None when it has none of that name."""
+    core = view(g, here)
+    if name in core:
+        return core[name]
+    formulas = FORMULAS.get(g.type)
+    if formulas is None:
+        return None
+    if formulas.pieces is not None and name in ("start", "end"):
+        at = 0 if name == "start" else -1
+        return point(*formulas.pieces(g, here)[at][at])
+    return formulas.field(name, g, here)
+
+
+def pieces(g: Geometry, here: Structure) -> Sequence[Piece]:
+    """What the curve of a primitive is made of; nothing where it is neither lines nor cubics."""
+    formulas = FORMULAS.get(g.type)
+    return formulas.pieces(g, here) if formulas is not None and formulas.pieces is not None else ()
+
+
+def reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
+    """Candidates for the furthest coordinate of a primitive towards a side; none of a point."""
+    formulas = FORMULAS[g.type]
+    if formulas.pieces is None:
+        return formulas.reach(g, here, side)
+    return _reach_of(formulas.pieces(g, here), side)
+
+
+def _reach_of(of: Sequence[Piece], side: str) -> Iterator[Expression]:
+    axis, positive = side in ("top", "bottom"), side in ("right", "top")
+    for piece in of:
+        along = [p[axis] for p in piece]
+        if len(along) == 2:
+            yield from along
+        else:
+            yield _cubic_extreme(along, positive)
+
+
+# --- Points and lines ------------------------------------------------------------------------------
+
+
+def _point(name: str, g: Geometry, here: Structure) -> Value | None:
+    at = view(g, here)["at"]
+    assert isinstance(at, PointVal)
+    fields: dict[str, Value] = {"x": at.x, "y": at.y, "center": at}
+    return fields.get(name)
+
+
+def _straight(g: Geometry, here: Structure) -> tuple[Piece]:
+    core = view(g, here)
+    return ((xy(core["start"]), xy(core["end"])),)
+
+
+def _line(name: str, g: Geometry, here: Structure) -> Value | None:
+    core = view(g, here)
+    start, end = core["start"], core["end"]
+    match name:
+        case "midpoint" | "center":
+            (ax, ay), (bx, by) = xy(start), xy(end)
+            return point(ex.half(ex.add(ax, bx)), ex.half(ex.add(ay, by)))
+        case "length":
+            return length(distance(start, end))
+        case "angle":
+            return _angle(direction(start, end))
+        case "dx":
+            return length(ex.sub(xy(end)[0], xy(start)[0]))
+        case "dy":
+            return length(ex.sub(xy(end)[1], xy(start)[1]))
+        case _:
+            return None
+
+
+def _angle(expression: Expression) -> Num:
+    return Num(expression, ANGLE, Status.REFERENCE)
+
+
+# --- Cubics ----------------------------------------------------------------------------------------
+
+
+def _cubic(g: Geometry, here: Structure) -> tuple[Piece]:
+    core = view(g, here)
+    return (tuple(xy(core[name]) for name in ("p0", "p1", "p2", "p3")),)
+
+
+def _cubic_extreme(controls: Sequence[Expression], positive: bool) -> Expression:
+    """The extreme of a cubic Bézier curve by one coordinate of its control points."""
+    if positive:
+        return ex.apply("cubic_max", *controls)
+    return ex.apply("neg", ex.apply("cubic_max", *[ex.apply("neg", c) for c in controls]))
+
+
+# --- Circles and arcs ------------------------------------------------------------------------------
+
+
+def _round(name: str, g: Geometry, here: Structure) -> Value | None:
+    if name == "diameter":
+        return length(ex.mul(number(view(g, here)["radius"]), ex.constant(2.0)))
+    return None
+
+
+def _circle_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
+    core, outwards = view(g, here), ex.add if side in ("right", "top") else ex.sub
+    yield outwards(xy(core["center"])[side in ("top", "bottom")], number(core["radius"]))
+
+
+def _arc(name: str, g: Geometry, here: Structure) -> Value | None:
+    core, is_clockwise = view(g, here), clockwise(g, here)
+    match name:
+        case "start_angle":
+            return _angle(direction(core["center"], core["start"]))
+        case "end_angle":
+            return _angle(direction(core["center"], core["end"]))
+        case "sweep":
+            return _angle(sweep(core, is_clockwise))
+        case "length":
+            turn = ex.mul(sweep(core, is_clockwise), ex.constant(ex.DEGREE))
+            return length(ex.mul(number(core["radius"]), turn))
+        case "midpoint":
+            middle = ex.half(sweep(core, is_clockwise))
+            start = direction(core["center"], core["start"])
+            angle = ex.sub(start, middle) if is_clockwise else ex.add(start, middle)
+            return polar(core["center"], number(core["radius"]), angle)
+        case _:
+            return _round(name, g, here)
+
+
+_TOWARDS = {"right": 0.0, "top": 90.0, "left": 180.0, "bottom": 270.0}
+
+
+def _arc_reach(arc: Geometry, here: Structure, side: str) -> Iterator[Expression]:
+    """The quadrant point if the arc passes through it, else the further end."""
+    axis, positive = side in ("top", "bottom"), side in ("right", "top")
+    core = view(arc, here)
+    first, turn = _turn(arc, here)
+    reached = ex.apply("mod", ex.sub(ex.constant(_TOWARDS[side]), first), ex.constant(360.0))
+    passes = ex.sub(turn, reached)
+    outwards = ex.add if positive else ex.sub
+    quadrant = outwards(xy(core["center"])[axis], number(core["radius"]))
+    further = "maximum" if positive else "minimum"
+    ends = ex.apply(further, xy(core["start"])[axis], xy(core["end"])[axis])
+    yield ex.apply("select", passes, quadrant, ends)
+
+
+def _turn(arc: Geometry, here: Structure) -> tuple[Expression, Expression]:
+    """Counter-clockwise, the direction in which an arc begins and its sweep, the same for all four sides."""
+    if (known := arc.turns.get(here)) is None:
+        core, is_clockwise = view(arc, here), clockwise(arc, here)
+        first = direction(core["center"], core["end" if is_clockwise else "start"])
+        known = arc.turns[here] = first, sweep(core, is_clockwise)
+    return known
+
+
+# --- Ellipses --------------------------------------------------------------------------------------
+
+
+def _ellipse_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
+    """Centre plus or minus sqrt((rx cos)^2 + (ry sin)^2), the half-width of a turned ellipse."""
+    axis, positive, core = side in ("top", "bottom"), side in ("right", "top"), view(g, here)
+    angle = number(core["angle"])
+    along, across = (ex.sin, ex.cos) if axis else (ex.cos, ex.sin)
+    half_width = ex.apply(
+        "hypot",
+        ex.mul(number(core["rx"]), along(angle)),
+        ex.mul(number(core["ry"]), across(angle)),
+    )
+    yield ex.apply("add" if positive else "sub", xy(core["center"])[axis], half_width)
+
+
+# --- Texts -----------------------------------------------------------------------------------------
+
+
+def _characters(name: str, g: Geometry, here: Structure) -> Value | None:
+    return ListVal(tuple(_single(g, i) for i in range(len(g.glyphs)))) if name == "glyph" else None
+
+
+def _single(text: Geometry, number: int) -> Geometry:
+    """One character of a text, to be measured: it is drawn with the others."""
+    return replace(text, glyphs=(text.glyphs[number],), name=f"glyph[{number}]", container=text, views={})
+
+
+def _text_reach(text: Geometry, here: Structure, side: str) -> Iterator[Expression]:
+    """Of a text that stands square to the axes, the corners of its ink; of one that is turned, what of its
+    silhouette reaches furthest, or all of that where it is not known how far it is turned.
+    """
+    if not text.glyphs:
+        return
+    at, angle = on_text(text, here), number(view(text, here)["angle"])
+    axis, positive = side in ("top", "bottom"), side in ("right", "top")
+    if angle.is_constant and angle.value % 90.0 == 0.0:
+        left, bottom, right, top = box_around(text.glyphs)
+        for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
+            yield at(corner)[axis]
+        return
+    reaching = [
+        reach[0] if len(reach) == 1 else _cubic_extreme(reach, positive)
+        for reach in ([at(p)[axis] for p in piece] for piece in text.silhouette)
+    ]
+    if angle.is_constant:
+        furthest = max if positive else min
+        yield furthest(reaching, key=lambda reach: reach.value)
+    else:
+        yield from reaching
+
+
+FORMULAS: dict[str, Formulas] = {
+    "point": Formulas(_point),
+    "line": Formulas(_line, _straight),
+    "arc": Formulas(_arc, reach=_arc_reach),
+    "circle": Formulas(_round, reach=_circle_reach),
+    "ellipse": Formulas(reach=_ellipse_reach),
+    "bezier": Formulas(pieces=_cubic),
+    "glyphs": Formulas(_characters, reach=_text_reach),
+}
+"""What each kind of the registry has of its own."""
