@@ -60,7 +60,8 @@ def _stale() -> Iterator[str]:
     pictures = {f"docs/reference/{image(entry)}" for entry in ENTRIES if entry.doc.example}
     stale += [path for path in pictures if not (ROOT / path).is_file()]
     stale += site.strays(ROOT, pictures | site.texts(ROOT).keys())
-    if coverage.headings(_read(site.COVERAGE)) != coverage.constraints():
+    page = _read(site.COVERAGE)
+    if coverage.headings(page) != coverage.constraints() or coverage.header() not in page:
         stale.append(site.COVERAGE)
     if stale:
         yield f"run `make reference`, which writes {', '.join(sorted(stale))}"

@@ -42,7 +42,8 @@ class Formulas:
     """What follows from the numbers that define a primitive, as a structure sees it.
 
     field    a field by its name, beside those numbers; None if there is none
-    pieces   what its curve is made of, each piece from where the one before ends
+    pieces   what its curve is made of, each piece from where the one before ends; what is left of a direction
+             is right of it where the primitive is `clockwise`, turned over
     reach    what may be its furthest coordinate towards a side, where it has no pieces
     """
 

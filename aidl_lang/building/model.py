@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, ClassVar
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Expression, Unknown
 from aidl_lang.building.values import Array, ListVal, Num, PointVal, members
+from aidl_lang.checking.registry import fields_of
 from aidl_lang.checking.units import MaybeDimension
 from aidl_lang.common.lettering import Curve, Glyph, silhouette
 from aidl_lang.common.records import record
@@ -24,9 +25,7 @@ from aidl_lang.syntax import ast
 if TYPE_CHECKING:
     from aidl_lang.building.values import Value
 
-SIZES = frozenset(
-    {"radius", "diameter", "width", "height", "length", "rx", "ry", "thickness", "fillet", "chamfer"}
-)
+SIZES = fields_of("size") | {"width", "thickness", "fillet", "chamfer"}
 """Names of sizes, which are never negative."""
 
 _SIZE_WORDS = SIZES | {"size", "side", "flats"}
@@ -83,13 +82,13 @@ class Frame:
 
 @record(frozen=False, eq=False)
 class Geometry:
-    """A primitive (point, line, arc, circle, bezier, ellipse) or a compound shape.
+    """A primitive (see `checking.registry`) or a compound shape.
 
     fields     what defines a primitive
     scope      names of a compound shape: its parts, arguments and lets (see scopes)
     arguments  names of the arguments of a compound shape
     parts      named geometry inside a compound shape, in order of writing
-    clockwise  for an arc; for a text, that it reads in a mirror
+    clockwise  for an arc; for anything else, that it is turned over: a text reads in a mirror
     source     what it is a copy of
     known_as   of what is copied and has no name itself, the copy
     reach      of what is derived of geometry outside of its owner, the structure that holds both

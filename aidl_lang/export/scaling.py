@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.curves import Piece, Vec, image
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.region import Face, Loop
 
@@ -56,17 +56,4 @@ class _Scale:
         return replace(loop, pieces=tuple(map(self.piece, loop.pieces)))
 
     def piece(self, piece: Piece) -> Piece:
-        k, at = self.factor, self.point
-        match piece:
-            case Line(start, end):
-                return Line(at(start), at(end))
-            case Arc(center, radius, start, end, sweep):
-                return Arc(at(center), k * radius, at(start), at(end), sweep)
-            case Circle(center, radius):
-                return Circle(at(center), k * radius)
-            case Ellipse(center, rx, ry, angle):
-                return Ellipse(at(center), k * rx, k * ry, angle)
-            case EllipseArc(center, rx, ry, angle, start, end, first, sweep):
-                return EllipseArc(at(center), k * rx, k * ry, angle, at(start), at(end), first, sweep)
-            case Bezier(p0, p1, p2, p3):
-                return Bezier(at(p0), at(p1), at(p2), at(p3))
+        return image(piece, self.point, self.factor)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
+from collections.abc import Callable
+from dataclasses import fields, replace
+from typing import Any, TypeAlias, get_args
 
 from aidl_lang.common.records import record
 
@@ -80,3 +82,27 @@ class EllipseArc:
 Curve: TypeAlias = Line | Arc | Circle | Ellipse | Bezier
 Piece: TypeAlias = Line | Arc | Circle | Ellipse | EllipseArc | Bezier
 """What the outline of a region is made of: a curve or an exact part of one."""
+
+FIELDS = {kind: tuple(field.name for field in fields(kind)) for kind in get_args(Piece)}
+"""The numbers and points of each curve by their names: what `angle` is a direction, `first` and `sweep` run
+counter-clockwise, and any other number a length.
+"""
+
+
+def image(
+    curve: Piece,
+    at: Callable[[Vec], Vec],
+    scale: float = 1.0,
+    turned: Callable[[float], float] = lambda direction: direction,
+    sense: float = 1.0,
+) -> Piece:
+    """The curve after a similarity, by what that does to points, lengths, directions and turns."""
+
+    def moved(name: str, value: Any) -> Any:
+        if isinstance(value, tuple):
+            return at(value)
+        if name == "angle":
+            return turned(value)
+        return (sense if name in ("first", "sweep") else scale) * value
+
+    return replace(curve, **{name: moved(name, getattr(curve, name)) for name in FIELDS[type(curve)]})

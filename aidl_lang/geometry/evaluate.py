@@ -7,14 +7,24 @@ its rightmost point), through the eccentric anomaly of an ellipse, and the usual
 from __future__ import annotations
 
 import math
-from dataclasses import fields, replace
+from dataclasses import replace
 from operator import attrgetter
-from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.curves import (
+    FIELDS,
+    Arc,
+    Bezier,
+    Circle,
+    Ellipse,
+    EllipseArc,
+    Line,
+    Piece,
+    Vec,
+    image,
+)
 
 TAU = 2 * math.pi
 _SAMPLES = 32
@@ -27,7 +37,7 @@ NO_LENGTH = 1e-7
 """Extent of a curve, in mm, that is none: its ends were made to meet, or its size to vanish."""
 
 
-_VALUES = {kind: attrgetter(*(f.name for f in fields(kind))) for kind in get_args(Piece)}
+_VALUES = {kind: attrgetter(*names) for kind, names in FIELDS.items()}
 
 
 def is_finite(curve: Piece) -> bool:
@@ -192,20 +202,7 @@ def inward(curve: Piece, origin: Vec, rotation: float, mirrored: bool) -> Piece:
     def turned(direction: float) -> float:
         return math.pi - (direction - angle) if mirrored else direction - angle
 
-    match curve:
-        case Line(start, end):
-            return Line(at(start), at(end))
-        case Arc(center, radius, start, end, sweep):
-            return Arc(at(center), radius, at(start), at(end), flip * sweep)
-        case Circle(center, radius):
-            return Circle(at(center), radius)
-        case Bezier(p0, p1, p2, p3):
-            return Bezier(at(p0), at(p1), at(p2), at(p3))
-        case Ellipse(center, rx, ry, axis):
-            return Ellipse(at(center), rx, ry, turned(axis))
-        case EllipseArc(center, rx, ry, axis, start, end, first, sweep):
-            turn = turned(axis)
-            return EllipseArc(at(center), rx, ry, turn, at(start), at(end), flip * first, flip * sweep)
+    return image(curve, at, turned=turned, sense=flip)
 
 
 def part(curve: Piece, t0: float, t1: float, start: Vec, end: Vec) -> Piece:

@@ -188,9 +188,14 @@ def _matrix(name: str, form: str, found: Sequence[Cell]) -> str:
     others = [k for k in KINDS if k not in firsts]
     if firsts and len(others) < 4 and works == set(product(firsts, firsts)):
         return f"{stated}: any two" + (f", but no {' and no '.join(others)}" if others else "")
-    rows = [f"| a ╲ b | {' | '.join(KINDS)} |", "|---" * (len(KINDS) + 1) + "|"]
+    rows = [header(), "|---" * (len(KINDS) + 1) + "|"]
     rows += [f"| **{a}** | {' | '.join('●' if (a, b) in works else '·' for b in KINDS)} |" for a in firsts]
     return stated + "\n\n" + "\n".join(rows)
+
+
+def header() -> str:
+    """The first row of each table."""
+    return f"| a ╲ b | {' | '.join(KINDS)} |"
 
 
 HEAD = """# What goes with what
