@@ -81,13 +81,14 @@ def reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
 
 
 def _reach_of(of: Sequence[Piece], side: str) -> Iterator[Expression]:
+    """Candidates of lines and cubics, and of single points."""
     axis, positive = side in ("top", "bottom"), side in ("right", "top")
     for piece in of:
         along = [p[axis] for p in piece]
-        if len(along) == 2:
-            yield from along
-        else:
+        if len(along) == 4:
             yield _cubic_extreme(along, positive)
+        else:
+            yield from along
 
 
 # --- Points and lines ------------------------------------------------------------------------------
@@ -239,18 +240,14 @@ def _text_reach(text: Geometry, here: Structure, side: str) -> Iterator[Expressi
     if not text.glyphs:
         return
     at, angle = on_text(text, here), number(view(text, here)["angle"])
-    axis, positive = side in ("top", "bottom"), side in ("right", "top")
     if angle.is_constant and angle.value % 90.0 == 0.0:
         left, bottom, right, top = box_around(text.glyphs)
         for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
-            yield at(corner)[axis]
+            yield at(corner)[side in ("top", "bottom")]
         return
-    reaching = [
-        reach[0] if len(reach) == 1 else _cubic_extreme(reach, positive)
-        for reach in ([at(p)[axis] for p in piece] for piece in text.silhouette)
-    ]
+    reaching = list(_reach_of([tuple(map(at, piece)) for piece in text.silhouette], side))
     if angle.is_constant:
-        furthest = max if positive else min
+        furthest = max if side in ("right", "top") else min
         yield furthest(reaching, key=lambda reach: reach.value)
     else:
         yield from reaching

@@ -15,6 +15,7 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.numbers import rounded
 from aidl_lang.common.render.data import to_dict as diagnostic_dict
 from aidl_lang.geometry.contacts import Contact
+from aidl_lang.geometry.curves import KINDS
 from aidl_lang.geometry.described import described
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.measures import Measures
@@ -180,7 +181,7 @@ def _geometry(g: SolvedGeometry) -> Json:
     """Returns a point or a curve with its numbers, anything else with its parts."""
     checkpoint()
     entry: Json = {"type": g.type}
-    if g.curve is not None or g.type == "point":
+    if g.type in KINDS or g.type == "point":
         entry |= g.values
     else:
         entry["params"] = {name: list(v) if isinstance(v, tuple) else v for name, v in g.values.items()}

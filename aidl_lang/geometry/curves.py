@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import fields, replace
-from typing import Any, TypeAlias, get_args
+from typing import Any, ClassVar, TypeAlias, get_args
 
 from aidl_lang.common.records import record
 
@@ -14,6 +14,7 @@ Vec: TypeAlias = tuple[float, float]
 
 @record(slots=True)
 class Line:
+    kind: ClassVar = "line"
     start: Vec
     end: Vec
 
@@ -25,6 +26,7 @@ class Arc:
     `end` is stored, so that chained curves share their end points to the last digit.
     """
 
+    kind: ClassVar = "arc"
     center: Vec
     radius: float
     start: Vec
@@ -38,6 +40,7 @@ class Arc:
 
 @record(slots=True)
 class Circle:
+    kind: ClassVar = "circle"
     center: Vec
     radius: float
 
@@ -46,6 +49,7 @@ class Circle:
 class Ellipse:
     """`rx` along `angle` (radians from the x axis), `ry` across it."""
 
+    kind: ClassVar = "ellipse"
     center: Vec
     rx: float
     ry: float
@@ -56,6 +60,7 @@ class Ellipse:
 class Bezier:
     """A cubic by its four control points."""
 
+    kind: ClassVar = "bezier"
     p0: Vec
     p1: Vec
     p2: Vec
@@ -69,6 +74,7 @@ class EllipseArc:
     Its points are center + R(angle) (rx cos u, ry sin u) for u from `first` to `first + sweep`.
     """
 
+    kind: ClassVar = "ellipse_arc"
     center: Vec
     rx: float
     ry: float
@@ -87,6 +93,8 @@ FIELDS = {kind: tuple(field.name for field in fields(kind)) for kind in get_args
 """The numbers and points of each curve by their names: what `angle` is a direction, `first` and `sweep` run
 counter-clockwise, and any other number a length.
 """
+
+KINDS = frozenset(kind.kind for kind in FIELDS)
 
 
 def image(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
-from aidl_lang.geometry.solved import Scalar, SolvedGeometry
+from aidl_lang.geometry.curves import FIELDS, Bezier, Piece
+from aidl_lang.geometry.solved import SolvedGeometry, Values
 
 
 def as_geometry(name: str, of: SolvedGeometry, curve: Piece, around: str = "") -> SolvedGeometry:
@@ -15,32 +15,15 @@ def as_geometry(name: str, of: SolvedGeometry, curve: Piece, around: str = "") -
     return SolvedGeometry(name, path, kind, values, curve, (), False, of.span)
 
 
-def described(curve: Piece) -> tuple[str, dict[str, Scalar | Vec | tuple[Vec, ...]]]:
+def described(curve: Piece) -> tuple[str, Values]:
     """The type and the fields of a curve."""
-    match curve:
-        case Line(start, end):
-            return "line", {"start": start, "end": end}
-        case Circle(center, radius):
-            return "circle", {"center": center, "radius": radius}
-        case Arc(center, radius, start, end, sweep):
-            return "arc", {
-                "center": center,
-                "radius": radius,
-                "start": start,
-                "end": end,
-                "clockwise": sweep < 0,
-            }
-        case Bezier(p0, p1, p2, p3):
-            return "bezier", {"points": (p0, p1, p2, p3)}
-        case Ellipse(center, rx, ry, angle):
-            return "ellipse", {"center": center, "rx": rx, "ry": ry, "angle": math.degrees(angle)}
-        case EllipseArc(center, rx, ry, angle, start, end, _, sweep):
-            return "ellipse_arc", {
-                "center": center,
-                "rx": rx,
-                "ry": ry,
-                "angle": math.degrees(angle),
-                "start": start,
-                "end": end,
-                "clockwise": sweep < 0,
-            }
+    if isinstance(curve, Bezier):
+        return curve.kind, {"points": (curve.p0, curve.p1, curve.p2, curve.p3)}
+    values: Values = {}
+    for name in FIELDS[type(curve)]:
+        value = getattr(curve, name)
+        if name == "sweep":
+            values["clockwise"] = value < 0
+        elif name != "first":
+            values[name] = math.degrees(value) if name == "angle" else value
+    return curve.kind, values

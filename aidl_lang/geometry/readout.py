@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
-from typing import TypeAlias
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.curves import pieces
@@ -43,6 +42,7 @@ from aidl_lang.geometry.solved import (
     SolvedGeometry,
     SolvedModel,
     SolvedStructure,
+    Values,
 )
 from aidl_lang.geometry.solved import Finish as SolvedFinish
 from aidl_lang.geometry.solved import Recipe as SolvedRecipe
@@ -51,7 +51,6 @@ from aidl_lang.solver.solution import Solution
 from aidl_lang.syntax import ast
 
 _FULL_TURN = 2 * math.pi
-Values: TypeAlias = dict[str, Scalar | Vec | tuple[Vec, ...]]
 
 
 def read_out(

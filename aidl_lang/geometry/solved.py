@@ -16,6 +16,7 @@ from aidl_lang.geometry.curves import Arc, Circle, Piece, Vec
 from aidl_lang.syntax import ast
 
 Scalar: TypeAlias = float | int | bool | str
+Values: TypeAlias = dict[str, Scalar | Vec | tuple[Vec, ...]]
 
 
 @record()
@@ -88,7 +89,7 @@ class SolvedGeometry:
     name: str
     path: str
     type: str
-    values: dict[str, Scalar | Vec | tuple[Vec, ...]]
+    values: Values
     curve: Piece | None
     parts: tuple[SolvedGeometry, ...]
     construction: bool

@@ -6,7 +6,8 @@ import math
 from typing import NamedTuple
 
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Curve, Ellipse, Line, Vec
+from aidl_lang.geometry.curves import Arc, Circle, Curve, Line, Vec
+from aidl_lang.geometry.described import described
 from aidl_lang.geometry.evaluate import bounds
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import Box, Frame, Scalar, SolvedGeometry, SolvedModel, SolvedStructure
@@ -31,19 +32,8 @@ class Stated(NamedTuple):
 def primitive(
     name: str, curve: Curve, construction: bool = False, span: Span | None = None
 ) -> SolvedGeometry:
-    values: dict[str, Scalar | Vec | tuple[Vec, ...]] = {}
-    match curve:
-        case Line(start, end):
-            values = {"start": start, "end": end}
-        case Circle(center, radius):
-            values = {"center": center, "radius": radius}
-        case Arc(center, radius, start, end, sweep):
-            values = {"center": center, "radius": radius, "start": start, "end": end, "clockwise": sweep < 0}
-        case Ellipse(center, rx, ry, angle):
-            values = {"center": center, "rx": rx, "ry": ry, "angle": math.degrees(angle)}
-        case Bezier(p0, p1, p2, p3):
-            values = {"points": (p0, p1, p2, p3)}
-    return SolvedGeometry(name, name, type(curve).__name__.lower(), values, curve, (), construction, span)
+    kind, values = described(curve)
+    return SolvedGeometry(name, name, kind, values, curve, (), construction, span)
 
 
 def compound(name: str, *curves: Curve, type_: str = "polygon") -> SolvedGeometry:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Vec
+from aidl_lang.geometry.curves import FIELDS, Arc, Circle, Ellipse, Vec
 from aidl_lang.geometry.evaluate import point
 from aidl_lang.geometry.solved import SolvedGeometry
 
@@ -194,18 +194,12 @@ def _places(g: SolvedGeometry) -> list[Vec]:
     """Returns points that fix the place and direction of a primitive; the middle of an arc fixes its way
     round.
     """
-    match g.curve:
-        case Line(start, end):
-            return [start, end]
-        case Circle(center) | Ellipse(center):
-            return [center]
-        case Arc(center, _, start, end) as arc:
-            return [center, start, end, point(arc, 0.5)]
-        case Bezier(p0, p1, p2, p3):
-            return [p0, p1, p2, p3]
-        case _:
-            at = g.values.get("at")
-            return [] if at is None else [at]  # type: ignore[list-item]
+    if g.curve is None:
+        at = g.values.get("at")
+        return [] if at is None else [at]  # type: ignore[list-item]
+    found = [getattr(g.curve, name) for name in FIELDS[type(g.curve)]]
+    middle = [point(g.curve, 0.5)] if isinstance(g.curve, Arc) else []
+    return [each for each in found if isinstance(each, tuple)] + middle
 
 
 def _radii(g: SolvedGeometry) -> tuple[float, ...]:
