@@ -230,7 +230,7 @@ def _structure(
             yield from _structure(child, here, side, ignored)
 
 
-def _curve(primitive: Geometry, here: Structure, side: str) -> Iterator[Expression]:
+def _curve(primitive: Geometry, here: Structure, side: str) -> Iterable[Expression]:
     """Candidates for the extreme of one curve towards a side."""
     if primitive.recipe is not None and primitive.is_drawn_later:
         return _made(primitive, primitive.recipe, here, side)

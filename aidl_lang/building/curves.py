@@ -7,7 +7,7 @@ follow; any other says how far it reaches, and `geometry.readout` makes it of it
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -72,7 +72,7 @@ def pieces(g: Geometry, here: Structure) -> Sequence[Piece]:
     return formulas.pieces(g, here) if formulas is not None and formulas.pieces is not None else ()
 
 
-def reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
+def reach(g: Geometry, here: Structure, side: str) -> Iterable[Expression]:
     """Candidates for the furthest coordinate of a primitive towards a side; none of a point."""
     formulas = FORMULAS[g.type]
     if formulas.pieces is None:
@@ -80,15 +80,14 @@ def reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
     return _reach_of(formulas.pieces(g, here), side)
 
 
-def _reach_of(of: Sequence[Piece], side: str) -> Iterator[Expression]:
-    """Candidates of lines and cubics, and of single points."""
+def _reach_of(of: Iterable[Piece], side: str) -> list[Expression]:
+    """Candidates of lines, cubics and single points."""
     axis, positive = side in ("top", "bottom"), side in ("right", "top")
+    found: list[Expression] = []
     for piece in of:
         along = [p[axis] for p in piece]
-        if len(along) == 4:
-            yield _cubic_extreme(along, positive)
-        else:
-            yield from along
+        found += [_cubic_extreme(along, positive)] if len(along) == 4 else along
+    return found
 
 
 # --- Points and lines ------------------------------------------------------------------------------
@@ -245,7 +244,7 @@ def _text_reach(text: Geometry, here: Structure, side: str) -> Iterator[Expressi
         for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
             yield at(corner)[side in ("top", "bottom")]
         return
-    reaching = list(_reach_of([tuple(map(at, piece)) for piece in text.silhouette], side))
+    reaching = _reach_of((tuple(map(at, piece)) for piece in text.silhouette), side)
     if angle.is_constant:
         furthest = max if side in ("right", "top") else min
         yield furthest(reaching, key=lambda reach: reach.value)

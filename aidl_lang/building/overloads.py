@@ -10,13 +10,14 @@ from aidl_lang.building.state import Interpreter
 from aidl_lang.building.values import Namespace, Text, Value, kind_of, type_of
 from aidl_lang.checking.binding import select
 from aidl_lang.checking.builtins import CUTS, DERIVING, OUTLINES, PATTERNS, is_word
+from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.resolving.cuts import meant
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
-from aidl_lang.checking.types import ANY, PRIMITIVES, Binding, Given, Mismatch, Signature, Type, with_article
+from aidl_lang.checking.types import ANY, Binding, Given, Mismatch, Signature, Type, with_article
 from aidl_lang.syntax import ast
 
 _NO_NAMES: Mapping[ast.Node, Symbol] = {}
-_DRAWING = PATTERNS.union(PRIMITIVES)
+_DRAWING = PATTERNS.union(PUBLIC)
 
 
 class Site:
