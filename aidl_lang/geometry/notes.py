@@ -8,7 +8,6 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import lru_cache
 
-from aidl_lang.checking.registry import PRIMITIVES
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.numbers import rough
 from aidl_lang.common.prose import did_you_mean, named
@@ -190,11 +189,9 @@ def _gap(finding: LooseCurves, network: Network) -> tuple[End, End] | None:
 
 def _end(structure: SolvedStructure, end: End) -> str:
     geometry, _, name = end
-    primitives = (g for top in structure.geometry for g in top.walk() if g.type in PRIMITIVES)
-    whole = next((g for g in primitives if geometry.path in [part.path for part in g.parts]), None)
-    if whole is not None:  # what it is made of has no name
-        geometry = whole
-    elif isinstance(geometry.curve, Bezier):
+    if geometry.piece_of:
+        return f"{geometry.piece_of.removeprefix(structure.path + '.')}.{name}"
+    if isinstance(geometry.curve, Bezier):
         name = {"start": "p0", "end": "p3"}[name]
     return f"{local(structure, geometry)}.{name}"
 

@@ -378,7 +378,7 @@ def _edge(of: Geometry, path: str, points: Sequence[Vec]) -> SolvedGeometry:
     curve = _through(points)
     kind, values = described(curve)
     name, whole = path.rpartition(".")[2], f"{of.path}.{path}"
-    return SolvedGeometry(name, whole, kind, values, curve, (), of.construction, of.span)
+    return SolvedGeometry(name, whole, kind, values, curve, (), of.construction, of.span, piece_of=of.path)
 
 
 def _through(points: Sequence[Vec]) -> curves.Line | curves.Bezier:

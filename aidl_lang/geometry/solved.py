@@ -84,6 +84,7 @@ class SolvedGeometry:
     recipe  how the curves of an outline come from others
     source  the path of what it is a copy of
     attributes  name → argument values as written: `note`, and in a drawing `color`
+    piece_of  the path of the primitive that is made of it: it has no name by itself
     """
 
     name: str
@@ -97,6 +98,7 @@ class SolvedGeometry:
     recipe: Recipe | None = None
     source: str | None = None
     attributes: dict[str, tuple[Scalar, ...]] = field(default_factory=dict)
+    piece_of: str | None = None
 
     def walk(self) -> Iterator[SolvedGeometry]:
         """Yields this geometry and all its parts."""
