@@ -82,7 +82,7 @@ def _timed(case: Case, times: int) -> tuple[Solution, float]:
 
 
 def _told(case: Case, solution: Solution) -> dict[str, Any]:
-    """What is told of a solution, in plain values; a residual that is not finite is None."""
+    """Returns a solution as plain values for JSON; a residual that is not finite is None."""
     names, freedom = case.problem.names, analyse(case.problem, solution)
 
     def tags(indices: Iterable[int]) -> list[str]:
@@ -124,7 +124,7 @@ def _stages(case: Case, solution: Solution) -> list[dict[str, Any]]:
 
 
 def _lines(told: dict[str, Any]) -> Iterator[str]:
-    """What is told, for people."""
+    """Yields the lines of the report for people."""
     yield told["status"]
     if told["degrees"] is not None:
         yield f"degrees of freedom: {told['degrees']}"

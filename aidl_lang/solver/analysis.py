@@ -1,4 +1,4 @@
-"""What is left to move, and what was said twice: degrees of freedom, motions, redundant constraints.
+"""Degrees of freedom, motions and redundant constraints of a solved problem.
 
 A motion is a direction in the null space of the Jacobian of the equations that hold, over all unknowns that
 are not kept sizes. Only what can be seen counts: degrees of freedom are the rank of the observables'
@@ -29,7 +29,7 @@ SINGULAR = 1e-7
 
 
 class State(StrEnum):
-    """How a group and all below it is constrained."""
+    """State of the constraints of a group and all groups below it."""
 
     FULLY = "fully"
     UNDER = "under"
@@ -39,7 +39,7 @@ class State(StrEnum):
     CONTRADICTORY = "contradictory"
     """One of its constraints does not hold."""
     UNKNOWN = "unknown"
-    """It could not be told."""
+    """Its degrees of freedom could not be counted."""
 
 
 @record()
@@ -68,9 +68,10 @@ class Freedom:
 
 
 def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = None) -> Freedom:
-    """What the hard constraints that hold leave open, to the first order at the solution.
+    """Returns the degrees of freedom that the hard constraints leave which hold, to the first order at the
+    solution.
 
-    order  of the constraints: what follows from others is told of the latest
+    order  of the constraints: of several that depend on each other the latest counts as redundant
     """
     hard = np.isnan(problem.weight)
     satisfied = np.array(solution.satisfied, dtype=np.bool_)
@@ -112,7 +113,7 @@ def _equal_rows(problem: Problem, holding: Bools, order: Sequence[int] | None) -
 
 
 def _equations(problem: Problem, equal: Ints, slopes: Sparse) -> tuple[Equations, list[int]]:
-    """Returns the equations that have a slope, and the constraints that consist of nothing else."""
+    """Returns the equations that have a slope, and the constraints all of whose rows are among them."""
     rows = problem.rows
     matrix = slopes.scaled(1.0 / rows.scale[equal], problem.scale)
     lengths = matrix.lengths()
@@ -130,7 +131,7 @@ def _equations(problem: Problem, equal: Ints, slopes: Sparse) -> tuple[Equations
 def _mobility(
     problem: Problem, riding: Riding, rows: Sparse, clear: Bools, seen: Sparse, places: Floats
 ) -> Mobility:
-    """What can move, with the equations `rows`, of which those that are `clear` are known to be independent.
+    """Counts the motions that the equations `rows` leave; rows that are `clear` are known to be independent.
 
     seen  the gradients of what is observed, `places` its values
     """
@@ -152,8 +153,8 @@ def _mobility(
 
 
 def _distinct(matrix: Sparse) -> tuple[Ints, Ints]:
-    """Returns the first of all rows that are equal, and for each row its place among these; -1 for an empty
-    one.
+    """Returns the first of each set of equal rows, and for each row the place of its set in this list; -1 for
+    an empty row.
     """
     known: dict[tuple[object, ...], int] = {}
     firsts: list[int] = []

@@ -1,4 +1,4 @@
-"""From rows of the tape to programs on arrays: branches chosen, what varies told from what does not.
+"""Makes programs on arrays of rows of the tape: chooses branches, separates what varies from what does not.
 
 The counterpart of `freezing` for large systems.
 """
@@ -24,12 +24,14 @@ TIE = 1e-9
 ALIKE = 1e-12
 """Relative difference of slopes that is rounding alone."""
 FIRST = np.ones(1, dtype=np.bool_)
-"""Whether the first of some numbers differs from the one before."""
+"""The mask of the first of some numbers, which always differs from the one before."""
 
 
 @record()
 class _Layout:
-    """steps; rows and nodes of the pairs above the unknowns; row and unknown of each entry"""
+    """The layout of a sweep: its steps; rows and nodes of the pairs above the unknowns; row and unknown of
+    each entry.
+    """
 
     steps: list[Step]
     rows: Ints
@@ -84,7 +86,7 @@ class ArrayFreezing:
 
     @property
     def knows_all_values(self) -> bool:
-        """Whether every value follows from the unknowns of a program, whatever the others were."""
+        """True if every value follows from the unknowns of a program, whatever the others were."""
         return not len(self._branching) and bool(self._varies[self._ops > Op.UNKNOWN].all())
 
     def varies(self, roots: Ints) -> Bools:
@@ -142,7 +144,7 @@ class ArrayFreezing:
 
     @cached_property
     def _plain(self) -> Bools:
-        """Whether each node (m,) is an affine function of the free unknowns that branches have no part in.
+        """The mask (m,) of nodes that are affine functions of the free unknowns whatever branches are taken.
 
         The least of several coordinates of one rigid part is such a function, as all of them move alike: two
         branches are taken for one if they change alike in a direction in which no two unknowns change alike.
@@ -173,7 +175,7 @@ class ArrayFreezing:
         return layout.row, layout.unknown
 
     def program(self, roots: Ints) -> ArrayProgram:
-        """Returns the rows at these nodes (r,), each of which varies."""
+        """Returns the program of the rows at these nodes (r,), each of which varies."""
         layout = self._lay_out(roots)
         count, width = len(self._values), len(self._free)
         nodes = _distinct(layout.nodes, count)
@@ -207,7 +209,9 @@ class ArrayFreezing:
         return Graph(self._ops, self._operands, self._levels).batches(nodes)
 
     def _lay_out(self, roots: Ints) -> _Layout:
-        """Returns the pairs of a row and a node below it that varies; remembered for the last roots."""
+        """Returns the layout of the pairs of a row and a node below it that varies; remembers that of the
+        last roots.
+        """
         if self._laid_out is None or not np.array_equal(self._laid_out[0], roots):
             self._laid_out = roots, self._find_pairs(roots)
         return self._laid_out[1]
@@ -300,8 +304,8 @@ def _distinct(numbers: Ints, count: int) -> Ints:
 
 
 def _slope(batch: Batch, values: Floats, slopes: Floats) -> tuple[Floats, Bools]:
-    """Returns the slope of each node in the direction of which `slopes` has those of its operands, and
-    whether it is the same everywhere.
+    """Returns the slope of each node along the direction in which `slopes` has those of its operands, and a
+    mask of the nodes whose slope is the same everywhere.
     """
     op, operands = batch.op, batch.operands
     inner = [slopes[a] for a in operands]

@@ -23,7 +23,7 @@ DENSE = 4096
 CANCELLED = 1e-13
 """A sum this small beside its terms is what rounding has left of zero."""
 IDENTITY = 40
-"""What a branching node becomes once its branch is chosen; beyond the codes of `Op`."""
+"""The code of a branching node whose branch is chosen; beyond the codes of `Op`."""
 
 
 @record()
@@ -78,7 +78,7 @@ class ArrayProgram:
         return len(self.roots), len(self.columns)
 
     def residuals(self, x: Floats) -> Floats:
-        """Returns the r rows at the k unknowns `x`."""
+        """Returns the values (r,) of the rows at the unknowns `x` (k,)."""
         values = self._values
         values[self._inputs] = x
         with np.errstate(all="ignore"):

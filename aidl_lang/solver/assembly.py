@@ -14,16 +14,16 @@ from aidl_lang.solver.program import Program, Sweep
 from aidl_lang.solver.valuation import compiled
 
 SUM = -1
-"""The operation of a recipe that is a sum."""
+"""Operation code of a recipe that is a sum."""
 NUMBER = -2
-"""The operation of a recipe that is a number."""
+"""Operation code of a recipe that is a number."""
 UNUSED = 0
 """Weight that is written for operands without a free unknown and never read."""
 
 
 @record(slots=True)
 class Recipe:
-    """How the value of a slot comes from those of others: an operation, or a sum with these slopes.
+    """The computation of a slot from others: an operation, or a sum with these slopes.
 
     inputs  the free unknowns that it depends on
     """

@@ -23,12 +23,14 @@ from aidl_lang.solver.operations import Bools, Floats, Ints
 STEPS = 80
 """Evaluations of all systems, at the most."""
 PULLING = 1e-9
-"""How far a multiplier may be on the wrong side by rounding, relative to the greatest."""
+"""Part of the greatest multiplier by which another may have the wrong sign through rounding."""
 
 
 @record()
 class Scaling:
-    """Of the program's columns: origin, scale (k,), longest (k,) or None; of its rows: row_scale (r,)."""
+    """Units of a program: origin, scale (k,), longest (k,) or None of its columns; row_scale (r,) of its
+    rows.
+    """
 
     origin: Floats
     scale: Floats
@@ -38,8 +40,8 @@ class Scaling:
 
 @record()
 class Systems:
-    """To which system each row (r,) and each column (k,) of a program belongs, which are to be solved, and
-    whether each has as many rows as columns.
+    """The division of a program into systems: the system of each row (r,) and of each column (k,), the
+    systems that are `wanted`, and `square` if each has as many rows as columns.
     """
 
     of_row: Ints
@@ -56,8 +58,8 @@ def solve(
     tolerance: float,
     clock: Clock,
 ) -> tuple[Floats, Bools, Bools]:
-    """Returns the values (k,) of all columns, and which systems were solved; the values of others mean
-    nothing. Then the systems whose linear equations contradict each other at once, in any branch.
+    """Returns the values (k,) of all columns, the mask of systems that were solved (values of others mean
+    nothing), and the mask of those whose linear equations contradict each other in any branch.
     """
     stacks = list(_stacks(program, systems, at_most))
     x = scaling.origin.copy()
@@ -84,7 +86,7 @@ def solve(
 
 
 def _stacks(program: ArrayProgram, systems: Systems, at_most: Bools) -> Iterator[_Stack]:
-    """Yields the wanted systems by shape."""
+    """Yields the wanted systems stacked by shape."""
     count = len(systems.wanted)
     rows_of = np.bincount(systems.of_row, minlength=count)
     columns_of = np.bincount(systems.of_column, minlength=count)
@@ -149,16 +151,18 @@ class _Stack:
         self.out_of_reach = np.zeros(count, dtype=np.bool_)
         self.polishing = np.zeros(count, dtype=np.bool_)
         self.promised = np.full(count, np.inf)
-        """What the squares of the residuals may be at most after the last step."""
+        """The greatest sum of squared residuals allowed after the last step."""
         self.before: tuple[Floats, Floats] | None = None
-        """Where the last polishing step began, and the step."""
+        """The start of the last polishing step, and the step."""
 
     @property
     def settled(self) -> bool:
         return bool((self.done | self.failed).all())
 
     def advance(self, residuals: Floats, entries: Floats, tolerance: float, limit: Floats | None) -> None:
-        """One step of each system that is not settled, from the residuals and derivatives where it is."""
+        """Takes one step of each system that is not settled, from the residuals and derivatives at its
+        place.
+        """
         b, m = self.rows.shape
         k = self.columns.shape[1]
         jacobian = np.zeros(b * m * k)
@@ -197,7 +201,7 @@ class _Stack:
         self.promised = np.where(which, (1.0 - GAIN) * squares, self.promised)
 
     def _polish(self, which: Bools, point: Floats, jacobian: Floats) -> None:
-        """Towards the projection of the origin, with a step of Anderson's method of memory one."""
+        """Steps towards the projection of the origin, by Anderson's method of memory one."""
         step = np.where(which[:, None], point - self.z, 0.0)
         size = 1.0 + np.abs(self.z).max(axis=1)
         still = which & (np.abs(step).max(axis=1) <= POLISHED * size)
@@ -220,8 +224,8 @@ class _Stack:
             self.failed |= still & ~pushing
 
     def _push(self, jacobian: Floats) -> Bools:
-        """Tells whether the inequalities of each system keep it from being nearer; those that do not are not
-        met with equality.
+        """Returns the mask of systems whose inequalities all push against the nearest point; fails the
+        others, in which some inequality is not met with equality.
         """
         multipliers = -np.einsum("bkm,bk->bm", np.linalg.pinv(jacobian), self.z)
         slack = PULLING * (1.0 + np.abs(multipliers).max(axis=1))

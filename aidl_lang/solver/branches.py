@@ -1,4 +1,4 @@
-"""One attempt: chosen rows over chosen unknowns, with `min`, `max`, `abs` and `select` in them.
+"""An attempt to satisfy chosen rows over chosen unknowns, with `min`, `max`, `abs` and `select` in them.
 
 Branching operations are replaced by the branch active at the current values, the smooth system that is left
 is solved, and the result is judged by the original expressions (paper, appendix B). Where a branch was
@@ -33,11 +33,11 @@ TIGHTER = 0.5
 LAZY_ROUNDS = 4
 """Rounds of adding violated inequalities before all of them are taken into account."""
 NEIGHBOURS = 12
-"""Combinations of other branches tried as a last resort, for each perturbed start that the stage is worth."""
+"""Combinations of other branches tried as a last resort, per perturbed start of the stage."""
 SURE = 6
-"""Combinations after which it is asked whether it can be shown that none would do."""
+"""Combinations after which a proof is sought that none would do."""
 DEEPEST = 6
-"""Branches that are turned together at most."""
+"""The most branches that are turned together."""
 SHARE = 1e-7
 """Part of the greatest factor below which a row has no part in a contradiction."""
 
@@ -61,7 +61,7 @@ class Task:
 
 @record()
 class Verdict:
-    """How an attempt ended.
+    """The result of an attempt.
 
     violation  the greatest scaled violation of a hard row at the values that were left
     proof      for rows by their number in the task, factors with which their sum is the same wherever the
@@ -82,7 +82,9 @@ class Verdict:
 
 
 def violation_of(row: Row, values: Valuation) -> float:
-    """How far the row is from holding, in its own units; infinite if it has no value."""
+    """Returns the violation of a row at the current values, in the row's units; infinite if it has no
+    value.
+    """
     value = values.nodes[row.expression]
     violation = max(value, 0.0) if row.relation is Relation.AT_MOST else abs(value)
     return violation if violation == violation else np.inf
@@ -94,7 +96,7 @@ def holds(row: Row, values: Valuation, tolerance: float) -> bool:
 
 @record()
 class Metric:
-    """How changes are measured, each (n,).
+    """The units of changes, each (n,).
 
     scale    length of a change that counts as one
     unit     the same without regard to what is kept
@@ -126,7 +128,7 @@ class _Attempt:
         self.blamed: dict[int, float] = {}
         """The rows that contradicted each other in the last branch, with their factors."""
         self.steady = True
-        """Whether none of them hangs on a choice of branches."""
+        """True if none of the blamed rows hangs on a choice of branches."""
 
     @cached_property
     def freezer(self) -> Freezer:
@@ -176,7 +178,9 @@ class _Attempt:
     def _solve_in_branch(
         self, base: list[float], flipped: frozenset[int]
     ) -> tuple[Verdict, tuple[Branch, ...], bool]:
-        """Solves with the branches active at `base`; says which, and whether the result lies in others."""
+        """Solves with the branches active at `base`; returns these branches too, and whether the result lies
+        in others.
+        """
         region: list[Root] = []
         outside: tuple[list[float], Verdict] | None = None
         choice = self.freezer.choice(flipped)
@@ -203,7 +207,7 @@ class _Attempt:
             return verdict, frozen.branches, False
 
     def _crossed(self, branches: tuple[Branch, ...]) -> tuple[bool, list[Root]]:
-        """Whether other branches are active now, and the expressions that were <= 0 before that."""
+        """Returns whether other branches are active now, and the expressions that were <= 0 before that."""
         crossed, border = False, []
         for node, choice in branches:
             op, operands = self.values.tape.op_list[node], self.values.tape.operand_lists[node]
@@ -221,9 +225,9 @@ class _Attempt:
         return (0.0 if a == ZERO else nodes[a]) - nodes[b]
 
     def _try_neighbours(self, verdict: Verdict) -> Verdict:
-        """The last resort: a branching node takes its other branch, then another with it. A branch that has
-        no part in what contradicts itself would not help, so only those below the rows to blame are turned;
-        those that decide most about them (the outermost) come first.
+        """Turns branching nodes to their other branch, one and then several together, as the last resort. A
+        branch that has no part in what contradicts itself would not help, so only those below the rows to
+        blame are turned; those that decide most about them (the outermost) come first.
         """
         reached, blamed = self._current(), self.blamed
         proof = self._proof_without_branches()
@@ -271,14 +275,14 @@ class _Attempt:
         return nodes
 
     def _is_refuted(self) -> bool:
-        """Tells whether it is shown that no branches would help."""
+        """Tells whether a proof exists that no branches would help."""
         from aidl_lang.solver.refuting import is_refuted
 
         return is_refuted(self.values, self.task.rows, self.free, self.settings.tolerance)
 
     def _proof_without_branches(self) -> Mapping[int, float] | None:
-        """Nothing if the rows that no other branch could help can be met by themselves; else why not, or None
-        if that is not known or if there are no other rows.
+        """Returns an empty proof if the rows that hang on no branch can be met by themselves, else the proof
+        that they cannot; None if neither is known or if all rows are such.
         """
         self._move_to(self.origin)
         rows, softness = self.task.rows, self.task.softness
@@ -295,7 +299,7 @@ class _Attempt:
     # -- solving with fixed branches
 
     def _solve(self, frozen: Frozen, base: list[float], restarts: int) -> End:
-        """Solves each program by itself and moves to the result; the worst end of them."""
+        """Solves each program by itself and moves to the result; returns the worst end of them."""
         ends = [End.CONVERGED]
         self.blamed, self.steady = {}, True
         if failing := self._failing_constants(frozen):
@@ -360,7 +364,7 @@ class _Attempt:
         return outcome.end
 
     def _blame(self, frozen: Frozen, factors: Mapping[int, float]) -> None:
-        """Notes rows that contradict each other; what hangs on no branch is worth more than what does."""
+        """Notes rows that contradict each other; rows that hang on no branch replace rows that do."""
         count = len(self.considered)
         steady = frozen.steady.issuperset(factors) and max(factors) < count
         if not self.blamed or (steady and not self.steady):
@@ -368,7 +372,7 @@ class _Attempt:
             self.steady = steady
 
     def _failing_constants(self, frozen: Frozen) -> list[int]:
-        """Returns the hard rows that no free unknown moves and that do not hold as they are."""
+        """Returns the hard rows that no free unknown moves and that do not hold."""
         return [
             i
             for i in frozen.constant
@@ -410,7 +414,7 @@ class _Attempt:
 
 
 def _border(op: int, operands: tuple[int, ...], choice: int) -> Root:
-    """What is <= 0 as long as a branching node takes the branch `choice`."""
+    """Returns the expression that is <= 0 as long as a branching node takes the branch `choice`."""
     if op == Op.SELECT:
         return (ZERO, operands[0]) if choice == 1 else operands[0]
     if op == Op.ABS:

@@ -1,4 +1,4 @@
-"""What hangs together in a graph."""
+"""Connected components of graphs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ EDGES = 3000
 
 
 def components(a: Ints, b: Ints, count: int) -> Ints:
-    """To which component each of `count` vertices belongs, numbered from 0, where edges (e,) link a and b."""
+    """Returns the component of each of `count` vertices, numbered from 0; edges (e,) link `a` and `b`."""
     if len(a) > EDGES:
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
@@ -24,7 +24,7 @@ def components(a: Ints, b: Ints, count: int) -> Ints:
 
 
 def connected(a: Ints, b: Ints, count: int) -> Ints:
-    """For each of `count` vertices the least one that it hangs together with, by edges (e,) from a to b."""
+    """Returns the least vertex of the component of each of `count` vertices; edges (e,) link `a` and `b`."""
     lowest = np.arange(count)
     while True:
         below, above = np.minimum(lowest[a], lowest[b]), np.maximum(lowest[a], lowest[b])

@@ -1,4 +1,4 @@
-"""Which constraints of a failed group cannot hold together, each of them needed.
+"""Finds the constraints of a failed group that cannot hold together, each of them needed for that.
 
 What is refuted (`refuting`) is so for good. Else the suspects are named by the place where the search stalled
 (`suspects`). If they fail together they are reduced until each is needed: without any one of them the others
@@ -33,9 +33,9 @@ WORK = 60_000
 SECONDS = 2.0
 """Time for one explanation, should the budget not be spent by then."""
 PATIENCE = 4.0
-"""Seconds after the first failure for which explanations are sought at all."""
+"""Seconds after the first failure during which explanations are sought."""
 RINGS = 3
-"""Times that the neighbours of what is furthest off are taken in."""
+"""The number of times that the neighbours of the worst constraint are taken in."""
 RESTARTS = 2
 """Perturbed starts for each set that is tried."""
 THOROUGH = 5
@@ -45,19 +45,21 @@ CURVED = 1e-6
 STARTS = 32
 """Other places in which the search for a set begins before it is called contradictory."""
 FIRST = 8
-"""The same for all constraints, before any are looked for that conflict."""
+"""Starts for all constraints together, before a conflict among them is sought."""
 LONGEST = 1.0
 """Seconds for these searches."""
 COSTLY = 4000
 """Work of one attempt beyond which all constraints are not tried in other places."""
 SPREADS = (0.3, 1.0, 3.0)
-"""How far from the first guesses these are, in sizes of the drawing."""
+"""Distances of these places from the first guesses, in sizes of the drawing."""
 SEED = 1
 
 
 @record()
 class _Trial:
-    """How an attempt ended, the values of the free unknowns there, and the greatest violation."""
+    """The result of a search: how it ended, the values of the free unknowns there, and the greatest
+    violation.
+    """
 
     end: End
     reached: dict[int, float]
@@ -76,9 +78,8 @@ def explain(
     before: dict[int, float],
     best: dict[int, float],
 ) -> GroupFailure:
-    """Why the constraints of `scope` cannot hold with its unknowns free, starting from `before`.
-
-    `best` is the closest that the stages came.
+    """Explains why the constraints of `scope` cannot hold with its unknowns free, starting from `before`.
+    `best` are the values of the stage that came closest.
     """
     hierarchy.values.assign(best.items())
     unmet = tuple(_Search.member(hierarchy, index) for index in violated)
@@ -90,8 +91,8 @@ def explain(
 
 
 def conflict(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) -> tuple[list[int], bool]:
-    """Returns a set among the constraints of `scope` that cannot hold together with its unknowns free,
-    starting from `before`, and whether it is known to be minimal; an empty set if all of them can.
+    """Returns a set of constraints of `scope` that cannot hold together with its unknowns free, starting from
+    `before` (empty if all can), and whether it is known to be minimal.
     """
     hierarchy.values.assign(before.items())
     search = _Search(hierarchy, scope, before)
@@ -156,7 +157,7 @@ class _Search:
         )
 
     def _found(self, group: int, failing: Sequence[int], place: _Trial) -> GroupFailure:
-        """Returns a failure of constraints that hold in another place."""
+        """Returns the failure of constraints that hold in another place."""
         hierarchy = self.hierarchy
         hierarchy.values.assign(self.before.items())
         members = tuple(self.member(hierarchy, index) for index in failing)
@@ -171,8 +172,8 @@ class _Search:
         )
 
     def _nearest(self, conflict: Sequence[int], best: _Trial, starts: int) -> _Trial:
-        """Returns the best of searches from many places: where the constraints hold after all, if one finds
-        that, with no kept size changed if possible.
+        """Returns the best of searches from many places: one where the constraints hold, if any finds it,
+        with no kept size changed if possible.
         """
         hierarchy, clock = self.hierarchy, Clock(min(LONGEST, self.hierarchy.clock.left / 2.0))
         mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, conflict))
@@ -212,7 +213,7 @@ class _Search:
     # -- the set
 
     def _conflict(self, best: dict[int, float], refuted: list[int]) -> list[int]:
-        """Returns a set that cannot hold together, found among those that are `refuted` if there are any;
+        """Returns a set that cannot hold together, taken from those that are `refuted` if there are any;
         minimal unless the budget was spent.
         """
         if refuted:
@@ -223,22 +224,24 @@ class _Search:
         return self._needed(found)
 
     def _needed(self, found: list[int]) -> list[int]:
-        """Returns a smallest part of a set that fails which still does, or what was left of it as the budget
-        was spent.
+        """Returns a smallest part of a failing set that still fails, or what was left of the set when the
+        budget was spent.
         """
         if self._relaxation(found).is_tight:
             return sorted(found)
         return needed(found, lambda part: self._spent or self._holds(part))
 
     def _refuted(self, constraints: Sequence[int]) -> list[int]:
-        """Constraints among these that are shown never to hold together; none if that cannot be shown."""
+        """Returns constraints among these that are proved never to hold together; empty if there is no
+        proof.
+        """
         relaxation = self._relaxation(constraints)
         owner = [index for index in constraints for _ in self.hierarchy.rows([index])]
         return sorted({owner[row] for row in relaxation.smallest()})
 
     def _gaps(self, conflict: Sequence[int]) -> tuple[tuple[int, float], ...]:
-        """What the members of a conflict that are one row come to where the others hold; none if that is not
-        known.
+        """Returns the residual of each member of a conflict that is one row where the others hold; empty if
+        that is not known.
         """
         owner = [index for index in conflict for _ in self.hierarchy.rows([index])]
         gaps = self._relaxation(conflict).gaps()
@@ -252,7 +255,7 @@ class _Search:
         return Relaxation(hierarchy.values, rows, self.scope.free, hierarchy.settings.tolerance)
 
     def _candidates(self, best: dict[int, float]) -> Iterator[list[int]]:
-        """Sets that may fail, those first that are likely to be small."""
+        """Yields sets that may fail, first those that are likely to be small."""
         hierarchy, scope = self.hierarchy, self.scope
         hierarchy.values.assign(best.items())
         accused = suspects(hierarchy, scope.constraints, scope.free)
@@ -265,8 +268,8 @@ class _Search:
         return self.hierarchy.unmet(self.scope.constraints)
 
     def _around(self, best: dict[int, float]) -> Iterator[list[int]]:
-        """Yields the constraint that is furthest off and those that share free unknowns with it, then those
-        that do with these, and so on while they are few.
+        """Yields growing sets: the constraint that is furthest off with those that share free unknowns with
+        it, then also the neighbours of these, while they are few.
         """
         hierarchy, free = self.hierarchy, self.scope.free
         violated = self._violated(best)
@@ -285,7 +288,7 @@ class _Search:
             before = len(around)
 
     def _connected(self) -> Iterator[list[int]]:
-        """Yields the constraints by free unknowns that they share, directly or by others; at last all of
+        """Yields the constraints by connected part (linked by free unknowns that they share), at last all of
         them.
         """
         hierarchy, free = self.hierarchy, self.scope.free
@@ -306,14 +309,14 @@ class _Search:
     # -- what there is to say of it
 
     def _count(self, conflict: Sequence[int]) -> tuple[tuple[int, ...], int]:
-        """Returns the unknowns that could move for the conflict, and the number of its equations."""
+        """Returns the unknowns that could move for the conflict, and its number of equations."""
         hierarchy = self.hierarchy
         mentioned = frozenset().union(*map(hierarchy.mentions.__getitem__, conflict))
         rows = hierarchy.rows(conflict)
         return tuple(sorted(mentioned & self.scope.free)), sum(r.relation is Relation.EQUAL for r in rows)
 
     def _sizes(self, conflict: Sequence[int]) -> frozenset[int]:
-        """Returns the kept sizes that constraints are about which hang on no position."""
+        """Returns the kept sizes in those constraints of the conflict that hang on no position."""
         hierarchy, found = self.hierarchy, set[int]()
         for index in conflict:
             roots = [row.expression for row in hierarchy.rows([index])]
@@ -373,7 +376,7 @@ class _Search:
         start: dict[int, float] | None = None,
         free: frozenset[int] | None = None,
     ) -> _Trial:
-        """From `start`, or from where the group was; leaves the values where the group was."""
+        """Searches from `start`, or from where the group was; leaves the values where the group was."""
         hierarchy = self.hierarchy
         hierarchy.values.assign((start or self.before).items())
         scope = replace(self.scope, constraints=constraints, free=self.scope.free if free is None else free)

@@ -22,7 +22,7 @@ INDEPENDENT = 1e-4
 GIVE = 1e-9
 """Give of rows that depend on each other, relative to the longest."""
 GIVING_STEPS = 6
-"""Steps by which it is taken away."""
+"""Steps that take the give away."""
 LARGE = 3000
 """Number of entries above which damped steps are solved for one by one."""
 SMALL = 300
@@ -75,7 +75,9 @@ def _least_norm_of_one(jacobian: Floats, y: Floats) -> LeastNorm:
 
 
 def _least_norm_by_cholesky(jacobian: Floats, y: Floats) -> LeastNorm | None:
-    """By the normal equations, refined once; None where they are not to be trusted."""
+    """Solves the normal equations and refines the solution once; returns None if they are not to be
+    trusted.
+    """
     if len(y) > jacobian.shape[1]:
         return None
     gram = jacobian @ jacobian.T
@@ -94,10 +96,10 @@ def _least_norm_by_cholesky(jacobian: Floats, y: Floats) -> LeastNorm | None:
 
 
 def _by_giving(jacobian: Floats, y: Floats) -> LeastNorm | None:
-    """For rows that depend on each other, by the normal equations with a little give, which is taken away
-    again (the proximal point method). What is found is proved: a point that is a combination of the rows and
-    meets them is the shortest; what no column reaches, and yet is part of `y`, cannot be met. None where
-    neither is clear.
+    """Solves the normal equations of rows that depend on each other with a little give, which is taken away
+    again (the proximal point method). The result is proved: a point that is a combination of the rows and
+    meets them is the shortest; a part of `y` that no column reaches cannot be met. Returns None if neither is
+    clear.
     """
     gram = jacobian @ jacobian.T
     if not np.isfinite(gram).all():

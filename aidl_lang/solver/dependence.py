@@ -1,4 +1,4 @@
-"""Rows of a matrix that are combinations of others: which, and of which.
+"""Rows of a matrix that are combinations of others, with these combinations.
 
 Rows are taken in an order of preference. One is dependent if it is a combination of independent rows before
 it; those with coefficients other than zero are the only ones that make it up: none of them can be left out.
@@ -22,18 +22,20 @@ from aidl_lang.solver.stacks import DOUBT, LARGE, RANK, Sorted, lots, stacked
 OWN = 1e-3
 """Least entry of a unit row by which an unknown of its own makes the row independent beyond doubt."""
 SAME = 1e-9
-"""Difference of entries of unit rows that counts as none."""
+"""Difference of entries of unit rows that counts as zero."""
 SHARE = 1e-6
-"""Coefficients of unit rows that count as none."""
+"""Coefficients of unit rows below which they count as zero."""
 MOST = 200
-"""Dependent rows of one large part that are explained."""
+"""The most dependent rows of one large part that are explained."""
 
 Relation: TypeAlias = dict[int, float]
 """A row as a combination of others."""
 
 
 def dependent_rows(rows: Sparse, width: int) -> tuple[dict[int, Relation], list[int]]:
-    """Returns the relation of each dependent row among unit rows, and rows of which it could not be told."""
+    """Returns the relation of each dependent row among unit rows, and the rows whose dependence is
+    undecided.
+    """
     relations = _copies(rows, width)
     originals = others(len(rows), relations)
     matrix = rows.take(originals)
@@ -56,7 +58,9 @@ def dependent_rows(rows: Sparse, width: int) -> tuple[dict[int, Relation], list[
 
 
 def _copies(matrix: Sparse, width: int) -> dict[int, Relation]:
-    """Which earlier row a row is, or is the opposite of, by a random combination of the columns at first."""
+    """Returns the rows that equal an earlier row or its opposite, found by a random combination of the
+    columns.
+    """
     weights = scattered(width)
     sums = np.abs(np.bincount(matrix.rows, matrix.entries * weights[matrix.columns], len(matrix)))
     order = np.argsort(sums, kind="stable")
@@ -84,7 +88,9 @@ def _pairs(matrix: Sparse, row: int) -> list[tuple[int, float]]:
 
 
 def _entangled(matrix: Sparse, width: int) -> Ints:
-    """What is left when rows with an unknown that no other mentions are taken away, again and again."""
+    """Returns the rows that are left when rows with an unknown that no other mentions are taken away, again
+    and again.
+    """
     matrix = matrix.only(matrix.entries != 0.0)
     # How many rows mention a column, and the sum of their numbers: with one left, this is its number.
     counts = np.bincount(matrix.columns, minlength=width).tolist()
@@ -111,7 +117,7 @@ def _entangled(matrix: Sparse, width: int) -> Ints:
 
 
 def _doubtful_parts(matrix: Sparse, width: int) -> Iterable[Ints]:
-    """Returns the rows by what they share, without parts that are clearly independent."""
+    """Returns the connected parts of the rows, without parts that are clearly independent."""
     if not len(matrix):
         return []
     links = matrix.links
@@ -136,7 +142,7 @@ def _doubtful_parts(matrix: Sparse, width: int) -> Iterable[Ints]:
 
 
 def _relations(matrix: Sparse) -> dict[int, Relation] | None:
-    """Returns the dependent rows of one part; None if the rank cannot be told."""
+    """Returns the relations of the dependent rows of one part; None if its rank is undecided."""
     columns = each_once(matrix.columns)
     if max(len(columns), len(matrix)) > LARGE:
         return _sparse_relations(matrix, columns)
@@ -167,7 +173,7 @@ def _sparse_relations(matrix: Sparse, columns: Ints) -> dict[int, Relation] | No
 
 
 def _reduced(left: Floats) -> dict[int, Relation]:
-    """From a basis (d, r) of the left null space d relations, each of the latest row that is possible."""
+    """Returns d relations from a basis (d, r) of the left null space, each of the latest row possible."""
     left = left.copy()
     pending = np.arange(len(left))
     pivots: dict[int, int] = {}

@@ -48,7 +48,7 @@ def as_csr(matrix: Sparse, width: int) -> scipy.sparse.csr_array:
 
 
 def independent_rows(matrix: Sparse, width: int) -> Ints:
-    """As many rows of a matrix of unit rows as are independent, ascending.
+    """Returns the numbers of a largest set of independent rows of a matrix of unit rows, ascending.
 
     Raises UndecidedError.
     """
@@ -123,7 +123,7 @@ def gram_solver(rows: scipy.sparse.csr_array) -> Callable[[Floats], Floats]:
 
 
 def _without_zeros(rest: scipy.sparse.csr_array, names: Ints) -> tuple[scipy.sparse.csr_array, Ints]:
-    """Without rounding errors, and without rows of which nothing is left."""
+    """Returns the rest without rounding errors and without rows that have no entries left."""
     rest.data[np.abs(rest.data) < ROUNDING] = 0.0
     rest.eliminate_zeros()
     sizes = np.zeros(rest.shape[0])
@@ -162,8 +162,8 @@ def _untouched(
     priority: Floats,
     width: int,
 ) -> tuple[Ints, Ints]:
-    """Returns the candidates (one to a row) that come before all those they touch, and of the rest again the
-    same.
+    """Returns the candidates (one to a row) that come before all those they touch, then the same of the
+    rest.
     """
     column_starts = np.flatnonzero(np.diff(columns[by_column], prepend=-1))
     column_names = columns[by_column][column_starts]
@@ -193,7 +193,7 @@ def _untouched(
 def _eliminate(
     rest: scipy.sparse.csr_array, names: Ints, rows: Ints, pivots: Ints
 ) -> tuple[scipy.sparse.csr_array, Ints]:
-    """Returns the Schur complement of the pivots: the other rows without the part along the pivots'
+    """Returns the Schur complement of the pivots: the other rows without their part along the pivots'
     columns.
     """
     place = np.full(rest.shape[1], -1)

@@ -39,9 +39,9 @@ __all__ = ["Case", "Expected", "FormError", "dump", "load", "read"]
 T = TypeVar("T")
 
 LONGEST_FILE = 50_000_000
-"""Characters."""
+"""The most characters of a file."""
 LEVELS = 100
-"""Of groups within groups."""
+"""The most levels of groups within groups."""
 
 MEMBERS = ("about", "groups", "unknowns", "let", "constraints", "observed", "expected", "named")
 UNKNOWN = ("guess", "scale", "kept", "group", "frame", "longest", "standing", "spanned", "thing")
@@ -51,7 +51,7 @@ OBSERVABLE = ("is", "let", "group")
 
 @record()
 class Expected:
-    """What a file says about the solution; None where it says nothing.
+    """Expectations of a file about the solution; None for what it does not mention.
 
     values     unknowns by name, each within `tolerance`
     conflicts  the tags of each conflict
@@ -274,7 +274,7 @@ class _Loading:
         return self.notation.row(as_text(value))
 
     def _observables(self, members: Members) -> tuple[tuple[int, int], ...]:
-        """Returns those that are given; else all unknowns but those of frames."""
+        """Returns the observables that are given; else all unknowns but those of frames."""
         if "observed" in members:
             return tuple(members.need("observed", list_of(self._observable)))
         drawn = [(u.group, i) for i, u in enumerate(self.unknowns) if u.frame_of < 0]
@@ -286,7 +286,7 @@ class _Loading:
         return self._group(members), self.notation.value(members.need("is", as_text))
 
     def _check_reach(self, tape: Tape, constraints: list[Constraint]) -> None:
-        """A constraint mentions only unknowns of the subtree of its group."""
+        """Refuses a constraint that mentions unknowns outside the subtree of its group."""
         homes = self._homes(tape)
         names = list(self.groups)
         for index, constraint in enumerate(constraints):
@@ -299,7 +299,7 @@ class _Loading:
                     )
 
     def _homes(self, tape: Tape) -> list[int]:
-        """For each node the innermost group that holds all unknowns below it, -1 for constants."""
+        """Returns the innermost group that holds all unknowns below each node, -1 for constants."""
         homes: list[int] = []
         for op, operands in zip(tape.op_list, tape.operand_lists, strict=True):
             if op == Op.UNKNOWN:
@@ -342,7 +342,7 @@ class _Loading:
 
 
 def _or_member(name: str, entry: object) -> object:
-    """An entry that is no object stands for the one member that matters."""
+    """Returns an object, or wraps any other entry as the one member that matters."""
     return entry if isinstance(entry, dict) else {name: entry}
 
 

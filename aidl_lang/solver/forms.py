@@ -1,4 +1,4 @@
-"""What the nodes of a tape are: combinations of unknowns and of knots, which are what bends or chooses.
+"""Nodes of a tape as combinations of unknowns and of knots; a knot is an operation that bends or chooses.
 
 Most of what a drawing says is affine: a corner is a centre and half a width, seen from a frame that is moved.
 All this is worked out once for a solve, with all positions free and sizes as they are; what an attempt holds
@@ -26,7 +26,7 @@ class Affine:
 
 
 Form: TypeAlias = "float | Affine"
-"""What a node became: its value if it depends on nothing, else a combination of slots."""
+"""A node as its value if it depends on nothing, else as a combination of slots."""
 
 
 @record(slots=True)
@@ -61,7 +61,7 @@ class Forms:
 
     @property
     def is_fresh(self) -> bool:
-        """Whether all that was taken to be held is where it was."""
+        """True if all unknowns that were taken to be held are where they were."""
         return all(self._unknowns[unknown] == value for unknown, value in self._read.items())
 
     def __getitem__(self, node: int) -> Form:
@@ -116,7 +116,7 @@ class Forms:
 
 
 def combined(a: Form, b: Form, sign: float) -> Form:
-    """`a + sign * b`; slopes that cancel vanish."""
+    """Returns `a + sign * b`; slopes that cancel vanish."""
     if isinstance(b, float):
         return a + sign * b if isinstance(a, float) else Affine(a.terms, a.constant + sign * b)
     if isinstance(a, float):
@@ -185,7 +185,7 @@ def branched(op: int, parts: Sequence[Form]) -> Form | None:
 
 
 def evaluate(op: int, operands: Sequence[float]) -> float:
-    """One operation on numbers."""
+    """Returns the value of one operation on numbers."""
     return VALUE[op](*operands) if len(operands) > 1 else VALUE[op](operands[0], operands[0])
 
 

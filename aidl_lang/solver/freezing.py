@@ -1,4 +1,5 @@
-"""From rows of the tape to programs: hold what is not free, fix the branches, separate what is independent.
+"""Makes programs of rows of the tape: holds what is not free, fixes the branches, separates what is
+independent.
 
 A `Freezer` takes the forms of the rows (`forms`) for one attempt, and puts in the values of what is not free.
 Knots may then become numbers, or affine. `abs`, `minimum`, `maximum` and `select` are replaced by the branch
@@ -38,7 +39,7 @@ Branch: TypeAlias = tuple[int, int]
 
 @record(frozen=False)
 class Frozen:
-    """What freezing makes: programs without common unknowns, and what does not depend on free unknowns.
+    """Programs without common unknowns, and the rows that do not depend on free unknowns.
 
     programs  with the rows (indices into the roots given) and unknowns of each
     constant  rows that no free unknown can change
@@ -65,22 +66,22 @@ class Freezer:
         self.forms = values.forms(self.free)
         self.recipes: list[Recipe] = []
         self.steady: dict[int, Form] = {}
-        """Of the knots that hang on no choice."""
+        """The forms of knots that hang on no choice."""
         self.hanging: set[int] = set()
         """Knots that hang on a choice, which free unknowns decide."""
 
     def choice(self, flipped: frozenset[int] = frozenset()) -> Choice:
-        """Returns the branches that are active at the values at which they are first asked for, which must be
-        up to date; nodes in `flipped` take the other one.
+        """Returns the choice of the branches that are active when they are first asked for, at values that
+        must be up to date; nodes in `flipped` take the other branch.
         """
         return Choice(self, flipped)
 
     def freeze(self, roots: Sequence[Root]) -> Frozen:
-        """Programs for `roots` in the branches that are active."""
+        """Returns programs for `roots` in the branches that are active."""
         return self.choice().freeze(roots)
 
     def form(self, node: int) -> Form | None:
-        """What a node became; None if that hangs on a choice."""
+        """Returns the form of a node over the free unknowns; None if it hangs on a choice."""
         form = self.forms[node]
         found = self.choice().form(form)
         return None if self.hangs(form) else found
@@ -137,12 +138,12 @@ def _freeze_to_arrays(
 
 @record(frozen=False)
 class Choice:
-    """One choice of branches, at the values at which it was made."""
+    """A choice of branches, at the values at which it was made."""
 
     freezer: Freezer
     flipped: frozenset[int]
     found: dict[int, Form] = field(default_factory=dict)
-    """Of the knots that hang on a choice."""
+    """The forms of knots that hang on a choice."""
     chosen: dict[int, int] = field(default_factory=dict)
     """The choice at each knot that has one."""
 
@@ -152,7 +153,7 @@ class Choice:
         self.free, self.recipes = self.freezer.free, self.freezer.recipes
 
     def freeze(self, roots: Sequence[Root]) -> Frozen:
-        """Programs for `roots`; the values must be those of the choice, and up to date."""
+        """Returns programs for `roots`; the values must be those of the choice, and up to date."""
         if len(roots) >= MANY:
             return _freeze_to_arrays(self.freezer.values, roots, self.free, self.flipped)
         whole = [self._whole(root) for root in roots]
@@ -174,7 +175,7 @@ class Choice:
         return combined(a, b, -1.0)
 
     def _active(self, whole: Iterable[Form]) -> tuple[Branch, ...]:
-        """Returns the choices that forms hang on, not those within branches that were not taken."""
+        """Returns the choices that forms hang on, without those within branches that were not taken."""
         found: set[int] = set()
         stack = [slot for form in whole for slot in self.forms.below(form)]
         while stack:
@@ -190,7 +191,7 @@ class Choice:
     # -- from forms over all unknowns to forms over what is free
 
     def form(self, whole: Form) -> Form:
-        """Returns a form with what is not free put in."""
+        """Returns a form with the values of unknowns that are not free put in."""
         free, width, unknowns = self.free, self.width, self.freezer.values.unknowns
         if isinstance(whole, float) or whole.terms.keys() <= free:
             return whole
@@ -246,7 +247,7 @@ class Choice:
             self.steady[slot] = form
 
     def _choice(self, knot: Knot) -> int:
-        """Which branch is taken: for minimum and maximum 0 or 1, for select 1 or 2, for abs 0 or 1."""
+        """Returns the branch taken: for minimum and maximum 0 or 1, for select 1 or 2, for abs 0 or 1."""
         nodes, operands = self.freezer.values.nodes, self.freezer.values.tape.operand_lists[knot.node]
         first = nodes[operands[0]]
         if knot.op == Op.SELECT:
@@ -267,7 +268,7 @@ class Choice:
     # -- recipes
 
     def _slot(self, form: Form) -> int:
-        """Returns the slot that has the value of a form."""
+        """Returns a slot that has the value of a form."""
         if isinstance(form, float):
             return self._new(NUMBER, (), (), form)
         if len(form.terms) == 1 and form.constant == 0.0:

@@ -34,7 +34,7 @@ MANY = 100
 STEEPEST = 1e100
 """Slopes above this are what overflow leaves."""
 NARROW = 50
-"""Nodes to a level up to which dictionaries are quicker, too: what hangs on one thing after the other."""
+"""Nodes to a level up to which dictionaries are quicker, as in chains of things that hang on each other."""
 BRANCHES = 4
 """Most operands that an operation has."""
 
@@ -42,7 +42,7 @@ _Adjoints: TypeAlias = tuple[Ints, Ints, Floats]
 """Roots, nodes, and the derivatives of the former along the latter."""
 
 FLAT = 1e-9
-"""A slope below this is none: coordinates that cancel, as in the width of a box."""
+"""Slopes below this count as zero: coordinates that cancel, as in the width of a box."""
 
 
 @record()
@@ -63,16 +63,16 @@ class Sparse:
 
     @cached_property
     def rows(self) -> Ints:
-        """(e,) the row of each entry."""
+        """The row (e,) of each entry."""
         return np.repeat(np.arange(len(self)), np.diff(self.starts))
 
     def lengths(self) -> Floats:
-        """(r,) Euclidean lengths of the rows."""
+        """Returns the Euclidean lengths (r,) of the rows."""
         squares = np.bincount(self.rows, self.entries * self.entries, len(self))
         return np.asarray(np.sqrt(squares), dtype=np.float64)
 
     def scaled(self, rows: Floats, columns: Floats) -> Sparse:
-        """Returns every entry times the factors of its row and its column."""
+        """Returns the matrix with every entry multiplied by the factors of its row and its column."""
         return Sparse(self.starts, self.columns, self.entries * rows[self.rows] * columns[self.columns])
 
     def take(self, rows: Ints) -> Sparse:
@@ -83,12 +83,12 @@ class Sparse:
         return Sparse(starts, self.columns[picked], self.entries[picked])
 
     def only(self, entries: NDArray[np.bool_]) -> Sparse:
-        """Returns the same without the entries that are marked False."""
+        """Returns the matrix without the entries that are marked False."""
         starts = _starts(np.bincount(self.rows[entries], minlength=len(self)))
         return Sparse(starts, self.columns[entries], self.entries[entries])
 
     def above(self, other: Sparse) -> Sparse:
-        """These rows, and below them those of another."""
+        """Returns these rows with those of another matrix below them."""
         starts = np.concatenate((self.starts, self.starts[-1] + other.starts[1:]))
         columns = np.concatenate((self.columns, other.columns))
         return Sparse(starts, columns, np.concatenate((self.entries, other.entries)))
@@ -100,7 +100,7 @@ class Sparse:
         return firsts, self.columns
 
     def dense(self, columns: Ints) -> Floats:
-        """Returns the given columns, which are ascending and hold every entry."""
+        """Returns the given columns as a dense matrix; they are ascending and hold every entry."""
         matrix = np.zeros((len(self), len(columns)))
         matrix[self.rows, np.searchsorted(columns, self.columns)] = self.entries
         return matrix
@@ -169,7 +169,7 @@ def _slopes(op: int, args: tuple[int, ...], values: Values, node: int) -> tuple[
 def _forward(
     tape: Tape, values: Values, nodes: Iterable[int], among: Sequence[bool] | None = None
 ) -> dict[int, Gradient]:
-    """Returns the gradient of each node from those of its operands; by the unknowns `among`, if these are
+    """Returns the gradient of each node from those of its operands, by the unknowns `among` if these are
     given.
     """
     ops, operands = tape.op_list, tape.operand_lists
@@ -242,7 +242,7 @@ def _sort_in(pending: dict[int, list[_Adjoints]], level: NDArray[np.int32], foun
 
 
 def _merged(parts: list[_Adjoints], nodes: int) -> _Adjoints:
-    """Adjoints of the same root at the same node added up, by root and node."""
+    """Returns adjoints by root and node, with those of the same root at the same node added up."""
     if not parts:
         return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0)
     keys = np.concatenate([rows * nodes + at for rows, at, _ in parts])

@@ -30,17 +30,17 @@ if TYPE_CHECKING:
 Best: TypeAlias = tuple[float, dict[int, float]]
 """The least violation reached so far, and the values there."""
 Proof: TypeAlias = Mapping[int, float]
-"""Factors of tape nodes whose sum shows that rows contradict each other; empty if that is not known."""
+"""Factors of tape nodes whose sum shows that rows contradict each other; empty if there is no proof."""
 
 LAST_RESTARTS = 5
 """Perturbed starts at the last stage; the earlier ones have one."""
 MOST_FAILURES = 20
-"""Conflicts that are explained and worked around; after that, only the best effort is kept."""
+"""The most conflicts that are explained and worked around; after them the best effort is kept."""
 
 MOST_SIZES = 8
-"""Kept sizes that are freed one after another before all are."""
+"""The most kept sizes that are freed one after another before all are."""
 SHARE = 1e-9
-"""Slope, relative to those that it is the sum of, below which an unknown has no share in a proof."""
+"""Slope, relative to the terms of its sum, below which an unknown has no share in a proof."""
 
 
 class Group:
@@ -67,8 +67,8 @@ class Group:
         self._weigh_preferences(reached)
 
     def _solve_part(self, part: list[int]) -> Tier | None:
-        """Returns the stage that satisfied everything; of a conflict the last one written is left out, and
-        the rest solved. None when it is not known what to leave out.
+        """Returns the stage that satisfied everything, after leaving out the last written constraint of each
+        conflict; None if it is not known what to leave out.
         """
         hierarchy = self.hierarchy
         self.tiers.place(part)
@@ -100,7 +100,7 @@ class Group:
     # -- stages
 
     def _deepen(self, part: list[int], violated: list[int]) -> Tier | None:
-        """Returns the tier of the first stage that satisfies everything, None if there is none."""
+        """Returns the tier of the first stage that satisfies everything; None if none does."""
         hierarchy = self.hierarchy
         everything = self.tiers.everything(part)
         before = hierarchy.save(everything.free)
@@ -137,8 +137,8 @@ class Group:
     def _from_elsewhere(
         self, failure: GroupFailure, part: list[int], before: dict[int, float]
     ) -> Tier | None:
-        """Returns the stage that satisfies everything from the place at which those that failed hold; None if
-        none does.
+        """Returns the stage that satisfies everything from the place at which the failed constraints hold;
+        None if none does.
         """
         hierarchy = self.hierarchy
         for tier in (POSITIONS, (9, 0)) if failure.holds_elsewhere else ():
@@ -154,8 +154,9 @@ class Group:
     def _climb(
         self, tiers: list[Tier], seeds: list[int], best: Best
     ) -> tuple[Tier | None, Best, tuple[Tier, Proof]]:
-        """Tries the stages in order; the first that satisfies `seeds` and all that binds what it moves, or
-        None and the values that came nearest. With the last stage that was tried and why it failed.
+        """Tries the stages in order. Returns the first that satisfies `seeds` and all that binds what it
+        moves, or None; the values that came nearest; and the last stage that was tried with the proof why it
+        failed.
         """
         hierarchy = self.hierarchy
         everything = self.tiers.everything(seeds).free
@@ -203,7 +204,7 @@ class Group:
     # -- what stands in the way
 
     def _is_refuted(self, seeds: Sequence[int]) -> bool:
-        """Tells whether it is shown that no stage can satisfy `seeds` and what binds all that is free for
+        """Tells whether a proof exists that no stage can satisfy `seeds` and what binds all that is free for
         them.
         """
         key = tuple(seeds)
@@ -240,8 +241,8 @@ class Group:
         return all(abs(slope) <= SHARE * sizes[slot] for slot, slope in total.items())
 
     def _resize(self, seeds: list[int], obstacle: tuple[Tier, Proof]) -> Tier | None:
-        """Frees the kept sizes that have a share in what stands in the way, one after another, with the
-        positions of the last stage that was tried; the stage at which that satisfies everything, or None.
+        """Frees the kept sizes that have a share in the proof, one after another, with the positions of the
+        last stage that was tried. Returns the stage at which that satisfies everything, or None.
         """
         hierarchy = self.hierarchy
         last, proof = obstacle
@@ -263,7 +264,7 @@ class Group:
         return None
 
     def _cheapest(self, proof: Proof, freed: set[int]) -> int | None:
-        """Returns the kept size that would mend what a proof says by the smallest part of itself, of the
+        """Returns the kept size that would resolve a proof by the smallest change relative to itself, of the
         first stage at which one has a share in it.
         """
         hierarchy = self.hierarchy
@@ -287,7 +288,7 @@ class Group:
 
     def _settle_sizes(self, rigid: list[int], part: list[int]) -> list[int] | None:
         """Changes the sizes that `rigid` need: those they place, then as in the stages for sizes. Returns the
-        constraints outside `part` that this broke and positions may mend; None if no sizes will do.
+        constraints outside `part` that this broke and positions may mend; None if no sizes satisfy `rigid`.
         """
         hierarchy = self.hierarchy
         mentioned = frozenset().union(*map(hierarchy.mentions.__getitem__, rigid))

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from aidl_lang.solver.levels import Levels, Stage
 
 FIRM = 1e-3
-"""How much shorter a change of a kept size is that counts as much as one of a position."""
+"""Length of a change of a kept size that counts as much as a change of 1 of a position."""
 IDLE = 1e-3
 """A kept size that moved less than this, in units of its scale, was only dragged along."""
 CHANGED = 1e-9
@@ -41,7 +41,7 @@ MANY = 50
 
 
 class Hierarchy:
-    """One solve. `values`, `failures` and `stages` are the results."""
+    """A solve of a problem. `values`, `failures` and `stages` are the results."""
 
     def __init__(self, problem: Problem, settings: Settings, clock: Clock) -> None:
         self.problem, self.settings, self.clock = problem, settings, clock
@@ -68,9 +68,9 @@ class Hierarchy:
 
     @cached_property
     def _rides(self) -> list[int]:
-        """Of each unknown, the depth of the innermost group around it, or of the one whose frame it places,
-        that no constraint around that one names: for groups above it rides along with its parent. 0 where
-        all are named.
+        """The depth, for each unknown, of the innermost group around it (or of the group whose frame it
+        places) that no constraint around that group names: for groups above that depth it rides along with
+        its parent. 0 if all are named.
         """
         return list(map(int, rides(self.problem, self._group_depths)))
 
@@ -92,7 +92,7 @@ class Hierarchy:
 
     @cached_property
     def _depth(self) -> list[int]:
-        """Of each unknown."""
+        """The depth of the group of each unknown."""
         return list(map(int, self._group_depths[self.problem.group]))
 
     @cached_property
@@ -108,7 +108,7 @@ class Hierarchy:
 
     @cached_property
     def patience(self) -> Clock:
-        """How long failures are explained; it runs from the first one."""
+        """The time left for explaining failures; it runs from the first one."""
         from aidl_lang.solver import conflicts
 
         return Clock(conflicts.PATIENCE)
@@ -131,14 +131,14 @@ class Hierarchy:
         return found
 
     def _mentions(self) -> Iterable[tuple[int, int]]:
-        """Pairs of a constraint and an unknown in it, by constraint."""
+        """Yields pairs of a constraint and an unknown in it, by constraint."""
         if self._levels is not None:
             return zip(self._levels.constraints.tolist(), self._levels.unknowns.tolist(), strict=True)
         indices = range(len(self.problem.holder))
         return ((index, unknown) for index in indices for unknown in self.mentions[index])
 
     def run(self, recollection: Recollection | None = None) -> None:
-        """Solves the groups depth by depth, from below; those that nothing has changed for are recalled."""
+        """Solves the groups depth by depth, from below; recalls those that no change has reached."""
         many = len(self.problem.rows.expression) >= MANY
         turn = self._solve_together if many else self._solve_in_turn
         for depth in range(int(self._group_depths.max(initial=0)), -1, -1):
@@ -157,7 +157,7 @@ class Hierarchy:
         self._solve_with_care(dict.fromkeys(groups, (0, 0)))
 
     def _solve_together(self, depth: int, known: Bools) -> None:
-        """Solves the groups at `depth` at once; then, one by one, those for which that was not enough."""
+        """Solves the groups at `depth` at once; then, one by one, those that remain unsolved."""
         if self._levels is None:
             from aidl_lang.solver.levels import Levels
 
@@ -180,7 +180,9 @@ class Hierarchy:
             self.reached[:] = self.values.unknowns
 
     def _record(self, stages: list[Stage], left: set[int]) -> dict[int, Tier]:
-        """Reports the stages, but for what is tried again; the last stage that helped each group."""
+        """Reports the stages, but for those that are tried again; returns the last stage that helped each
+        group.
+        """
         passed: dict[int, Tier] = {}
         for stage in stages:
             name = stage_name(stage.tier)
@@ -193,7 +195,9 @@ class Hierarchy:
         return passed
 
     def violations(self) -> Floats:
-        """How far each row (r,) is from holding at the end, in its own units; infinite if it has no value."""
+        """Returns the violation of each row (r,) at the end, in the row's units; infinite if it has no
+        value.
+        """
         if self._levels is not None:
             return violations(self.problem, self._levels.nodes())
         self.values.assign(enumerate(self.reached.tolist()))
@@ -202,15 +206,15 @@ class Hierarchy:
         return np.array([violation_of(row, self.values) for row in rows])
 
     def changed(self) -> list[int]:
-        """Kept sizes that are no longer what was written."""
+        """Returns the kept sizes that differ from their first guess."""
         moved = np.abs(self.reached - self.problem.initial) > CHANGED * self.problem.scale
         found: list[int] = np.flatnonzero(moved & self.problem.kept).tolist()
         return found
 
-    # -- what groups ask
+    # -- questions of the groups
 
     def tier(self, group: int, unknown: int, placed: Mapping[int, int]) -> Tier:
-        """When `unknown` becomes free at `group`, whose constraints place `placed`."""
+        """Returns the tier of `unknown` at `group`, whose constraints place `placed`."""
         depth = self._depth_of_group[group]
         level = self._depth[unknown] - depth
         if self._kept[unknown]:
@@ -231,7 +235,7 @@ class Hierarchy:
         return self._hard[index]
 
     def is_kept(self, unknown: int) -> bool:
-        """Tells whether an unknown is a size."""
+        """Tells whether an unknown is a kept size."""
         return self._kept[unknown]
 
     def is_spanned(self, unknown: int) -> bool:
@@ -242,7 +246,9 @@ class Hierarchy:
         return self._held_by.get(group, [])
 
     def solved_mentioning(self, unknown: int, group: int) -> Iterable[int]:
-        """Constraints of `group` and its descendants, those that could not be met excepted."""
+        """Yields the constraints of `group` and its descendants that mention an unknown, without those that
+        could not be met.
+        """
         constraints, broken = self.problem.constraints, self._broken
         return (
             index
@@ -251,20 +257,18 @@ class Hierarchy:
         )
 
     def give_up(self, indices: Iterable[int]) -> None:
-        """These constraints no longer bind what is solved later."""
+        """Releases constraints: they no longer bind what is solved later."""
         self._broken.update(indices)
 
     def rows(self, indices: Iterable[int]) -> list[Row]:
         return [row for index in indices for row in self.problem.constraints[index].rows]
 
     def refresh(self, indices: Iterable[int]) -> None:
-        """Brings up to date what these constraints are made of."""
+        """Brings the nodes of these constraints up to date."""
         self.values.update([row.expression for row in self.rows(indices)])
 
     def unmet(self, indices: Collection[int]) -> list[int]:
-        """Returns those of the constraints that do not hold by the original expressions at the current
-        values.
-        """
+        """Returns the constraints that do not hold by the original expressions at the current values."""
         self.refresh(indices)
         constraints, values, tolerance = self.problem.constraints, self.values, self.settings.tolerance
         return [i for i in indices if not all(holds(row, values, tolerance) for row in constraints[i].rows)]
@@ -302,7 +306,7 @@ class Hierarchy:
         return {unknown: self.values.unknowns[unknown] for unknown in unknowns}
 
     def since(self, before: Mapping[int, float], unknowns: Iterable[int]) -> dict[int, float]:
-        """Returns the values that `unknowns` had; `before` may lack those that have not moved since."""
+        """Returns the former values of `unknowns`; `before` may lack those that have not moved since."""
         return {unknown: before.get(unknown, self.values.unknowns[unknown]) for unknown in unknowns}
 
     def moved(self, unknown: int, before: float) -> bool:

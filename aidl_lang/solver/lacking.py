@@ -1,4 +1,4 @@
-"""How far some constraints of a problem are from holding together."""
+"""The distance of some constraints of a problem from holding together."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from aidl_lang.solver.tiers import Scope
 RESTARTS = 3
 """Perturbed starts."""
 FEW = 40
-"""Rows up to which all that takes part is searched for together."""
+"""Rows up to which all of `within` is searched for together."""
 
 
 def lack(
@@ -25,9 +25,9 @@ def lack(
     within: Collection[int],
     start: Mapping[int, float],
 ) -> float:
-    """How far constraints are from holding with the unknowns of `start` free; 0 where a search from there
-    satisfies them. All of `within` take part where they are affine, but for choices, and are shown to
-    contradict each other: the lack, in units of its own, then changes evenly with a number among them.
+    """Returns the violation that constraints keep with the unknowns of `start` free; 0 if a search from there
+    satisfies them. If all of `within` are affine, but for choices, and are proved to contradict each other,
+    it is measured on all of them: in units of its own, it then changes linearly with a number among them.
     """
     hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
     hierarchy.refresh(within)
@@ -47,7 +47,9 @@ def lack(
 def settled(
     problem: Problem, settings: Settings, constraints: Collection[int], start: Mapping[int, float]
 ) -> dict[int, float] | None:
-    """Where constraints hold with the unknowns of `start` free, near to that; None if no search found it."""
+    """Returns values near those of `start` at which constraints hold with its unknowns free; None if no
+    search found any.
+    """
     hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
     hierarchy.values.assign(start.items())
     verdict = hierarchy.attempt(Scope(frozenset(start), tuple(sorted(constraints))), RESTARTS)
@@ -55,7 +57,7 @@ def settled(
 
 
 def residual(problem: Problem, settings: Settings, constraint: int, place: Mapping[int, float]) -> float:
-    """Returns the row of a constraint that is furthest from zero in some place, with its sign."""
+    """Returns the value of the row of a constraint that is furthest from zero at `place`, with its sign."""
     hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
     hierarchy.values.assign(place.items())
     hierarchy.refresh([constraint])

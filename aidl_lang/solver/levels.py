@@ -34,15 +34,15 @@ STACKED = 4096
 """Entries of a Jacobian up to which systems are stacked; larger ones are solved one by one."""
 KINDS = {name: kind for kind, name in NAMES.items()}
 DEPTHS = 1 << 20
-"""A tier (kind, level) as one number is kind * DEPTHS + level."""
+"""The factor by which a tier (kind, level) becomes one number: kind * DEPTHS + level."""
 STANDING = KINDS["own"] * DEPTHS + 1
-"""The first tier whose members give way only if they have to, and are told of then."""
+"""The first tier whose members give way only if they have to, and are reported then."""
 
 
 @record()
 class Stage:
-    """What came of one stage, for each part (p,) for which it is clear: the group it belongs to, whether the
-    stage solved it, how many unknowns were free and rows were considered.
+    """The result of one stage for each part (p,) that it decided: the part's group, whether the stage solved
+    it, and the numbers of free unknowns and of rows.
     """
 
     tier: tuple[int, int]
@@ -53,7 +53,7 @@ class Stage:
 
 
 class Levels:
-    """One solve of a problem, depth by depth. `x` (n,) are the values, which are moved in place."""
+    """A solve of a problem, depth by depth. `x` (n,) are the values, which are moved in place."""
 
     def __init__(self, problem: Problem, x: Floats, settings: Settings, clock: Clock, metric: Metric) -> None:
         self.problem, self.settings, self.clock, self.metric = problem, settings, clock, metric
@@ -73,8 +73,8 @@ class Levels:
         self._evaluated: tuple[Floats, Floats] | None = None
 
     def _incidence(self) -> Ints:
-        """Pairs of a constraint and an unknown in it, ascending, each as one number: n times the former, and
-        the latter.
+        """Returns the pairs of a constraint and an unknown in it, ascending, each as one number: n times the
+        former plus the latter.
         """
         problem = self.problem
         everything = np.ones(len(problem.initial), dtype=np.bool_)
@@ -97,7 +97,7 @@ class Levels:
     # -- one depth
 
     def solve(self, depth: int, known: Bools) -> Iterator[Stage]:
-        """Solves what it can of the groups at `depth`, stage by stage, except those `known` (g,)."""
+        """Solves the groups at `depth` as far as it can, except those `known` (g,); yields its stages."""
         problem = self.problem
         holds = self._all(self._holding(self.nodes()))
         active = self.binding & (self._holder_depth >= depth)
@@ -145,7 +145,7 @@ class Levels:
         return violations(self.problem, nodes) <= self.settings.tolerance * self.problem.rows.scale
 
     def _all(self, holding: Bools) -> Bools:
-        """Tells whether all rows of each constraint (c,) hold."""
+        """Returns the mask of constraints (c,) all of whose rows hold."""
         found = np.ones(len(self.problem.holder), dtype=np.bool_)
         found[self.problem.rows.constraint[~holding]] = False
         return found
@@ -153,14 +153,16 @@ class Levels:
     # -- what takes part
 
     def _parts(self, active: Bools) -> tuple[Ints, Ints]:
-        """For each constraint and each unknown, the part it belongs to: what the active constraints link."""
+        """Returns the part of each constraint and of each unknown: the connected parts that the active
+        constraints link.
+        """
         count = len(active)
         pairs = np.flatnonzero(active[self.constraints])
         labels = components(self.constraints[pairs], self.unknowns[pairs] + count, count + len(self.x))
         return labels[:count], labels[count:]
 
     def _tiers(self, depth: int, held: Bools) -> Ints:
-        """When each unknown (n,) below a group at `depth` becomes free (see `hierarchy`), as one number."""
+        """Returns the tier (see `tiers`) of each unknown (n,) below a group at `depth`, as one number."""
         problem = self.problem
         level = self._unknown_depth - depth
         pairs = self.problem.placed[:, held[problem.placed[0]]]
@@ -181,7 +183,7 @@ class Levels:
         return np.where(level < 0, (KINDS["sizes"] + 1) * DEPTHS, tier)
 
     def _promising(self, violated: Bools, of_constraint: Ints, free: Bools, parts: int) -> Bools:
-        """Which of the parts (p,) have something free in every violated constraint."""
+        """Returns the mask of parts (p,) that have something free in every violated constraint."""
         reachable = np.zeros(len(violated), dtype=np.bool_)
         reachable[self.constraints[free[self.unknowns]]] = True
         found = np.ones(parts, dtype=np.bool_)
@@ -189,8 +191,8 @@ class Levels:
         return found
 
     def _scope(self, active: Bools, seeds: Bools, allowed: Bools) -> tuple[Bools, Bools]:
-        """Returns the constraints and the free unknowns: what the seeds mention, what binds that, and so
-        on.
+        """Returns the constraints and the free unknowns of a stage: what the seeds mention, what binds that,
+        and so on.
         """
         pairs = np.flatnonzero(active[self.constraints] & allowed[self.unknowns])
         constraints, unknowns = self.constraints[pairs], self.unknowns[pairs]
@@ -249,8 +251,8 @@ class Levels:
         return solved, hopeless
 
     def _leaves_a_choice(self, x: Floats, free: Bools, of_unknown: Ints, part: Ints) -> Bools:
-        """Which of the parts (p,) moved more unknowns than they have rows, `part` (k,) telling whose each
-        row is, and are small enough for it to be found out which of them can be held.
+        """Returns the mask of parts (p,) that moved more unknowns than they have rows and are small enough to
+        find out which unknowns can be held; `part` (k,) is the part of each row.
         """
         moved = free & (np.abs(x - self.x) > STILL * self.metric.scale)
         parts = int(of_unknown.max(initial=0)) + 1
@@ -262,8 +264,8 @@ class Levels:
     def _solve_rows(
         self, freezing: ArrayFreezing, rows: Ints, part: Ints, parts: int
     ) -> tuple[Floats, Bools, Bools]:
-        """Returns the values (n,) that satisfy the rows, the parts in which some could not be satisfied, and
-        those in which they certainly cannot be.
+        """Returns the values (n,) that satisfy the rows, the parts in which some row could not be satisfied,
+        and the parts in which some row certainly cannot be.
         """
         program = freezing.program(self.problem.rows.expression[rows])
         systems = _systems(program)
@@ -319,7 +321,7 @@ class Levels:
 
 
 def _systems(program: ArrayProgram) -> batch.Systems:
-    """Returns the rows and columns that hang together, and those systems that are small enough to be
+    """Returns the connected systems of rows and columns, with the mask of those small enough to be
     stacked.
     """
     rows, columns = program.shape

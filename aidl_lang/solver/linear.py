@@ -30,7 +30,7 @@ class DampedSteps(Protocol):
     slope: float
 
     def step(self, mu: float) -> Floats:
-        """-(JᵀJ + mu I)⁻¹ Jᵀ r"""
+        """Returns the step -(JᵀJ + mu I)⁻¹ Jᵀ r."""
 
 
 def least_norm(jacobian: Matrix, y: Floats) -> LeastNorm:

@@ -1,4 +1,4 @@
-"""Values of JSON documents, checked: what is wrong with one becomes a `FormError` that says where it is."""
+"""Checked reading of values in JSON documents: a wrong one raises a `FormError` that says where it is."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Members:
         return self.read(name, as_object, empty)
 
     def need(self, name: str, convert: Callable[[object], T]) -> T:
-        """Returns the same for a member that must be there."""
+        """Returns the member `name` as `convert` makes it; raises `FormError` if there is none."""
         if name not in self._values:
             raise FormError(f"{quoted(name)} is missing")
         with within(name):
@@ -95,7 +95,7 @@ def as_count(value: object) -> int:
 
 
 def list_of(convert: Callable[[object], T]) -> Callable[[object], list[T]]:
-    """Converts each item of a list."""
+    """Returns a converter of lists that converts each item."""
 
     def converted(value: object) -> list[T]:
         items = []
@@ -108,7 +108,7 @@ def list_of(convert: Callable[[object], T]) -> Callable[[object], list[T]]:
 
 
 def one_of(what: str, known: Collection[str]) -> Callable[[object], str]:
-    """Takes the names of things of the kind `what` that are known."""
+    """Returns a check that takes only the `known` names of things of the kind `what`."""
 
     def checked(value: object) -> str:
         name = as_text(value)

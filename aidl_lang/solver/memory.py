@@ -1,4 +1,5 @@
-"""Solving again after a small change: what a change cannot have reached is taken from the solve before.
+"""Solving again after a small change: values that the change cannot have reached are taken from the last
+solve.
 
 The values below a group, once its turn is over, follow from the constraints and unknowns of its subtree and
 from nothing else. Every subtree is therefore given a key made of all that enters into it; where the key is
@@ -21,7 +22,7 @@ from aidl_lang.solver.solution import StageReport
 
 @record(frozen=False)
 class Memory:
-    """What one solve leaves for the next; a new one remembers nothing.
+    """The data that one solve leaves for the next; a new memory is empty.
 
     keys      of each group's subtree (g,)
     reached   by depth, all values (n,) when the groups of that depth had had their turn
@@ -35,7 +36,7 @@ class Memory:
 
 
 class Recollection:
-    """One solve with a memory: reads what it holds of the last one, and at the end puts this one in."""
+    """A solve with a memory: reads the values of the last solve, and at the end stores those of this one."""
 
     def __init__(self, memory: Memory, problem: Problem, settings: Settings) -> None:
         self._memory, self._problem = memory, problem
@@ -44,11 +45,13 @@ class Recollection:
         alike = len(memory.keys) == len(self._keys) and memory.unknowns == len(problem.initial)
         pairs = zip(memory.keys, self._keys, strict=True) if alike else ()
         self.familiar = np.array([a == b for a, b in pairs] if alike else [False] * len(self._keys))
-        """Whether the subtree of each group (g,) is as it was."""
+        """The mask (g,) of groups whose subtree is as it was."""
         self._depths = depths(problem.parent)
 
     def recall(self, depth: int, x: Floats) -> Bools:
-        """Puts into `x` (n,) what is known below the groups at `depth`; which groups (g,) need no turn."""
+        """Puts the remembered values below the groups at `depth` into `x` (n,); returns the mask (g,) of
+        groups that need not be solved.
+        """
         known: Bools = self.familiar & (self._depths == depth)
         if known.any():
             above = ancestors(self._problem.parent, self._depths, depth)[self._problem.group]
@@ -57,15 +60,15 @@ class Recollection:
         return known
 
     def stages(self, group: int) -> list[StageReport]:
-        """What was tried for a familiar group."""
+        """Returns the stages tried for a familiar group."""
         return self._memory.stages.get(group, [])
 
     def note(self, depth: int, x: Floats) -> None:
-        """The values when the groups at `depth` have had their turn."""
+        """Keeps the values reached once the groups at `depth` are solved."""
         self._reached[depth] = x.copy()
 
     def close(self, stages: list[StageReport], in_full: bool) -> None:
-        """Keeps this solve, or nothing if it did not succeed in full: what failed is tried again."""
+        """Stores this solve, or nothing if it did not succeed in full: what failed is tried again."""
         by_group: dict[int, list[StageReport]] = {}
         for stage in stages:
             by_group.setdefault(stage.group, []).append(stage)
@@ -75,9 +78,7 @@ class Recollection:
 
 
 def subtree_keys(problem: Problem, settings: Settings) -> tuple[int, ...]:
-    """Returns a number for each group (g,) that depends on all that the solution of its subtree depends
-    on.
-    """
+    """Returns a hash for each group (g,) of all that the solution of its subtree depends on."""
     nodes = _node_keys(problem)
     rows, longest = problem.rows, problem.longest
     own: list[list[object]] = [[] for _ in problem.parent]
@@ -113,7 +114,7 @@ def subtree_keys(problem: Problem, settings: Settings) -> tuple[int, ...]:
 
 
 def _node_keys(problem: Problem) -> list[int]:
-    """Returns a number for each node of the tape that depends on everything below it."""
+    """Returns a hash for each node of the tape of everything below it."""
     tape = problem.tape
     keys: list[int] = []
     for op, operands, constant in zip(tape.op_list, tape.operand_lists, tape.constants.tolist(), strict=True):
@@ -125,7 +126,7 @@ def _node_keys(problem: Problem) -> list[int]:
 
 
 def ancestors(parent: Ints, depth: Ints, at: int) -> Ints:
-    """For each group (g,) the one above it at depth `at`, or itself; -1 for groups further up."""
+    """Returns for each group (g,) the group above it at depth `at`, or itself; -1 for groups further up."""
     found = np.arange(len(parent))
     while (low := depth[found] > at).any():
         found[low] = parent[found[low]]

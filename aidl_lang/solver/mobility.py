@@ -1,4 +1,4 @@
-"""What can still move: the motions that leave every equation as it is, as far as a reader can see them.
+"""The motions that leave every equation as it is, as far as a reader can see them.
 
 For the Jacobians J of the equations and O of the observables, the visible motions of a part that hangs
 together are the row space of O (1 - J⁺ J). Small parts of about one size are settled together as stacks of
@@ -21,9 +21,9 @@ from aidl_lang.solver.operations import Bools, Floats, Ints
 from aidl_lang.solver.stacks import DOUBT, LARGE, RANK, Sorted, lots, stacked
 
 SEEN = 1e-7
-"""Motions of observables that count as none, where one is the size of a typical motion."""
+"""Motions of observables below this count as none; one is the size of a typical motion."""
 NOTHING = 1e-7
-"""Components of unit vectors that count as zero."""
+"""Components of unit vectors below this count as zero."""
 SAMPLES = 48
 SPARE = 8
 """Samples beyond the rank that make it clear."""
@@ -112,7 +112,9 @@ class Mobility:
 
 @record()
 class Watch:
-    """Who sees what: groups (p,) and rows (p,) of the observables' Jacobian, each pair once."""
+    """The visibility of observables: pairs of a group (p,) and a row (p,) of the observables' Jacobian, each
+    once.
+    """
 
     groups: Ints
     rows: Ints
@@ -154,7 +156,7 @@ class _Parts:
         number = np.full(unknowns, -1)
         number[seen] = np.arange(len(seen))
         self.part = number[label]
-        """Of each unknown; -1 for those that nothing sees."""
+        """The part of each unknown; -1 for unknowns that no observable sees."""
         self.columns = Sorted(self.part, len(seen))
         self.equation_part = _part_of_rows(equations, self.part)
         self.rows = Sorted(self.equation_part, len(seen))
@@ -163,7 +165,7 @@ class _Parts:
         self.pairs = Sorted(self.observable_part[watch.rows], len(seen))
 
     def local(self, matrix: Sparse) -> Sparse:
-        """With the columns numbered within their part."""
+        """Returns the matrix with its columns numbered within their part."""
         return Sparse(matrix.starts, self.columns.place[matrix.columns], matrix.entries)
 
     def groups(self, part: int) -> Ints:
@@ -208,7 +210,7 @@ def _settle_small(parts: _Parts, members: Ints, found: Mobility) -> None:
 
 
 def _by_group(parts: _Parts, slot: Ints, velocities: Floats, total: Ints) -> tuple[Ints, Ints]:
-    """Groups that see some of a part in `slot`, and the rank of what each sees of it."""
+    """Returns the groups that see some of a part in `slot`, and the rank of what each sees of it."""
     part = parts.observable_part[parts.watch.rows]
     pairs = np.flatnonzero(slot[part] >= 0)
     owner, group, row = slot[part[pairs]], parts.watch.groups[pairs], parts.watch.rows[pairs]
@@ -240,7 +242,9 @@ def _settle_large(parts: _Parts, part: int, found: Mobility) -> None:
 
 
 def _large(parts: _Parts, part: int, groups: Ints) -> tuple[Floats | None, Bools, Ints, int]:
-    """Its motions (None if they are too many), which of its columns move, and degrees by group and in all."""
+    """Returns the motions of a large part (None if they are too many), the mask of its columns that move, and
+    its degrees of freedom by group and in all.
+    """
     from aidl_lang.solver.elimination import NullSpace, UndecidedError, rank_of
 
     width = int(parts.columns.count[part])

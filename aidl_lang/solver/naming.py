@@ -1,4 +1,4 @@
-"""Which groups constraints name: what no constraint names rides along with the group around it.
+"""The groups that constraints name; a group that no constraint names rides along with the group around it.
 
 To name the box of a group is to name the group, and not what lies in it; to name something in a group is to
 name all groups around it, up to the one that holds the constraint.
@@ -29,8 +29,8 @@ class Naming:
 
 
 def naming(problem: Problem) -> Naming:
-    """What the constraints of a problem name. Where all that is known is what their rows mention, every group
-    whose frame occurs in a row is named, and so is all that groups draw.
+    """Returns the groups that the constraints of a problem name. If only the mentions of their rows are
+    known, every group whose frame occurs in a row is named, and so is everything that groups draw.
     """
     groups = len(problem.parent)
     if not problem.named:
@@ -52,9 +52,9 @@ def naming(problem: Problem) -> Naming:
 
 
 def rides(problem: Problem, depths: Ints) -> Ints:
-    """For each unknown (n,), the depth of the innermost group around it, or of the one whose frame it
-    places, that no constraint around that group names; 0 where all are. Above that depth it rides along with
-    its parent.
+    """Returns for each unknown (n,) the depth of the innermost group around it, or of the group whose frame
+    it places, that no constraint around that group names; 0 if all are named. Above that depth it rides along
+    with its parent.
     """
     found = np.zeros(len(problem.parent), dtype=np.int64)
     if problem.named:

@@ -30,29 +30,30 @@ GAIN = 0.1
 LEAPS = 5
 """Full steps that may be taken in a row while the residuals are greater than they were."""
 HIGHEST = 100.0
-"""How much greater their squares may be meanwhile."""
+"""The most by which the squares of the residuals may grow meanwhile."""
 STILL = 1e-11
 """Steps shorter than this (scaled units, relative to the size of z) are no progress."""
 FLAT = 1e-11
-"""Slopes below this (relative to what the residuals could give) lead nowhere."""
+"""Slopes below this (relative to those that the residuals could give) lead nowhere."""
 ROUNDED = 1e-14
 """A violation, in units of its row, that is rounding alone."""
 TINY = 1e-200
-"""Squares of slopes below this are none."""
+"""Squares of slopes below this count as zero."""
 POLISHED = 1e-10
 POLISHING_STEPS = 40
 MEMORY = 5
 RESTARTS = (1e-3, 0.03, 0.3, 1.0, 3.0)
 """Sizes of the perturbations tried from a singular start, relative to the greatest residual."""
 CONVINCING = 2
+"""Restarts that must agree for a search to stop."""
 SAME = 1e-6
-"""So many restarts that end with the same violation, relatively, are taken to say that there is no less."""
+"""Relative difference within which the violations of two restarts agree."""
 FAR = 0.3
-"""Size of a perturbation from which on it counts that a restart ends in the same place."""
+"""Size of a perturbation from which on a restart that ends in the same place counts as agreeing."""
 STEPS_ROUND = 3.0
-"""Longest steps of a direction that turn it round: one is a sixth of a turn."""
+"""Longest steps that turn a direction round: one is a sixth of a turn."""
 TURNED = 4
-"""Directions that are turned round, one after another, where a search failed."""
+"""The most directions that are turned round, one after another, after a search failed."""
 COSTLY = 40_000
 """Entries of the Jacobian above which one restart must do."""
 GOLDEN = 0.6180339887498949
@@ -114,7 +115,7 @@ class Rows(Protocol):
 
     @property
     def linear(self) -> bool:
-        """Whether all of them are affine."""
+        """True if all of them are affine."""
 
     def residuals(self, x: Floats) -> Floats: ...
 
@@ -165,7 +166,7 @@ class System:
         return rows if self._slack is None else rows - self._slack @ z[k:]
 
     def jacobian(self) -> Matrix:
-        """Where `residuals` was last evaluated."""
+        """Returns the scaled Jacobian at the place where `residuals` was last evaluated."""
         if self._constant_jacobian is not None:
             return self._constant_jacobian
         matrix = self.program.jacobian(self._per_row, self.scale)
@@ -176,7 +177,7 @@ class System:
         return matrix
 
     def violations(self, residuals: Floats) -> Floats:
-        """What keeps each row from holding: its residual, for an inequality only if positive."""
+        """Returns the violation of each row: its residual, for an inequality only if positive."""
         if not self._has_inequalities:
             return residuals
         return np.where(self.inequality, np.maximum(residuals, 0.0), residuals)
@@ -192,7 +193,8 @@ def solve(
 ) -> Outcome:
     """Returns the feasible point nearest to z = 0, searched from `start` (default 0).
 
-    `restarts` is the number of perturbed starts tried if the search ends at a singular place.
+    Tries up to `restarts` perturbed starts if the search ends at a singular place; stops after CONVINCING
+    restarts whose violations agree within SAME.
     """
     solver = _Newton(system, tolerance, iterations, clock)
     best = solver.run(np.zeros(system.size) if start is None else start)
@@ -222,7 +224,7 @@ def solve(
 
 
 def _turned(system: System) -> Iterator[Floats]:
-    """Starts at which one of the directions among the unknowns is the other way round: on the way there a
+    """Yields starts at which one of the directions among the unknowns is turned round: on the way there a
     length would have to shrink to nothing, and no search goes on from that.
     """
     if system.longest is None:
@@ -235,7 +237,9 @@ def _turned(system: System) -> Iterator[Floats]:
 
 
 def perturbation(size: int, turn: int = 0) -> Floats:
-    """Fixed directions in which no two unknowns move alike: multiples of the golden ratio modulo 1."""
+    """Returns a fixed direction in which no two unknowns move alike: multiples of the golden ratio modulo
+    1.
+    """
     phases = np.arange(1, size + 1) * GOLDEN + turn * SILVER
     direction: Floats = 2.0 * np.mod(phases, 1.0) - 1.0
     return direction
@@ -245,7 +249,7 @@ class _Newton:
     def __init__(self, system: System, tolerance: float, iterations: int, clock: Clock) -> None:
         self.system, self.tolerance, self.iterations, self.clock = system, tolerance, iterations, clock
         self.reach = 1.0
-        """Size of the residuals at the first start: what a perturbation is measured by."""
+        """Size of the residuals at the first start: the unit of perturbations."""
         self._isolated: Matrix | None = None
         """The Jacobian of the last step if it left no choice, so that the solution is the only one nearby."""
 
@@ -260,8 +264,8 @@ class _Newton:
         return self._refine(self._polish(reached) if self._isolated is None else reached)
 
     def _refine(self, found: Outcome) -> Outcome:
-        """Returns a last step for the last digits: a tolerance says when to stop, not what a drawing shall
-        show.
+        """Takes a last step for the last digits: the tolerance says when to stop, not how exact a drawing
+        is.
         """
         system = self.system
         if found.violation <= ROUNDED:
@@ -277,9 +281,7 @@ class _Newton:
         return Outcome(z, found.end, violation) if violation < found.violation else found
 
     def _project(self) -> Outcome:
-        """Returns the solution of an affine system: one projection, and another for the rounding of the
-        first.
-        """
+        """Solves an affine system by one projection, and another for the rounding of the first."""
         system = self.system
         z = np.zeros(system.size)
         for _ in range(2):
@@ -306,7 +308,7 @@ class _Newton:
     # -- reaching a feasible point
 
     def _approach(self, start: Floats, iterations: int) -> Outcome:
-        """Damped Newton steps from `start`, each the shortest that satisfies the linearised rows."""
+        """Takes damped Newton steps from `start`, each the shortest that satisfies the linearised rows."""
         system = self.system
         z = start
         residuals = system.residuals(z)
@@ -333,9 +335,7 @@ class _Newton:
         return Outcome(z, End.CONVERGED if converged else End.EXHAUSTED, violation)
 
     def _step(self, z: Floats, residuals: Floats, damping: float) -> tuple[Floats, Floats, float] | None:
-        """Returns the next point, its residuals and the damping to go on with; None if there is no way
-        down.
-        """
+        """Returns the next point, its residuals and the damping to go on with; None if no step leads down."""
         system = self.system
         jacobian = system.jacobian()
         merit = _squares(system.violations(residuals))
@@ -367,7 +367,9 @@ class _Newton:
         return None
 
     def _bounded(self, step: Floats) -> tuple[Floats, float]:
-        """Returns the step, or the share of it in which no unknown moves further than it may at once."""
+        """Returns the step, or its greatest share in which no unknown moves further than it may at once, and
+        that share.
+        """
         longest = self.system.longest
         if longest is None:
             return step, 1.0
@@ -410,7 +412,9 @@ class _Newton:
     # -- polishing
 
     def _polish(self, feasible: Outcome) -> Outcome:
-        """From a feasible point to the nearest one, if that can be reached; else the point as it is."""
+        """Moves from a feasible point to the nearest one; returns the point as it is if that cannot be
+        reached.
+        """
         system = self.system
         z, best, history = feasible.z, feasible, _Anderson()
         relaxation, shortest = 1.0, np.inf
@@ -440,7 +444,7 @@ class _Newton:
 
 
 class _Anderson:
-    """Anderson acceleration: the combination of the last points whose steps cancel best."""
+    """Anderson acceleration: combines the last points so that their steps cancel best."""
 
     def __init__(self) -> None:
         self._points: list[Floats] = []

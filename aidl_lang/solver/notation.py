@@ -1,4 +1,4 @@
-"""Expressions as text, `hypot(b.x - a.x, b.y - a.y) == 10`: read onto a tape here, written by `writing`.
+"""Reads expressions as text, `hypot(b.x - a.x, b.y - a.y) == 10`, onto a tape; `writing` writes them.
 
     row      sum ("==" | "<=" | ">=") sum
     sum      product (("+" | "-") product)*
@@ -45,10 +45,10 @@ RESERVED = frozenset({*FUNCTIONS, "pi"})
 NAME = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*|\[-?[0-9]+\])*")
 """`x`, `door.left.start.x`, `finger[3].x`."""
 LARGEST = 1e150
-"""The greatest number that may be written: its square is still a number."""
+"""The greatest number that may be written: its square is still a finite number."""
 LONGEST_TEXT = 20_000
 DEEPEST = 50
-"""Levels of parentheses, signs, powers and calls."""
+"""The most levels of parentheses, signs, powers and calls."""
 
 _NUMBER = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _TOKEN = re.compile(
@@ -70,12 +70,14 @@ def within(place: str) -> Iterator[None]:
 
 
 def quoted(text: str) -> str:
-    """As it is shown in a message: in quotes, escaped, and not too long."""
+    """Returns a text for a message: in quotes, escaped, and not too long."""
     return repr(text if len(text) <= 60 else text[:57] + "...")
 
 
 class Notation:
-    """Reads expressions onto `tape`. `unknowns` and `lets` say what names mean: an unknown, or a node."""
+    """Reads expressions onto `tape`. `unknowns` and `lets` give the meaning of names: an unknown, or a
+    node.
+    """
 
     def __init__(self, tape: TapeBuilder) -> None:
         self.tape = tape
@@ -90,7 +92,7 @@ class Notation:
         return node
 
     def row(self, text: str) -> tuple[int, Relation]:
-        """Returns the node that is compared with 0, and how."""
+        """Returns the node that is compared with 0, and the relation."""
         reader = _Reader(self, text)
         left = reader.sum()
         relation = reader.take("==", "<=", ">=")
@@ -118,7 +120,7 @@ class _Reader:
     # -- tokens
 
     def take(self, *signs: str) -> str | None:
-        """Returns the next token, if it is one of these."""
+        """Returns and consumes the next token if it is one of these; else returns None."""
         token = self._tokens[self._next].text
         if token not in signs:
             return None
@@ -126,7 +128,7 @@ class _Reader:
         return token
 
     def is_last(self, text: str) -> bool:
-        """Tells whether nothing is left but this token, which is taken then."""
+        """Tells whether `text` is the only token left; consumes it then."""
         return self._next == len(self._tokens) - 2 and self.take(text) is not None
 
     def finish(self) -> None:
@@ -207,7 +209,7 @@ class _Reader:
         return self._make(op, *operands)
 
     def _enclosed(self, *separator: str) -> list[int]:
-        """What stands before the closing parenthesis."""
+        """Returns the operands before the closing parenthesis."""
         operands = [self.sum()]
         while self.take(*separator):
             operands.append(self.sum())

@@ -31,7 +31,7 @@ Bools: TypeAlias = NDArray[np.bool_]
 
 NAN = math.nan
 ROUNDING = 1e-9
-"""How far outside its domain an operand of sqrt, asin or acos may be by rounding alone."""
+"""Distance outside its domain that an operand of sqrt, asin or acos may have by rounding alone."""
 STEEPEST = 1e8
 """Cap on the slope of asin and acos at the ends of their domain."""
 
@@ -65,7 +65,7 @@ class Op:
 
 
 NAMES = {number: name.lower() for name, number in vars(Op).items() if name.isupper()}
-"""The name of each operation, which is that of the builder's method for it, too."""
+"""The name of each operation, which is also that of the builder's method for it."""
 ARITY: tuple[int, ...] = (0, 0, 2, 2, 2, 2, 1, 2, 1, 1, 1, 1, 1, 2, 1, 1, 1, 2, 2, 2, 2, 3, 4)
 """Number of operands of each operation, indexed by `Op`."""
 
@@ -100,7 +100,7 @@ def _finite_only(function: Callable[[float], float]) -> Callable[[float, float],
 
 
 def _clamp_unit(a: float) -> float:
-    """`a` within [-1, 1], NaN if it is outside by more than rounding."""
+    """Returns `a` within [-1, 1], NaN if it is outside by more than rounding."""
     if -1.0 <= a <= 1.0:
         return a
     return math.copysign(1.0, a) if abs(a) <= 1.0 + ROUNDING else NAN
@@ -118,7 +118,7 @@ def _mod(a: float, b: float) -> float:
 
 
 def whole_turns(a: float, b: float) -> float:
-    """floor(a / b), NaN where that has no meaning."""
+    """Returns floor(a / b), NaN if the quotient is not finite."""
     quotient = _div(a, b)
     return float(math.floor(quotient)) if math.isfinite(quotient) else NAN
 
@@ -147,7 +147,9 @@ def cubic_maximiser(p0: float, p1: float, p2: float, p3: float) -> float:
 
 
 def _quadratic_roots(a: float, half_b: float, c: float) -> tuple[float, ...]:
-    """Real roots of a t² + 2 half_b t + c, without cancellation (Numerical Recipes, section 5.6)."""
+    """Returns the real roots of a t² + 2 half_b t + c, without cancellation (Numerical Recipes, section
+    5.6).
+    """
     discriminant = half_b * half_b - a * c
     if not (discriminant >= 0.0 and math.isfinite(discriminant)):
         return ()

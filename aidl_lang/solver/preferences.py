@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from aidl_lang.solver.tiers import Scope
 
 FIRMNESS = 1e-5
-"""Unit of the slack of a preference of weight 1: how dear it is compared with moving things."""
+"""Unit of the slack of a preference of weight 1: its cost compared with moving things."""
 NEARLY = 1e-6
 """Weighted violation of a preference that is due to the slack alone."""
 
 
 def prefer(hierarchy: Hierarchy, scope: Scope, soft: tuple[int, ...]) -> bool:
-    """Moves what is free in `scope` towards the preferences; whether all of them hold then."""
+    """Moves what is free in `scope` towards the preferences; returns whether all of them hold then."""
     before = hierarchy.save(scope.free)
     if hierarchy.attempt(scope, 1).satisfied:
         return True
@@ -49,7 +49,7 @@ def prefer(hierarchy: Hierarchy, scope: Scope, soft: tuple[int, ...]) -> bool:
 
 
 def _meet_exactly(hierarchy: Hierarchy, scope: Scope, hard: list[int], soft: tuple[int, ...]) -> None:
-    """Rids the preferences that hold but for the give of their slack of what is missing."""
+    """Makes the preferences exact that hold but for the give of their slack."""
     nearly = [index for index in soft if _cost(hierarchy, (index,)) < NEARLY**2]
     reached = hierarchy.save(scope.free)
     if not hierarchy.attempt(replace(scope, constraints=tuple(sorted([*hard, *nearly]))), 0).satisfied:
@@ -57,7 +57,7 @@ def _meet_exactly(hierarchy: Hierarchy, scope: Scope, hard: list[int], soft: tup
 
 
 def _cost(hierarchy: Hierarchy, soft: tuple[int, ...]) -> float:
-    """Returns the weighted squares of what the preferences lack."""
+    """Returns the weighted sum of squares of the violations of preferences."""
     total = 0.0
     hierarchy.refresh(soft)
     for index in soft:

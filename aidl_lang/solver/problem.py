@@ -1,4 +1,4 @@
-"""What the solver is given: unknowns, expressions and constraints over a tree of groups, as plain arrays.
+"""The input of the solver: unknowns, expressions and constraints over a tree of groups, as plain arrays.
 
 Nothing here knows of the language. A *group* is what a structure is to the language: it owns unknowns and
 constraints, and has a parent. A constraint held by a group mentions only unknowns of that group's subtree.
@@ -134,7 +134,7 @@ class Problem:
     names: tuple[str, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
-        """Without being told otherwise nothing stands, and all is one thing."""
+        """Fills in what is not given: nothing stands, and all unknowns are one thing."""
         count = len(self.initial)
         for name, usual in (
             ("standing", np.zeros(count, dtype=np.bool_)),
@@ -146,7 +146,7 @@ class Problem:
 
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:
-        """The same as objects, for reading one at a time."""
+        """The constraints as objects, for reading one at a time."""
         rows: list[list[Row]] = [[] for _ in self.holder]
         listed = self.rows
         for expression, at_most, scale, owner in zip(
@@ -173,7 +173,7 @@ class Problem:
         )
 
     def with_constraints(self, constraints: Sequence[Constraint]) -> Problem:
-        """Returns the same unknowns under other constraints."""
+        """Returns the problem with other constraints on the same unknowns."""
         return replace(self, **constraint_arrays(constraints))
 
 
@@ -185,13 +185,13 @@ def _by_constraint(pairs: NDArray[np.int64], count: int) -> list[frozenset[int]]
 
 
 def _pairs(listed: Iterable[Iterable[int]]) -> NDArray[np.int64]:
-    """(2, k) the index of each set of numbers, and each number in it."""
+    """Returns the pairs (2, k) of the index of each set of numbers and each number in it."""
     found = [(index, number) for index, numbers in enumerate(listed) for number in sorted(numbers)]
     return np.array(found, dtype=np.int64).reshape(-1, 2).T
 
 
 class ConstraintArrays(TypedDict):
-    """The fields of `Problem` that say what the constraints are."""
+    """The fields of `Problem` that hold its constraints."""
 
     rows: Rows
     holder: NDArray[np.int64]
@@ -202,7 +202,7 @@ class ConstraintArrays(TypedDict):
 
 
 def constraint_arrays(constraints: Sequence[Constraint]) -> ConstraintArrays:
-    """Constraints as the arrays of a `Problem`."""
+    """Returns constraints as the arrays of a `Problem`."""
     rows = [(row, index) for index, constraint in enumerate(constraints) for row in constraint.rows]
     return {
         "rows": Rows(
@@ -228,7 +228,7 @@ def depths(parent: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def violations(problem: Problem, nodes: Floats) -> Floats:
-    """How far each row (r,) is from holding when the tape's nodes have the values `nodes` (m,), in the units
+    """Returns the violation of each row (r,) if the tape's nodes have the values `nodes` (m,), in the units
     of the row; infinite if it has no value.
     """
     value = nodes[problem.rows.expression]

@@ -25,8 +25,8 @@ Partial: TypeAlias = "tuple[Callable[..., tuple[float, ...]], tuple[int, ...], i
 
 @record()
 class Sweep:
-    """Reverse accumulation of one row: from its root to the unknowns in it. `merging` tells whether some slot
-    is reached in several ways, whose slopes may cancel.
+    """Reverse accumulation of one row, from its root to the unknowns in it; `merging` if some slot is reached
+    in several ways, whose slopes may cancel.
     """
 
     root: int
@@ -53,7 +53,7 @@ class AffineProgram:
     linear: ClassVar[bool] = True
 
     def residuals(self, x: Floats) -> Floats:
-        """Returns the r rows at the k unknowns `x`."""
+        """Returns the values (r,) of the rows at the unknowns `x` (k,)."""
         with np.errstate(all="ignore"):
             values: Floats = self.matrix @ x + self.constant
         return values
@@ -86,7 +86,7 @@ class Program:
     scatter: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp), repr=False)
 
     def residuals(self, x: Floats) -> Floats:
-        """Returns the r rows at the k unknowns `x`."""
+        """Returns the values (r,) of the rows at the unknowns `x` (k,)."""
         values = self.values
         for slot, value in zip(self.slots, x.tolist(), strict=True):
             values[slot] = value
@@ -124,7 +124,9 @@ class Program:
         return matrix
 
     def _accumulate_with_care(self, sweep: Sweep, adjoints: list[float]) -> None:
-        """Slopes that cancel become zero: a frame that moves all of a row moves nothing in it."""
+        """Accumulates slopes so that those that cancel become zero: a frame that moves all of a row moves
+        nothing in it.
+        """
         weights, sizes = self.weights, dict.fromkeys(sweep.touched, 0.0)
         for parent, child, edge in sweep.edges:
             slope = adjoints[parent]

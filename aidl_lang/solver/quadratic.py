@@ -19,11 +19,11 @@ from aidl_lang.solver.linear import Matrix, least_norm
 from aidl_lang.solver.operations import Floats
 
 MANY = 20
-"""Inequalities from which on they enter together."""
+"""Number of inequalities from which on they enter together."""
 SOON = 20
-"""Steps within which a point is found at which all rows hold, or else not this way."""
+"""The most steps of the search for a point at which all rows hold."""
 STALLED = 0.9
-"""Part of what rows lack that two steps may leave."""
+"""Part of the violations above which two steps are too little progress."""
 GIVE = 1e-9
 """Give of rows that depend on each other, relative to the longest."""
 
@@ -63,10 +63,9 @@ def nearest(jacobian: Matrix, y: Floats, inequality: NDArray[np.bool_]) -> Neare
 
 
 def plainly_hold(jacobian: Floats, y: Floats, inequality: NDArray[np.bool_]) -> bool:
-    """Tells whether the rows can hold together, by a point at which they do; False too where none is soon
-    found.
+    """Tells whether a point at which the rows hold together is soon found.
 
-    The squares of what they lack are made least, by Newton's method for that (Mangasarian, A finite Newton
+    The sum of squares of their violations is minimised by Newton's method (Mangasarian, A finite Newton
     method for classification, 2002, doi:10.1080/1055678021000028375).
     """
     point, slack = np.zeros(jacobian.shape[1]), 1e-13 * max(1.0, float(np.abs(y).max(initial=0.0)))
@@ -97,7 +96,9 @@ class _DualActiveSet:
         self.contradiction: Floats | None = None
 
     def solve(self, together: bool = False) -> Nearest:
-        """`together`: all violated rows enter at once, which is quicker for many, but may come to no end."""
+        """Returns the nearest point. With `together` all violated rows enter at once, which is quicker for
+        many, but may come to no end.
+        """
         feasible = self._settle()
         for _ in range(3 * len(self.y) + 10):
             if not feasible:
@@ -111,7 +112,9 @@ class _DualActiveSet:
         return Nearest(self.point, self.multipliers, False, contradiction=self.contradiction)
 
     def _settle(self) -> bool:
-        """Brings the multipliers of the active rows to the optimum, dropping rows on the way. False: none."""
+        """Brings the multipliers of the active rows to the optimum, dropping rows on the way; returns False
+        if there is none.
+        """
         for _ in range(len(self.y) + 1):
             rows = np.flatnonzero(self.active)
             if len(rows) == 0:
@@ -138,8 +141,8 @@ class _DualActiveSet:
     def _first_to_vanish(
         self, rows: NDArray[np.intp], direction: Floats, length: float
     ) -> tuple[int | None, float]:
-        """Returns the inequality whose multiplier reaches zero before `length` along `direction`, and
-        where.
+        """Returns the inequality whose multiplier reaches zero before `length` along `direction`, and the
+        length at which it does.
         """
         current = self.multipliers[rows]
         falling = self.inequality[rows] & (current + direction < 0.0 if length == 1.0 else direction < 0.0)
@@ -152,6 +155,6 @@ class _DualActiveSet:
 
 
 def _scaled(factors: Floats) -> Floats:
-    """Factors in units of the greatest."""
+    """Returns factors in units of the greatest."""
     scaled: Floats = factors / np.abs(factors).max()
     return scaled

@@ -1,4 +1,5 @@
-"""Because of which constraints something dear gave way: a size, a frame with exact content, what rides along.
+"""The constraints because of which something dear gave way: a size, a frame with exact content, what rides
+along.
 
 What gave way is held where it was; the constraints that then cannot hold together ask for it. They are
 found as for a conflict. Where several things gave way, each set is asked for by those that have a share in
@@ -21,8 +22,8 @@ from aidl_lang.solver.tiers import Scope
 
 @record()
 class Reason:
-    """The unknowns that gave way, and the constraints, by index, that ask for it; without any one of
-    them the others would have, if they are `minimal`. None are given where what gave way need not have.
+    """Unknowns that gave way, and the indices of the constraints that ask for it. If `minimal`, no constraint
+    can be left out; there are none if the unknowns need not have given way.
     """
 
     unknowns: frozenset[int]
@@ -31,7 +32,7 @@ class Reason:
 
 
 def reasons(problem: Problem, settings: Settings, gave: Giving, solved: Floats) -> Iterator[Reason]:
-    """Why each of the unknowns that gave way did; `solved` are the values (n,) that came of it."""
+    """Yields the reason of each unknown that gave way; `solved` are the values (n,) of the solution."""
     hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
     hierarchy.reached[:] = gave.values
     hierarchy.values.assign(enumerate(gave.values.tolist()))
@@ -49,8 +50,8 @@ def reasons(problem: Problem, settings: Settings, gave: Giving, solved: Floats) 
 def _bound(
     hierarchy: Hierarchy, constraints: list[int], unknowns: frozenset[int], gave: Giving, solved: Floats
 ) -> frozenset[int]:
-    """Returns the unknowns on which it depends, at the solution, that the constraints hold: where one of
-    these is put back, they do not.
+    """Returns the unknowns that the constraints hold at the solution: put back to its value before, each of
+    them breaks one.
     """
     if len(unknowns) < 2:
         return unknowns

@@ -24,7 +24,7 @@ from aidl_lang.solver.problem import Problem
 from aidl_lang.solver.stacks import LARGE, RANK
 
 AWAY = 1e-2
-"""How far a row is tried from the solution, relative to its scale."""
+"""Distance from the solution at which a row is tried, relative to its scale."""
 STEPS = 10
 HELD = 1e-10
 """Residual, relative to the scale of the row, at which the others hold again."""
@@ -92,7 +92,7 @@ class _Trial:
         self.dependent = dependent
 
     def support(self, row: int, relation: Relation) -> Sequence[int]:
-        """Rows that `row` follows from, each of them needed; none if that could not be shown."""
+        """Returns rows that `row` follows from, each of them needed; empty if that could not be shown."""
         others = sorted(relation)
         if self._is_sum(row, relation) or self._follows(row, others):
             return others
@@ -110,7 +110,9 @@ class _Trial:
         return [set(self._unknowns([row]).tolist()) for row in range(len(self.expressions))]
 
     def _around(self, row: int, others: Sequence[int]) -> list[int]:
-        """Returns the independent rows that share unknowns with these, or with those that do, the nearest."""
+        """Returns independent rows that share unknowns with these, or with those that do, the nearest
+        first.
+        """
         near = {row, *others}
         columns = set().union(*(self._mentions[each] for each in near))
         found: list[int] = []
@@ -128,7 +130,7 @@ class _Trial:
         return found
 
     def _is_sum(self, row: int, relation: Relation) -> bool:
-        """Tells whether the row is the same sum of others everywhere, as between affine rows."""
+        """Tells whether the row is the same combination of others everywhere, as between affine rows."""
         rows = np.array([*relation, row], dtype=np.int64)
         columns = self._unknowns(rows)
         gradient = linearise(self.problem.tape, self.values, self.expressions[rows])[1]
@@ -144,7 +146,7 @@ class _Trial:
         return True
 
     def _unknowns(self, rows: Sequence[int] | Ints) -> Ints:
-        """What rows mention, whether or not it has a slope here."""
+        """Returns the unknowns that rows mention, whether or not they have a slope here."""
         found = mentioned(self.problem.tape, self.expressions[rows].tolist())
         return each_once(np.array(found, dtype=np.int64))
 
@@ -167,7 +169,7 @@ class _Trial:
         return True
 
     def _holds_at(self, rows: Ints, columns: Ints, move: Floats) -> bool:
-        """Tells whether the last of `rows` holds where the others hold again, after a move away."""
+        """Tells whether the last of `rows` holds where the others hold again after a move away."""
         place = self.values.copy()
         scale = self.problem.scale[columns]
         place[columns] += move * scale
@@ -181,7 +183,7 @@ class _Trial:
         return False
 
     def _rows(self, place: Floats, rows: Ints, columns: Ints) -> tuple[Floats, Floats]:
-        """Residuals and gradients of rows in units of their scales."""
+        """Returns residuals and gradients of rows in units of their scales."""
         values, matrix = linearise(self.problem.tape, place, self.expressions[rows])
         dense = matrix.dense(columns) * self.problem.scale[columns]
         return values / self.scales[rows], dense / self.scales[rows][:, None]

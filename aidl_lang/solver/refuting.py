@@ -1,5 +1,4 @@
-"""Rows that are shown never to hold together, wherever the free unknowns are and whichever branches they
-take.
+"""Proofs that rows never hold together, wherever the free unknowns are and whichever branches they take.
 
 A row is a combination of unknowns and knots (`forms`). Here a knot is a number of its own, of which only
 bounds are kept that always hold: `max(a, b)` is no less than `a` and no less than `b`, a root is not
@@ -23,15 +22,15 @@ from aidl_lang.solver.valuation import Valuation
 CANCELLED = 1e-9
 """Part of the slopes that are added up which may be left of them by rounding."""
 DECIDED = 10.0
-"""How many times what the tolerances allow the rows must be off together."""
+"""Factor by which the sum of the rows must exceed what the tolerances allow."""
 FEW_TERMS = 3
-"""Slots in what is taken for granted, beyond which it is not."""
+"""The most slots of a form that is taken for granted."""
 MOST_LIMITS = 12
-"""Times that a slot is put at a limit to see whether a form can be negative."""
+"""The most times that a slot is put at a limit to see whether a form can be negative."""
 FEW = 60
 """Bounds and rows up to which the contradiction is found without loading a library for linear programs."""
 SOME = 400
-"""Bounds and rows up to which it is first looked for a place where all hold."""
+"""Bounds and rows up to which a place is first looked for at which all hold."""
 MANY = 3000
 """Bounds and rows beyond which no proof is sought."""
 
@@ -51,9 +50,9 @@ _NONE = _Refutation({}, 0.0, False)
 
 
 class Relaxation:
-    """Some rows with the unknowns `free`, and the bounds of what bends or chooses in them. The nodes that the
-    rows are made of must be up to date. What each row of the `background` says of one unknown alone, as that
-    a size is not negative, is taken for granted.
+    """Some rows with the unknowns `free`, and the bounds of what bends or chooses in them. The nodes of the
+    rows must be up to date. The bound that a row of the `background` sets on one unknown alone, as that a
+    size is not negative, is taken for granted.
     """
 
     def __init__(
@@ -68,14 +67,14 @@ class Relaxation:
         self._forms = values.forms(self._free)
         self._put: dict[int, Form] = {}
         self._parts: dict[int, list[Form]] = {}
-        """Of the knots that are numbers of their own."""
+        """The operands of knots that are numbers of their own."""
         self._least: dict[int, float] = {}
         self._most: dict[int, float] = {}
         self._above: dict[int, list[Form]] = {}
-        """What each slot is nowhere above."""
+        """Forms that each slot never exceeds."""
         self._below: dict[int, list[Form]] = {}
         self._never: dict[object, bool] = {}
-        """Whether forms are nowhere negative, by what they are but for rounding."""
+        """Answers whether forms are nowhere negative, by their terms rounded."""
         granted = [self._plain(row.expression) for row in background if row.relation is Relation.AT_MOST]
         for form in granted:
             self._grant(form)
@@ -84,12 +83,12 @@ class Relaxation:
         self._rows = [(self._plain(row.expression), row) for row in rows]
         self._all = list(range(len(self._rows)))
         self.is_exact = not any(self._knots(form) for form, _ in self._rows)
-        """Whether the rows are affine, so that they hold together where nothing refutes it."""
+        """True if the rows are affine, so that they hold together unless that is refuted."""
         self.bends = any(self._forms.knots[slot].op not in BRANCHING for slot in self._parts)
-        """Whether something in the rows neither is affine nor chooses."""
+        """True if something in the rows neither is affine nor chooses."""
 
     def _grant(self, form: Form) -> None:
-        """Notes that a form is never positive, and what that says of one slot alone."""
+        """Takes for granted that a form is never positive; notes the bounds that follow for single slots."""
         for each in (form, *self._bounds([form])):
             terms = each.terms if isinstance(each, Affine) else {}
             for slot, slope in terms.items() if 1 < len(terms) <= FEW_TERMS else ():
@@ -105,25 +104,25 @@ class Relaxation:
                     self._least[slot] = max(end, self._least.get(slot, -np.inf))
 
     def refutation(self, among: Iterable[int]) -> Mapping[int, float]:
-        """Factors of some of the rows `among`, by number, with which they add up to what cannot be; empty if
-        none were found.
+        """Returns factors of some of the rows `among`, by number, with which they add up to an impossibility;
+        empty if none were found.
         """
         return self._refuted(list(among)).factors
 
     @property
     def is_refuted(self) -> bool:
-        """Whether it is shown that the rows cannot hold together."""
+        """True if a proof exists that the rows cannot hold together."""
         return bool(self.refutation(self._all))
 
     def lack(self) -> float:
-        """By how much the sum that refutes the rows is off, the greatest factor in it taken as one; 0 if they
-        are not refuted.
+        """Returns the amount by which the sum that refutes the rows is off, with the greatest factor in it as
+        one; 0 if they are not refuted.
         """
         found = self._refuted(self._all)
         return found.off / max(map(abs, found.factors.values()), default=1.0)
 
     def gaps(self) -> dict[int, float]:
-        """For each of the rows that equations alone refute, what it comes to where the others hold; empty if
+        """Returns the residual of each row that equations alone refute where the others hold; empty if
         inequalities take part.
         """
         found = self._refuted(self._all)
@@ -147,7 +146,7 @@ class Relaxation:
         return _Refutation(taking_part, float(factors @ constant), not factors[inequality].any())
 
     def smallest(self) -> list[int]:
-        """Rows that are refuted together, without any one of which they are not; empty if all are not."""
+        """Returns a smallest set of rows that is refuted; empty if the rows are not refuted."""
         found = list(self.refutation(self._all))
         if self._is_tight(found):
             return found
@@ -158,7 +157,7 @@ class Relaxation:
 
     @property
     def is_tight(self) -> bool:
-        """Whether rows that are refuted hold together as soon as any one of them is left out: they are affine
+        """True if rows that are refuted hold together as soon as any one of them is left out: they are affine
         and add up to nothing in one way only.
         """
         return self._is_tight(self._all)
@@ -175,8 +174,8 @@ class Relaxation:
     # -- forms over what is free
 
     def _plain(self, node: int) -> Form:
-        """Returns the form of a node with numbers for what is not free, and in place of knots that are
-        decided.
+        """Returns the form of a node with numbers for what is not free, and with knots that are decided
+        replaced.
         """
         return self._put_in(self._forms[node])
 
@@ -221,8 +220,8 @@ class Relaxation:
         return form
 
     def _decided(self, op: int, parts: Sequence[Form]) -> Form | None:
-        """What an operation comes to by the signs that are known of what it is made of; None if they do not
-        decide it.
+        """Returns the result of an operation that the known signs of its operands decide; None if they do
+        not.
         """
         first, second = parts[0], parts[1] if len(parts) > 1 else 0.0
         match op:
@@ -243,8 +242,8 @@ class Relaxation:
         return None
 
     def _outermost(self, op: int, parts: Sequence[Form]) -> list[Form]:
-        """What `max` or `min` of some parts is taken of: the parts of those that are such themselves, without
-        what never is further out than another.
+        """Returns the operands of `max` or `min` with nested ones of the same kind opened up, without those
+        that never lie further out than another.
         """
         outward = 1.0 if op == Op.MAXIMUM else -1.0
         found: list[Form] = []
@@ -256,7 +255,7 @@ class Relaxation:
         return found
 
     def _is_never_behind(self, ahead: Form) -> bool:
-        """Tells whether a form is nowhere negative, by what is known of each slot or by what is never
+        """Tells whether a form is nowhere negative, by the bounds of each slot or by forms that are never
         positive.
         """
         if self._range(ahead)[0] >= 0.0:
@@ -273,8 +272,8 @@ class Relaxation:
         return known
 
     def _is_granted(self, ahead: Affine) -> bool:
-        """Tells whether a form is nowhere negative where nothing is positive that never is: slots are put at
-        their limits, one after another.
+        """Tells whether a form is nowhere negative where the granted forms hold: puts slots at their limits,
+        one after another.
         """
         waiting: list[Form] = [ahead]
         for form in waiting:
@@ -287,7 +286,9 @@ class Relaxation:
         return False
 
     def _at_limits(self, form: Form) -> Iterator[Form]:
-        """Yields a form with a slot that makes it endless, or any, put where it makes the form least."""
+        """Yields a form with one slot put at a limit that makes the form least; a slot without a bound is
+        preferred.
+        """
         terms = form.terms if isinstance(form, Affine) else {}
         endless = [s for s, slope in terms.items() if s not in (self._most if slope < 0.0 else self._least)]
         for slot in endless[:1] or terms:
@@ -297,7 +298,9 @@ class Relaxation:
                 yield combined(form, scaled(further, slope), 1.0)
 
     def _leaves(self, op: int, part: Form) -> list[Form]:
-        """What `part` is the outermost of, if it is that but for what is added to it, else itself."""
+        """Returns the operands of the `max` or `min` that `part` is, with what is added to it added to each;
+        else `part` itself.
+        """
         knots = self._knots(part)
         if len(knots) != 1 or isinstance(part, float):
             return [part]
@@ -309,12 +312,12 @@ class Relaxation:
         return [combined(rest, leaf, slope) for leaf in self._parts[knots[0]]]
 
     def _sign(self, form: Form) -> int:
-        """1 or -1 where a form is positive or negative wherever the free unknowns are, else 0."""
+        """Returns 1 or -1 if a form is positive or negative wherever the free unknowns are, else 0."""
         least, most = self._range(form)
         return 1 if least > 0.0 else -1 if most < 0.0 else 0
 
     def _range(self, form: Form) -> tuple[float, float]:
-        """Between what numbers a form lies wherever the free unknowns are."""
+        """Returns the bounds of a form over all values of the free unknowns."""
         if isinstance(form, float):
             return (form, form) if form == form else (-np.inf, np.inf)
         least = most = form.constant
@@ -328,7 +331,9 @@ class Relaxation:
         return [slot for slot in form.terms if slot in self._parts] if isinstance(form, Affine) else []
 
     def _bounds(self, forms: Iterable[Form]) -> list[Form]:
-        """What is never positive of the knots in some forms, of those in their parts, and so on."""
+        """Returns forms that are never positive, for the knots in some forms, for those in their parts, and
+        so on.
+        """
         found: list[Form] = []
         waiting, known = list(forms), set[int]()
         while waiting:
@@ -359,8 +364,8 @@ class Relaxation:
 
 
 def is_refuted(values: Valuation, rows: Sequence[Row], free: Iterable[int], tolerance: float) -> bool:
-    """Tells whether it is shown that rows cannot hold together; what each says of one unknown alone helps
-    with the others.
+    """Tells whether a proof exists that rows cannot hold together; the bound that a row sets on one unknown
+    alone helps with the others.
     """
     return Relaxation(values, rows, free, tolerance, rows).is_refuted
 
@@ -380,8 +385,8 @@ def _arrays(forms: Sequence[Form]) -> tuple[Floats, Floats]:
 
 
 def _contradiction(jacobian: Floats, constant: Floats, inequality: Bools, allowed: Floats) -> Floats | None:
-    """Factors with which rows `jacobian @ x + constant`, each 0 or at most 0 within `allowed`, contradict
-    each other; None if they are not found, or not beyond doubt.
+    """Returns factors with which rows `jacobian @ x + constant`, each 0 or at most 0 within `allowed`,
+    contradict each other; None if they are not found, or not beyond doubt.
     """
     flat = ~jacobian.any(axis=1)
     off = flat & (np.where(inequality, constant, np.abs(constant)) > allowed)
@@ -411,8 +416,8 @@ def _multipliers(jacobian: Floats, constant: Floats, inequality: Bools) -> Float
 
 
 def _many_multipliers(jacobian: Floats, constant: Floats, inequality: Bools) -> Floats | None:
-    """Returns the same for many rows: what it costs to bring each of them nearer, where they lack least
-    together.
+    """Returns the multipliers for many rows, by a linear program that minimises the sum of their
+    violations.
     """
     if len(constant) <= SOME and plainly_hold(jacobian, -constant, inequality):
         return None

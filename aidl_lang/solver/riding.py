@@ -1,4 +1,4 @@
-"""What rides along: groups that no constraint names keep their place in the group around them.
+"""Groups that ride along: those that no constraint names keep their place in the group around them.
 
 A group whose frame is not named does not move in the one around it. What it draws moves within it only where
 something in it is named, and so does what a group draws that is only named as a whole: it moves with its
@@ -18,7 +18,7 @@ from aidl_lang.solver.operations import Bools, Ints
 from aidl_lang.solver.problem import Problem
 
 UNMOVED = 1e-9
-"""Slopes of unit rows along a shift that count as none."""
+"""Slopes of unit rows along a shift below which they count as zero."""
 
 
 @record()
@@ -41,8 +41,8 @@ class Riding:
         return self.carried & ~own
 
     def pins(self, problem: Problem, jacobian: Sparse) -> Sparse:
-        """Returns a row for each direction in which all that a carried group draws can shift together, which
-        is its place: they hold one coordinate each.
+        """Returns a row for each direction in which everything that a carried group draws can shift together:
+        one coordinate each is held, which fixes the group's place.
         """
         held: list[int] = []
         if problem.axis is not None:
@@ -53,7 +53,7 @@ class Riding:
 
 
 def _pinned(home: Ints, jacobian: Sparse, groups: int) -> list[int]:
-    """Returns a coordinate of each group of which all coordinates, those at `home` in it, can shift alike."""
+    """Returns a coordinate of each group whose coordinates, those at `home` in it, can all shift alike."""
     entries = np.flatnonzero(home[jacobian.columns] >= 0)
     key = jacobian.rows[entries] * groups + home[jacobian.columns[entries]]
     pairs, place = np.unique(key, return_inverse=True)
@@ -64,7 +64,7 @@ def _pinned(home: Ints, jacobian: Sparse, groups: int) -> list[int]:
 
 
 def rides(problem: Problem) -> Riding:
-    """What of a problem rides along, by what its constraints name."""
+    """Returns the groups of a problem that ride along, by the names in its constraints."""
     named = naming(problem)
     moved = problem.frame_of
     may_move = named.frames[moved] if problem.named else mentioned(problem)
@@ -77,7 +77,7 @@ def rides(problem: Problem) -> Riding:
 
 
 def _stirred(problem: Problem, named: Naming, movable: Bools) -> Bools:
-    """Returns the unknowns of what groups draw that are only named as a whole, where these do not move with
+    """Returns the mask of unknowns drawn by groups that are only named as a whole and that do not move with
     their frame.
     """
     axis = np.full(len(movable), -1) if problem.axis is None else problem.axis

@@ -1,4 +1,4 @@
-"""A tape made ready to be evaluated on arrays: which nodes together, and in which order."""
+"""The order in which the nodes of a tape are evaluated on arrays, many at a time."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Graph:
     levels: NDArray[np.int32]
 
     def batches(self, nodes: Ints) -> list[Batch]:
-        """These nodes (k,) in an order in which they can be evaluated."""
+        """Returns these nodes (k,) as batches in an order in which they can be evaluated."""
         key = self.levels[nodes].astype(np.int64) * 64 + self.ops[nodes]
         order = np.argsort(key, kind="stable")
         nodes, key = nodes[order], key[order]
@@ -53,7 +53,7 @@ class Schedule:
         self.inputs = np.flatnonzero(tape.ops == Op.UNKNOWN)
         """The nodes that are unknowns."""
         self.unknowns = tape.operands[self.inputs, 0].astype(np.int64)
-        """Which unknowns they are."""
+        """The index of the unknown at each of these nodes."""
 
     @cached_property
     def size(self) -> int:

@@ -1,4 +1,4 @@
-"""What the solver answers: an outcome as data, never an exception."""
+"""The solution of a problem: the result as data, never an exception."""
 
 from __future__ import annotations
 
@@ -15,16 +15,18 @@ class Status(StrEnum):
     PARTIAL = "partial"
     """Some groups could be solved, others not; the values are the best reached."""
     FAILED = "failed"
-    """Nothing useful holds together; the values are the best reached."""
+    """No useful set of constraints holds together; the values are the best reached."""
 
 
 class Failure(StrEnum):
-    """Why a group could not be solved."""
+    """Reason for which a group could not be solved."""
 
     CONTRADICTORY = "contradictory"
-    """It was refuted, or the search for the conflict failed from many places."""
+    """A proof refuted it, or the search for the conflict failed from many places."""
     OVERDETERMINED = "over-determined"
-    """The same, and curved equations ask more of the unknowns than they are: it is not for their values."""
+    """The same, but there are more equations than unknowns and some are curved: other values would not
+    help.
+    """
     NOT_CONVERGED = "not converged"
     TIMED_OUT = "timed out"
 
@@ -79,9 +81,9 @@ class GroupFailure:
 
 @record(eq=False)
 class Giving:
-    """What moved at a stage though it is dear: kept sizes, frames that stood where their content is exact,
-    what rides along. The values (n,) were those before the stage; `reasons.reasons` finds who left no other
-    way.
+    """The dear unknowns that moved at a stage: kept sizes, frames that stood where their content is exact,
+    unknowns that ride along. The values (n,) are those before the stage; `reasons.reasons` finds the
+    constraints that asked for it.
 
     unknowns    those that gave way
     free        all that could move

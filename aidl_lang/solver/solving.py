@@ -1,4 +1,4 @@
-"""From a problem to its solution."""
+"""Solves a problem."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def solve(problem: Problem, settings: Settings = Settings(), memory: Memory | No
 
 
 def _status(satisfied: NDArray[np.bool_], timed_out: bool) -> Status:
-    """From which of the hard constraints hold."""
+    """Returns the status by which of the hard constraints hold."""
     if satisfied.all():
         return Status.SOLVED
     if timed_out or not satisfied.any():

@@ -1,4 +1,4 @@
-"""Sparse linear algebra: what `dense` does, for matrices too large for that. Alone in importing scipy.
+"""Sparse linear algebra: the functions of `dense` for matrices too large for it. It alone imports scipy.
 
 A square matrix is factorised as it is (SuperLU). Any other, and a singular one, by way of
 
@@ -27,16 +27,16 @@ REGULAR = 1e-9
 """ε relative to the greatest square of a row."""
 ACCURATE = 1e-11
 HUGE = 1e150
-"""What a slope is taken for that is beyond the range of numbers."""
+"""Replacement of slopes that are beyond the range of numbers."""
 TINY = 1e-150
 """The least ε: with it, the augmented matrix has a diagonal without zeros, whatever J is."""
 REFINEMENTS = 6
 SCATTERED = {"relax": 1, "panel_size": 1}
 """Options for matrices with a few entries in a row, whose factors have no dense blocks worth the search."""
 GROWTH = 1e9
-"""A solution of a square system this much longer than its right-hand side is not to be trusted."""
+"""Length of a solution of a square system, relative to its right-hand side, above which it is not trusted."""
 SINGULAR = 1e12
-"""Multipliers this much longer than the solution betray a singular matrix, even where the rows agree."""
+"""Length of multipliers, relative to the solution, that betrays a singular matrix even if the rows agree."""
 
 
 class SparseMatrix:
@@ -109,7 +109,7 @@ def least_norm(jacobian: SparseMatrix, y: Floats) -> LeastNorm:
 
 
 def _square(jacobian: SparseMatrix, y: Floats) -> LeastNorm | None:
-    """By LU, None where that is not to be trusted."""
+    """Solves a square system by LU; returns None if the result is not to be trusted."""
     factors = jacobian.lu
     if factors is None:
         return None

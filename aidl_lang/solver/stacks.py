@@ -10,9 +10,9 @@ from aidl_lang.solver.gradients import Sparse
 from aidl_lang.solver.operations import Floats, Ints
 
 RANK = 1e-6
-"""Singular values of unit rows above this count."""
+"""Singular values of unit rows above this count towards the rank."""
 DOUBT = 1e-8
-"""Those below this do not; in between nothing is decided."""
+"""Singular values below this count as zero; between the two the rank is undecided."""
 LARGE = 300
 """Rows or columns of a part from which on sparse elimination is quicker."""
 
@@ -33,7 +33,7 @@ class Sorted:
 
 
 def lots(*sizes: Ints) -> list[Ints]:
-    """Parts by their sizes, each rounded up to a power of two."""
+    """Groups parts by their sizes, each rounded up to a power of two."""
     exponents = np.ceil(np.log2(np.maximum(np.stack(sizes), 0.5))).astype(np.int64)
     found: dict[tuple[int, ...], list[int]] = defaultdict(list)
     for part, size in enumerate(zip(*exponents.tolist(), strict=True)):
@@ -42,11 +42,7 @@ def lots(*sizes: Ints) -> list[Ints]:
 
 
 def stacked(matrix: Sparse, of_row: Ints, rows: Sorted, columns: Sorted, slot: Ints) -> Floats:
-    """Returns the rows of each part that has a slot as one matrix of a stack, filled up with zeros.
-
-    of_row  the part of each row, -1 for none
-    slot    of each part, -1 for none
-    """
+    """Returns the rows of each part that has a slot as one matrix of a stack, filled up with zeros."""
     slot_of_row = np.append(slot, -1)[of_row]
     at = np.flatnonzero(slot_of_row >= 0)
     picked = matrix.take(at)

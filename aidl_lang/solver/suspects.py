@@ -1,4 +1,4 @@
-"""Which constraints a stalled search accuses: those whose linearised rows cannot hold together.
+"""The constraints that a stalled search accuses: those whose linearised rows cannot hold together.
 
 Where no step leads on, some combination y of the rows has no slope in any direction, yet is not zero there:
 Jᵀ y = 0, y · r ≠ 0, y >= 0 for inequalities. That is Farkas' proof that the linearised rows contradict each
@@ -30,7 +30,7 @@ SHARE = 1e-6
 MANY = 12
 """Members of a set above which halves of it are tried before single ones."""
 FAR = 100.0
-"""Steps longer than so many times the size of the rows do not count as mending them."""
+"""The longest step that counts as mending rows, in sizes of the rows."""
 
 
 class Linearised:
@@ -85,8 +85,8 @@ class Linearised:
 
 
 def suspects(hierarchy: Hierarchy, constraints: Sequence[int], free: Iterable[int]) -> list[int]:
-    """Returns a set of constraints whose linearised rows contradict each other at the current values, each of
-    them needed for that; empty if there is none.
+    """Returns a set of constraints whose linearised rows contradict each other at the current values, each
+    needed for that; empty if there is none.
     """
     rows = Linearised(hierarchy, constraints, free)
     accused = rows.accused()
@@ -96,8 +96,8 @@ def suspects(hierarchy: Hierarchy, constraints: Sequence[int], free: Iterable[in
 
 
 def needed(failing: Sequence[int], holds: Callable[[list[int]], bool]) -> list[int]:
-    """Returns a smallest part of a set that fails which still does: halves of a large set are tried first,
-    then each member is left out in turn.
+    """Returns a smallest part of a failing set that still fails: tries halves of a large set first, then
+    leaves out each member in turn.
     """
     found = list(failing)
     if len(found) > MANY:

@@ -1,4 +1,4 @@
-"""As few things move as can be found, rather than all a little.
+"""Moves as few things as can be found, rather than all a little.
 
 The nearest point at which some rows hold spreads a change over everything that is free. Where that leaves a
 choice, the columns of the linearised rows are looked through from what is cheapest to move to what is
@@ -24,28 +24,29 @@ if TYPE_CHECKING:
     from aidl_lang.solver.tiers import Scope
 
 STILL = 1e-9
-"""What moved less than this, in units of its scale, did not move."""
+"""Moves below this, in units of the unknown's scale, count as none."""
 TIGHT = 10.0
-"""An inequality is on its bound if it is off by no more than so many times its tolerance."""
+"""Factor of its tolerance within which an inequality is on its bound."""
 INDEPENDENT = 1e-7
-"""Part of a column that others have to leave for it to reach further than they do."""
+"""Least part of a column that other columns leave if it reaches further than they do."""
 REACHED = 1e-6
-"""Part of a change by which two are taken to be the same."""
+"""Part of a change within which two changes are the same."""
 ASTRAY = 0.2
-"""Part of the way that slopes promised by which what bends may end elsewhere."""
+"""Part of the way promised by slopes by which what bends may end elsewhere."""
 FURTHER = 2.4
-"""How many times as far as to the nearest point something may go in curved rows so that other things need
-not."""
+"""Factor of the way to the nearest point that something in curved rows may go so that other things can
+stay.
+"""
 MANY = 400
-"""Unknowns that moved, above which the nearest point is left as it is."""
+"""The most moved unknowns that are thinned; above, the nearest point is kept."""
 
 Rank: TypeAlias = "Callable[[int], tuple[int, ...]]"
-"""How dear it is to move an unknown."""
+"""The cost class of moving an unknown: a greater one is dearer."""
 
 
 def thin(hierarchy: Hierarchy, scope: Scope, before: dict[int, float], rank: Rank) -> None:
-    """Holds what need not move among the unknowns of `scope`, which were `before` at these values and at the
-    current ones satisfy its constraints.
+    """Holds what need not move among the unknowns of `scope`. `before` are their values before a move to the
+    current ones, which satisfy its constraints.
     """
     moved = _moved(hierarchy, before)
     if len({int(hierarchy.problem.thing[unknown]) for unknown in moved}) < 2 or len(moved) > MANY:
@@ -64,8 +65,8 @@ def thin(hierarchy: Hierarchy, scope: Scope, before: dict[int, float], rank: Ran
 
 
 def _as_expected(moved: dict[int, float], furthest: float, expected: dict[int, float]) -> bool:
-    """Tells whether what bends moved about as far as its slopes promised, and not through a singular place;
-    nothing there further than `furthest`.
+    """Tells whether what bends moved about as far as its slopes promised, not through a singular place, and
+    nothing further than `furthest`.
     """
     if expected and max(map(abs, moved.values()), default=0.0) > furthest:
         return False
@@ -74,7 +75,7 @@ def _as_expected(moved: dict[int, float], furthest: float, expected: dict[int, f
 
 
 def _moved(hierarchy: Hierarchy, before: dict[int, float]) -> dict[int, float]:
-    """How far each unknown that moved did, in units of its scale."""
+    """Returns the move of each unknown that moved, in units of its scale."""
     scale, unknowns = hierarchy.problem.scale, hierarchy.values.unknowns
     found = {u: float((unknowns[u] - x) / scale[u]) for u, x in before.items()}
     return {u: step for u, step in found.items() if abs(step) > STILL}
@@ -83,8 +84,8 @@ def _moved(hierarchy: Hierarchy, before: dict[int, float]) -> dict[int, float]:
 def _needed(
     hierarchy: Hierarchy, scope: Scope, moved: dict[int, float], rank: Rank
 ) -> tuple[set[int], dict[int, float]]:
-    """Returns the unknowns among those that moved that are enough, and how far those in curved rows would
-    have to move by the slopes of these.
+    """Returns a sufficient set of the unknowns that moved, and the moves that the slopes promise to those of
+    them in curved rows.
     """
     tolerance, values = hierarchy.settings.tolerance, hierarchy.values
     rows = hierarchy.rows(scope.constraints)
@@ -130,7 +131,7 @@ def _needed(
 
 
 def _tied(matrix: Floats, share: list[bool], members: list[int]) -> list[int]:
-    """Returns the columns of a thing that have a share, and those that a row ties to one of them: a
+    """Returns the columns of a thing that have a share, and those that a row ties to one of them; a
     coordinate that the others do not depend on can stay by itself.
     """
     slopes = np.abs(matrix)
@@ -140,8 +141,8 @@ def _tied(matrix: Floats, share: list[bool], members: list[int]) -> list[int]:
 
 
 def _combination(matrix: Floats, target: Floats, order: list[int]) -> list[bool]:
-    """Which columns (k,) of a matrix (r, k) have a share in a combination that gives `target` (r,), if those
-    that come first in `order` are used up first.
+    """Returns the mask of columns (k,) of a matrix (r, k) that have a share in a combination that gives
+    `target` (r,), using up those first that come first in `order`.
     """
     used: list[int] = []
     directions = np.zeros((0, len(target)))

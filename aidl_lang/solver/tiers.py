@@ -1,4 +1,4 @@
-"""What becomes free in a group, and when.
+"""The stages at which the unknowns of a group become free.
 
 At a group every unknown of its subtree has a tier, which says at which stage it becomes free:
 
@@ -37,20 +37,20 @@ Tier: TypeAlias = tuple[int, int]
 
 PLACED: Tier = (1, 2)
 DEEP: Tier = (3, 0)
-"""Before the first tier of what lies deeper than the group itself."""
+"""A tier before the first one of what lies deeper than the group itself."""
 OWN: Tier = (2, 0)
 RIDING: Tier = (5, -1)
-"""Before the first tier of what rides along."""
+"""A tier before the first one of what rides along."""
 POSITIONS: Tier = (6, -1)
-"""Before the first tier of kept sizes."""
+"""A tier after those of all positions, before the first one of kept sizes."""
 SIZES: Tier = (6, 0)
 
 NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "riding", 6: "sizes"}
 
 
 def stage_name(tier: Tier) -> str:
-    """`placed`, `placed bounds`, `placed spans`, `own`, `own standing`, `translations 1`, `positions 2`,
-    `riding 1`, `placed sizes`, `own sizes`, `sizes 1`, …
+    """Returns the name of a stage: `placed`, `placed bounds`, `placed spans`, `own`, `own standing`,
+    `translations 1`, `positions 2`, `riding 1`, `placed sizes`, `own sizes`, `sizes 1`, …
     """
     kind, level = tier
     if tier >= SIZES:
@@ -62,7 +62,7 @@ def stage_name(tier: Tier) -> str:
 
 @record()
 class Scope:
-    """What takes part in one stage: the free unknowns and the indices of the hard constraints."""
+    """The free unknowns of one stage and the indices of its hard constraints."""
 
     free: frozenset[int]
     constraints: tuple[int, ...]
@@ -74,16 +74,16 @@ class Tiers:
     def __init__(self, hierarchy: Hierarchy, group: int) -> None:
         self.hierarchy, self.group = hierarchy, group
         self.placed: Mapping[int, int] = {}
-        """Which own positions, and sizes, constraints place, and the level at which: 0, or 1 for what only
-        bounds that hold anyway would place.
+        """The own positions and sizes that constraints place, with their level: 0, or 1 if only bounds that
+        hold anyway would place them.
         """
         self._known: dict[int, Tier] = {}
         self._everything: dict[tuple[int, ...], Scope] = {}
-        """What takes part if all is free, by the constraints that are to hold."""
+        """The scope with all unknowns free, by the constraints that are to hold."""
 
     def place(self, indices: Iterable[int]) -> None:
-        """Takes up what these constraints place: what they name first and what has a share in them. A width
-        places nothing that shifts.
+        """Notes the unknowns that these constraints place: those that they name first and that have a share
+        in them. A width places nothing that shifts.
         """
         hierarchy, found = self.hierarchy, dict[int, int]()
         constraints, mentions = hierarchy.problem.constraints, hierarchy.mentions
@@ -105,8 +105,8 @@ class Tiers:
         return found
 
     def scope(self, last: Tier, seeds: Iterable[int], further: Collection[int] = ()) -> Scope:
-        """Returns the unknowns up to tier `last`, or in `further`, that `seeds` mention, what binds those,
-        what that mentions, …
+        """Returns the closure of `seeds`: the unknowns up to tier `last`, or in `further`, that they mention,
+        the constraints that bind those, the unknowns that these mention, …
         """
         hierarchy = self.hierarchy
         constraints, free = set(seeds), set[int]()
@@ -123,7 +123,7 @@ class Tiers:
         return Scope(frozenset(free), tuple(sorted(constraints)))
 
     def everything(self, seeds: Sequence[int]) -> Scope:
-        """Returns the scope of `seeds` with all free."""
+        """Returns the scope of `seeds` with all unknowns free."""
         key = tuple(seeds)
         if key not in self._everything:
             self._everything[key] = self.scope((9, 0), seeds)
@@ -151,8 +151,8 @@ class Tiers:
     def reached(
         self, indices: Sequence[int], sizing: Collection[int]
     ) -> Iterator[tuple[int, list[list[int]]]]:
-        """Each constraint, with the unknowns that change it where it is now, for each row: the sizes among
-        them only in those `sizing`, and where no position does.
+        """Yields each constraint with the unknowns that change each of its rows at the current values; sizes
+        are among them only in the constraints `sizing` and in rows that no position changes.
         """
         hierarchy, mentions = self.hierarchy, self.hierarchy.mentions
         hierarchy.refresh(indices)
@@ -178,14 +178,16 @@ class Tiers:
         return all(any(self.tier(unknown) <= tier for unknown in mentions[index]) for index in violated)
 
     def is_dear(self, unknown: int) -> bool:
-        """Tells whether it is told that an unknown moved: a kept size, what rides along, and a frame that
-        stood where its content is exact, unless a constraint places it.
+        """Tells whether a move of an unknown is reported: that of a kept size, of what rides along, and of a
+        frame that stood where its content is exact, unless a constraint places it.
         """
         tier = self.tier(unknown)
         return tier > RIDING or (tier > PLACED and bool(self.hierarchy.problem.standing[unknown]))
 
     def independent(self, constraints: Iterable[int]) -> list[list[int]]:
-        """Returns the constraints by what they share that could ever move, in their order."""
+        """Returns the constraints in independent parts, by the unknowns they share that could ever move, in
+        their order.
+        """
         parts: list[list[int]] = []
         left = list(constraints)
         while left:
@@ -197,5 +199,5 @@ class Tiers:
         return parts
 
     def forget(self) -> None:
-        """Drops what was found to take part if all is free: constraints were given up."""
+        """Drops the remembered scopes, as constraints were given up."""
         self._everything.clear()

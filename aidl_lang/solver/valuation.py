@@ -16,7 +16,7 @@ Compiled: TypeAlias = "tuple[Callable[..., float], int | tuple[int, ...], int, i
 """Function, first operand (all of them for more than two), second operand or -1, result."""
 
 CONES = 64
-"""Cones that are remembered."""
+"""The most cones that are remembered."""
 
 
 class Valuation:
@@ -33,12 +33,12 @@ class Valuation:
         self.nodes = [float(value) for value in tape.constants]
         self._code: list[Compiled | None] = [None] * len(tape)
         self._fresh: set[int] = set()
-        """Nodes that, with all that they are made of, are up to date."""
+        """Nodes that are up to date, with everything below them."""
         self._cones: dict[tuple[int, ...], Cone] = {}
         self._forms: dict[frozenset[int], Forms] = {}
 
     def forms(self, free: frozenset[int]) -> Forms:
-        """What the nodes are if of the kept sizes only those in `free` may change."""
+        """Returns the forms of the nodes if of the kept sizes only those in `free` may change."""
         sizes = self.kept & free
         found = self._forms.get(sizes)
         if found is None or not found.is_fresh:
@@ -57,7 +57,7 @@ class Valuation:
                 self._fresh.clear()
 
     def cone(self, roots: Iterable[int]) -> Cone:
-        """Everything that the roots are made of, ready to be refreshed."""
+        """Returns everything below the roots, ready to be refreshed."""
         wanted = tuple(roots)
         found = self._cones.get(wanted)
         if found is None:
@@ -98,12 +98,12 @@ class Valuation:
 
 @record()
 class Cone:
-    """What some roots are made of.
+    """The nodes below some roots.
 
-    roots     what was asked for
-    unknowns  those among it
+    roots     the nodes asked for
+    unknowns  the unknowns below them
     inputs    (node, unknown) for each of them
-    code      what brings the other nodes up to date
+    code      the operations that bring the other nodes up to date
     """
 
     roots: tuple[int, ...]

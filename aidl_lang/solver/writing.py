@@ -1,4 +1,4 @@
-"""Problems as JSON, the way out: any problem in the form that `form` reads.
+"""Writes any problem as JSON, in the form that `form` reads.
 
 What is read again is the same problem, solved to the same values, to the last digit: operations come onto the
 new tape in the order that they have, as do the operands of `min` and `max`. An operation is written in the
@@ -26,22 +26,22 @@ LONG = 100
 """Characters of an expression above which it gets a name, and of a name above which it gets another."""
 
 SUM, PRODUCT, SIGNED, POWER, ATOM = range(5)
-"""How firmly an expression holds together: what is weaker than its place asks for is put in parentheses."""
+"""Firmness of expressions: one that is weaker than its place asks for is put in parentheses."""
 
 _INFIX = {
     **{op: (sign, SUM) for sign, op in SUMS.items()},
     **{op: (sign, PRODUCT) for sign, op in PRODUCTS.items()},
 }
 EXTREMA = frozenset({Op.MINIMUM, Op.MAXIMUM})
-"""Of equal operands, these take the one that is first on the tape."""
+"""Operations that take, of equal operands, the one that is first on the tape."""
 _NAMES = {op: name for name, op in FUNCTIONS.items()}
 
 
 def dump(problem: Problem, about: str = "", tags: Sequence[str] = ()) -> dict[str, object]:
-    """`problem` as a JSON document, its constraints with `tags` if there are any.
+    """Returns `problem` as a JSON document, its constraints with `tags` if there are any.
 
-    Names that the form does not allow, or that stand for several unknowns, are replaced. Raises `FormError`
-    for numbers that are not finite or too large, and for frames not owned by the group above theirs.
+    Replaces names that the form does not allow, or that stand for several unknowns. Raises `FormError` for
+    numbers that are not finite or too large, and for frames not owned by the group above theirs.
     """
     early: set[int] = set()
     while True:
@@ -53,7 +53,7 @@ def dump(problem: Problem, about: str = "", tags: Sequence[str] = ()) -> dict[st
 
 
 class _Writing:
-    """One pass over a problem. `early` are the leaves to be named, `late` those that turn out to need it."""
+    """A pass over a problem. `early` are the leaves to be named, `late` those that turn out to need it."""
 
     def __init__(self, problem: Problem, early: frozenset[int]) -> None:
         self.problem, self.early = problem, early
@@ -135,7 +135,7 @@ class _Writing:
         return f"{left} {sign} {right}"
 
     def _make(self, roots: Sequence[int]) -> dict[str, str]:
-        """Makes all nodes up to the roots: the lets that this takes before the roots can be written."""
+        """Makes all nodes up to the roots; returns the lets that must be written before the roots."""
         lets: dict[str, str] = {}
         while self.unmade and self.unmade[-1] <= max(roots, default=-1):
             self._compose(self.unmade.pop(), lets)
@@ -162,7 +162,7 @@ class _Writing:
             self._name(self.pending, lets)
 
     def _write(self, operands: Iterable[int], lets: dict[str, str]) -> None:
-        """These are written side by side now; if their turn was not just now, they are named first."""
+        """Writes operands side by side; names them first if their turn was not just now."""
         wanted = [operand for operand in dict.fromkeys(operands) if operand in self.pending]
         if list(islice(reversed(self.pending), len(wanted))) != wanted[::-1]:
             self._name(self.pending, lets)
@@ -171,7 +171,7 @@ class _Writing:
             self.made.setdefault(operand, len(self.made))
 
     def _check_turn(self, first: int, second: int) -> None:
-        """A leaf that comes first must not be made later."""
+        """Marks a leaf that comes first but would be made later, so that it gets a name."""
         is_leaf, latest = self.problem.tape.op_list[first] <= Op.UNKNOWN, len(self.made)
         if is_leaf and self.made.get(second, latest) < self.made.get(first, latest):
             self.late.add(first)
@@ -193,7 +193,7 @@ class _Writing:
         return repr(value).removesuffix(".0"), SIGNED if value < 0.0 else ATOM
 
     def _joined(self, op: int, operands: tuple[int, ...]) -> tuple[str, int]:
-        """Returns an operation as text, and how firmly it holds together."""
+        """Returns an operation as text, and the firmness of its outermost operator."""
         if op in _INFIX:
             sign, level = _INFIX[op]
             return f"{self._at(level, operands[0])} {sign} {self._at(level + 1, operands[1])}", level
@@ -219,7 +219,7 @@ def _unless(default: float, value: float) -> float | None:
 
 
 def _names(problem: Problem) -> list[str]:
-    """Returns a name for each unknown, its own if it can be."""
+    """Returns a name for each unknown, its own if possible."""
     given = problem.names or [""] * len(problem.initial)
     times = Counter(given)
     taken = {
@@ -232,7 +232,7 @@ def _names(problem: Problem) -> list[str]:
 
 
 def _uses(problem: Problem, roots: Sequence[int]) -> Counter[int]:
-    """How often each node that the roots are made of is used, by nodes and as a root."""
+    """Counts the uses of each node below the roots, by other nodes and as a root."""
     ops, operands = problem.tape.op_list, problem.tape.operand_lists
     uses = Counter(roots)
     stack = list(uses)
