@@ -1,4 +1,4 @@
-"""The colours that a program names in `@color(…)`, and how other colours are written in their place."""
+"""The colours in `@color(…)`, and other colours written in their place."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Color:
 
 
 def colors(view: View) -> list[Color]:
-    """The colours of a text, in its order; none where the argument is no literal."""
+    """Returns the literal colours of a text, in its order."""
     found = []
     for node in ast.walk(view.module):
         if isinstance(node, ast.Attribute) and word_meant(node.name.text, ATTRIBUTES) in ("color", "colour"):
@@ -35,8 +35,8 @@ def colors(view: View) -> list[Color]:
 
 
 def spellings(view: View, span: Span, color: tuple[int, int, int]) -> list[str]:
-    """How a colour may stand at the place of one: by its name if it has one, as `#rrggbb`, and as three
-    numbers if these stand there now.
+    """Returns the spellings of a colour at a place: its name if it has one, `#rrggbb`, and three numbers if
+    the place has three now.
     """
     names = sorted(name for name in COLOR_NAMES if rgb(name) == color)
     written = [f'"{name}"' for name in names[:1]] + ['"#{:02x}{:02x}{:02x}"'.format(*color)]
@@ -45,7 +45,9 @@ def spellings(view: View, span: Span, color: tuple[int, int, int]) -> list[str]:
 
 
 def _literal(node: ast.Expression) -> object:
-    """The value of an argument, a bare word being a text; None for what has to be worked out."""
+    """Returns the value of an argument, a bare word being a text; None for an expression that must be
+    evaluated.
+    """
     match node:
         case ast.String(value) | ast.Number(value, None, _) | ast.Name(value):
             return value
@@ -54,6 +56,6 @@ def _literal(node: ast.Expression) -> object:
 
 
 def as_bytes(parts: Sequence[float]) -> tuple[int, int, int]:
-    """Red, green and blue from 0 to 1 → from 0 to 255."""
+    """Converts red, green and blue from 0 to 1 → from 0 to 255."""
     red, green, blue = (round(255 * min(max(part, 0.0), 1.0)) for part in parts)
     return red, green, blue

@@ -1,4 +1,4 @@
-"""Whether two outcomes draw the same."""
+"""Compares the drawings of two outcomes."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ from aidl_lang.geometry.solved import SolvedStructure
 from aidl_lang.pipeline import Compiled
 
 SAME = 1e-6
-"""Millimetres by which two drawings may differ and still be the same."""
+"""Largest difference of two equal drawings, mm."""
 
 
 def is_same(before: Compiled, after: Compiled, *, slid: bool = False, tolerance: float = SAME) -> bool:
-    """Whether two outcomes draw the same, name by name; with `slid`, wherever the drawing as a whole lies."""
+    """Tells whether two outcomes draw the same, name by name; with `slid`, wherever the drawing as a whole
+    lies.
+    """
 
     def is_near(a: float, b: float) -> bool:
         return abs(a - b) <= tolerance or (math.isnan(a) and math.isnan(b))
@@ -30,7 +32,7 @@ def is_same(before: Compiled, after: Compiled, *, slid: bool = False, tolerance:
 
 
 def _drawn(root: SolvedStructure, slid: bool) -> Iterator[tuple[str, list[float]]]:
-    """Everything that a drawing is made of: its path, and the numbers that define it."""
+    """Yields the path of each thing in a drawing with the numbers that define it."""
     at = (root.box.left, root.box.bottom) if slid and root.box is not None else (0.0, 0.0)
     for structure in root.walk():
         box = structure.box
@@ -43,7 +45,7 @@ def _drawn(root: SolvedStructure, slid: bool) -> Iterator[tuple[str, list[float]
 
 
 def _numbers(value: object, at: Vec) -> Iterator[float]:
-    """The numbers of a curve or a point; a pair is a place, which is seen from `at`."""
+    """Yields the numbers of a curve or a point; a pair is a place, taken relative to `at`."""
     match value:
         case (float() as x, float() as y):
             yield from (x - at[0], y - at[1])

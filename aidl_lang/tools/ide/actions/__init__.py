@@ -1,7 +1,7 @@
-"""What an editor offers to do to a program at a place: fixes, and changes that keep what it draws.
+"""Code actions: fixes, and changes that keep the drawing.
 
 Each action is found cheaply and carried out when it is chosen; those that could go wrong try the changed
-program first, and refuse where it would not be what was promised.
+program first, and refuse if the result is not what the title promises.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ __all__ = ["Action", "actions"]
 
 
 def actions(view: View, start: int, end: int) -> list[Action]:
-    """What can be done at a selection of the text, or at the cursor where both ends are the same."""
+    """Returns the actions for a selection of the text, or for the cursor if both ends are the same."""
     return [
         *fixes(view, start, end),
         *missing_constraints(view, start),

@@ -28,7 +28,9 @@ class Action:
 
 
 def drawn_alike(one: View, other: View) -> bool:
-    """Whether two programs solve and draw the same picture. Raises CannotError where that cannot be told."""
+    """Tells whether two programs solve and draw the same picture. Raises CannotError if a picture cannot be
+    made.
+    """
     outcomes = [view.outcome for view in (one, other)]
     if any(outcome is None or not outcome.ok for outcome in outcomes):
         return False
@@ -40,7 +42,7 @@ def drawn_alike(one: View, other: View) -> bool:
 
 
 def first_error(view: View) -> str:
-    """What is wrong with a program, in one sentence."""
+    """Returns the first error of a program, in one sentence."""
     return next((d.message for d in view.diagnostics if d.is_error), "the drawing would change")
 
 

@@ -1,6 +1,6 @@
-"""The constraint that is missing: a statement that holds what can still move where it is.
+"""Adds a missing constraint: a statement that holds something movable where it is.
 
-What it stands in line with already is said first, else the number that it has.
+An alignment that exists already comes first, else the present number.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from aidl_lang.tools.ide.refusing import CannotError
 from aidl_lang.tools.ide.view import View, edited
 
 _ALIGNED = 1e-6
-"""Relative to the size of the drawing: places so near are one."""
+"""Distance within which places coincide, relative to the size of the drawing."""
 _DECIMALS = 3
-"""Of a number that is written: no finer than a micrometre."""
+"""Decimals of a written number: no finer than a micrometre."""
 _MOST = 4
-"""Motions of a structure for which something is offered."""
+"""Motions of a structure for which actions are offered."""
 _WRITABLE = re.compile(r"[^\W\d]\w*(\[-?\d+\])*(\.[^\W\d]\w*(\[-?\d+\])*)*")
 
 
 @record()
 class _Thing:
-    """Something that has a place: its path in the structure, and its box, which of a point is the point."""
+    """Something with a place: its path in the structure, and its box, for a point the point itself."""
 
     name: str
     box: Box
@@ -43,7 +43,7 @@ class _Thing:
 
 
 def missing_constraints(view: View, offset: int) -> Iterator[Action]:
-    """For the innermost structure around the cursor, where something in it can still move."""
+    """Yields actions for the innermost structure around the cursor, if something in it can still move."""
     if view.outcome is None or view.outcome.model is None or view.outcome.status != "solved":
         return
     model = view.outcome.model
@@ -60,7 +60,7 @@ def missing_constraints(view: View, offset: int) -> Iterator[Action]:
 
 
 def _added(view: View, node: ast.Structure, statement: str) -> list[Edit]:
-    """The statement in the structure's last `constrain { }`, or in a new one at its end."""
+    """Adds the statement to the structure's last `constrain { }`, or to a new one at its end."""
     edits = [_place(view, node, statement)]
     changed = edited(view, edits)
     before, after = (each.model if (each := v.outcome) is not None else None for v in (view, changed))
@@ -89,7 +89,7 @@ def _place(view: View, node: ast.Structure, statement: str) -> Edit:
 
 
 def _statements(model: SolvedModel, structure: SolvedStructure, motion: Motion) -> Iterator[str]:
-    """What would hold one thing that moves, the more telling first."""
+    """Yields statements that would hold one moving thing, the more telling first."""
     things = {thing.name: thing for thing in _things(structure)}
     name = motion.things[0].removeprefix(f"{structure.path}.")
     if not _WRITABLE.fullmatch(name):
@@ -122,7 +122,7 @@ def _held(
     axis: str,
     motion: Motion,
 ) -> Iterator[str]:
-    """In line with what it is in line with now, or at its number."""
+    """Yields alignments that hold now, then the present coordinate."""
     moving = [thing.removeprefix(f"{structure.path}.") for thing in motion.things]
     at = _middle(moved.box, axis)
     place = f"{moved.name}.{axis}" if moved.is_point else f"{moved.name}.center.{axis}"
@@ -136,7 +136,7 @@ def _held(
 
 
 def _things(structure: SolvedStructure) -> Iterator[_Thing]:
-    """What is in a structure, large things first, as its constraints name it."""
+    """Yields the contents of a structure under the names its constraints use, large things first."""
     inside = f"{structure.path}."
     for below in structure.walk():
         if below is not structure and below.box is not None:
@@ -162,7 +162,7 @@ def _placed(geometry: SolvedGeometry, inside: str) -> Iterator[_Thing]:
 
 
 def _origin(root: SolvedStructure, path: str) -> Vec | None:
-    """Where the frame of a structure is in that of the root; None if it is turned or mirrored."""
+    """Returns the origin of a structure's frame in that of the root; None if it is turned or mirrored."""
     x = y = 0.0
     for around in root.walk():
         if around is not root and f"{path}.".startswith(f"{around.path}."):
@@ -173,7 +173,7 @@ def _origin(root: SolvedStructure, path: str) -> Vec | None:
 
 
 def _number(structure: SolvedStructure, name: str) -> float | None:
-    """A number of a structure, or of some geometry in it."""
+    """Returns a number of a structure, or of some geometry in it."""
     thing, _, field = name.rpartition(".")
     path = f"{structure.path}.{thing}" if thing else structure.path
     values: list[object] = [s.params.get(field) for s in structure.walk() if s.path == path]

@@ -1,4 +1,4 @@
-"""Making a template of a structure: it is drawn as before, and can be used again."""
+"""Makes a structure a template: it is drawn as before, and can be used again."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from aidl_lang.tools.ide.refusing import CannotError
 from aidl_lang.tools.ide.view import View, edited
 
 _PASSED = frozenset({SymbolKind.PARAM, SymbolKind.LET, SymbolKind.LOOP, SymbolKind.ARGUMENT})
-"""What a template can be given."""
+"""Symbols that can be passed to a template."""
 
 
 def extractions(view: View, offset: int) -> Iterator[Action]:
-    """For the structure in whose head the cursor stands, if it lies in another."""
+    """Yields the action for the structure whose head contains the cursor, if it lies in another structure."""
     path = around(view.module, offset)
     inside = [node for node in path if isinstance(node, ast.Structure)]
     if len(inside) < 2 or inside[-1].parameters is not None or offset > inside[-1].body.span.start:
@@ -55,7 +55,7 @@ def _extracted(view: View, node: ast.Structure, outermost: ast.Node, name: str) 
 
 
 def _dedented(view: View, node: ast.Structure) -> str:
-    """The body of a structure as it stands at the file's level."""
+    """Returns the body of a structure indented for the file's level."""
     text = view.source.text
     start = line_start(text, node.kind_word.span.start)
     margin = text[start : node.kind_word.span.start]
@@ -67,8 +67,8 @@ def _dedented(view: View, node: ast.Structure) -> str:
 
 
 def _passed(view: View, node: ast.Structure) -> list[Symbol]:
-    """The names from around a structure that its body uses. Raises CannotError for what a template cannot
-    be given.
+    """Returns the outer names that a structure's body uses. Raises CannotError for one that cannot be passed
+    to a template.
     """
     found: dict[Symbol, None] = {}
     for mention in mentions(view):
@@ -88,7 +88,7 @@ def _passed(view: View, node: ast.Structure) -> list[Symbol]:
 
 
 def _is_around(view: View, node: ast.Structure, symbol: Symbol) -> bool:
-    """Whether a symbol is declared in this file between the file's own level and a structure."""
+    """True for a symbol declared in this file between the file's own level and the structure."""
     here = [d.span for d in symbol.declarations if d.span.source is view.source]
     outside = [s for s in here if not (node.span.start <= s.start < node.span.end)]
     return bool(outside) and symbol.owner is not None and not isinstance(symbol.owner, ast.Module)

@@ -1,4 +1,4 @@
-"""The edits that come with what is found wrong, one by one and all together."""
+"""The edits that come with diagnostics, one by one and all together."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _CONFLICTS = frozenset({"E0601", "E0602", "E0603", "E0605"})
 
 
 def fixes(view: View, start: int, end: int) -> Iterator[Action]:
-    """For what is found wrong at a selection; for a conflict, what would mend each of those in it."""
+    """Yields fixes for diagnostics at a selection; for a conflict, those of each constraint in it."""
     near = [d for d in view.diagnostics if any(_is_at(view, p, start, end) for p in _places(d))]
     offered: list[Fix] = []
     for d in near:
@@ -42,7 +42,7 @@ def _is_at(view: View, place: tuple[object, int, int], start: int, end: int) -> 
 
 
 def _remedies(view: View, d: Diagnostic) -> Iterator[Fix]:
-    """What would mend each of the constraints in a conflict."""
+    """Yields the fixes for each of the constraints in a conflict."""
     if d.code not in _CONFLICTS or view.outcome is None:
         return
     for conflict in view.outcome.conflicts():

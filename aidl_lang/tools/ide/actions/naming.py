@@ -1,4 +1,4 @@
-"""Naming a number: it becomes a `param`, with a range, that can be turned from outside."""
+"""Names a number: makes it a `param` with a range, which can be set from outside."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from aidl_lang.tools.ide.refusing import CannotError
 from aidl_lang.tools.ide.view import View, edited
 
 _SHORT = 2
-"""Letters of a name that says too little to be part of another."""
+"""Length of a name that says too little to be part of another."""
 
 
 def namings(view: View, start: int, end: int) -> Iterator[Action]:
-    """For the number at a selection, if a `param` could stand there."""
+    """Yields the action for the number at a selection, if a `param` may replace it."""
     path = around(view.module, start)
     number = _number(path)
     if number is None or number.span.end < end or any(isinstance(node, ast.Param) for node in path):
@@ -47,7 +47,7 @@ def _named(view: View, path: Sequence[ast.Node], number: ast.Number, name: str) 
 
 
 def _range(number: ast.Number) -> str:
-    """From half to twice the number; none for 0."""
+    """Returns the range from half to twice the number; none for 0."""
     if not number.value:
         return ""
     low, high = (f"{number.value * factor:.3g}" for factor in (0.5, 2))
@@ -58,8 +58,8 @@ def _range(number: ast.Number) -> str:
 
 
 def _declared(view: View, path: Sequence[ast.Node], line: str) -> Edit:
-    """The edit that declares a param where the number can see it: with the others of the structure around
-    that is built once, else of the file.
+    """Returns the edit that declares a param visible to the number: with the others of the innermost
+    structure that is built once, else of the file.
     """
     text = view.source.text
     home: ast.Module | ast.Structure = view.module
@@ -87,7 +87,7 @@ def _declared(view: View, path: Sequence[ast.Node], line: str) -> Edit:
 
 
 def _suggested(view: View, path: Sequence[ast.Node]) -> str:
-    """What a number may be called, by what it is given to: `grip_height`, `hook_x`."""
+    """Suggests a name for a number by its use: `grip_height`, `hook_x`."""
     words: list[str] = []
     for outer, inner in pairwise(path):
         match outer:
@@ -111,7 +111,7 @@ def _suggested(view: View, path: Sequence[ast.Node]) -> str:
 
 
 def _parameter(view: View, call: ast.Call, inner: ast.Node) -> str | None:
-    """The parameter that a nameless argument is given to."""
+    """Returns the parameter that a nameless argument fills."""
     fits = view.program.inference.fits.get(call)
     given = next((a for a in call.arguments if a is inner and a.name is None), None)
     if not fits or given is None:

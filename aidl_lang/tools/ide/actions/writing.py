@@ -1,4 +1,4 @@
-"""Writing solved values into the text: where the cursor or the selection is, and everywhere."""
+"""Writes solved values into the text: at the cursor or selection, and everywhere."""
 
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ _TITLES = {False: "Write solved values back as first guesses", True: "Write chan
 
 
 def writings(view: View, start: int, end: int) -> Iterator[Action]:
-    """For what is selected, or else the innermost structure around the cursor; and for the whole file."""
+    """Yields actions for the selection, or else the innermost structure around the cursor; and for the whole
+    file.
+    """
     if view.outcome is None:
         return
     part, where = _part(view, start, end)
@@ -28,7 +30,7 @@ def writings(view: View, start: int, end: int) -> Iterator[Action]:
 
 
 def _part(view: View, start: int, end: int) -> tuple[Span | None, str]:
-    """A part of the text, and what it is called."""
+    """Returns a part of the text with its name."""
     if start < end:
         return view.span(start, end), "selection"
     node = next(structures_around(view, start), None)

@@ -1,4 +1,4 @@
-"""Completion: what may be written at a place, the likeliest first."""
+"""Completion: the texts that may follow at a place, the likeliest first."""
 
 from aidl_lang.tools.ide.completion.complete import complete
 from aidl_lang.tools.ide.completion.item import MOST, Completion

@@ -1,4 +1,4 @@
-"""The arguments that a call does not have yet, by name."""
+"""Completion of named arguments that a call does not have yet."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LONGEST_DEFAULT = 20
 
 
 def named_arguments(context: Context) -> Iterator[Draft]:
-    """What the overloads take that are still possible: what they need first."""
+    """Yields parameters of the overloads still possible, required ones first."""
     call = context.call
     if call is None:
         return
@@ -35,7 +35,7 @@ def named_arguments(context: Context) -> Iterator[Draft]:
 
 
 def _open(reading: Reading, number: int) -> list[tuple[str, Type, bool]]:
-    """The parameters that nothing else than the argument of that number is given to."""
+    """Returns the parameters that no other argument fills."""
     taken = {name for n, name in enumerate(reading.taken) if n != number}
     node = reading.signature.node
     related = {p.name.text for p in things(node)} if isinstance(node, ast.ConstraintDefinition) else set()
@@ -63,7 +63,7 @@ def _default(signature: Signature, name: str) -> str:
 
 
 def _proposed(signature: Signature, name: str, kind: Type, default: str) -> str:
-    """A place to fill in, with a value that a parameter takes."""
+    """Returns a snippet placeholder with a value that the parameter takes."""
     if isinstance(kind, TextType) and (words := words_of(signature, name)):
         listed = [word if word.isidentifier() else f'"{word}"' for word in words if word != "free"]
         return f"${{1|{','.join(listed)}|}}"

@@ -1,4 +1,4 @@
-"""What may be written at a place: the place is looked at, and whoever knows its kind drafts the list."""
+"""Completion at a place: finds the kind of place and collects its drafts."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from aidl_lang.tools.ide.view import View, look
 
 
 def complete(view: View, offset: int, files: Files | None = None) -> list[Completion]:
-    """What may be written at an offset, the likeliest first. `files` lists the programs of the workspace, for
-    imports; the list has at most `MOST` entries.
+    """Returns the completions at an offset, the likeliest first, at most `MOST`. `files` lists the programs
+    of the workspace, for imports.
     """
     spot = spot_at(view, offset)
     match spot.where:
@@ -46,7 +46,7 @@ def complete(view: View, offset: int, files: Files | None = None) -> list[Comple
 
 
 def _in_string(view: View, spot: Spot, files: Files | None) -> Iterator[Draft]:
-    """Files of an import, and the words that an attribute or an argument takes."""
+    """Yields files of an import, and the words that an attribute or an argument takes."""
     before = spot.before
     if before is not None and before.kind in ("import", "from"):
         yield from words.files(view.path, files)
@@ -67,7 +67,7 @@ def _behind_number(view: View, spot: Spot) -> Iterator[Draft]:
 
 
 def _of_literal(view: View, spot: Spot) -> Context | None:
-    """What stands around a string or a number: closed if it is not, without its unit."""
+    """Returns the context around a string, closed if it is not, or around a number without its unit."""
     assert spot.token is not None
     start, text = spot.token.start, view.source.text
     if spot.where is Where.STRING:
@@ -118,7 +118,7 @@ def _of_import(site: Site, files: Files | None) -> Iterator[Draft]:
 
 
 def _is_free(site: Site) -> bool:
-    """Whether something can be proposed at all: not where a new name is given."""
+    """Tells whether anything can be proposed: not where a new name is given."""
     before = site.spot.before
     if before is None:
         return True
@@ -130,7 +130,7 @@ _NAMING = ("param", "var", "let", "fn", "shape", "constraint", "alias", "for", "
 
 
 def _by_node(context: Context, files: Files | None) -> Iterator[Draft]:
-    """By what the placeholder became."""
+    """Yields drafts by the node that the placeholder became."""
     site, node, above = context.site, context.site.node, context.site.parent()
     match node, above:
         case ast.Identifier(), ast.Member(value=value):
@@ -167,7 +167,7 @@ def _attribute(context: Context) -> ast.Attribute | None:
 
 
 def _at_call(context: Context, files: Files | None) -> Iterator[Draft]:
-    """A call by itself is the beginning of a statement; another is a value."""
+    """Yields statements for a call by itself, values for any other."""
     if isinstance(context.site.parent(2), ast.ExpressionStatement):
         if context.site.begins_statement or not context.site.may_end:
             yield from statements(context)

@@ -1,4 +1,4 @@
-"""Constraints, those first that fit the things at hand, with the names of these filled in."""
+"""Completion of constraints: those that fit the things at hand first, with their names filled in."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from aidl_lang.tools.vocabulary import vocabulary
 _FITS_PARTS, _FITS, _FITS_ANY, _FITS_NOT, _BARE = -0.1, 0.0, 1.0, 6.0, 0.5
 _MOST_NAMES = 8
 _FEW_PAIRS = 40
-"""Pairs of kinds that a constraint takes that is one of certain things; what takes more takes nearly all."""
+"""Most pairs of kinds that a specific constraint takes; a constraint with more takes nearly all."""
 _LETTER = re.compile(r"\b([abpq]|box)\b(?!\()|(?<![\w.])(\d+)(?=deg\b|\b)")
 
 
 def constraints(context: Context, behind: float = 0.0) -> Iterator[Draft]:
-    """All that may be stated here; `behind` is added to how unlikely each is."""
+    """Yields all constraints possible here; `behind` is added to each tier."""
     things = _latest([known for known in context.values if known.is_unknown and not _is_self(known)])
     for name, alias in context.callables():
         found = context.scope.called(name)
@@ -48,7 +48,7 @@ def constraints(context: Context, behind: float = 0.0) -> Iterator[Draft]:
 
 
 def _latest(things: Sequence[Known]) -> list[Known]:
-    """The last few things of each kind, in the order in which they are declared."""
+    """Returns the last few things of each kind, in order of declaration."""
     counts: Counter[str] = Counter()
     found = []
     for known in reversed(things):
@@ -88,7 +88,7 @@ def _standard(
 
 
 def _tier(form: Form, things: Sequence[Known]) -> float:
-    """How likely a form is: one of certain things that are there before one that takes anything."""
+    """Returns the tier of a form: a specific one whose things exist before one that takes anything."""
     found = [pair for a, b in _chosen(form, things) if (pair := (kind_of(a.fact), b and kind_of(b.fact)))]
     if not found:
         return _FITS_NOT + len(form.pairs) / 1000
@@ -98,7 +98,7 @@ def _tier(form: Form, things: Sequence[Known]) -> float:
 
 
 def _chosen(form: Form, things: Sequence[Known]) -> Iterator[tuple[Known, Known | None]]:
-    """Things that a form takes, in the order in which they are declared."""
+    """Yields things that a form takes, in order of declaration."""
     for number, a in enumerate(things):
         first = kind_of(a.fact)
         if (first, "") in form.pairs:
@@ -109,7 +109,7 @@ def _chosen(form: Form, things: Sequence[Known]) -> Iterator[tuple[Known, Known 
 
 
 def _filled(form: Form, things: Sequence[Known]) -> str:
-    """The form as a snippet, with names of things where it takes them."""
+    """Returns the form as a snippet, with names of things for its operands."""
     pairs = list(_chosen(form, things))
     firsts = list(dict.fromkeys(a.name for a, _ in pairs))[:_MOST_NAMES]
     default = pairs[0][1] if pairs else None
@@ -150,7 +150,7 @@ def _own(
 
 
 def _stated(name: str, signature: Signature, things: Sequence[Known]) -> tuple[str, bool]:
-    """A call with the names of things that fit; whether there are enough."""
+    """Returns a call with the names of fitting things, and True if there are enough of them."""
     items: list[str] = []
     used: list[str] = []
     fits = True

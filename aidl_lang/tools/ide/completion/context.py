@@ -1,4 +1,4 @@
-"""What is known of a place: the call around it, and which names may be used there."""
+"""The context of a place: the call around it, and the names visible there."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _ATTRIBUTES: dict[str, Type] = {"thickness": NumberType(LENGTH), "elevation": Nu
 
 
 class Use(Enum):
-    """What an expression may read, by the statement that it stands in (language reference: validity)."""
+    """The statement around an expression, which limits what it may read (language reference: validity)."""
 
     GEOMETRY = "its own structure, above"
     DERIVING = "whatever stands above"
@@ -35,7 +35,7 @@ class Use(Enum):
 
 @record(eq=False)
 class Known:
-    """A name that may be used, and what is known of it."""
+    """A visible name with its symbol and its facts."""
 
     name: str
     symbol: Symbol
@@ -48,9 +48,7 @@ class Known:
 
 @record(eq=False)
 class Context:
-    """`call` is the call that the place is an argument of, with the number of the argument, the receiver
-    counted.
-    """
+    """`call` is the call around the place with the number of the argument, the receiver counted."""
 
     site: Site
     view: View
@@ -60,17 +58,17 @@ class Context:
 
     @cached_property
     def statement(self) -> ast.Node | None:
-        """The statement that the place is in."""
+        """The statement around the place."""
         return next((n for n in reversed(self.path) if isinstance(n, _STATEMENTS)), None)
 
     @cached_property
     def home(self) -> ast.Node:
-        """The structure or other definition whose body the place is in, or the file."""
+        """The structure or other definition whose body contains the place, or the file."""
         return self.scope.homes[-1]
 
     @cached_property
     def in_items(self) -> bool:
-        """Whether the place is among constraints."""
+        """True among constraints."""
         return any(isinstance(n, ast.Constrain | ast.ConstraintDefinition) for n in self.path)
 
     @cached_property
@@ -89,14 +87,14 @@ class Context:
 
     @property
     def _derives(self) -> bool:
-        """Whether the place is an argument of something that takes geometry from around: `mirror(…)`."""
+        """True in an argument of a call that derives from other geometry: `mirror(…)`."""
         if self.call is None:
             return False
         return self.call[0].callee.text in DERIVING | PATTERNS | COPYING
 
     @cached_property
     def readings(self) -> list[Reading]:
-        """The overloads of the call around that what it is given so far leaves possible."""
+        """The overloads of the call around that fit its arguments so far."""
         if self.call is None:
             return []
         found = readings(self.view.program, self.scope, self.call[0])
@@ -107,7 +105,7 @@ class Context:
         return Around(self.view.program.inference, self._of_argument).wanted(self.path)
 
     def _of_argument(self) -> Wanted:
-        """What the parameters want that an argument may be for, by all overloads that are possible."""
+        """Returns the parameter types that the argument may fill, over all possible overloads."""
         if self.call is None:
             return self._of_attribute()
         number = self.call[1]
@@ -133,7 +131,7 @@ class Context:
 
     @cached_property
     def values(self) -> list[Known]:
-        """The names of values that may be used here, the nearest scope first."""
+        """Returns the names of values visible here, the nearest scope first."""
         check = self.view.program.inference
         check.homes = self.scope.homes
         found = []
@@ -150,13 +148,13 @@ class Context:
         return found
 
     def _is_here(self, name: str) -> bool:
-        """Whether a built-in name is one for programs, and one of structures stands in one."""
+        """Tells whether a built-in name is visible: one for programs, or one of structures in a structure."""
         words = vocabulary()
         in_structure = any(isinstance(home, ast.Structure) for home in self.scope.homes)
         return name in words.constants or (name in words.everywhere and in_structure)
 
     def _is_ahead(self, symbol: Symbol) -> bool:
-        """Whether a name is that of the statement itself, or is made below where that counts."""
+        """True for the name of the statement itself, or one made below if order counts."""
         start = self.site.spot.start
         nodes = [n for n in symbol.nodes if n.span.source is self.view.source]
         if symbol.kind in (SymbolKind.ARGUMENT, SymbolKind.LOOP) or symbol.scope is None or not nodes:
@@ -171,7 +169,7 @@ class Context:
         return self.use is Use.DERIVING and start < nodes[0].span.start
 
     def may_read(self, known: Known) -> bool:
-        """Whether what a name stands for may be read here."""
+        """Tells whether the value of a name may be read here."""
         reads = known.fact.reads
         match self.use:
             case Use.CHECK:
@@ -187,8 +185,8 @@ class Context:
                 return all(p.holder in self.scope.homes for p in reads)
 
     def callables(self) -> Iterator[tuple[str, Symbol | None]]:
-        """The names of this program, and of what it imports, that can be called here, the nearest first; with
-        the alias where it is one.
+        """Yields the callable names of this program and its imports, the nearest first, with the alias of an
+        alias.
         """
         seen: set[str] = set()
         outermost = self.view.resolution.library_scope
@@ -202,17 +200,17 @@ class Context:
 
 
 def context_of(site: Site) -> Context | None:
-    """None where the place is in no program."""
+    """Returns the context of a site; None if the place is in no program."""
     if site.view is None or site.scope is None:
         return None
     path = site.path
     if isinstance(path[-1], ast.Identifier) and isinstance(path[-2], ast.Member | ast.Call):
-        path = path[:-1]  # the whole is what is wanted to be something
+        path = path[:-1]  # the whole expression is what has a wanted type
     return Context(site, site.view, site.scope, path, _call_around(site.view, path))
 
 
 def _call_around(view: View, path: tuple[ast.Node, ...]) -> tuple[ast.Call, int] | None:
-    """The call of whose arguments the innermost node, or an operation that ends in it, is one."""
+    """Returns the call with the innermost node, or an operation that ends in it, as argument."""
     for number in range(len(path) - 1, 0, -1):
         node, above = path[number], path[number - 1]
         if isinstance(above, ast.Argument):

@@ -1,4 +1,4 @@
-"""Entries before they are ranked and given their place."""
+"""Completion entries before ranking."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from aidl_lang.tools.snippets import Snippet
 
 @record()
 class Draft:
-    """`tier` is how likely it is, 0 the likeliest; of those that are alike the first drafted comes first."""
+    """`tier` ranks it, 0 the likeliest; equal ones keep the order of drafting."""
 
     label: str
     kind: str
@@ -28,7 +28,7 @@ class Draft:
 
 
 def ranked(drafts: Iterable[Draft], span: Span, prefix: str) -> list[Completion]:
-    """The likeliest first, each label once; those that the prefix may be the beginning of a spelling of."""
+    """Returns entries by tier, each label once, of those that the prefix may abbreviate."""
     chosen: dict[tuple[str, str], Draft] = {}
     for draft in sorted(drafts, key=lambda d: d.tier):
         chosen.setdefault((draft.label, draft.text), draft)
@@ -42,15 +42,15 @@ def ranked(drafts: Iterable[Draft], span: Span, prefix: str) -> list[Completion]
 
 
 def escaped(text: str) -> str:
-    """Text as it stands in a snippet."""
+    """Escapes a text for a snippet."""
     for sign in ("\\", "$", "}"):
         text = text.replace(sign, "\\" + sign)
     return text
 
 
 def written_out(snippet: Snippet) -> str:
-    """A beginning as completion writes it: indented as programs are, the cursor resting at its end where
-    nothing else is said.
+    """Writes a snippet for completion: indented as programs are, the cursor at its end unless it says
+    otherwise.
     """
     return snippet.body.replace("\t", "    ").removesuffix("$0")
 
@@ -60,5 +60,5 @@ def stop(number: int, proposed: str) -> str:
 
 
 def choice(number: int, names: Sequence[str]) -> str:
-    """A place where one of some names is filled in; the first is proposed."""
+    """Returns a placeholder with a choice of names; the first is proposed."""
     return f"${{{number}|{','.join(names)}|}}" if len(names) > 1 else stop(number, names[0])

@@ -1,4 +1,4 @@
-"""Which constraints go with which things, read off the table of all pairs that the reference has.
+"""The kinds of things that each constraint takes, from the reference's table of all pairs.
 
 That table is made by compiling a program for each of its cells (`aidl_lang.tools.reference.coverage`).
 """
@@ -23,8 +23,8 @@ _MARK = "●"
 
 @record()
 class Form:
-    """A way to state a constraint of `a`, or of `a` and `b`, and the kinds of things that it takes, `second`
-    being "" where it takes one.
+    """A form of a constraint of `a`, or of `a` and `b`, and the kinds of things it takes; `second` is "" for
+    a single one.
     """
 
     name: str
@@ -34,7 +34,7 @@ class Form:
 
 @cache
 def forms() -> Mapping[str, tuple[Form, ...]]:
-    """The forms of each constraint of the library, in the order of the reference."""
+    """Returns the forms of each constraint of the library, in the order of the reference."""
     return read(resource(_TABLE).read_text("utf-8"))
 
 
@@ -55,7 +55,7 @@ def read(page: str) -> Mapping[str, tuple[Form, ...]]:
 
 
 def _told(words: str) -> frozenset[tuple[str, str]]:
-    """`any two, but no number`, or the kinds that one thing may be of."""
+    """Parses `any two, but no number`, or the kinds of a single thing."""
     if words.startswith("any two"):
         but = {word.strip() for word in re.split(r", but no | and no ", words)[1:]}
         kinds = [kind for kind in KINDS if kind not in but]
@@ -64,7 +64,7 @@ def _told(words: str) -> frozenset[tuple[str, str]]:
 
 
 def kind_of(fact: Fact) -> str:
-    """The kind of a thing in that table; "" for what is in none."""
+    """Returns the kind of a thing in that table; "" for a thing that is not in it."""
     return _kind(fact.type, is_unknown=bool(fact.reads))
 
 

@@ -1,4 +1,4 @@
-"""Definitions of other files of the workspace, each with the import that brings it."""
+"""Completion of definitions in other files of the workspace, each with its import."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from aidl_lang.tools.ide.describing import of_definition
 from aidl_lang.tools.ide.edits import insert
 
 MOST_FILES = 40
-"""Files that are looked into."""
+"""Most files that are read."""
 _TIER = 8.5
 
 
 def importing(context: Context, files: Files | None) -> Iterator[Draft]:
-    """What programs beside this one define, and it does not see yet."""
+    """Yields the definitions of other programs that this one does not import yet."""
     if context.use is Use.CONSTANT or context.site.following.startswith("("):
         return
     view = context.site.original
@@ -33,7 +33,7 @@ def importing(context: Context, files: Files | None) -> Iterator[Draft]:
         try:
             text = view.world.read(name)
         except FileError:
-            continue  # gone since, or not to be read: an import of it would say so
+            continue  # gone since, or unreadable: an import of it would report that
         for node in definitions(name, text):
             if context.scope.called(node.name.text) is None and _may_stand(context, node):
                 yield _draft(context, name, node)
@@ -41,7 +41,7 @@ def importing(context: Context, files: Files | None) -> Iterator[Draft]:
 
 @lru_cache(maxsize=128)
 def definitions(name: str, text: str) -> tuple[ast.Callable, ...]:
-    """What can be called of a file."""
+    """Returns the callable definitions of a file."""
     module = parse(SourceFile(name, text)).module
     return tuple(
         s
@@ -54,8 +54,8 @@ def definitions(name: str, text: str) -> tuple[ast.Callable, ...]:
 
 
 def _may_stand(context: Context, node: ast.Callable) -> bool:
-    """Whether a definition is of use at the place: constraints where something is demanded, else what gives a
-    value.
+    """Tells whether a definition fits the place: constraints among constraints, elsewhere callables that give
+    a value.
     """
     is_demand = context.use is Use.CONSTRAINT
     return isinstance(node, ast.ConstraintDefinition) == is_demand or isinstance(node, ast.FunctionDefinition)
@@ -78,7 +78,7 @@ def _draft(context: Context, file: str, node: ast.Callable) -> Draft:
 
 
 def _import(context: Context, file: str, name: str) -> Edit:
-    """Writes the import behind those that are there, or at the head of the file below its first comments."""
+    """Adds the import after the existing ones, or at the head of the file below its first comments."""
     view = context.site.original
     imports = [s for s in view.module.statements if isinstance(s, ast.Import)]
     known = next((s for s in imports if s.names and s.path.value == file), None)
@@ -93,5 +93,5 @@ def _import(context: Context, file: str, name: str) -> Edit:
 
 
 def _has_mark(text: str) -> bool:
-    """Whether a text begins with a byte order mark, which stays the first."""
+    """True for a text that begins with a byte order mark, which stays first."""
     return text.startswith("\ufeff")

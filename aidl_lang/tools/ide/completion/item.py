@@ -1,4 +1,4 @@
-"""One thing that may be written at a place."""
+"""One completion entry."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from aidl_lang.common.source import Span
 from aidl_lang.tools.snippets import expanded
 
 MOST = 200
-"""Entries of a list. One that has so many may have left out others: it is to be asked for anew as the word
+"""Most entries of a list. A list of that length may be incomplete: the editor asks again as the word
 grows.
 """
 
@@ -50,5 +50,5 @@ class Completion:
 
     @property
     def plain(self) -> str:
-        """The text without places to fill in, each as it is proposed."""
+        """Returns the text with each placeholder replaced by its proposal."""
         return expanded(self.text) if self.is_snippet else self.text

@@ -1,4 +1,4 @@
-"""What may stand behind a dot, and between the brackets of an index."""
+"""Completion after a dot, and between the brackets of an index."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _NUMBER = re.compile(r"-?\d+")
 
 
 def members(context: Context, value: ast.Expression) -> Iterator[Draft]:
-    """The members of what stands before the dot, and the calls that take it as their first argument."""
+    """Yields members of the value before the dot, and calls that take it as first argument."""
     check = context.view.program.inference
     if isinstance(value, ast.Name):
         symbol = context.view.resolution.uses.get(value)
@@ -64,7 +64,7 @@ def members(context: Context, value: ast.Expression) -> Iterator[Draft]:
 
 
 def _of_file(context: Context, scope: Scope | None) -> Iterator[Draft]:
-    """What `import … as` brings."""
+    """Yields the names of `import … as`."""
     if scope is None:
         return
     check = context.view.program.inference
@@ -88,7 +88,7 @@ _Named = Iterator[tuple[float, str, Symbol | None]]
 
 
 def _names(context: Context, fact: Fact) -> _Named:
-    """The names of members, each with how likely it is and what declares it."""
+    """Returns the names of members, each with its tier and declaration."""
     match fact.type:
         case StructureType() if fact.of is not None:
             yield from _declared(context.view.resolution.scope_of(fact.of), fact.of)
@@ -124,7 +124,7 @@ def _declared(scope: Scope, node: ast.Node) -> _Named:
 
 
 def _of_shape(context: Context, definition: ast.Node) -> _Named:
-    """The named parts of a shape, then what it was given."""
+    """Returns the named parts of a shape, then its parameters."""
     assert isinstance(definition, ast.ShapeDefinition)
     scope = body_of(context.view.program.inference, definition)
     for part in parts(definition):
@@ -137,7 +137,7 @@ def _of_shape(context: Context, definition: ast.Node) -> _Named:
 
 
 def _member(context: Context, base: Fact, name: str, tier: float, symbol: Symbol | None) -> Draft:
-    """A member with its type, which the checker tells."""
+    """Returns a member with the type that the checker infers."""
     check = context.view.program.inference
     identifier = ast.Identifier(name, span=context.path[-1].span)
     nothing = ast.Name(name, span=context.path[-1].span)
@@ -162,7 +162,7 @@ def _field(name: str, fact: Fact) -> str:
 
 
 def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
-    """`a.above(…)`: constraints where one may stand, functions elsewhere, of what stands before the dot."""
+    """Yields `a.above(…)`: constraints among constraints, functions elsewhere."""
     if isinstance(fact.type, AnyType | RecordType):
         return
     words = vocabulary()
@@ -188,7 +188,7 @@ def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
 
 
 def _is_demand(context: Context) -> bool:
-    """Whether the value with the dot stands where a constraint may."""
+    """True if the value with the dot stands in the place of a constraint."""
     above = context.site.parent(2)
     return context.use is Use.CONSTRAINT and isinstance(
         above, ast.ExpressionStatement | ast.Constrain | ast.Block | ast.Prefer | ast.Binary
@@ -196,7 +196,7 @@ def _is_demand(context: Context) -> bool:
 
 
 def _first_fits(fact: Fact, signatures: list[Signature], name: str, kind: str) -> float | None:
-    """How well the first parameter of a callable takes a thing; None if it does not."""
+    """Returns how well a callable's first parameter takes a thing; None if it does not."""
     table: Mapping[str, object] = forms()
     if name in table and all(s.standard for s in signatures):
         pairs = [len(form.pairs) for form in forms()[name] if any(first == kind for first, _ in form.pairs)]
@@ -226,7 +226,7 @@ def _method(context: Context, name: str, signatures: list[Signature], tier: floa
 
 
 def indices(context: Context, index: ast.Index) -> Iterator[Draft]:
-    """The indices that members of an array had when it was last drawn, the last by `-1`."""
+    """Yields the indices of an array in the last drawing, the last one as `-1`."""
     drawn = context.site.original.drawn
     if drawn is None or drawn.model is None:
         return

@@ -1,4 +1,4 @@
-"""Values and callables by their names."""
+"""Completion of values and callables by their names."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.vocabulary import vocabulary
 
 MAKERS, OWN, MAYBE, PARTS, CALLS, OTHERS, FAR = 0.8, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0
-"""Tiers: what makes geometry where that is wanted; values that fit, that may fit, that have parts which fit;
-callables that fit; the rest of what is declared; what hardly fits.
+"""Tiers: makers of geometry if that is wanted; values that fit, that may fit, that have parts which fit;
+callables that fit; other declared names; names that hardly fit.
 """
 _STEPS = "path"
-"""The topic, and the shape, of what only the outline of a path is made of."""
+"""The topic, and the shape, of the steps that outline a path."""
 _HAVING_PARTS = (StructureType, GeometryType, PointType)
 
 
 def values(context: Context) -> Iterator[Draft]:
-    """The names that may be read here, those of a wanted type first."""
+    """Yields the names that may be read here, those of a wanted type first."""
     for known in context.values:
         yield Draft(
             known.name,
@@ -70,7 +70,7 @@ def detail(known: Known) -> str:
 
 
 def about(symbol: Symbol) -> str:
-    """What is said of a name that is no callable."""
+    """Returns the description of a name that is not callable."""
     if symbol.node is not None:
         return joined(dict.fromkeys(of_definition(node) for node in symbol.nodes[:3]))
     entry = reference().entries.get(symbol.name)
@@ -81,7 +81,7 @@ def about(symbol: Symbol) -> str:
 
 
 def calls(context: Context) -> Iterator[Draft]:
-    """What can be called to get a value."""
+    """Yields the callables that give a value."""
     is_whole = _is_whole_value(context)
     for name, alias in context.callables():
         found = context.scope.called(name)
@@ -108,13 +108,13 @@ def calls(context: Context) -> Iterator[Draft]:
 
 
 def _is_whole_value(context: Context) -> bool:
-    """Whether the place is all of what a name is given: `rim = …`."""
+    """True if the place is the whole value of a name: `rim = …`."""
     above = context.site.parent()
     return isinstance(above, ast.Assign) and not context.in_items
 
 
 def _takes_things(context: Context) -> bool:
-    """Whether geometry may stand at the place."""
+    """True if geometry may stand at the place."""
     kinds = context.wanted.types
     things = (GeometryType, StructureType, ListType, AnyType)
     if context.call is None:
@@ -123,7 +123,7 @@ def _takes_things(context: Context) -> bool:
 
 
 def _belongs(context: Context, name: str) -> bool:
-    """Whether a name of the library is of use here: steps are so in a path alone, checks in an assert."""
+    """Tells whether a library name is useful here: steps in a path only, checks in an assert."""
     entry = reference().entries.get(name)
     in_path = context.call is not None and context.call[0].callee.text == _STEPS
     if entry is not None and entry.topic == _STEPS and name != _STEPS:
@@ -155,7 +155,7 @@ def _makes(context: Context, signature: Signature) -> bool:
 
 
 def result_type(context: Context, signature: Signature) -> Type:
-    """What a callable gives, as far as that is the same for all arguments."""
+    """Returns the result type of a callable, as far as it is the same for all arguments."""
     if signature.kind is None:
         return fields.RESULTS.get(signature.name, ANY)
     if signature.kind is ast.ShapeDefinition:
@@ -188,7 +188,7 @@ def call(
 def called(
     context: Context, name: str, signatures: Sequence[Signature], skipped: int = 0
 ) -> tuple[str, bool]:
-    """How a call is written, and whether that is a snippet; where a `(` stands already, by the name alone."""
+    """Returns the text of a call, and True for a snippet; the name alone before an existing `(`."""
     if context.site.following.startswith("("):
         return name, False
     if all(len(s.parameters) <= skipped and not (s.takes_any or s.gathers) for s in signatures):
@@ -197,7 +197,7 @@ def called(
 
 
 def brief(signatures: Sequence[Signature]) -> str:
-    """The parameters of the first overload, and how many others there are."""
+    """Returns the parameters of the first overload, and the number of others."""
     names = [name + "?" * optional for name, _, optional in signatures[0].parameters]
     more = f" +{len(signatures) - 1}" if len(signatures) > 1 else ""
     return f"({', '.join(names)}){more}"

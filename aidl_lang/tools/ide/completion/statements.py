@@ -1,4 +1,4 @@
-"""How statements begin, and the words that go on with one."""
+"""Completion of statements and of the words that continue one."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _OWN = {
     "construction": "construction ${1:axis} = line(${2:origin}, ${3:(0, 10)})",
     "todo": "todo",
 }
-"""Statements for which the snippets of all editors have no beginning, or another one (see `snippets`)."""
+"""Statements without a snippet, or with another one, in the snippets of all editors (see `snippets`)."""
 _IN_ITEMS = ("let", "for", "if", "prefer", "constrain")
 _AT_TOP = ("import",)
 _CLAUSES = {
@@ -40,7 +40,7 @@ _STATEMENTS, _KINDS, _OPERATIONS, _SHAPES, _NAMES, _LOW = 2.0, 1.0, 4.0, 5.0, 3.
 
 
 def statements(context: Context) -> Iterator[Draft]:
-    """What may be stated here: definitions in a body, constraints among constraints."""
+    """Yields the statements possible here: definitions in a body, constraints among constraints."""
     site = context.site
     if context.in_items:
         yield from constraints(context)
@@ -62,7 +62,7 @@ def _later(draft: Draft, tier: float) -> Draft:
 
 
 def kinds(site: Site, tier: float) -> Iterator[Draft]:
-    """Structures; by the word alone where a name stands already."""
+    """Yields the kinds of structures; the word alone before an existing name."""
     if not site.takes("NAME", "NAME", "{"):
         return
     is_named = site.following.lstrip(" \t")[:1].isidentifier()
@@ -89,7 +89,7 @@ def _keywords(site: Site, tier: float) -> Iterator[Draft]:
 
 
 def _statement(site: Site, word: str, tier: float) -> Draft:
-    """A statement with places to fill in; the word alone where it goes on already."""
+    """Returns a statement with placeholders; the word alone if the statement goes on already."""
     rest = site.following.partition("\n")[0].strip()
     is_alone = not rest or rest.startswith("}")
     text = _beginning(word) if is_alone else word
@@ -103,7 +103,7 @@ def _beginning(word: str) -> str:
 
 
 def _operations(context: Context) -> Iterator[Draft]:
-    """Statements that change what was made: `fillet(…)`, `move(…)`, `union(…)`."""
+    """Yields statements that change existing geometry: `fillet(…)`, `move(…)`, `union(…)`."""
     yield from _calls(context, vocabulary().operations, _OPERATIONS)
 
 
@@ -116,7 +116,7 @@ def _calls(context: Context, found: tuple[str, ...], tier: float) -> Iterator[Dr
 
 
 def _shapes(context: Context) -> Iterator[Draft]:
-    """Geometry under a new name: `name = circle(…)`."""
+    """Yields geometry under a new name: `name = circle(…)`."""
     words = vocabulary()
     own = [name for name, _ in context.callables()]
     if context.site.following.startswith("("):
@@ -143,7 +143,7 @@ def _shapes(context: Context) -> Iterator[Draft]:
 
 
 def clauses(site: Site, *, is_condition: bool = True) -> Iterator[Draft]:
-    """The words that may go on with the statement under way: `at`, `in`, `step`, `and`, …"""
+    """Yields words that continue the present statement: `at`, `in`, `step`, `and`, …"""
     words = vocabulary()
     operand = not site.may_end and site.takes("NUMBER")
     for number, word in enumerate(
@@ -178,7 +178,7 @@ def _goes_on(site: Site, word: str, *, operand: bool, is_condition: bool) -> boo
 
 
 def _soft(site: Site, word: str) -> bool:
-    """Whether a word that is a name elsewhere is a word of the grammar here."""
+    """Tells whether a contextual keyword, elsewhere a name, is a keyword here."""
     match word:
         case "as":
             return site.takes("as", "NAME", ";") and not site.automaton.between_statements

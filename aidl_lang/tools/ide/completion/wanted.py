@@ -1,4 +1,4 @@
-"""What is wanted at a place, by what stands around it."""
+"""The type wanted at a place, by the nodes around it."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ from aidl_lang.syntax import ast
 _WHOLE = NumberType(None, whole=True)
 _NUMBER = NumberType(LENGTH)
 _PERHAPS = 3
-"""How far what is not known is from what is wanted."""
+"""Distance of an unknown type from the wanted one."""
 
 
 @record()
 class Wanted:
-    """Types of which one is wanted, the likelier first; none where anything may stand. `name` is the
-    parameter that it is for.
-    """
+    """The wanted types, likelier first; empty for any. `name` is the parameter to fill."""
 
     types: tuple[Type, ...] = ()
     name: str = ""
 
     def distance(self, given: Type) -> int | None:
-        """How far a type is from what is wanted; None if it does not fit. What is not known may fit."""
+        """Returns how far a type is from the wanted ones; None if it does not fit. An unknown type may
+        fit.
+        """
         if isinstance(given, AnyType):
             return _PERHAPS
         found = [d for kind in self.types if (d := accepts(kind, given)) is not None]
@@ -47,18 +47,18 @@ class Wanted:
 
 
 CONDITION = Wanted((TruthType(),))
-"""What begins with a value as often as not: `a.radius >= 3`."""
+"""The type of a condition, which often begins with a value: `a.radius >= 3`."""
 
 
 @record()
 class Around:
-    """`argument` tells what is wanted of an argument of the call around."""
+    """`argument` returns what is wanted of an argument of the call around."""
 
     check: Inference
     argument: Callable[[], Wanted]
 
     def wanted(self, path: Sequence[ast.Node]) -> Wanted:
-        """What the last node of a path is wanted to be, by what stands around it."""
+        """Returns the types wanted of the last node of a path."""
         if len(path) < 2:
             return Wanted()
         node, above = path[-1], path[-2]
@@ -84,14 +84,14 @@ class Around:
                 return _of_place(node, above, path)
 
     def _compared(self, node: ast.Node, operands: tuple[ast.Expression, ...]) -> Wanted:
-        """What goes with the other sides of a comparison."""
+        """Returns the types comparable with the other sides."""
         facts = [self.check.fact(o) for o in operands if o is not node]
         known = next((f.type for f in facts if not isinstance(f.type, AnyType)), None)
         return _alike(known) if known is not None else Wanted()
 
 
 def _of_place(node: ast.Node, above: ast.Node, path: Sequence[ast.Node]) -> Wanted:
-    """What a statement, or another fixed place, wants."""
+    """Returns the types that a statement, or another fixed place, wants."""
     match above:
         case ast.Point():
             return Wanted((NumberType(LENGTH),))
@@ -124,7 +124,7 @@ def _is_index(node: ast.Node, above: ast.Index | ast.Structure | ast.Assign) -> 
 
 
 def _alike(kind: Type) -> Wanted:
-    """What may be compared with, or added to, something of a type."""
+    """Returns the types that may be compared with, or added to, a type."""
     match kind:
         case NumberType(dimension):
             return Wanted((NumberType(dimension), NumberType(None)))

@@ -1,4 +1,4 @@
-"""Words from fixed lists: units, attributes, colours, types, the choices of an argument, files."""
+"""Completion from fixed lists: units, attributes, colours, types, the choices of an argument, files."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ from aidl_lang.tools.snippets import SNIPPETS
 from aidl_lang.tools.vocabulary import vocabulary
 
 Files = Callable[[], Iterable[Path]]
-"""What lists the programs of a workspace."""
+"""A function that lists the programs of a workspace."""
 _DEEPEST = 4
-"""Calls of calls in which the choices of a parameter are looked for."""
+"""Depth of nested calls searched for the choices of a parameter."""
 _FAVOURITES = ("mm", "deg")
 _PLAIN_TYPES = ("number", "integer", "length", "angle", "point", "text", "bool", "list", "box")
 
@@ -38,7 +38,7 @@ _PLAIN_TYPES = ("number", "integer", "length", "angle", "point", "text", "bool",
 
 
 def units(context: Context | None) -> Iterator[Draft]:
-    """Units behind a number, those of what is wanted there first."""
+    """Yields units after a number, those of the wanted dimension first."""
     wanted = context.wanted.types if context is not None else ()
     dimensions = [k.dimension for k in wanted if isinstance(k, NumberType) and k.dimension is not None]
     for number, (unit, (factor, dimension)) in enumerate(UNITS.items()):
@@ -56,7 +56,7 @@ def _worth(unit: str, factor: float, dimension: Dimension) -> str:
 
 
 def attributes(is_called: bool) -> Iterator[Draft]:
-    """What may stand behind `@`; by the name alone where its parenthesis stands already."""
+    """Yields attributes after `@`; the name alone before an existing parenthesis."""
     for snippet in (s for s in SNIPPETS if s.place == "attribute"):
         name = snippet.prefix.removeprefix("@")
         text = name if is_called else written_out(snippet).removeprefix("@")
@@ -67,7 +67,7 @@ def attributes(is_called: bool) -> Iterator[Draft]:
 
 
 def of_attribute(name: str, *, is_quoted: bool) -> Iterator[Draft]:
-    """The argument of an attribute that takes a word."""
+    """Yields the words that an attribute takes as argument."""
     listed: Sequence[str] = ()
     kind = "word"
     match fold(name):
@@ -86,7 +86,7 @@ def of_attribute(name: str, *, is_quoted: bool) -> Iterator[Draft]:
 
 
 def types(context: Context | None) -> Iterator[Draft]:
-    """What may stand behind `:` in a parameter: the types, and shapes by their names."""
+    """Yields types after `:` in a parameter, and shapes by their names."""
     for number, word in enumerate(dict.fromkeys((*_PLAIN_TYPES, *PARAMETER_TYPES))):
         yield Draft(word, "type", number / 100, detail=str(PARAMETER_TYPES[word]))
     words = vocabulary()
@@ -103,7 +103,7 @@ def types(context: Context | None) -> Iterator[Draft]:
 
 
 def choices(context: Context, *, is_quoted: bool) -> Iterator[Draft]:
-    """The words that the parameter takes which the place is an argument for."""
+    """Yields the words that the parameter at this place takes."""
     if context.call is None:
         return
     number = context.call[1]
@@ -122,7 +122,7 @@ def _words(reading: Reading, number: int) -> Sequence[str]:
 
 @lru_cache(maxsize=1024)
 def words_of(signature: Signature, parameter: str, depth: int = _DEEPEST) -> Sequence[str]:
-    """The words that a definition chooses among by one of its parameters, itself or in what it calls."""
+    """Returns the words that a definition, or its calls, choose among by a parameter."""
     kind = next((k for name, k, _ in signature.parameters if name == parameter), None)
     if not isinstance(kind, TextType | AnyType):
         return ()
@@ -147,7 +147,7 @@ def _texts(node: ast.Expression) -> Sequence[str]:
 
 
 def _words_inside(call: ast.Call, place: int, depth: int) -> Sequence[str]:
-    """The words of the parameter of a call that gets the argument at a place."""
+    """Returns the choices of the parameter that gets the argument at a place of a call."""
     word = call.arguments[place].name
     for signature in library.load().callables.get(call.callee.text, ()):
         number = place + (call.receiver is not None)
@@ -167,13 +167,13 @@ def _is_name(node: ast.Expression, name: str) -> bool:
 
 
 def files(site_path: Path, listed: Files | None, *, quoted: bool = False) -> Iterator[Draft]:
-    """The programs that a file may import: those in its folder and below it."""
+    """Yields the programs that a file may import: those in its folder and below it."""
     for name in importable(site_path, listed):
         yield Draft(name, "file", name.count("/") / 10, f'"{name}"' if quoted else name)
 
 
 def importable(path: Path, listed: Files | None) -> list[str]:
-    """Programs as an import names them, seen from the file at a path."""
+    """Returns programs as an import names them, relative to the file at a path."""
     found = []
     for other in listed() if listed is not None else ():
         if other != path and other.is_relative_to(path.parent):
@@ -182,7 +182,7 @@ def importable(path: Path, listed: Files | None) -> list[str]:
 
 
 def imported_names(site: Site, node: ast.Import) -> Iterator[Draft]:
-    """The names that `import … from "file"` may bring."""
+    """Yields the names that `import … from "file"` may bring."""
     view = site.view
     target = view.resolution.imports.get(node) if view is not None else None
     if view is None or target is None:
