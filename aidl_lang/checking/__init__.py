@@ -1,4 +1,4 @@
-"""Which definition each name means, and whether all is right that can be known before the program is run.
+"""The checks before a program is run: the definition that each name means, types, dimensions and validity.
 
 `typecheck` is the door; `resolve` comes before it. The standard library stands here, checked (`library`).
 """

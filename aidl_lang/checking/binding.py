@@ -1,4 +1,4 @@
-"""Which overload of a callable a call means: arguments as they are written first, then in other words.
+"""The choice of an overload for a call: arguments are read as they are written first, then in other words.
 
 In other words means: an argument by a synonym of its parameter's name (`r` for `radius`), two parameters by
 one pair (`size: (40, 20)`), a point by its coordinates (`x: 3, y: 4`), sizes by their order without the
@@ -35,13 +35,13 @@ from aidl_lang.common.prose import ticked
 Outcomes: TypeAlias = Sequence[Binding | Mismatch]
 
 _MOST_KEPT = 16
-"""Arguments of a call whose outcome is kept for the next time: hardly any has more, and those take memory."""
+"""Arguments of a call whose outcomes are cached: hardly any has more, and those take memory."""
 
 
 def outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> Outcomes:
-    """The candidates that fit, perhaps beside some that do not, or else why none does. Arguments are read in
-    other words only if none takes them as written. What the author defines comes before the definitions of
-    that name that every program has.
+    """Returns the candidates that fit, perhaps beside mismatches, or else a mismatch for each. Arguments are
+    read in other words only if none takes them as written. The author's own definitions come before the
+    standard ones of that name.
     """
     if len(given) <= _MOST_KEPT and all(candidate.standard for candidate in candidates):
         return _of_standard(tuple(candidates), tuple(given))
@@ -50,7 +50,7 @@ def outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> Outcome
 
 @lru_cache(maxsize=8192)
 def _of_standard(candidates: tuple[Signature, ...], given: tuple[Given, ...]) -> Outcomes:
-    """What comes of definitions that every program has is the same in every program."""
+    """Returns the outcomes for standard definitions, which are the same in every program."""
     return tuple(_outcomes(candidates, given))
 
 
@@ -71,8 +71,8 @@ def _outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> Outcom
 
 
 def select(candidates: Sequence[Signature], given: Sequence[Given]) -> Binding | list[Mismatch]:
-    """The candidate that fits best (least conversion, then fewest defaults, then first written), or why none
-    does.
+    """Returns the candidate that fits best (least conversion, then fewest defaults, then first written), or
+    all mismatches.
     """
     found = outcomes(candidates, given)
     fits = [outcome for outcome in found if isinstance(outcome, Binding)]
@@ -80,7 +80,9 @@ def select(candidates: Sequence[Signature], given: Sequence[Given]) -> Binding |
 
 
 def _unambiguous(fits: Sequence[Binding], given: Sequence[Given]) -> list[Binding | Mismatch]:
-    """The candidates that fit; each a mismatch if a word means one parameter here and another there."""
+    """Returns the candidates that fit; a mismatch instead if a word means one parameter here and another
+    there.
+    """
     for index, argument in enumerate(given):
         if argument.name is None or isinstance(argument.type, AnyType):
             continue
@@ -96,7 +98,7 @@ def _ambiguous(signature: Signature, word: str, meant: Sequence[str], index: int
 
 
 def _loosely(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch:
-    """Match arguments to the parameters of one callable in other words than theirs."""
+    """Matches arguments to the parameters of one callable in other words than theirs."""
     read = [(replace(g), Source(i)) for i, g in enumerate(given)]
     read = _without_flag(signature, read)
     read = _joined(signature, read)
@@ -126,7 +128,7 @@ def _bound(signature: Signature, read: _Read) -> Binding | Mismatch:
 
 
 def _center(signature: Signature) -> str | None:
-    """The first parameter, where it is a point that may be left out."""
+    """Returns the name of the first parameter if it is a centre that may be left out."""
     if not signature.parameters:
         return None
     name, kind, optional = signature.parameters[0]
@@ -134,7 +136,7 @@ def _center(signature: Signature) -> str | None:
 
 
 def _without_flag(signature: Signature, read: _Read) -> _Read:
-    """`center: true` asks for what is so anyway: a place about the centre."""
+    """Drops `center: true`, which asks for the default: a place about the centre."""
     center = _center(signature)
     return [
         (g, source)
@@ -148,7 +150,7 @@ def _means(word: str, parameter: str) -> bool:
 
 
 def _joined(signature: Signature, read: _Read) -> _Read:
-    """Two coordinates become the point they name."""
+    """Turns two coordinates into the point they name."""
     for x, y, meanings in COORDINATES:
         target = next((m for m in meanings if m in signature.by_fold), None)
         found = {fold(g.name): (g, s) for g, s in read if g.name and fold(g.name) not in signature.by_fold}
@@ -162,7 +164,7 @@ def _joined(signature: Signature, read: _Read) -> _Read:
 
 
 def _split(signature: Signature, read: _Read) -> _Read:
-    """A pair becomes the two parameters it stands for."""
+    """Turns a pair into the two parameters it stands for."""
     result: _Read = []
     for g, source in read:
         word = fold(g.name) if g.name else ""
@@ -176,7 +178,7 @@ def _split(signature: Signature, read: _Read) -> _Read:
 
 
 def _parts(kind: Type) -> Type | None:
-    """The type of the two parts of a pair."""
+    """Returns the type of the two parts of a pair; None if it is no pair."""
     match kind:
         case PointType():
             return NumberType(LENGTH)
@@ -187,7 +189,7 @@ def _parts(kind: Type) -> Type | None:
 
 
 def _renamed(signature: Signature, read: _Read) -> _Read | Mismatch:
-    """Synonyms become the names of the parameters they can only mean."""
+    """Turns synonyms into the names of the parameters they can only mean."""
     taken = {signature.by_fold[fold(g.name)] for g, _ in read if g.name and fold(g.name) in signature.by_fold}
     positional = sum(1 for g, _ in read if g.name is None)
     if not signature.gathers:
@@ -216,7 +218,7 @@ def _meanings(signature: Signature, word: str, taken: set[str]) -> list[str]:
 
 
 def _after_center(signature: Signature, read: _Read) -> _Read | None:
-    """Positional sizes belong to the parameters behind the centre; what counts something has to be named."""
+    """Gives positional sizes to the parameters behind the centre; counts have to be named."""
     positional = [i for i, (g, _) in enumerate(read) if g.name is None]
     following = signature.parameters[1 : len(positional) + 1]
     if _center(signature) is None or not positional or len(following) < len(positional):

@@ -1,4 +1,4 @@
-"""Calls, before anything is built: whether an overload fits, and what is known of the result."""
+"""Calls, before anything is built: the overloads that fit, and the facts about the result."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _BUILD_TIME = frozenset({"floor", "ceil", "round"})
 
 
 def call(check: Inference, node: ast.Call) -> Fact:
-    """The fact of `f(…)` or `a.f(…)`."""
+    """Returns the fact of `f(…)` or `a.f(…)`."""
     nodes = arguments(check, node)
     facts = [check.fact(n) for n in nodes]
     reads = frozenset().union(*(f.reads for f in facts)) if facts else NOTHING_READ
@@ -67,7 +67,7 @@ def call(check: Inference, node: ast.Call) -> Fact:
     _serve(check, fits, nodes, facts)
     _spell(check, node, nodes, fits)
     if (subject := next((i for i in range(len(facts)) if fits[0].parameter_of(i) == "x"), 0)) > 0:
-        facts = [facts[subject], *facts]  # `mirror(about: axis, x: a)` gives what `a` is
+        facts = [facts[subject], *facts]  # `mirror(about: axis, x: a)` has the type of `a`
     if len(fits) > 1 and any(isinstance(f.type, AnyType) for f in facts):
         results = [_result(check, fit.signature, nodes, facts, reads) for fit in fits]
         result = results[0]
@@ -81,7 +81,7 @@ def call(check: Inference, node: ast.Call) -> Fact:
 
 
 def _words(check: Inference, node: ast.Call, candidates: Sequence[Signature]) -> dict[int, str]:
-    """The arguments, by index, that are names in reach and could be words for an option as well."""
+    """Returns the arguments, by index, that are names in reach and could be words for an option as well."""
     return {
         i: a.value.span.text
         for i, a in enumerate(node.arguments)
@@ -90,7 +90,7 @@ def _words(check: Inference, node: ast.Call, candidates: Sequence[Signature]) ->
 
 
 def arguments(check: Inference, node: ast.Call) -> list[ast.Expression]:
-    """What a call is given, the receiver first."""
+    """Returns the arguments of a call, the receiver first."""
     nodes = [argument.value for argument in node.arguments]
     receiver = node.receiver
     if receiver is None:
@@ -105,7 +105,7 @@ def arguments(check: Inference, node: ast.Call) -> list[ast.Expression]:
 def _spell(
     check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], fits: Sequence[Binding]
 ) -> None:
-    """Note the parameters that argument names stand for."""
+    """Notes the parameters that argument names stand for."""
     for index, argument in enumerate(node.arguments, len(nodes) - len(node.arguments)):
         meant = parameter_of(index, fits) if argument.name is not None else None
         if meant is not None and argument.name is not None and meant != argument.name.text:
@@ -120,7 +120,7 @@ def _given(node: ast.Call, nodes: Sequence[ast.Expression], facts: Sequence[Fact
 
 
 def _may_be(kind: Type, node: ast.Expression) -> Type:
-    """A number of which only its value will tell whether it is whole may be whole."""
+    """Returns the type of a number as whole if only its value can tell whether it is."""
     if (
         isinstance(kind, NumberType)
         and kind.dimension in (None, units.PLAIN)
@@ -133,7 +133,7 @@ def _may_be(kind: Type, node: ast.Expression) -> Type:
 def _serve(
     check: Inference, fits: Sequence[Binding], nodes: Sequence[ast.Expression], facts: Sequence[Fact]
 ) -> None:
-    """Note which dimension bare names are used in, where all overloads agree on it."""
+    """Notes the dimension in which bare names are used, if all overloads agree on it."""
     for index, fact in enumerate(facts):
         if fact.bare is None:
             continue
@@ -171,7 +171,7 @@ def _result(
 
 
 def _function(check: Inference, definition: ast.FunctionDefinition, reads: frozenset[Place]) -> Fact:
-    """A function gives what its expression gives; it reads what its arguments and its expression read."""
+    """Returns the fact of a function's expression, which reads what the expression and its arguments read."""
     if definition in check.running:
         return UNKNOWN
     check.running.add(definition)
@@ -209,6 +209,6 @@ def _built_in(
 
 
 def parameter_of(index: int, fits: Sequence[Binding]) -> str | None:
-    """The parameter that gets an argument, if all fitting overloads agree on it."""
+    """Returns the parameter that gets an argument, if all fitting overloads agree on it."""
     found = {fit.parameter_of(index) for fit in fits}
     return found.pop() if len(found) == 1 else None

@@ -1,4 +1,4 @@
-"""What can constrain, and what stands where a constraint is expected."""
+"""The checks of constraints: which expressions can constrain, and which stand in the place of one."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
 _OPERATIONS = EDITS | FINISHES
-"""Calls that are statements of their own: they edit what was written, and are no conditions."""
+"""Calls that are statements of their own: they edit the drawing, and are no conditions."""
 
 
 def check_operation(infer: Inference, node: ast.Expression) -> bool:
-    """Whether a statement is an operation on geometry; its arguments are checked."""
+    """Checks the arguments of an operation on geometry. Returns whether the statement is one."""
     if not isinstance(node, ast.Call):
         return False
     if _called(infer, node) not in _OPERATIONS:
@@ -32,7 +32,7 @@ def _called(infer: Inference, node: ast.Call) -> str:
 
 
 def operation(infer: Inference, node: ast.Expression) -> str | None:
-    """The name of what changes a drawing, where it is called; None for anything else."""
+    """Returns the name of the operation that an expression calls; None for anything else."""
     is_condition = isinstance(infer.fact(node).type, TruthType)
     if not isinstance(node, ast.Call) or is_condition:
         return None
@@ -40,14 +40,14 @@ def operation(infer: Inference, node: ast.Expression) -> str | None:
 
 
 def check_empty(infer: Inference, node: ast.Constrain) -> None:
-    """Report a `constrain { }` without anything in it."""
+    """Reports a `constrain { }` without anything in it."""
     if not node.items.statements and not node.items.span.text.strip("{} \t\r\n"):
         fix = Fix("remove it", (Edit(node.span.with_separator, ""),), is_sure=True)
         infer.report("W0202", "this `constrain` holds nothing", node, fix=fix)
 
 
 def check_item(infer: Inference, node: ast.Expression) -> None:
-    """Report what cannot stand among constraints, where nothing is made and nothing edited."""
+    """Reports an operation among constraints, where nothing is made and nothing edited."""
     if (name := operation(infer, node)) is not None:
         text = shown(node)
         hints = [f"`{text}` is a statement of its own, outside `constrain`"]
@@ -64,7 +64,7 @@ def check_item(infer: Inference, node: ast.Expression) -> None:
 
 
 def check_condition(infer: Inference, node: ast.Expression, may_make: bool = True) -> None:
-    """Report an expression that cannot constrain anything; `may_make`: with a name it would be geometry."""
+    """Reports an expression that cannot constrain anything; `may_make`: with a name it would be geometry."""
     fact = infer.fact(node)
     if isinstance(fact.type, TruthType):
         _check_logic(infer, node)
@@ -99,7 +99,9 @@ def _needs_name(infer: Inference, node: ast.Call, may_make: bool) -> None:
 
 
 def _check_logic(infer: Inference, node: ast.Expression) -> None:
-    """`or`, `not` and `!=` leave the solver no equation; over constants they are checked while building."""
+    """Reports `or`, `not` and `!=` over unknowns, which leave the solver no equation; over constants they are
+    checked while building.
+    """
     match node:
         case ast.Binary(operator="and", left=left, right=right):
             _check_logic(infer, left)

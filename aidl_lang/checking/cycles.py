@@ -1,4 +1,4 @@
-"""Constants that are defined by way of themselves."""
+"""The check for constants that are defined by way of themselves."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from aidl_lang.syntax import ast
 
 
 def find_cycles(infer: Inference) -> None:
-    """Report every circle of params and lets once, at the use that closes it.
+    """Reports every circle of params and lets once, at the use that closes it.
 
     A depth-first search in text order, with a stack of its own since chains may be long.
     """
@@ -34,7 +34,9 @@ def find_cycles(infer: Inference) -> None:
 
 
 def _dependences(infer: Inference) -> dict[Symbol, list[tuple[Symbol, ast.Name]]]:
-    """Param or let → what its value names, and where. Members of an array may follow from one another."""
+    """Returns for each param or let the symbols that its value names, and where. Members of an array may
+    follow from one another.
+    """
     uses = infer.resolution.uses
     return {
         symbol: [(uses[name], name) for node in symbol.nodes for name in _names(node) if name in uses]

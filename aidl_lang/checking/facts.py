@@ -1,4 +1,4 @@
-"""What is known of an expression before anything is built."""
+"""Facts about an expression before anything is built: its type, and the unknowns it reads."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from aidl_lang.syntax import ast
 
 @record(slots=True)
 class Place:
-    """Whose unknowns are read: the structure at the path `below`, seen from the structure `holder` that the
-    program text is in (or from the file).
+    """A structure whose unknowns are read: the one at the path `below`, seen from the structure `holder`
+    around the program text (or from the file).
     """
 
     holder: ast.Node
@@ -25,13 +25,14 @@ NOTHING_READ: frozenset[Place] = frozenset()
 
 @record(slots=True)
 class Fact:
-    """
+    """The facts about a value, as far as they are known.
+
     type   of the value
-    reads  the structures whose unknowns the value depends on; empty for constants, and where it is not known
+    reads  the structures whose unknowns the value depends on; empty for constants, and if it is not known
     of     the definition whose members it has (a list: its elements): structure, template, shape, or file
-    place  for a structure, where it stands
+    place  of a structure
     bare   the param or let whose number without a unit it is
-    pattern  the operation that laid the members of an array out
+    pattern  the operation that laid out the members of an array
     """
 
     type: Type = ANY
@@ -49,14 +50,14 @@ class Fact:
         return replace(self, reads=reads)
 
     def listed(self, times: int = 1) -> Fact:
-        """A list of such values, or a list of lists."""
+        """Returns the fact of a list of such values, or of lists of lists."""
         kind = self.type
         for _ in range(times):
             kind = ListType(kind)
         return Fact(kind, self.reads, self.of, self.place, None, "" if times else self.pattern)
 
     def element(self) -> Fact:
-        """A member of a list of such values."""
+        """Returns the fact of a member of a list of such values."""
         kind = self.type.element if isinstance(self.type, ListType) else ANY
         return replace(self, type=kind, pattern="")
 
@@ -65,7 +66,7 @@ UNKNOWN = Fact()
 
 
 def joined(a: Fact, b: Fact) -> Fact:
-    """What is known of a value that is one of two."""
+    """Returns the facts that two alternative values have in common."""
     reads = a.reads | b.reads
     if a.type == b.type and a.of is b.of:
         return Fact(a.type, reads, a.of, a.place if a.place == b.place else None)
@@ -77,5 +78,5 @@ def is_point(kind: Type) -> bool:
 
 
 def is_number(kind: Type) -> bool:
-    """A number, or an edge that stands for its coordinate."""
+    """Tells whether a type is a number, or an edge that stands for its coordinate."""
     return isinstance(kind, NumberType) or kind == GeometryType("line")

@@ -1,4 +1,4 @@
-"""Calls that read well and mean something else elsewhere: squares, angles, corners and flags."""
+"""Calls with another meaning in other languages: squares, angles, corners and flags."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def check_habits(check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], fit: Binding) -> None:
-    """Say how a call was read where the same words mean something else elsewhere."""
+    """Notes how a call was read if the same words mean something else in other languages."""
     _check_angles(check, node, nodes, fit)
     _check_corner(check, node, fit)
     if not fit.sources:
@@ -62,7 +62,7 @@ def check_habits(check: Inference, node: ast.Call, nodes: Sequence[ast.Expressio
 
 
 def _check_corner(check: Inference, node: ast.Call, fit: Binding) -> None:
-    """`rectangle(5, 5, 40, 20)`: a corner and a size, or four sides?"""
+    """Reports `rectangle(5, 5, 40, 20)`: a corner and a size, or four sides."""
     names = [name for name, _, _ in fit.signature.parameters]
     if fit.signature.name != "rectangle" or len(node.arguments) != 4 or "left" not in names[:1]:
         return
@@ -82,7 +82,7 @@ def _check_corner(check: Inference, node: ast.Call, fit: Binding) -> None:
 
 
 def check_unused_geometry(check: Inference) -> None:
-    """`let c = circle(…)` that nothing refers to, which draws nothing by itself."""
+    """Notes a `let c = circle(…)` that nothing refers to, which draws nothing by itself."""
     resolution = check.resolution
     used = {symbol for node, symbol in resolution.uses.items() if isinstance(node, ast.Name | ast.Member)}
     for symbol in resolution.symbols:
@@ -104,7 +104,9 @@ def check_unused_geometry(check: Inference) -> None:
 
 
 def check_unused_params(check: Inference) -> None:
-    """A `param` of the program itself that nothing refers to; silent where an error may have hidden a use."""
+    """Notes a `param` of the program itself that nothing refers to; not after an error, which may have hidden
+    a use.
+    """
     resolution = check.resolution
     if has_errors([*resolution.diagnostics, *check.diagnostics]):
         return
@@ -131,7 +133,7 @@ def check_unused_params(check: Inference) -> None:
 
 
 def _check_angles(check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], fit: Binding) -> None:
-    """Numbers of radians where a number is read as degrees, and the reverse."""
+    """Reports numbers of radians read as degrees, and the reverse."""
     called = _called(check, node)
     wanted = {name: kind for name, kind, _ in fit.signature.parameters}
     for index, value in enumerate(nodes):
@@ -158,7 +160,7 @@ def _not_degrees(
     message: str,
     is_sure: bool = True,
 ) -> None:
-    """An angle says its unit: the fix puts the one that is meant behind the number."""
+    """Reports an angle without its unit: the fix puts the one that is meant behind the number."""
     text = value.span.text
     if check.fact(value).type == NumberType(ANGLE):
         right = text
@@ -180,7 +182,7 @@ def _not_degrees(
 
 
 def _called(check: Inference, node: ast.Expression) -> str | None:
-    """The name that an expression calls, an alias being none of its own."""
+    """Returns the name that an expression calls, with aliases resolved."""
     if not isinstance(node, ast.Call):
         return None
     return check.resolution.canonical.get(node.callee, node.callee.text)
@@ -193,7 +195,7 @@ def _is_module(check: Inference, node: ast.Call) -> bool:
 
 
 def _is_written(check: Inference, node: ast.Expression) -> bool:
-    """A number that somebody wrote down without a unit, rather than one that was worked out."""
+    """Tells whether a number was written down without a unit, rather than worked out."""
     bare = check.fact(node).bare
     if isinstance(node, ast.Number):
         return not node.unit
@@ -206,7 +208,7 @@ def _is_plain(check: Inference, node: ast.Expression) -> bool:
 
 
 def check_square(check: Inference, node: ast.Expression) -> None:
-    """`s = square(10)`, which could be a shape or a number."""
+    """Reports `s = square(10)`, which could be a shape or a number."""
     if _called(check, node) != "square" or not isinstance(node, ast.Call) or len(node.arguments) != 1:
         return
     value = node.arguments[0].value

@@ -1,6 +1,6 @@
 """Types and dependences of expressions, each found once.
 
-The check is gradual: what is known only when the program is built has the type ANY, which is accepted
+The check is gradual: values known only when the program is built have the type ANY, which is accepted
 everywhere, and after an error the type is ANY too, so that one mistake is reported once.
 """
 
@@ -35,14 +35,14 @@ from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
 
 _DEEPEST = 120
-"""How deep expressions and the names in them are followed: within the interpreter's usual limit on frames."""
+"""Levels of expressions and of the names in them that are followed: within Python's usual limit on frames."""
 
 
 class Inference:
-    """Facts about the expressions of one program, and the diagnostics that finding them gave.
+    """Facts about the expressions of one program, and the diagnostics found with them.
 
-    `fits` has the overloads that each call may mean, best first.
-    Nothing is said of what stands in `standard`, the library, and what is known of that is found out apart.
+    `fits` has the overloads that each call may mean, best first. Nothing is reported in files of `standard`,
+    the library, whose facts are found apart.
     """
 
     def __init__(self, resolution: Resolution, standard: Iterable[SourceFile] | None = None) -> None:
@@ -70,7 +70,9 @@ class Inference:
         secondary: Sequence[Label] = (),
         fix: Fix | None = None,
     ) -> Fact:
-        """Say what is wrong in a program (the library has its own tests); nothing is known of the result."""
+        """Reports a mistake in a program (the library has its own tests). Returns the fact of an unknown
+        result.
+        """
         if not self.is_standard(node) and self._errors <= MOST_ERRORS:
             found = Diagnostic(code, message, node.span, label, tuple(secondary), tuple(hints), fix)
             self.diagnostics.append(found)
@@ -78,28 +80,30 @@ class Inference:
         return UNKNOWN
 
     def refuse(self, misfit: Misfit, node: ast.Node, fix: Fix | None = None) -> Fact:
-        """Say why something does not go where it stands; nothing is known of the result."""
+        """Reports an expression that does not fit its place. Returns the fact of an unknown result."""
         return self.report(misfit.code, misfit.message, node, misfit.label, misfit.hints, fix=fix)
 
     def is_standard(self, node: ast.Node) -> bool:
         return node.span.source in self._standard
 
     def wants(self, node: ast.Expression, what: str, *allowed: type[Type]) -> Fact:
-        """The fact of an expression that has to be of one of some types."""
+        """Returns the fact of an expression; reports one that is of none of the types allowed."""
         fact = self.fact(node)
         if isinstance(fact.type, (AnyType, *allowed)):
             return fact
         return self.refuse(rules.needed(what, fact.type), node)
 
     def known(self, node: ast.Expression, what: str) -> bool:
-        """Report an expression whose value the solver finds where one is needed while building."""
+        """Reports an expression whose value the solver finds, but which is needed while building. Returns
+        whether it is known.
+        """
         if not self.fact(node).reads:
             return True
         self.refuse(rules.unknown_yet(what, shown(node)), node)
         return False
 
     def test(self, node: ast.Expression) -> None:
-        """A condition that chooses what is built."""
+        """Checks a condition that chooses what is built."""
         fact = self.wants(node, "a condition", TruthType)
         if fact.reads:
             self.refuse(rules.undecided(shown(node)), node)
@@ -107,7 +111,7 @@ class Inference:
     # --- Expressions ---------------------------------------------------------------------------
 
     def fact(self, node: ast.Node) -> Fact:
-        """What is known of an expression; nothing of one that only a very long chain of names leads to."""
+        """Returns the fact of an expression; of one at the end of a very long chain of names, UNKNOWN."""
         known = self.facts.get(node)
         if known is not None:
             return known
@@ -138,7 +142,7 @@ class Inference:
         return Fact(PointType(), reads)
 
     def numeric(self, node: ast.Expression) -> Fact:
-        """The fact of an operand that has to be a number; an edge stands for its coordinate."""
+        """Returns the fact of an operand that has to be a number; an edge counts as its coordinate."""
         fact = self.fact(node)
         match fact.type:
             case NumberType() | AnyType():
@@ -167,7 +171,7 @@ class Inference:
         return replace(element.listed(), reads=element.reads | reads)
 
     def iterable(self, node: ast.Expression, variables: int = 1) -> Fact:
-        """The fact of what a `for` runs through."""
+        """Returns the fact of the value that a `for` runs through."""
         fact = self.fact(node)
         match fact.type:
             case RangeType():
@@ -216,7 +220,7 @@ class Inference:
                 return self.refuse(rules.no_members(shown(node.value), fact.type), node)
 
     def whole(self, node: ast.Expression, what: str) -> None:
-        """An expression that has to be a whole number known while building."""
+        """Reports an expression that is no whole number known while building."""
         fact = self.fact(node)
         match fact.type:
             case AnyType():
@@ -233,7 +237,7 @@ class Inference:
     # --- Numbers ---
 
     def same_dimension(self, left: Fact, right: Fact, node: ast.Node, what: str) -> MaybeDimension:
-        """The common dimension of two numbers; reported when there is none."""
+        """Returns the common dimension of two numbers; reports them if there is none."""
         if not isinstance(left.type, NumberType) or not isinstance(right.type, NumberType):
             return None
         x, y = left.type.dimension, right.type.dimension
@@ -247,13 +251,13 @@ class Inference:
         return common
 
     def serves(self, fact: Fact, dimension: MaybeDimension, node: ast.Node) -> None:
-        """A number without a unit is used as a length or as an angle: one name may not serve as both."""
+        """Reports a number without a unit that is used both as a length and as an angle."""
         if fact.bare is None or dimension not in (LENGTH, ANGLE):
             return
         earlier = self._served.setdefault(fact.bare, (dimension, node))
         if earlier[0] == dimension or earlier[0] is None:
             return
-        self._served[fact.bare] = (None, node)  # said once
+        self._served[fact.bare] = (None, node)  # reported once
         words = {LENGTH: ("a length", "mm"), ANGLE: ("an angle", "deg")}
         first, unit = words[earlier[0]]
         declared = fact.bare.declarations[:1]
@@ -293,17 +297,17 @@ _INFER: dict[type, Callable[..., Fact]] = {
 
 
 def _loose(kind: Type) -> Type:
-    """A type without what may differ among the members of a list."""
+    """Returns a type without the properties that may differ among the members of a list."""
     return NumberType(kind.dimension, whole=kind.dimension is None) if isinstance(kind, NumberType) else kind
 
 
 def _loose_number(x: NumberType, y: NumberType) -> Type:
-    """One of two numbers."""
+    """Returns the common type of two numbers."""
     if x.dimension == y.dimension:
         return NumberType(x.dimension, x.whole or y.whole)
     return ANY
 
 
 def _at(node: ast.Node) -> Span:
-    """The empty place before a node."""
+    """Returns the empty span before a node."""
     return Span(node.span.source, node.span.start, node.span.start)

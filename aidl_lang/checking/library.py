@@ -1,8 +1,8 @@
 """The standard library: the definitions of `stdlib/*.aidl`, parsed once, when the package is built.
 
 A compile touches few of the library's definitions, so each is kept for itself, as JSON, and decoded when its
-name is first asked for; opening the library reads one file and decodes its index. An installation brings
-that file along, a checkout makes it anew when anything it depends on has changed (`resources.derived`).
+name is first looked up; opening the library reads one file and decodes its index. An installation brings that
+file along, a checkout makes it anew when anything it depends on has changed (`resources.derived`).
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ DERIVED = "library.jsonl"
 
 @record(eq=False)
 class Library:
-    """
+    """The definitions of the standard library.
+
     sources      the files, in the order of their names
     callables    overloads under one name, in the order of writing
     aliases      synonym → the name it stands for
@@ -43,13 +44,13 @@ class Library:
 
     @functools.cached_property
     def modules(self) -> tuple[ast.Module, ...]:
-        """The trees of whole files, in the order of `sources`; needed by documentation only."""
+        """Returns the trees of whole files, in the order of `sources`; needed by documentation only."""
         return self._modules()
 
 
 @functools.cache
 def load() -> Library:
-    """The standard library of this installation, or of this checkout as it stands."""
+    """Returns the standard library of this installation, or of this checkout as it stands."""
     try:
         return _opened(resources.derived(DERIVED, _inputs, built), _sources())
     except MistakenLibraryError as found:
@@ -57,7 +58,7 @@ def load() -> Library:
 
 
 class MistakenLibraryError(Exception):
-    """The library has mistakes, as while somebody edits it: they are in its diagnostics."""
+    """Raised for a library with mistakes, as while somebody edits it: they are in its diagnostics."""
 
     def __init__(self, library: Library) -> None:
         super().__init__("\n".join(d.message for d in library.diagnostics))
@@ -73,7 +74,7 @@ def _files() -> list[Path]:
 
 
 def _inputs() -> list[Path]:
-    """Everything that the data depends on."""
+    """Returns the files that the data depends on."""
     here = Path(__file__).parents[1]
     code = [here / name for name in ("checking/library.py", "common/source.py", "parser.py")]
     code += sorted((here / "syntax").glob("*.py"))
@@ -81,7 +82,7 @@ def _inputs() -> list[Path]:
 
 
 def from_modules(modules: Sequence[ast.Module], diagnostics: Sequence[Diagnostic] = ()) -> Library:
-    """A library of modules at hand: the definitions at their file level."""
+    """Returns a library of the definitions at the file level of some modules."""
     definitions, aliases, constants = _collect(modules)
     shapes = _shape_names(definitions)
     return Library(
@@ -98,7 +99,7 @@ def from_modules(modules: Sequence[ast.Module], diagnostics: Sequence[Diagnostic
 
 
 def signature(node: ast.Callable, shapes: Sequence[str] = (), *, standard: bool = False) -> Signature:
-    """What a definition asks of its callers; `shapes` are the names that may stand as types beside the
+    """Returns the signature of a definition; `shapes` are the names that may stand as types beside the
     built-in ones. A word that names no type accepts anything here: the checker reports it where it is
     written.
     """
@@ -109,7 +110,7 @@ def signature(node: ast.Callable, shapes: Sequence[str] = (), *, standard: bool 
 
 
 class _Stored(Signature):
-    """A signature from the data. Calls choose among many; the tree of the chosen one is decoded."""
+    """A signature from the data, whose tree is decoded when a call chooses it among many."""
 
     def __init__(
         self,
@@ -129,7 +130,7 @@ class _Stored(Signature):
 
 
 def _brief(node: ast.Callable) -> str:
-    """Sort and parameters of a definition, as `ShapeDefinition center:point?,radius:length`."""
+    """Returns sort and parameters of a definition, as `ShapeDefinition center:point?,radius:length`."""
     parameters = (
         f"{p.name.text}:{p.type.text if p.type else 'any'}{'?' if p.default is not None else ''}"
         for p in node.parameters or ()
@@ -184,11 +185,11 @@ def _parse(sources: Sequence[SourceFile]) -> tuple[tuple[ast.Module, ...], tuple
 
 
 def built() -> bytes:
-    """The library as data: a line of JSON for the index, then one for each tree.
+    """Returns the library as data: a line of JSON for the index, then one for each tree.
 
     The index maps a name to its overloads, each in brief and with its place, and each alias to its target. A
-    place is the number of the file, and where the tree begins and ends behind the index: what is not used is
-    not read, however large the library grows. Raises MistakenLibraryError.
+    place is the number of the file, and where the tree begins and ends behind the index: trees that no
+    program uses are not read, however large the library grows. Raises MistakenLibraryError.
     """
     modules, diagnostics = _parse(_sources())
     if diagnostics:
@@ -216,7 +217,7 @@ def _line(value: object) -> bytes:
 
 
 def _opened(data: bytes, sources: tuple[SourceFile, ...]) -> Library:
-    """The library that `built` made into data: a tree is decoded when its name is first asked for."""
+    """Returns the library from the data of `built`: a tree is decoded when its name is first looked up."""
     trees = data.index(b"\n") + 1
     index = json.loads(data[:trees])
 
@@ -239,7 +240,7 @@ def _opened(data: bytes, sources: tuple[SourceFile, ...]) -> Library:
 
 
 class _Lazy(Mapping[str, Any]):
-    """A mapping whose keys are known and whose values are made when first asked for."""
+    """A mapping of known keys to values that are made when first looked up."""
 
     def __init__(self, keys: tuple[str, ...], make: Callable[[str], Any]) -> None:
         self._values: dict[str, Any] = dict.fromkeys(keys)

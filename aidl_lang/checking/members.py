@@ -1,4 +1,4 @@
-"""What is known of members: of structures, shapes, primitives, points, boxes, lists and imported files."""
+"""Facts about members: of structures, shapes, primitives, points, boxes, lists and imported files."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def _of_file(check: Inference, node: ast.Member, space: Symbol) -> Fact:
 
 
 def member_of(check: Inference, base: Fact, node: ast.Member) -> Fact:
-    """`base.name`"""
+    """Returns the fact of `base.name`."""
     name = node.name.text
     match base.type:
         case AnyType() | RecordType():
@@ -82,7 +82,7 @@ def member_of(check: Inference, base: Fact, node: ast.Member) -> Fact:
 
 
 def _mapped(check: Inference, base: Fact, node: ast.Member) -> Fact:
-    """`a.rim` of a list runs through its members; sides of a list may be those of its group."""
+    """Returns the fact of `a.rim` for a list: of each member's; sides of a list may be those of its group."""
     settings = fields.PATTERN.get(base.pattern, {})
     if (key := find(node.name.text, settings)) is not None:
         return Fact(settings[key], base.reads)
@@ -112,8 +112,8 @@ def _of_structure(check: Inference, base: Fact, node: ast.Member) -> Fact:
 
 
 def _seen(check: Inference, place: Place, of: ast.Node, base: Place, symbol: Symbol) -> Place:
-    """A place told from inside a structure, or from around it, as it is from where that structure is named. A
-    structure that the expression itself stands in is seen from inside.
+    """Returns a place that is given from inside a structure, or from around it, as seen from where that
+    structure is named. A structure that the expression itself stands in is seen from inside.
     """
     if place.holder is not of:
         around = symbol.scope.homes if symbol.scope is not None else ()
@@ -142,7 +142,7 @@ def _of_shape(check: Inference, base: Fact, node: ast.Member) -> Fact:
 def _field(
     check: Inference, base: Fact, node: ast.Member, own: Mapping[str, Type], known: Sequence[str] = ()
 ) -> Fact:
-    """A field of a primitive or a structure, or one of the box that everything has."""
+    """Returns the fact of a field of a primitive or a structure, or of one of the box that everything has."""
     name = node.name.text
     if fields.is_box_name(name):
         return Fact(BoxType(), base.reads)
@@ -159,7 +159,7 @@ def _field(
 
 
 def _in_other_words(check: Inference, base: Fact, node: ast.Member, meant: str) -> Fact:
-    """`c.r` for `c.radius`"""
+    """Returns the fact of a field named by a synonym: `c.r` for `c.radius`."""
     name = ast.Identifier(meant, span=node.name.span)
     other = ast.Member(node.value, name, span=node.span)
     fact = member_of(check, base, other)
@@ -176,7 +176,9 @@ def _means(check: Inference, node: ast.Member, symbol: Symbol) -> None:
 
 
 def _function_or_coordinate(check: Inference, node: ast.Member, known: Sequence[str]) -> Fact | None:
-    """`plate.area`, which is a function here, and `c.x` of something that has a width."""
+    """Reports `plate.area`, which is a function here, and `c.x` of something with a width. None for other
+    names.
+    """
     name, of = node.name.text, node.value.span.text
     if fold(name) in ("area", "perimeter", "circumference"):
         function = "area" if fold(name) == "area" else "perimeter"

@@ -1,4 +1,4 @@
-"""What to say of a call that no overload fits."""
+"""Diagnostics for calls that no overload fits."""
 
 from __future__ import annotations
 
@@ -59,14 +59,14 @@ def no_overload(
 
 
 def _called_as(signatures: Sequence[Signature]) -> list[str]:
-    """How a callable is called, by its signatures and the first example that has one."""
+    """Returns hints that show how a callable is called: its signatures and the first example among them."""
     hints = [f"{'or as' if i else 'it is called as'} `{s}`" for i, s in enumerate(signatures)]
     example = next((e for s in signatures if (e := example_of(s)) is not None), None)
     return hints + ([f"for example `{example}`"] if example else [])
 
 
 def example_of(signature: Signature) -> str | None:
-    """The first call in the documentation of a definition, if it stands on one line."""
+    """Returns the first call in the documentation of a definition, if it stands on one line."""
     doc = getattr(signature.node, "doc", None)
     inside = (doc or "").partition("```aidl")[2].partition("```")[0]
     start = inside.find(f"{signature.name}(")
@@ -81,7 +81,9 @@ def example_of(signature: Signature) -> str | None:
 
 
 def _closeness(miss: Mismatch, given: Sequence[Given]) -> tuple[int, int, int, int, int]:
-    """How near a candidate comes: named arguments it knows, best by these names, then what is missing."""
+    """Returns how near a candidate comes: named arguments it knows, best by these names, then what is
+    missing.
+    """
     names = [g.name for g in given if g.name is not None]
     known = sum(1 for name in names if _knows(miss.signature, name))
     same = sum(1 for name in names if fold(name) in miss.signature.by_fold)
@@ -91,7 +93,7 @@ def _closeness(miss: Mismatch, given: Sequence[Given]) -> tuple[int, int, int, i
 
 
 def _knows(signature: Signature, word: str) -> bool:
-    """Whether a word is a parameter, by its name or by another."""
+    """Tells whether a word is a parameter, by its name or by a synonym."""
     known = signature.by_fold
     pair = PAIRS.get(fold(word), ("", ""))
     meanings = (word, *PARAMETERS.get(fold(word), ()))
@@ -99,7 +101,7 @@ def _knows(signature: Signature, word: str) -> bool:
 
 
 def _ambiguous(check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]) -> bool:
-    """A word that may mean several parameters."""
+    """Reports a word that may mean several parameters. Returns whether there is one."""
     miss = next((m for m in misses if m.meanings), None)
     if miss is None or miss.argument is None:
         return False
@@ -120,7 +122,9 @@ def _ambiguous(check: Inference, node: ast.Call, given: Sequence[Given], misses:
 def _loose_coordinates(
     check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
 ) -> bool:
-    """`line(0, 0, 10, 5)`, `circle(0, 0, 5)`: numbers where points are wanted."""
+    """Reports numbers in place of points: `line(0, 0, 10, 5)`, `circle(0, 0, 5)`. Returns whether there are
+    any.
+    """
     if not given or len(given) != len(node.arguments) or any(g.name is not None for g in given):
         return False
     if not all(isinstance(g.type, NumberType) for g in given):
@@ -163,7 +167,9 @@ def _loose_coordinates(
 def _pair_for_one(
     check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
 ) -> bool:
-    """`square([40, 20])` and `rectangle([40, 20])`: two sizes in brackets."""
+    """Reports two sizes in brackets: `square([40, 20])`, `rectangle([40, 20])`. Returns whether there are
+    any.
+    """
     pairs = [a for a, g in zip(node.arguments, given, strict=False) if _is_pair(g) and _may_be_size(a)]
     if len(given) != len(node.arguments) or len(pairs) != 1:
         return False
@@ -198,7 +204,7 @@ def _may_be_size(argument: ast.Argument) -> bool:
 def _half_or_double(
     check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
 ) -> bool:
-    """A diameter where a radius is taken, or the reverse."""
+    """Reports a diameter in place of a radius, or the reverse. Returns whether there is one."""
     for argument in node.arguments:
         if argument.name is None or any(_knows(m.signature, argument.name.text) for m in misses):
             continue
@@ -226,7 +232,9 @@ def _half_or_double(
 def _not_together(
     check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
 ) -> bool:
-    """Report named arguments that are known to some overloads, but never all to one; whether that is so."""
+    """Reports named arguments that some overloads know, but none all of them. Returns whether there are
+    any.
+    """
     written = [a.name for a in node.arguments if a.name is not None]
     if len(written) < 2 or any(all(_knows(m.signature, n.text) for n in written) for m in misses):
         return False
@@ -242,14 +250,14 @@ def _not_together(
 
 
 def _meanings(word: str, names: Sequence[str]) -> list[str]:
-    """The parameters that another word for one may stand for."""
+    """Returns the parameters that a synonym may stand for."""
     return [meaning for meaning in PARAMETERS[word] if meaning in names]
 
 
 def _unknown_parameter(
     check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
 ) -> bool:
-    """Report argument names that no overload knows; whether there is one."""
+    """Reports argument names that no overload knows. Returns whether there is one."""
     names = list(dict.fromkeys(name for m in misses for name, _, _ in m.signature.parameters))
     synonyms = {w: m for w, meanings in PARAMETERS.items() for m in meanings if m in names}
     closest = max(misses, key=lambda m: _closeness(m, given)).signature

@@ -1,4 +1,4 @@
-"""What is known of names: of params, lets, loop variables, parameters, geometry and structures."""
+"""Facts about names: of params, lets, loop variables, parameters, geometry and structures."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 
 
 def of_symbol(check: Inference, symbol: Symbol) -> Fact:
-    """What is known of a name where it is declared."""
+    """Returns the fact of a name as it is declared."""
     match symbol.kind:
         case SymbolKind.BUILTIN:
             return _builtin(check, symbol)
         case SymbolKind.NAMESPACE:
             return UNKNOWN
-        case SymbolKind.STRUCTURE if symbol.scope is None:  # a structure's own name, inside it
+        case SymbolKind.STRUCTURE if symbol.scope is None:  # its own name, inside the structure
             return _structure_itself(check, symbol.node)
         case SymbolKind.LOOP:
             return _loop_variable(check, symbol)
@@ -85,7 +85,7 @@ def _argument(check: Inference, symbol: Symbol) -> Fact:
 
 
 def _declared(check: Inference, symbol: Symbol) -> Fact:
-    """The value of a declared name; of several declarations, what they have in common."""
+    """Returns the fact of a declared name; of several declarations, what they have in common."""
     fact: Fact | None = None
     for node in symbol.nodes:
         one = _declaration(check, symbol, node)
@@ -128,7 +128,7 @@ def _value_of(check: Inference, symbol: Symbol, node: ast.Node) -> Fact:
                 place = Place(home, (symbol.name,))
                 fact = replace(fact, reads=frozenset({place}), place=place)
             elif is_made:
-                # A copy of an ancestor's geometry is the ancestor's to constrain.
+                # A copy of an ancestor's geometry is for the ancestor to constrain.
                 far = {p for p in fact.reads if p.holder is not home}
                 fact = fact.reading(frozenset({Place(home), *far}))
             return fact.listed(len(indices))
@@ -162,7 +162,9 @@ def _is_plain_range(node: ast.Expression) -> bool:
 
 
 def _unlocked(kind: Type) -> Type:
-    """A number that the solver finds is not whole, and a bare one is what its constraints make of it."""
+    """Returns the type of a number that the solver finds: not whole, and ANY for a bare one, whose dimension
+    its constraints decide.
+    """
     if isinstance(kind, NumberType):
         return ANY if kind.dimension is None else NumberType(kind.dimension)
     return kind

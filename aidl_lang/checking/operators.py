@@ -1,4 +1,4 @@
-"""Arithmetic, vectors and comparisons: which operands go together, and what they give."""
+"""Arithmetic, vectors and comparisons: the operands that go together, and the types of the results."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def _arithmetic(
     if (x.dimension is None) != (y.dimension is None) and not _is_plain(
         node.left if x.dimension is None else node.right
     ):
-        return Fact(ANY, reads)  # a bare param may be a length or a plain number: building tells
+        return Fact(ANY, reads)  # a bare param may be a length or a plain number, which only building shows
     combine = units.multiply if op == "*" else units.divide
     return Fact(NumberType(combine(x.dimension, y.dimension), op == "*" and x.whole and y.whole), reads)
 
@@ -95,7 +95,7 @@ def comparison(check: Inference, node: ast.Comparison) -> Fact:
 def compare(
     check: Inference, operator: str, left: ast.Expression, right: ast.Expression, node: ast.Node
 ) -> None:
-    """Report two sides that cannot be compared."""
+    """Reports two sides that cannot be compared."""
     x, y = check.fact(left), check.fact(right)
     if x.is_any or y.is_any:
         return
@@ -128,5 +128,5 @@ def membership(check: Inference, node: ast.Membership) -> Fact:
 
 
 def _is_plain(node: ast.Expression) -> bool:
-    """Whether a number without a unit can only be plain: it is made of digits alone."""
+    """Tells whether a number without a unit can only be plain: it is made of digits alone."""
     return all(isinstance(n, ast.Number | ast.Unary | ast.Binary) for n in ast.walk(node))

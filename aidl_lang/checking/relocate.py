@@ -1,4 +1,4 @@
-"""Saying in one structure what was written in another below it: paths, names and the place to write."""
+"""Relocation of statements from one structure to another above it: paths, names and the place to write."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _ATOMS = ast.Name | ast.Member | ast.Index | ast.Call | ast.Number | ast.Point |
 
 
 def member_path(name: ast.Identifier, indices: Sequence[ast.Expression]) -> str:
-    """`finger[i]`, as it is written where it is declared."""
+    """Returns a name with its indices as it is declared: `finger[i]`."""
     return name.text + "".join(f"[{index.span.text}]" for index in indices)
 
 
@@ -46,7 +46,7 @@ class Site:
 
 
 class Move:
-    """Carries expressions from a site to an ancestor of its structure, behind the statement that holds the
+    """A move of expressions from a site to an ancestor of its structure, behind the statement that holds the
     site.
     """
 
@@ -62,11 +62,13 @@ class Move:
 
     @property
     def is_possible(self) -> bool:
-        """Not out of a template, whose instances stand in many places."""
+        """False for a site in a template, whose instances stand in many places."""
         return all(isinstance(n, ast.Structure) and n.parameters is None for n in self.between)
 
     def path(self, to: ast.Node | None = None) -> str:
-        """The path from the ancestor to the site's structure, or to one around it; empty for itself."""
+        """Returns the path from the ancestor to the site's structure, or to one around it; empty for
+        itself.
+        """
         steps: list[str] = []
         for node in self.between:
             assert isinstance(node, ast.Structure)
@@ -76,7 +78,7 @@ class Move:
         return ".".join(steps)
 
     def statement(self, text: str) -> str | None:
-        """A statement of the ancestor, in the loops and branches that the site is in below it."""
+        """Returns a statement for the ancestor, in the loops and branches that the site is in below it."""
         for node, is_else in reversed(self.site.trail[self.start + 1 :]):
             if isinstance(node, ast.For):
                 run = self.expression(node.iterable)
@@ -92,7 +94,9 @@ class Move:
         return text
 
     def expression(self, node: ast.Node) -> str | None:
-        """The text of an expression as the ancestor says it; None when it cannot name everything in it."""
+        """Returns the text of an expression for the ancestor; None if the ancestor cannot name everything in
+        it.
+        """
         edits: list[tuple[int, int, str]] = []
         resolution = self.infer.resolution
         for part in ast.walk(node):
@@ -146,8 +150,8 @@ class Move:
         return node.text if found is not None and found.node is symbol.node else None
 
     def _from_below(self, node: ast.Name, symbol: Symbol, scope: Scope, home: ast.Node) -> str | None:
-        """What a structure between the two declares: by its path, or, where it is a name for an expression
-        over unknowns or belongs to a turn of a loop, spelled out.
+        """Returns the path of a name declared by a structure between the two; the expression itself if the
+        name stands for one over unknowns, or belongs to a turn of a loop.
         """
         if symbol.kind is SymbolKind.ARGUMENT:
             return None
@@ -163,8 +167,8 @@ class Move:
 
 
 def insertion_after(statement: ast.Node, text: str) -> tuple[Span, str]:
-    """Where to write a statement behind another, and how: on a line of its own, indented alike, unless more
-    than a comment follows on the line.
+    """Returns where to write a statement behind another, and how: on a line of its own, indented alike,
+    unless more than a comment follows on the line.
     """
     source = statement.span.source
     line_number, _ = source.position(statement.span.start)

@@ -1,4 +1,4 @@
-"""Which definition every name means: scopes, imports, aliases, and what to say of a name that is not known.
+"""The definition that every name means: scopes, imports, aliases, and diagnostics for unknown names.
 
 The pass works scope by scope, each in two steps. First everything declared in the scope is entered, `if`
 branches included (they open no scope) and the indexed members of its `for` loops; callables before values,
@@ -38,7 +38,9 @@ if TYPE_CHECKING:
 
 
 def resolve(module: ast.Module, world: World | None, library: Library) -> Resolution:
-    """Find what every name of a file, and of the files it imports, means. Never raises for what they say."""
+    """Finds the meaning of every name in a file and in the files it imports. Never raises for what they
+    say.
+    """
     module, misplaced = with_inner_imports(with_placed_cuts(module))
     loaded = load_imports(module, world)
     main, notes = without_idle(module, loaded.modules)
@@ -66,7 +68,7 @@ class Resolver:
         self.is_library = is_library
         self.is_ordered = True
         self.argument: ast.Call | None = None
-        self.condition: ast.Expression | None = None  # what stands among constraints by itself
+        self.condition: ast.Expression | None = None  # the item of a `constrain` under way
         self.hole_calls: frozenset[ast.Call] = frozenset()
 
     # --- Files and definitions -----------------------------------------------------------------
@@ -80,7 +82,7 @@ class Resolver:
         complaints.check_aliases(self, scope)
 
     def _imported(self, module: ast.Module, loaded: ImportedModules) -> Scope:
-        """The scope of what a file imports, which its own definitions hide."""
+        """Returns the scope of the names that a file imports, which its own definitions hide."""
         scope = Scope(module, self.resolution.library_scope)
         for statement in module.statements:
             if not isinstance(statement, ast.Import):
@@ -100,7 +102,7 @@ class Resolver:
         return scope
 
     def _wanted(self, statement: ast.Import, source: Scope, scope: Scope) -> set[str]:
-        """The names that `import a, b from …` asks for; unknown ones are reported."""
+        """Returns the names that `import a, b from …` asks for; reports unknown ones."""
         known = [*source.values, *source.callables, *source.aliases]
         for identifier in statement.names:
             if identifier.text not in known:
@@ -119,11 +121,11 @@ class Resolver:
         return {identifier.text for identifier in statement.names}
 
     def of_library(self, node: ast.Node) -> None:
-        """A definition of the library; what is wrong there is not the program's concern."""
+        """Resolves a definition of the library; its mistakes are not reported to the program."""
         self.definition(node, self.resolution.library_scope)
 
     def definition(self, node: ast.Node, scope: Scope) -> None:
-        """The body of a structure, template, shape, constraint or function."""
+        """Resolves the body of a structure, template, shape, constraint or function."""
         assert isinstance(
             node, ast.Structure | ast.ShapeDefinition | ast.ConstraintDefinition | ast.FunctionDefinition
         )
@@ -196,7 +198,7 @@ class Resolver:
                 self._statements(otherwise.statements if otherwise else (), scope)
             case ast.Import() | ast.Alias() | ast.Todo():
                 pass
-            case _:  # constants and conditions: whatever they name, they name it from anywhere
+            case _:  # constants and conditions are not bound by order
                 self._unordered(scope, *ast.children(node))
 
     def _definition_statement(self, node: ast.Callable, scope: Scope) -> None:
@@ -220,7 +222,7 @@ class Resolver:
         return inner
 
     def _later(self, block: ast.Block, scope: Scope) -> None:
-        """Statements read after the whole structure. What they declare is their own."""
+        """Resolves statements that are read after the whole structure. Their declarations are their own."""
         before, self.is_ordered = self.is_ordered, False
         inner = Scope(block, scope, scope.homes)
         self.resolution.scopes[block] = inner
@@ -260,7 +262,7 @@ class Resolver:
                 )
             for argument in attribute.arguments:
                 value = argument.value
-                # `@orientation(front)`, also where a part has that name
+                # `@orientation(front)`, even if a part has that name
                 is_bare = isinstance(value, ast.Name) and not self._is_constant(scope.value(value.text))
                 if not (is_bare and word_meant(name, WORDED)):
                     self._unordered(scope, value)
@@ -329,7 +331,7 @@ class Resolver:
         self.argument = before
 
     def _is_in_reach(self, node: ast.Expression, scope: Scope) -> bool:
-        """Whether a word for an option is here a name that the program declares."""
+        """Tells whether a word for an option is here a name that the program declares."""
         if self.is_library or not isinstance(node, ast.Name):
             return False
         symbol = scope.value(node.text)
@@ -352,7 +354,7 @@ class Resolver:
     # --- Declarations --------------------------------------------------------------------------
 
     def enter(self, scope: Scope, name: ast.Identifier, kind: SymbolKind, node: ast.Node) -> Symbol:
-        """A new symbol; the caller puts it into the table it belongs to."""
+        """Makes a symbol; the caller puts it into the table it belongs to."""
         symbol = Symbol(name.text, kind, node, scope.owner, [name], [node], scope=scope)
         self.resolution.uses[name] = symbol
         if not self.is_library:
@@ -379,12 +381,12 @@ class Resolver:
 
     @property
     def has_said_enough(self) -> bool:
-        """Whether there are more errors than will be told, so that none need be looked into."""
+        """True if there are more errors than will be reported, so that no more need be looked for."""
         return self.resolution.errors > MOST_ERRORS
 
 
 def _note_missing(statement: ast.Import, scope: Scope) -> None:
-    """An import that failed: what it would have brought is not to be reported once more."""
+    """Notes the names that a failed import would have brought, so that they are not reported once more."""
     lost = {identifier.text for identifier in statement.names}
     if statement.alias is not None:
         lost = {statement.alias.text}
@@ -392,7 +394,7 @@ def _note_missing(statement: ast.Import, scope: Scope) -> None:
 
 
 def _bring(source: Scope, scope: Scope, names: set[str] | None) -> None:
-    """Enter the file-level definitions of an imported file, all or some of them."""
+    """Enters the file-level definitions of an imported file, all or some of them."""
     for name, symbol in source.values.items():
         if (names is None or name in names) and symbol.kind in (SymbolKind.PARAM, SymbolKind.LET):
             scope.values.setdefault(name, symbol)

@@ -1,6 +1,6 @@
-"""What goes with what, and in which words it is said that something does not: each rule once.
+"""The rules of what fits where, each once with the words of its misfit.
 
-The checker asks of the types that follow from the text, the builder of those that only values tell.
+The checker applies them to types that follow from the text, the builder to those that only values show.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from aidl_lang.common.records import record
 
 CONSTANTS = "use a `param`, a `let` of constants or a loop variable; `written(…)` is the value as written"
 FOUND = "depends on unknowns"
-"""Beside what the solver finds and is needed before."""
+"""The label of an expression whose value the solver finds, but which is needed before."""
 
 
 @record()
 class Misfit:
-    """What is said of an expression that does not go where it stands."""
+    """The diagnostic for an expression that does not fit its place."""
 
     code: str
     message: str
@@ -27,12 +27,12 @@ class Misfit:
 
 
 def needed(what: str, kind: Type) -> Misfit:
-    """An expression is of another type than its place needs."""
+    """Refuses an expression of another type than its place needs."""
     return Misfit("E0302", f"{what} is needed here, and this is {a(kind)}")
 
 
 def unwanted(what: str, wanted: Type, kind: Type, text: str) -> Misfit:
-    """Something else than a word as `at` or `rotated` wants."""
+    """Refuses an expression of another type than a word such as `at` or `rotated` wants."""
     hints: tuple[str, ...] = ()
     if isinstance(wanted, PointType) and isinstance(kind, NumberType):
         hints = (f"as in `at ({text}, 0)`",)
@@ -42,33 +42,33 @@ def unwanted(what: str, wanted: Type, kind: Type, text: str) -> Misfit:
 
 
 def no_coordinate(text: str, kind: Type) -> Misfit:
-    """A coordinate that is no length."""
+    """Refuses a coordinate that is no length."""
     return Misfit("E0301", f"a coordinate must be a length, and `{text}` is {a(kind)}")
 
 
 def no_run(kind: Type) -> Misfit:
-    """A `for` over something that has no members."""
+    """Refuses a `for` over something without members."""
     hint = "as in `for i in 0..9 { … }` or `for s in [-1, 1] { … }`"
     return Misfit("E0304", f"`for` runs through a range or a list, and this is {a(kind)}", (hint,))
 
 
 def no_members(text: str, kind: Type) -> Misfit:
-    """An index behind something that has no members by number."""
+    """Refuses an index behind something without numbered members."""
     return Misfit("E0305", f"`{text}` is {a(kind)} and has no members by number")
 
 
 def no_whole_number(what: str, kind: Type) -> Misfit:
-    """Something else where a whole number is needed."""
+    """Refuses another value in place of a whole number."""
     return Misfit("E0302", f"{what} must be a whole number, not {a(kind)}")
 
 
 def fraction(what: str, text: str) -> Misfit:
-    """A number that is not whole."""
+    """Refuses a number that is not whole."""
     return Misfit("E0306", f"{what} must be a whole number, and this is `{text}`")
 
 
 def no_vectors(operator: str, left: Type, right: Type) -> Misfit:
-    """An operator between points, or a point and a number, that has no meaning there."""
+    """Refuses an operator between points, or a point and a number, that has no meaning there."""
     hint = "points take `+` and `-` with points, `*` and `/` with numbers; see also `dot` and `cross`"
     if operator in "+-" and (isinstance(left, NumberType) or isinstance(right, NumberType)):
         hint = "to move a point, add a point: `p + (dx, dy)`"
@@ -76,27 +76,27 @@ def no_vectors(operator: str, left: Type, right: Type) -> Misfit:
 
 
 def unequal(what: str, left: MaybeDimension, right: MaybeDimension) -> Misfit:
-    """Two numbers of different dimensions, as `length + angle`; `what` does not go with them."""
+    """Refuses two numbers of different dimensions, as `length + angle`, for the operation `what`."""
     hint = "both sides need the same dimension; units are written as in `30deg`, `4mm`"
-    if {left, right} == {LENGTH, units.multiply(LENGTH, ANGLE)}:  # how an arc's length is often written
+    if {left, right} == {LENGTH, units.multiply(LENGTH, ANGLE)}:  # as the length of an arc is often written
         hint = "an angle times a radius is no length: an arc is `radians(angle) * radius` long"
     return Misfit("E0308", f"{what} {a(NumberType(left))} and {a(NumberType(right))}", (hint,))
 
 
 def no_comparison(relation: str, left: Type, right: Type, left_text: str, right_text: str) -> Misfit:
-    """Two things of which no comparison says anything."""
+    """Refuses a comparison of two things that cannot be compared."""
     hint = comparison_hint(left, right, left_text, right_text)
     return Misfit("E0309", f"`{relation}` does not compare {a(left)} with {a(right)}", (hint,))
 
 
 def no_order(relation: str) -> Misfit:
-    """Points that are compared by size."""
+    """Refuses a comparison of points by size."""
     message = f"points have no order, so `{relation}` does not compare them"
     return Misfit("E0309", message, ("compare coordinates, as in `a.x <= b.x`",))
 
 
 def no_condition(text: str, kind: Type) -> Misfit:
-    """What stands as a constraint and is none."""
+    """Refuses an expression in place of a constraint."""
     hint = f"compare it with something: `{text} == …`"
     if isinstance(kind, NumberType):
         hint = f"say what it shall be: `{text} == …` or `{text} <= …`"
@@ -106,24 +106,24 @@ def no_condition(text: str, kind: Type) -> Misfit:
 
 
 def no_equation(word: str, hint: str) -> Misfit:
-    """`or`, `not` and `!=` as constraints."""
+    """Refuses `or`, `not` and `!=` as constraints."""
     return Misfit("E0322", f"`{word}` does not constrain: there are many ways to satisfy it", (hint,))
 
 
 def no_domain(kind: Type) -> Misfit:
-    """What stands behind `in` of a param and is no range of values."""
+    """Refuses a value behind `in` of a param that is no range of values."""
     message = f"the range of a `param` is as `20..200` or a list of choices, not {a(kind)}"
     return Misfit("E0314", message)
 
 
 def unknown_yet(what: str, text: str) -> Misfit:
-    """A value that the solver finds where one is needed while building."""
+    """Refuses a value that the solver finds, but which is needed while building."""
     message = f"{what} must be known before solving, and `{text}` is found by the solver"
     return Misfit("E0501", message, (CONSTANTS,), FOUND)
 
 
 def undecided(text: str) -> Misfit:
-    """A condition that the solver decides where it would choose what is built."""
+    """Refuses a condition that the solver decides, but which chooses what is built."""
     hint = "compare `param`s and constants, or use `written(…)` for the value as written"
     message = f"`{text}` is decided by the solver, so it cannot choose what is built"
     return Misfit("E0502", message, (hint,), FOUND)

@@ -1,4 +1,4 @@
-"""What is known of the library's own definitions. They see nothing of a program, so it is found out once."""
+"""Facts about the library's own definitions. They see nothing of a program, so each is found once."""
 
 from __future__ import annotations
 
@@ -18,28 +18,28 @@ if TYPE_CHECKING:
     from aidl_lang.checking.infer import Inference
 
 CONSTANT = frozenset({"len", "written"})
-"""What gives constants even of unknowns."""
+"""Functions whose results are constants even for unknowns."""
 
 _EMPTY = ast.Module(SourceFile("empty", ""), (), (), span=Span(SourceFile("empty", ""), 0, 0))
 
 
 def body_of(check: Inference, definition: ast.Node) -> Scope:
-    """The scope of the body of a structure or a definition."""
+    """Returns the scope of the body of a structure or a definition."""
     if check.is_standard(definition):
         return _body(check.resolution.library, definition)
     return check.resolution.scope_of(definition)
 
 
 def part(check: Inference, definition: ast.Node, key: str) -> Fact:
-    """What is known of a name that a body declares."""
+    """Returns the fact of a name that a body declares."""
     if check.is_standard(definition):
         return _part(check.resolution.library, definition, key)
     return of_symbol(check, body_of(check, definition).values[key])
 
 
 def result(check: Inference, definition: ast.FunctionDefinition) -> tuple[Fact, bool]:
-    """What is known of the expression of a function, and whether what it gives depends on its arguments as
-    they are solved, not only as written.
+    """Returns the fact of a function's expression, and whether its result depends on the solved values of its
+    arguments, not only on those as written.
     """
     if check.is_standard(definition):
         return _result(check.resolution.library, definition)
@@ -82,13 +82,13 @@ def _result(library: Library, definition: ast.FunctionDefinition) -> tuple[Fact,
         return result(_alone(library, definition), definition)
 
 
-_ONE_AT_A_TIME = threading.Lock()  # an inference is not to be asked by two threads
+_ONE_AT_A_TIME = threading.Lock()  # an inference serves one thread
 
 
 @lru_cache(maxsize=1024)
 def _alone(library: Library, definition: ast.Node) -> Inference:
-    """What finds out about one definition: for it, the library is the program."""
-    from aidl_lang.checking.infer import Inference  # which asks this module
+    """Returns an inference for one definition: for it, the library is the program."""
+    from aidl_lang.checking.infer import Inference  # it imports this module
     from aidl_lang.checking.resolve import resolve
 
     return Inference(resolve(_EMPTY, None, library), standard=())

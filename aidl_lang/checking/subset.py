@@ -1,7 +1,7 @@
-"""Programs in a subset of the language: what they use that it does not have.
+"""Variants of the language with less in them, and the check for constructs that a variant lacks.
 
-Looked at is what the program and its imports say themselves, never the library: a shape made of constraints
-there is a primitive here.
+Only the program and its imports are checked, never the library: a shape made of constraints there is a
+primitive here.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
 _WHOLE = frozenset({"E0406", "E0408"})
-"""Codes that speak of a whole statement: what else is wrong inside it goes with it."""
+"""Codes that concern a whole statement: other diagnostics inside it are dropped."""
 
 
 def check_subset(infer: Inference, variant: Variant) -> list[Diagnostic]:
-    """What a checked program, with its imports, says that its variant does not have."""
+    """Returns diagnostics for the constructs in a checked program and its imports that its variant lacks."""
     walker = _Walker(infer, variant)
     if FORBIDDEN[variant]:
         for module in infer.resolution.modules:
@@ -32,8 +32,8 @@ def check_subset(infer: Inference, variant: Variant) -> list[Diagnostic]:
 
 
 def adapted(diagnostics: Iterable[Diagnostic], variant: Variant) -> list[Diagnostic]:
-    """Diagnostics that advise nothing the variant does not have, and are silent about what is inside a
-    statement that it does not have.
+    """Returns the diagnostics without advice that the variant cannot follow, and without those inside a
+    statement that it lacks.
     """
     found = list(diagnostics)
     own = {rule.code for rule in FORBIDDEN[variant].values()}
@@ -54,7 +54,7 @@ def _advice(d: Diagnostic, variant: Variant) -> Diagnostic:
 
 
 class _Walker:
-    """Goes through files and reports every construct that the variant is without."""
+    """Reports every construct in files that the variant lacks."""
 
     def __init__(self, infer: Inference, variant: Variant) -> None:
         self.infer = infer
@@ -77,7 +77,7 @@ class _Walker:
                 stack += ast.children(node)
 
     def _states(self, node: ast.Node) -> bool:
-        """Whether a statement says what must hold; that reports all that is inside it."""
+        """Reports a statement of constraints as a whole. Returns whether it is one."""
         match node:
             case ast.Constrain() | ast.Prefer():
                 self._report(Construct.CONSTRAINT, node.span)
@@ -90,7 +90,9 @@ class _Walker:
         return True
 
     def _constrains(self, value: ast.Expression) -> bool:
-        """Whether a bare expression is a constraint; a call that fits nothing is what was called."""
+        """Tells whether a bare expression is a constraint; a call that no overload fits is judged by its
+        name.
+        """
         kind = self._type(value)
         if not isinstance(value, ast.Call):
             return isinstance(kind, TruthType)
@@ -128,7 +130,7 @@ class _Walker:
                 pass
 
     def _smooth(self, call: ast.Call) -> None:
-        """`smooth: true` on a step of a path lets the solver turn it."""
+        """Reports `smooth: true` on a step of a path, which lets the solver turn it."""
         candidates = self.infer.resolution.candidates.get(call, ())
         if not any(s.standard and "smooth" in s.by_fold for s in candidates):
             return

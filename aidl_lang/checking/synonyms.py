@@ -1,8 +1,8 @@
-"""Other words for arguments and members: one table of each for the checker, the interpreter and the printer.
+"""Synonyms of arguments and members, in tables for the checker, the interpreter and the printer.
 
-They are asked only where no overload, or no member, is spelled as written (case and underscores aside). A
-word stands for the first of its meanings that is there in `MEMBERS`; in `PARAMETERS` it has to be the only
-one that is there and not given otherwise, else the call is ambiguous.
+They are consulted only if no overload, or no member, is spelled as written (case and underscores aside). In
+`MEMBERS` a word stands for the first of its meanings that is there; in `PARAMETERS` it has to be the only one
+that is there and not given otherwise, else the call is ambiguous.
 """
 
 from __future__ import annotations
@@ -132,7 +132,7 @@ corner: points
 
 
 def _read(table: str) -> Mapping[str, tuple[str, ...]]:
-    """Folded word → its meanings, in the order of the lines."""
+    """Returns folded word → its meanings, in the order of the lines."""
     found: dict[str, dict[str, None]] = {}
     for line in table.strip().splitlines():
         meanings, _, words = line.partition(": ")

@@ -51,13 +51,13 @@ def describe(dimension: MaybeDimension) -> str:
 
 
 class UnequalError(ValueError):
-    """Two dimensions that do not go together; both are its arguments."""
+    """Raised for two dimensions that do not go together; both are its arguments."""
 
 
 def add(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
-    """Dimension of a sum, difference, minimum or comparison.
+    """Returns the dimension of a sum, difference, minimum or comparison.
 
-    Raises UnequalError when the two do not go together.
+    Raises UnequalError if the two do not go together.
     """
     if a is None or a == b:
         return b
@@ -68,7 +68,7 @@ def add(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
 
 @lru_cache(maxsize=256)
 def multiply(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
-    """Dimension of a product; a bare number times a plain one (`10 * cos(a)`) stays bare."""
+    """Returns the dimension of a product; a bare number times a plain one (`10 * cos(a)`) stays bare."""
     if (a is None and b in _PURE) or (b is None and a in _PURE):
         return None
     a, b = a or PLAIN, b or PLAIN
@@ -77,7 +77,7 @@ def multiply(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
 
 @lru_cache(maxsize=256)
 def divide(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
-    """Dimension of a quotient; a bare number by a plain one stays bare."""
+    """Returns the dimension of a quotient; a bare number by a plain one stays bare."""
     if a is None and b in _PURE:
         return None
     a, b = a or PLAIN, b or PLAIN
@@ -85,7 +85,7 @@ def divide(a: MaybeDimension, b: MaybeDimension) -> MaybeDimension:
 
 
 def power(a: MaybeDimension, exponent: float) -> MaybeDimension:
-    """Raises ValueError when a dimension would get a fractional power."""
+    """Returns the dimension of a power. Raises ValueError if a dimension would get a fractional power."""
     if a is None or a == PLAIN:
         return a
     length, angle = a.length * exponent, a.angle * exponent

@@ -1,9 +1,9 @@
-"""Validity of references (language reference: validity): who may read whose unknowns.
+"""Validity of references (language reference: validity): the unknowns that each expression may read.
 
 Rule 1: geometry references only geometry and unknowns of its own structure. Arguments of templates may reach
-further, since the instantiating structure ties them by equalities; what is derived for good, as by `mirror`,
-`copy` and `offset`, may be made of geometry anywhere further up, of its points and sizes too.
-Rule 2: a constraint references only the subtree of the structure that holds it.
+further, since the instantiating structure ties them by equalities; geometry derived for good, as by `mirror`,
+`copy` and `offset`, may be made of geometry anywhere further up, of its points and sizes too. Rule 2: a
+constraint references only the subtree of the structure that holds it.
 
 A breach becomes a `Violation`. Its diagnostic names the nearest common ancestor, where the relation can be
 stated, and mends the program: what reads too far becomes a first guess, and the ancestor gets the constraint.
@@ -36,14 +36,16 @@ from aidl_lang.syntax import ast
 
 
 def check_validity(module: ast.Module, infer: Inference) -> list[Violation]:
-    """The breaches of both rules in one file."""
+    """Returns the breaches of both rules in one file."""
     walker = _Walker(infer)
     walker.block(module.statements, Site((module,), ()))
     return walker.found
 
 
 class _Walker:
-    """Goes through the bodies of structures; what is defined to be called is judged where it is called."""
+    """Collects the breaches in the bodies of structures; the body of a definition is judged where it is
+    called.
+    """
 
     def __init__(self, infer: Inference) -> None:
         self.infer = infer
@@ -107,7 +109,7 @@ class _Walker:
                 pass  # a name for an expression is judged where it is used
 
     def _made(self, call: ast.Call, path: tuple[str, ...] | None, site: Site) -> None:
-        """The arguments of a constructor; of a template's, nothing is asked."""
+        """Checks the arguments of a constructor; those of a template may reach anywhere."""
         fact = self.infer.fact(call)
         name = self.infer.resolution.canonical.get(call.callee, call.callee.text)
         if isinstance(fact.type, StructureType) or not self._makes_geometry(fact, name):
@@ -129,8 +131,8 @@ class _Walker:
             self._geometry(self._targets(call, index, node, path), node, site)
 
     def _order(self, node: ast.Expression, site: Site) -> None:
-        """What something is derived of is made further up, in whatever structure; of what stands in this one,
-        and is named without a path, that is known.
+        """Reports an operand of a derivation that is made further down. Names of this structure without a
+        path are checked elsewhere.
         """
         for part in ast.walk(node):
             symbol = self.infer.resolution.uses.get(part)
@@ -149,13 +151,15 @@ class _Walker:
         return isinstance(fact.type, GeometryType) or name in DERIVING | PATTERNS or is_point(fact.type)
 
     def _is_thing(self, node: ast.Expression) -> bool:
-        """Whether it may be what is copied, or a line to mirror about, and no number or coordinates."""
+        """Tells whether an expression may be a thing to copy, or a line to mirror about: no number, no
+        coordinates.
+        """
         return not isinstance(self.infer.fact(node).type, NumberType | PointType)
 
     def _targets(
         self, call: ast.Call, index: int, node: ast.Expression, path: tuple[str, ...] | None
     ) -> list[Target]:
-        """The expressions in an argument that a guess may stand for, with the paths they are reached by."""
+        """Returns the expressions in an argument that a guess may replace, with the paths that reach them."""
         name = self._parameter(call, index)
         if path is None or name is None or not self._is_field(call, name):
             return [Target(node, None, is_point=self._is_point(node), is_size=True)]
@@ -175,13 +179,15 @@ class _Walker:
         return [Target(node, (*path, name), is_position, is_size=not is_position)]
 
     def _coordinates(self, node: ast.Point, path: tuple[str, ...]) -> list[Target]:
-        """A point, or the one coordinate of it that reads too far, so that the other stays what it was."""
+        """Returns a point as target, or the one coordinate of it that reads too far, so that the other stays
+        as it is.
+        """
         if self._reads(node.x) and self._reads(node.y):
             return [Target(node, path, is_point=True)]
         return [Target(node.x, (*path, "x")), Target(node.y, (*path, "y"))]
 
     def _parameter(self, call: ast.Call, index: int) -> str | None:
-        """The parameter that the argument of that number goes to, if there is no doubt."""
+        """Returns the parameter that the argument of that number goes to, if there is no doubt."""
         nodes = arguments(self.infer, call)
         names = [None] * (len(nodes) - len(call.arguments)) + [
             a.name.text if a.name else None for a in call.arguments
@@ -191,7 +197,7 @@ class _Walker:
         return chosen.parameter_of(index) if isinstance(chosen, Binding) else None
 
     def _is_field(self, call: ast.Call, name: str) -> bool:
-        """Whether what a call makes can be asked for its parameter by name."""
+        """Tells whether a parameter of a call is also a field of its result."""
         fact = self.infer.fact(call)
         if isinstance(fact.of, ast.ShapeDefinition):
             return True
@@ -202,7 +208,7 @@ class _Walker:
         return is_point(kind) or isinstance(node, ast.List)
 
     def _placement(self, node: ast.Structure | ast.Assign, site: Site) -> None:
-        """`at` and `rotated` belong to the structure that holds the one they place."""
+        """Checks `at` and `rotated`, which belong to the structure that holds the one they place."""
         if node.placement is None:
             return
         path = (member_path(node.name, node.indices), "origin")
@@ -217,7 +223,7 @@ class _Walker:
             self._geometry([Target(rotated, None, is_size=True)], rotated, site)
 
     def _geometry(self, targets: Sequence[Target], whole: ast.Expression, site: Site) -> None:
-        """Rule 1 for an expression that geometry is made with."""
+        """Checks rule 1 for an expression that geometry is made with."""
         own = Place(site.home)
         for target in targets:
             far = [p for p in self._reads(target.node) if p != own]
@@ -238,8 +244,8 @@ class _Walker:
 
 
 def _may_derive(fact: Fact, homes: Sequence[ast.Node]) -> bool:
-    """Whether something may be derived of this in the last of the structures `homes`: of geometry wherever it
-    is drawn, of a structure only in one that holds it.
+    """Tells whether a thing may be derived of this in the last of the structures `homes`: of geometry
+    wherever it is drawn, of a structure only in one that holds it.
     """
     kind = fact.type
     while isinstance(kind, ListType):

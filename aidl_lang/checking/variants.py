@@ -1,8 +1,8 @@
 """Subsets of the language, which show what hierarchy and what constraints are worth.
 
 `no-hierarchy` has one structure, and all geometry and all constraints are in it. A hole in it is cut by an
-operation on outlines (`cut`), which any structure has. `no-constraints` has nothing that is to be solved for:
-everything stands as it is written. What the library's own shapes are made of is no concern of either.
+operation on outlines (`cut`), which any structure has. `no-constraints` has nothing to solve for: everything
+stands as it is written. Both leave the insides of the library's own shapes alone.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class Variant(StrEnum):
 
 
 class Construct(StrEnum):
-    """What a variant may be without."""
+    """A construct that a variant may lack."""
 
     HOLE = "hole in a structure"
     STRUCTURE = "structure in another or beside it"
@@ -37,7 +37,7 @@ class Construct(StrEnum):
 
 @record()
 class Rule:
-    """What to say of a construct; `{name}` is what it is called."""
+    """The diagnostic for a construct; `{name}` is its name."""
 
     code: str
     message: str
@@ -120,12 +120,12 @@ _INSTEAD: Mapping[tuple[Variant, str], str] = {
 
 
 def speaks_of_absent(variant: Variant, text: str) -> bool:
-    """Whether a hint or an edit advises what the variant does not have."""
+    """Tells whether a hint or an edit advises a construct that the variant lacks."""
     pattern = _ABSENT.get(variant)
     return pattern is not None and re.search(pattern, text) is not None
 
 
 def instead(variant: Variant, code: str) -> tuple[str, ...]:
-    """The hint of a diagnostic whose own hints advise what the variant does not have."""
+    """Returns the hint of a diagnostic whose own hints advise a construct that the variant lacks."""
     hint = _INSTEAD.get((variant, code))
     return (hint,) if hint else ()

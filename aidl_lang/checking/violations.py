@@ -1,4 +1,4 @@
-"""Breaches of the rules of validity, and their mending."""
+"""Breaches of the rules of validity, and their fixes."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ from aidl_lang.syntax import ast
 
 @record(eq=False)
 class Target:
-    """
+    """An expression that reads too far.
+
     node       the expression (or, of rule 2, the statement) that reads too far
-    path       how its structure reaches the number or point that it defines; None where nothing names it
+    path       how its structure reaches the number or point that it defines; None if nothing names it
     is_point   it is a point; otherwise a number
     is_size    a number that is kept as written unless it is marked as a guess
     """
@@ -35,7 +36,8 @@ class Target:
 
 @record(eq=False)
 class Violation:
-    """
+    """A breach of a rule of validity.
+
     rule    1 for geometry, 2 for a constraint
     whole   the expression or statement that the target is part of
     far     the places that are out of reach
@@ -50,16 +52,17 @@ class Violation:
 
     @property
     def nodes(self) -> tuple[ast.Node, ...]:
-        """The expressions whose written values the diagnostic wants to know."""
+        """The expressions whose written values the diagnostic needs."""
         node = self.target.node
         if self.rule == 2:
             return tuple(c for c in ast.children(node) if c in self.infer.facts)
         return self._references() or (node,)
 
     def _references(self) -> tuple[ast.Node, ...]:
-        """In a loop, the references alone: the rest of the expression tells the turns apart, and stays.
+        """Returns, in a loop, the references alone: the rest of the expression differs from turn to turn, and
+        stays.
 
-        Empty where the expression is the same in every turn, or is not made of numbers and points.
+        Empty if the expression is the same in every turn, or is not made of numbers and points.
         """
         uses = self.infer.resolution.uses
         names = (uses.get(n) for n in ast.walk(self.target.node))
@@ -70,7 +73,7 @@ class Violation:
         return found if all(isinstance(k, NumberType) or is_point(k) for k in kinds) else ()
 
     def _far(self, node: ast.Node) -> Iterator[ast.Node]:
-        """The outermost names, with their members, that lead too far."""
+        """Yields the outermost names, with their members, that lead too far."""
         fact = self.infer.facts.get(node)
         if fact is not None and not fact.reads & set(self.far):
             return
@@ -82,14 +85,16 @@ class Violation:
 
     @property
     def ancestor(self) -> ast.Node | None:
-        """The nearest structure that holds everything that is read; None when it is not of this text."""
+        """The nearest structure that holds everything that is read; None if it is not in this text."""
         holders = [p.holder for p in self.far]
         if any(holder not in self.site.homes for holder in holders):
             return None
         return min(holders, key=self.site.homes.index)
 
     def diagnostic(self, written: Mapping[ast.Node, tuple[float, float] | float]) -> Diagnostic:
-        """What to tell the author. `written`: the values of `nodes` at the first guesses, where known."""
+        """Returns the diagnostic of the breach. `written`: the values of `nodes` at the first guesses, if
+        known.
+        """
         home, culprit = _name(self.site.home), self._culprit()
         owner = self._owner(culprit)
         subject = f"geometry of {home}" if self.rule == 1 else f"{self._stated} of {home}"
@@ -114,7 +119,7 @@ class Violation:
 
     @property
     def _operation(self) -> str | None:
-        """The name of what changes a drawing, where the target is a call of that."""
+        """The name of the operation on geometry that the target calls; None if it is none."""
         item = self.target.node
         return operation(self.infer, item.value) if isinstance(item, ast.ExpressionStatement) else None
 
@@ -125,7 +130,7 @@ class Violation:
         return "a constraint" if self._operation is None else f"a `{self._operation}`"
 
     def _culprit(self) -> ast.Node:
-        """The name that leads too far, with all its members."""
+        """Returns the name that leads too far, with all its members."""
         return next(self._far(self.target.node), self.target.node)
 
     def _owner(self, culprit: ast.Node) -> str:
@@ -156,7 +161,7 @@ class Violation:
     # --- The fix ---------------------------------------------------------------------------------
 
     def _relation(self, ancestor: ast.Node) -> str | None:
-        """The constraint as the ancestor states it; None when it cannot."""
+        """Returns the constraint as the ancestor can state it; None if it cannot."""
         move = Move(self.site, ancestor, self.infer)
         if not move.is_possible:
             return None
@@ -215,7 +220,7 @@ class Violation:
         )
 
     def _emptied(self) -> ast.Node:
-        """The constraint, or the outermost block around it that holds nothing else."""
+        """Returns the constraint, or the outermost block around it that holds nothing else."""
         inner: ast.Node = self.whole
         around = [s for s, _ in self.site.trail if not isinstance(s, ast.Structure) and s is not inner]
         for statement in reversed(around):
@@ -231,7 +236,7 @@ class Violation:
         return inner
 
     def _guess(self, written: Mapping[ast.Node, tuple[float, float] | float]) -> str:
-        """What is written instead: the value, or in a loop the expression with values for its references."""
+        """Returns the replacement: the value, or in a loop the expression with values for its references."""
         target = self.target.node
         places = self._references()
         if not places:
@@ -251,7 +256,7 @@ class Violation:
 
 
 def _literal(value: tuple[float, float] | float | None, pair: bool, fallback: float) -> str:
-    """A number or a point as it was written, where that is known."""
+    """Returns a number or a point as it was written; the fallback if that is not known."""
     if pair:
         x, y = value if isinstance(value, tuple) else (0.0, 0.0)
         return f"({_digits(x, 0.0)}, {_digits(y, 0.0)})"
@@ -259,7 +264,7 @@ def _literal(value: tuple[float, float] | float | None, pair: bool, fallback: fl
 
 
 def _digits(value: float, fallback: float) -> str:
-    """Six significant digits, without noise around zero."""
+    """Returns six significant digits, without noise around zero."""
     if not math.isfinite(value):
         value = fallback
     return f"{0.0 if abs(value) < 1e-9 else value:.6g}"
@@ -270,12 +275,12 @@ def _name(node: ast.Node) -> str:
 
 
 def _root(node: ast.Node) -> ast.Node:
-    """The name that a path begins with."""
+    """Returns the name that a path begins with."""
     while isinstance(node, ast.Member | ast.Index):
         node = node.value
     return node
 
 
 def _whose(written: str, owner: str) -> str:
-    """Where a reference leads; a structure named itself belongs to nothing but the structure around."""
+    """Returns the words for where a reference leads; a structure itself is only said to lie outside."""
     return "lies outside it" if owner == f"`{written}`" else f"belongs to {owner}"

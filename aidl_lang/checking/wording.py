@@ -1,4 +1,4 @@
-"""How the checker speaks of types and of program text."""
+"""The words of the checker for types and for program text."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LONGEST = 40
 
 
 def a(kind: Type) -> str:
-    """A type with its article."""
+    """Returns a type with its article."""
     word = "thing" if isinstance(kind, AnyType) else str(kind)
     if isinstance(kind, NumberType) and kind.whole:
         word = "number" if kind.dimension is None else "whole number"
@@ -26,13 +26,13 @@ def a(kind: Type) -> str:
 
 
 def shown(node: ast.Node) -> str:
-    """The text of an expression on one line, shortened where it is long."""
+    """Returns the text of an expression on one line, shortened if it is long."""
     text = node.span.one_line
     return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
 
 
 def comparison_hint(x: Type, y: Type, left: str, right: str) -> str:
-    """What to write instead of a comparison of things that have no order or equality."""
+    """Returns the hint for a comparison of things that have no order or equality."""
     if isinstance(x, ListType) or isinstance(y, ListType):
         return "compare their members one by one, in a `for`"
     for kind, text, other in ((x, left, y), (y, right, x)):

@@ -1,4 +1,4 @@
-"""What to say of names that mean nothing, too much, or something that is not there yet."""
+"""Diagnostics for names that are unknown, ambiguous, or used before they exist."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def no_declaration(resolver: Resolver, name: ast.Name, is_value: bool) -> None:
-    """`h = …` among constraints compares; who writes it with a new name meant to declare one."""
+    """Reports `h = …` among constraints with a new name: it compares, but was meant to declare one."""
     start = Span(name.span.source, name.span.start, name.span.start)
     resolver.report(
         "E0201",
@@ -34,7 +34,7 @@ def no_declaration(resolver: Resolver, name: ast.Name, is_value: bool) -> None:
 
 
 def unknown_name(resolver: Resolver, node: ast.Name, scope: Scope) -> None:
-    """A bare name that no scope has as a value."""
+    """Reports a bare name that no scope has as a value."""
     name = node.text
     if scope.may_be_missing(name) or resolver.has_said_enough:
         return
@@ -119,7 +119,9 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: Scope) -> None:
 
 
 def _is_spelled_right(name: str, meant: str, scope: Scope) -> bool:
-    """Whether a word in which two names differ is a known one: `same_side` is no slip for `same_size`."""
+    """Tells whether a word in which two names differ is a known one: `same_side` is no slip for
+    `same_size`.
+    """
     known = {word for other in scope.callable_names() for word in other.casefold().split("_")}
     known |= PARAMETERS.keys() | FIELDS
     words, others = name.casefold().split("_"), meant.casefold().split("_")
@@ -127,7 +129,7 @@ def _is_spelled_right(name: str, meant: str, scope: Scope) -> bool:
 
 
 def _only_holds(scope: Scope, name: str) -> bool:
-    """Whether a callable is a constraint and nothing else: it makes nothing."""
+    """Tells whether a callable is a constraint and nothing else: it makes nothing."""
     found = scope.called(name)
     return found is not None and all(kind_of(s) is SymbolKind.CONSTRAINT for s in found[1])
 
@@ -139,14 +141,14 @@ _RELATIONS = (
 
 
 def _may_hold(scope: Scope, name: str) -> bool:
-    """Whether a callable may be a condition: shapes and templates are none."""
+    """Tells whether a callable may be a condition: shapes and templates are none."""
     found = scope.called(name)
     made = (SymbolKind.SHAPE, SymbolKind.TEMPLATE)
     return found is not None and all(kind_of(s) not in made for s in found[1])
 
 
 def _as_template(node: ast.Structure) -> Fix | None:
-    """A parameter list for a structure that is called."""
+    """Returns the fix that gives a structure a parameter list, so that it can be called."""
     if node.indices:
         return None
     behind = Span(node.name.span.source, node.name.span.end, node.name.span.end)
@@ -154,7 +156,7 @@ def _as_template(node: ast.Structure) -> Fix | None:
 
 
 def called_field(node: ast.Call) -> tuple[str, Fix]:
-    """What to say of `c.center()`."""
+    """Returns message and fix for a field that is called: `c.center()`."""
     at = node.callee.span
     parentheses = Edit(Span(at.source, at.end, node.span.end), "")
     message = f"`{node.callee.text}` is a field, which is named without parentheses"
@@ -175,7 +177,7 @@ def declared_twice(resolver: Resolver, name: ast.Identifier, earlier: Symbol) ->
 
 
 def check_aliases(resolver: Resolver, scope: Scope) -> None:
-    """An alias has to lead to something that can be called."""
+    """Reports aliases that lead to nothing that can be called."""
     for symbol in scope.aliases.values():
         assert isinstance(symbol.node, ast.Alias)
         target = symbol.node.target
@@ -204,7 +206,7 @@ def check_aliases(resolver: Resolver, scope: Scope) -> None:
 
 
 def is_below(node: ast.Name, symbol: Symbol, scope: Scope) -> bool:
-    """Whether what a name stands for exists from a later line on only."""
+    """Tells whether a name stands above the line that makes what it means."""
     if symbol.kind not in UNKNOWNS or symbol.node is None or symbol.is_array:
         return False
     if symbol.scope is None or symbol.scope.homes != scope.homes:
@@ -214,14 +216,16 @@ def is_below(node: ast.Name, symbol: Symbol, scope: Scope) -> bool:
 
 
 def check_order(resolver: Resolver, node: ast.Name, symbol: Symbol, scope: Scope) -> None:
-    """Geometry and unknowns exist from their line on; those of other structures are judged by validity."""
+    """Reports geometry and unknowns used above their line; those of other structures are judged by
+    validity.
+    """
     if is_below(node, symbol, scope):
         hint = "write a first guess here, and the relation in `constrain`, which is read after the rest"
         used_early(resolver.report, node, symbol, hint)
 
 
 def used_early(report: Callable[..., object], node: ast.Node, symbol: Symbol, hint: str) -> None:
-    """Report the use of what a later line makes."""
+    """Reports a use above the line that makes the thing."""
     assert symbol.node is not None
     inside = node.span.start >= symbol.node.span.start
     report(
@@ -252,8 +256,8 @@ def did_you_mean(like: Sequence[str], mark: str = "") -> str:
 
 
 def respell(node: ast.Node, like: Sequence[str]) -> Fix | None:
-    """Writes the nearest of the names that a name is like. It is sure where the name as written is a slip for
-    that one and no other.
+    """Returns the fix that writes the nearest of the names that a name is like. It is sure if the name as
+    written is a slip for that one and no other.
     """
     name = node.span.text
     if not like or not (is_like(name, like[0]) or like == ["self"]):

@@ -1,7 +1,7 @@
 """Ready-made cuts, such as `clearance_hole("m3")`: holes in a solid or an assembly, elsewhere outlines.
 
-The library has each under one name as a template and as what makes its outline. Which of them a call means
-follows from where it stands; what a hole is given as its centre is where it is placed.
+The library has each under one name, as a template and as an operation that makes its outline. The place of a
+call decides which of them it means; the centre given to a hole becomes its placement.
 """
 
 from __future__ import annotations
@@ -19,25 +19,27 @@ from aidl_lang.syntax import ast
 _FOLDED = frozenset(map(fold, CUTS))
 _HOLDING = ("solid", "assembly")
 _CENTER = 1
-"""The place of the centre among the arguments of every cut."""
+"""The index of the centre among the arguments of every cut."""
 
 
 def with_placed_cuts(module: ast.Module) -> ast.Module:
-    """A file in which the centre that a hole is given stands behind `at`."""
+    """Returns a file in which the centre given to a hole stands behind `at`."""
     if not (cuts := _cuts_in(module)):
         return module
     return replace(module, statements=_Reader(cuts).placed(module.statements, "", frozenset()))
 
 
 def hole_calls(module: ast.Module) -> frozenset[ast.Call]:
-    """The calls of a file that make holes, where what they call makes outlines as well."""
+    """Returns the calls of a file that make holes, of cuts that can make outlines as well."""
     if not (cuts := _cuts_in(module)):
         return frozenset()
     return frozenset(_Reader(cuts).calls(module.statements, "", frozenset()))
 
 
 def meant(candidates: Sequence[Signature], is_hole: bool) -> Sequence[Signature]:
-    """Of the overloads of a ready-made cut those that are meant: templates, or what makes an outline."""
+    """Returns the overloads of a ready-made cut that are meant: templates for a hole, else those that make an
+    outline.
+    """
     templates = [c.kind is ast.Structure for c in candidates if c.standard]
     if all(templates) or not any(templates):
         return candidates
@@ -45,7 +47,7 @@ def meant(candidates: Sequence[Signature], is_hole: bool) -> Sequence[Signature]
 
 
 def _cuts_in(module: ast.Module) -> frozenset[str]:
-    """The folded names of cuts that a file may mean: none that it defines itself."""
+    """Returns the folded names of cuts that a file may mean: none that it defines itself."""
     text = fold(module.source.text)
     found = {name for name in _FOLDED if name in text}
     if found:
@@ -55,7 +57,7 @@ def _cuts_in(module: ast.Module) -> frozenset[str]:
 
 @record()
 class _Reader:
-    """Goes through the bodies of a file. `kind` is that of the structure around, `outlines` are the names of
+    """A reader of the bodies of a file. `kind` is that of the structure around, `outlines` are the names of
     which other outlines are made in it.
     """
 
@@ -82,7 +84,7 @@ class _Reader:
                     yield from self._made(value)
 
     def _made(self, value: ast.Expression) -> Iterator[ast.Call]:
-        """The cuts that an assignment makes: its value, members of it, or what it makes copies of."""
+        """Yields the cuts that an assignment makes: its value, members of it, or what it makes copies of."""
         match value:
             case ast.Call() if self._is_cut(value):
                 yield value
@@ -135,7 +137,7 @@ class _Reader:
         return replace(node, value=call, placement=ast.Placement(center, rotated, span=center.span))
 
     def _moved(self, value: ast.Expression) -> ast.Expression:
-        """A value in which each cut with a centre is a copy that is moved there."""
+        """Returns a value in which each cut with a centre is a copy moved there."""
         match value:
             case ast.Call() if self._is_cut(value):
                 call, center = _without_center(value)
@@ -154,13 +156,13 @@ class _Reader:
 
 
 def _used_as_outlines(body: ast.Block) -> frozenset[str]:
-    """The names in a body of which other outlines are made there."""
+    """Returns the names in a body of which other outlines are made there."""
     calls = (n for n in ast.walk(body) if isinstance(n, ast.Call) and n.callee.text in OUTLINES)
     return frozenset(n.text for call in calls for n in ast.walk(call) if isinstance(n, ast.Name))
 
 
 def _without_center(call: ast.Call) -> tuple[ast.Call, ast.Expression | None]:
-    """A call without the centre it is given, and that."""
+    """Returns a call without its centre, and the centre; None for a call that has none."""
     named = (a for a in call.arguments if a.name is not None and _means_center(a.name.text))
     unnamed = [a for a in call.arguments if a.name is None]
     by_place = unnamed[_CENTER] if len(unnamed) > _CENTER and call.receiver is None else None

@@ -1,4 +1,4 @@
-"""Entering the declarations of a block into its scope, before any of its names is looked up."""
+"""The step that enters the declarations of a block into its scope, before any of its names is looked up."""
 
 from __future__ import annotations
 
@@ -27,14 +27,16 @@ _MAKERS = DERIVING | PATTERNS | frozenset({"path", *PUBLIC})
 
 
 def is_definition(node: ast.Node) -> bool:
-    """Whether a node is something that is called: a function, shape, constraint or template."""
+    """Tells whether a node is a function, shape, constraint or template, which is called."""
     if isinstance(node, ast.Structure):
         return node.parameters is not None
     return isinstance(node, ast.FunctionDefinition | ast.ShapeDefinition | ast.ConstraintDefinition)
 
 
 def made_by(value: ast.Expression, scope: Scope) -> SymbolKind:
-    """Whether `name = value` makes geometry or a structure, or only names an expression."""
+    """Returns the kind of symbol that `name = value` declares: geometry, a structure, or only an
+    expression.
+    """
     match value:
         case ast.Point():
             return SymbolKind.GEOMETRY
@@ -108,7 +110,7 @@ class Declarer:
         overloads.append(made)
 
     def _shape_types(self, node: ast.Callable, shapes: set[str]) -> list[str]:
-        """The shapes that stand as types of parameters; words that are no type are reported."""
+        """Returns the shapes that stand as types of parameters; reports words that are no type."""
         found: list[str] = []
         for parameter in node.parameters or ():
             word = parameter.type
@@ -179,7 +181,7 @@ class Declarer:
         )
 
     def _indexed(self, statements: Sequence[ast.Statement], branch: Branch, local: set[str]) -> None:
-        """What a loop declares for the structure around it; `local` are the names of its turns."""
+        """Enters what a loop declares for the structure around it; `local` are the names of its turns."""
         local = local | {
             s.name.text
             for s in statements
@@ -262,8 +264,8 @@ def _same_parameters(a: Signature, b: Signature) -> bool:
 
 
 def _together(a: Branch, b: Branch) -> bool:
-    """Whether whatever builds one declaration certainly comes with the other: neither lies in a branch of its
-    own. Branches of different `if`s may exclude each other; building tells.
+    """Tells whether whatever builds one declaration certainly comes with the other: neither lies in a branch
+    of its own. Branches of different `if`s may exclude each other, which only building shows.
     """
     shorter = min(len(a), len(b))
     return a[:shorter] == b[:shorter]

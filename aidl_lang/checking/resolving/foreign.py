@@ -1,4 +1,4 @@
-"""Names that other languages and programs have, and what is done here instead."""
+"""Names of other languages and programs, with their counterparts here."""
 
 from __future__ import annotations
 
@@ -95,13 +95,13 @@ _VALUES: Mapping[str, str] = {
 
 
 def value_hint(name: str) -> str | None:
-    """What to write instead of a name that is a value elsewhere."""
+    """Returns the hint for a name that is a value in other languages."""
     return _VALUES.get(fold(name))
 
 
 def without_idle(module: ast.Module, modules: Sequence[ast.Module]) -> tuple[ast.Module, list[Diagnostic]]:
-    """A file without statements such as `solve()` and `show(base)`, and a note on each; calls of what one of
-    the files defines stay.
+    """Returns a file without statements such as `solve()` and `show(base)`, and a note on each; calls of
+    functions that one of the files defines stay.
     """
     notes: list[Diagnostic] = []
 
@@ -146,7 +146,7 @@ def _idle(node: ast.ExpressionStatement) -> Diagnostic:
 
 
 def call_answer(node: ast.Call) -> tuple[str, str, str] | None:
-    """Code, headline and hint for a call of something that is known elsewhere and not here."""
+    """Returns code, headline and hint for a call of a function that other languages have."""
     name, word = node.callee.text, fold(node.callee.text)
     if word in _SOLIDS:
         return (

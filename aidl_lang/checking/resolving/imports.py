@@ -1,8 +1,8 @@
-"""Imports: the files that a program stands on, each read and parsed once.
+"""The files that a program imports, each read and parsed once.
 
 A path is relative to the file that imports it, ends in `.aidl`, and may not leave the project, which is the
-folder of the program and all below it. No other file is read, as what is said of a file quotes it. What is
-wrong inside an imported file is reported at its place there.
+folder of the program and all below it. No other file is read, as diagnostics on a file quote it. Mistakes
+inside an imported file are reported at their place there.
 """
 
 from __future__ import annotations
@@ -21,12 +21,13 @@ from aidl_lang.syntax import ast
 SUFFIX = ".aidl"
 MAX_FILES = 200
 MAX_CHARACTERS = 2_000_000
-"""Of all imported files together."""
+"""Characters of all imported files together."""
 
 
 @record(frozen=False)
 class ImportedModules:
-    """
+    """The files of a program.
+
     modules  every file once, those that are imported before those that import them; the program is the last
     targets  import statements → the file they bring; without those that failed
     """
@@ -37,7 +38,7 @@ class ImportedModules:
 
 
 def load_imports(main: ast.Module, world: World | None) -> ImportedModules:
-    """Read what a program imports, directly or by way of other files."""
+    """Reads the files that a program imports, directly or by way of others."""
     loader = _Loader(world)
     loader.visit(main, PurePosixPath(main.source.name.replace("\\", "/")).name)
     loader.result.modules = tuple(loader.order)
@@ -54,7 +55,7 @@ class _Loader:
         self.characters = 0
 
     def visit(self, module: ast.Module, path: str) -> None:
-        """Load the imports of a file, then count the file itself."""
+        """Loads the imports of a file, then counts the file itself."""
         self.known[path] = module
         self.open.append(path)
         for statement in module.statements:
@@ -134,7 +135,7 @@ class _Loader:
 
 
 def with_inner_imports(module: ast.Module) -> tuple[ast.Module, list[Diagnostic]]:
-    """A file with the imports of its blocks before its statements, and E0353 for each of them."""
+    """Returns a file with the imports of its blocks moved before its statements, and E0353 for each."""
     top = [s for s in module.statements if isinstance(s, ast.Import)]
     if module.source.text.count("import") == len(top):
         return module, []

@@ -1,4 +1,4 @@
-"""The result of name resolution, and the scope of what every program knows."""
+"""The result of name resolution, and the outermost scope of every program."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ BUILTIN_NAMES = (*EVERYWHERE, "pi")
 
 @record(frozen=False, eq=False)
 class Resolution:
-    """What the names of a program mean.
+    """The meanings of the names of a program.
 
     main         the file that is compiled
     modules      it and every file it imports, the imported before those that import them
@@ -51,7 +51,9 @@ class Resolution:
     enter_library: Callable[[ast.Node], None] = lambda _: None
 
     def scope_of(self, definition: ast.Node) -> Scope:
-        """The scope of a definition's body; one of the library is resolved when it is first asked for."""
+        """Returns the scope of a definition's body; one of the library is resolved when it is first
+        needed.
+        """
         if definition not in self.scopes:
             self.enter_library(definition)
         return self.scopes[definition]
@@ -59,8 +61,8 @@ class Resolution:
 
 @lru_cache(maxsize=4)
 def library_scope(library: Library) -> Scope:
-    """The outermost scope: what is built in and what the library defines. Nothing declares anything in it, so
-    one serves all programs.
+    """Returns the outermost scope: built-in names and those of the library. Nothing declares anything in it,
+    so one serves all programs.
     """
     scope = Scope(_NOWHERE)
     scope.callables = _Joined(SIGNATURES, library.callables)
@@ -79,8 +81,8 @@ def library_scope(library: Library) -> Scope:
 
 
 class _Joined(dict[str, list[Signature]]):
-    """Built-in and library overloads under one name, joined when they are asked for: a library definition is
-    decoded only then.
+    """Built-in and library overloads by name, joined when they are looked up: only then is a library
+    definition decoded.
     """
 
     def __init__(self, *tables: Mapping[str, tuple[Signature, ...]]) -> None:

@@ -1,4 +1,4 @@
-"""What names stand for, and the scopes in which they are looked up before anything is built.
+"""Symbols, which names stand for, and the scopes in which they are looked up before anything is built.
 
 A scope belongs to a structure, a definition, a turn of a `for`, a comprehension or a file. Values and
 callables live apart: `slot(` is looked up among callables only, `slot` among values only.
@@ -19,7 +19,7 @@ from aidl_lang.syntax import ast
 
 
 class SymbolKind(StrEnum):
-    """The words in which messages speak of a symbol."""
+    """The kinds of symbols, by their names in messages."""
 
     PARAM = "param"
     LET = "let"
@@ -44,13 +44,14 @@ class SymbolKind(StrEnum):
 
 
 UNKNOWNS = frozenset({SymbolKind.VAR, SymbolKind.GEOMETRY, SymbolKind.STRUCTURE})
-"""What exists only from its line on, and what only its own structure may build on."""
+"""Kinds that exist only from their line on, and that only their own structure may build on."""
 
 
 @record(frozen=False, eq=False)
 class Symbol:
-    """
-    node          the definition, of several the first; None for what is built in
+    """A declared or built-in thing that names stand for.
+
+    node          the definition, of several the first; None for built-in ones
     owner         the structure or other definition whose body declares it, or the file
     declarations  the names at all places that declare it, in text order
     is_array      declared with indices
@@ -68,13 +69,14 @@ class Symbol:
 
 @record(frozen=False, eq=False)
 class Scope:
-    """
+    """The names declared in one body.
+
     owner      the node that opens it
     homes      the structures around, outermost (the file) first; geometry declared here belongs to the last
     callables  definitions of this scope under each name, in the order of writing
-    spaces     what `import … as name` names, by that name
+    spaces     files that `import … as name` names, by that name
     own_name   of a structure, by which it is known inside
-    missing    names that imports which failed would have brought; None when they could have been any
+    missing    names that failed imports would have brought; None if they could have been any
     """
 
     owner: ast.Node
@@ -89,7 +91,9 @@ class Scope:
     _spellings: dict[str, Spellings] = field(default_factory=dict, repr=False)
 
     def spelled_alike(self, kind: Literal["values", "callables", "aliases"], name: str) -> str | None:
-        """The name that one of the tables of this scope has for another spelling of it (see `names.find`)."""
+        """Returns the name in one of the tables of this scope that differs only in spelling (see
+        `names.find`).
+        """
         if (known := self._spellings.get(kind)) is None:
             known = self._spellings[kind] = Spellings(getattr(self, kind))
         return known.find(name)
@@ -101,7 +105,7 @@ class Scope:
             scope = scope.parent
 
     def value(self, name: str) -> Symbol | None:
-        """As written anywhere around, else what is spelled alike in the nearest scope."""
+        """Returns the symbol spelled so in any scope around, else one spelled alike in the nearest scope."""
         for scope in self.chain():
             if (symbol := scope.values.get(name)) is not None:
                 return symbol
@@ -115,7 +119,7 @@ class Scope:
         return None
 
     def container(self) -> Scope:
-        """The scope that gets what is declared here as its members: that of the structure or definition
+        """Returns the scope whose members the declarations here become: that of the structure or definition
         around.
         """
         scope = self
@@ -124,7 +128,7 @@ class Scope:
         return scope
 
     def visible(self) -> dict[str, Symbol]:
-        """Every value that can be named here; inner ones hide outer ones."""
+        """Returns every value that can be named here; inner ones hide outer ones."""
         names: dict[str, Symbol] = {}
         for scope in self.chain():
             for name, symbol in scope.values.items():
@@ -134,8 +138,8 @@ class Scope:
         return names
 
     def called(self, name: str) -> tuple[str, list[Signature]] | None:
-        """All callables of a name, innermost first, aliases followed: the name as it is defined, and the
-        candidates. None when there are none.
+        """Returns the defined name of a callable and all candidates, innermost first, with aliases followed.
+        None if there are none.
         """
         key: str | None = name
         if not any(name in s.callables or name in s.aliases for s in self.chain()):
@@ -168,7 +172,7 @@ class Scope:
         return [name for scope in self.chain() for name in (*scope.callables, *scope.aliases)]
 
     def may_be_missing(self, name: str) -> bool:
-        """Whether a name may have been in a file that could not be imported, which was reported."""
+        """Tells whether a name may have been in a file that could not be imported, which was reported."""
         return any(scope.missing is None or name in scope.missing for scope in self.chain())
 
     def near_values(self, name: str) -> list[str]:
@@ -176,5 +180,5 @@ class Scope:
 
 
 def word_meant(name: str, known: Iterable[str]) -> str | None:
-    """The one of a few fixed words that a name means."""
+    """Returns the one of a few fixed words that a name means."""
     return find(name, dict.fromkeys(known))
