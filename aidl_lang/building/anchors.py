@@ -1,9 +1,9 @@
-"""Which of equals is held: the anchor of `row(a, b, c)`, of `symmetric(a, b)`, of `same_width(a, b)`.
+"""The anchor among equals, which is held: one of `row(a, b, c)`, of `symmetric(a, b)`, of `same_width(a, b)`.
 
-A call over equals says of none that it stays. Whichever of them something else places is the anchor, so this
-can be told only when all constraints are known. Where nothing places any, the one stays that is dearest to
-move: whose content is exact in its frame, then one by which others are placed, then the last. What is held
-this way moves later, and not never: it is what the solver tries first.
+A call over equals says of none that it stays. Any of them that something else places is the anchor, so it can
+be chosen only when all constraints are known. If nothing places any, the one stays that is dearest to move:
+one whose content is exact in its frame, then one by which others are placed, then the last. An anchor held
+this way may still move, only later: holding it is what the solver tries first.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from aidl_lang.building.model import Comparison, Constraint, Structure
 from aidl_lang.common.records import record
 
 _NUDGE = 1e-4
-"""By how much a position is moved to see whether a comparison feels it: too little to pass another."""
+"""The part by which a position is moved to see whether a comparison feels it: too little to pass another."""
 _FLAT = 1e-10
 _HOLDS = 1e-9
 
@@ -27,7 +27,9 @@ Unknowns = frozenset[Unknown]
 
 
 def anchored(constraints: Sequence[Constraint]) -> list[Constraint]:
-    """The constraints, each over equals with its anchor held: `moved` of its comparisons is without it."""
+    """Returns the constraints, each over equals with its anchor held: `moved` of its comparisons is without
+    it.
+    """
     over_equals = [c for c in constraints if any(p.parties for p in c.comparisons)]
     if not over_equals:
         return list(constraints)
@@ -47,7 +49,7 @@ def anchored(constraints: Sequence[Constraint]) -> list[Constraint]:
 
 @record(frozen=False)
 class _Party:
-    """One of the equals, in some comparisons: all that places it, and what of it they would move first."""
+    """One of the equals in some comparisons: all unknowns that place it, and those that would move first."""
 
     every: Unknowns
     near: Unknowns
@@ -56,8 +58,7 @@ class _Party:
 @record(frozen=False, eq=False)
 class _Tie:
     """The comparisons of one constraint that concern the same coordinates of its parties (the x of all in a
-    row, the y of two mirror images), and what of them moves first.
-
+    row, the y of two mirror images), and the unknowns that move first.
     """
 
     constraint: Constraint
@@ -68,12 +69,12 @@ class _Tie:
 
     @property
     def key(self) -> tuple[str, str, str, list[str]]:
-        """What tells it from others whatever the order in which constraints are written."""
+        """An order of ties that does not depend on the order in which constraints are written."""
         c = self.constraint
         return c.holder.path, c.text, c.label, sorted(u.path for p in self.parties for u in p.near)
 
     def hold(self, anchor: _Party | None) -> Unknowns:
-        """Lets all but the anchor move; what these would move first."""
+        """Lets all but the anchor move. Returns the unknowns of these that would move first."""
         others = [p for p in self.parties if p is not anchor]
         kept = anchor.every if anchor is not None else frozenset()
         self.moved = frozenset().union(*(p.every for p in others)) - kept
@@ -82,7 +83,7 @@ class _Tie:
 
 @record(frozen=False)
 class _Standing:
-    """What the constraints of one structure say of what they mention, calls over equals aside."""
+    """The unknowns that the constraints of one structure place, hold and mention, calls over equals aside."""
 
     senses: _Senses
     placed: set[Unknown] = field(default_factory=set)
@@ -100,21 +101,21 @@ class _Standing:
         self.mentioned |= self.senses.near(comparison, mentioned - placed)
 
     def dearness(self, party: _Party) -> tuple[bool, bool]:
-        """How dear it is to move a party that nothing places."""
+        """Returns how dear it is to move a party that nothing places."""
         is_exact = all(u.frame_of is not None for u in party.every)
         return is_exact, not self.mentioned.isdisjoint(party.near)
 
 
 def _idle(comparison: Comparison) -> bool:
-    """Whether it moves nothing: a bound that the first guesses keep."""
+    """Tells whether a comparison moves nothing: a bound that the first guesses keep."""
     if comparison.relation == "==" or comparison.left.is_open or comparison.right.is_open:
         return False
     return holds(comparison, lambda e: e.value, _HOLDS)
 
 
 def _choose(ties: Iterable[_Tie], standing: _Standing) -> None:
-    """Holds an anchor in each tie: those first where something else places a party, which places the others.
-    Where nothing does, one tie has to begin, and which is no matter of the order of constraints.
+    """Holds an anchor in each tie: first where something else places a party, which then places the others.
+    If there is none, one tie has to begin, chosen without regard to the order of constraints.
     """
     waiting = sorted(ties, key=lambda tie: tie.key)
     while waiting:
@@ -128,7 +129,7 @@ def _choose(ties: Iterable[_Tie], standing: _Standing) -> None:
 
 
 def _anchor(tie: _Tie, standing: _Standing) -> _Party | None:
-    """The party that an earlier tie holds for its equals, or one that something else places."""
+    """Returns the party that an earlier tie holds for its equals, or one that something else places."""
     held = standing.held - standing.placed
     for known in (held, standing.placed):
         for party in tie.parties:
@@ -143,7 +144,7 @@ def _dearest(tie: _Tie, standing: _Standing) -> _Party | None:
 
 
 def _ties(constraint: Constraint, senses: _Senses) -> Iterator[_Tie]:
-    """The comparisons of a call over equals, put together where they concern the same coordinates."""
+    """Yields the comparisons of a call over equals, put together if they concern the same coordinates."""
     groups: list[tuple[set[Unknown], list[tuple[Comparison, list[_Party]]]]] = []
     for comparison in constraint.comparisons:
         if not comparison.parties:
@@ -175,7 +176,7 @@ def _ties(constraint: Constraint, senses: _Senses) -> Iterator[_Tie]:
 
 
 def _parties(comparison: Comparison, senses: _Senses) -> Iterator[_Party]:
-    """The parties that a comparison could move."""
+    """Yields the parties that a comparison could move."""
     mentioned = senses.mentioned(comparison)
     for every in dict.fromkeys(comparison.parties):
         if near := senses.near(comparison, mentioned & every):
@@ -183,8 +184,8 @@ def _parties(comparison: Comparison, senses: _Senses) -> Iterator[_Party]:
 
 
 class _Senses:
-    """What comparisons of one structure feel of positions: all are nudged, each by an amount of its own, and
-    a comparison is worked out anew. What comparisons share is worked out once.
+    """The positions that comparisons of one structure depend on: all are nudged, each by an amount of its
+    own, and a comparison is evaluated anew. Shared parts of comparisons are evaluated once.
     """
 
     def __init__(self, holder: Structure) -> None:
@@ -204,9 +205,8 @@ class _Senses:
         return found
 
     def near(self, comparison: Comparison, unknowns: Unknowns) -> Unknowns:
-        """Those of some unknowns it mentions that would move first to satisfy a comparison: positions in
-        the holder itself, then those below, then kept sizes. Positions that cancel, as in a width, are no
-        part of it.
+        """Returns those of some unknowns that would move first to satisfy a comparison: positions in the
+        holder itself, then those below, then kept sizes. Positions that cancel, as in a width, do not count.
         """
         sizes = frozenset(u for u in unknowns if u.kept)
         own = unknowns & self.own.keys()
@@ -217,12 +217,14 @@ class _Senses:
 
 
 def _placer(unknown: Unknown) -> Structure | None:
-    """At whose turn an unknown is placed: the box of an empty structure as if it were its frame."""
+    """Returns the structure at whose turn an unknown is placed; the box of an empty one counts as its
+    frame.
+    """
     return unknown.owner.parent or unknown.owner if unknown.outline else unknown.owner
 
 
 def _felt(comparison: Comparison, evaluate: ex.Evaluator) -> bool:
-    """Whether a comparison feels it when positions move."""
+    """Tells whether a comparison changes when positions move."""
     left, right = comparison.left, comparison.right
     now, then = left.value - right.value, evaluate(left) - evaluate(right)
     return not abs(then - now) <= _FLAT * max(1.0, abs(left.value), abs(right.value))

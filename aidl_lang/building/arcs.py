@@ -1,4 +1,4 @@
-"""Three points without names in `arc`: centre, start and end, and what is said where they hardly can be."""
+"""Arcs given by three points without names: centre, start and end, with a warning if they hardly can be."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
 ROUND = 0.01
-"""The distances of start and end from the centre may differ by this part of the larger one unsaid."""
+"""The part of the larger one by which the distances of start and end from the centre may differ without a
+warning."""
 
 _CODE = "W0503"
 
@@ -23,7 +24,9 @@ _HINT = "name them: `center`, `start` and `end`, or `start`, `mid` and `end`"
 
 
 def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, Value]) -> None:
-    """Warn of an arc whose first point is its centre for want of a name, and not as far from both others."""
+    """Warns of an arc whose unnamed first point is taken as its centre, though it is not as far from both
+    others.
+    """
     if any(a.name is not None and a.name.text == "center" for a in node.arguments):
         return
     a, b, c = (arguments.get(name) for name in _BY_CENTER)
@@ -33,7 +36,7 @@ def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, V
     if not differ(start, end) > ROUND:
         return
     if any(d.code == _CODE and d.span == it.place(node) for d in it.diagnostics):
-        return  # of an earlier turn of a loop
+        return  # reported in an earlier turn of a loop
     is_through = differ(start, across) <= differ(start, end)
     is_plain = _is_plain(node)
     meant, other = (_BY_MIDDLE, _BY_CENTER) if is_through else (_BY_CENTER, _BY_MIDDLE)
@@ -52,12 +55,12 @@ def _apart(a: PointVal, b: PointVal) -> float:
 
 
 def differ(a: float, b: float) -> float:
-    """By which part of the larger one two distances differ."""
+    """Returns the part of the larger one by which two distances differ."""
     return abs(a - b) / max(a, b) if max(a, b) > 0 else 0.0
 
 
 def _is_plain(node: ast.Call) -> bool:
-    """Whether the three points are the first arguments of the call, all without a name."""
+    """Tells whether the three points are the first arguments of the call, all without a name."""
     points = node.arguments[:3]
     return node.receiver is None and len(points) == 3 and all(p.name is None for p in points)
 

@@ -1,4 +1,4 @@
-"""Arguments as a binding asks for them: a pair taken apart, two coordinates made one point."""
+"""Arguments arranged for a binding: a pair taken apart, two coordinates made one point."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from aidl_lang.syntax import ast
 def arranged(
     binding: Binding, values: Sequence[Value], nodes: Sequence[ast.Node]
 ) -> tuple[Sequence[Value], Sequence[ast.Node]]:
-    """The values that a binding speaks of by index, and the text each comes from."""
+    """Returns the values that a binding refers to by index, and the text each comes from."""
     if not binding.sources:
         return values, nodes
     return [_value(s, values) for s in binding.sources], [nodes[s.index] for s in binding.sources]

@@ -1,4 +1,6 @@
-"""What a statement compares, in numbers: `14 - 11 = 3, which is not >= 4`; and what gives these numbers."""
+"""The comparisons of a statement in numbers, `14 - 11 = 3, which is not >= 4`, and the origin of these
+numbers.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,7 @@ from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
 _DIGITS = range(6, 18)
-"""In so many a number is shown: as few as tell the two sides apart."""
+"""Significant digits in which a number is shown: the fewest that tell the two sides apart."""
 _GIVEN = 4
 """Places that are shown at most."""
 
@@ -28,7 +30,7 @@ Side = tuple[ast.Expression, tuple[Num, ...]]
 
 
 def differences(wording: Wording, evaluate: Evaluate, tolerance: float) -> list[str]:
-    """What is false of the comparisons in a statement; nothing where it is none that can be read so."""
+    """Returns a text for each false comparison in a statement; empty if it cannot be read so."""
     if isinstance(wording.node, ast.Membership):
         return _beyond(wording, wording.node, evaluate)
     found = []
@@ -41,13 +43,15 @@ def differences(wording: Wording, evaluate: Evaluate, tolerance: float) -> list[
 
 
 def _beyond(wording: Wording, node: ast.Membership, evaluate: Evaluate) -> list[str]:
-    """That a number is not among others, of a statement that is false."""
+    """Returns a text for a false statement that a number is among others."""
     values = _values(_numbers(wording, node.value), evaluate)
     return [f"{_shown(values, _DIGITS[0])} is not in {node.container.span.one_line}"] if values else []
 
 
 def sides(wording: Wording, evaluate: Evaluate) -> str:
-    """`110 and 120`, what a statement compares; empty where it is more than one comparison, or none."""
+    """Returns the two sides of a statement, `110 and 120`; empty if it has more than one comparison, or
+    none.
+    """
     pairs = list(_comparisons(wording.node))
     if len(pairs) != 1:
         return ""
@@ -60,7 +64,7 @@ def sides(wording: Wording, evaluate: Evaluate) -> str:
 
 
 def givens(wording: Wording) -> tuple[Label, ...]:
-    """Where the constants of a statement that have a name are given, with what they are."""
+    """Returns labels where the named constants of a statement are given, with their values."""
     found: dict[Span, list[str]] = {}
     source = wording.node.span.source
     inside = [wording.node.value] if isinstance(wording.node, ast.Membership) else []
@@ -87,7 +91,7 @@ def _comparisons(node: ast.Expression) -> Iterator[tuple[ast.Expression, str, as
 
 
 def _numbers(wording: Wording, node: ast.Expression) -> tuple[Num, ...]:
-    """The number that a side is, or the two of a point; nothing for anything else."""
+    """Returns the number of a side, or the two of a point; empty for anything else."""
     value = wording.value(node)
     if isinstance(value, Num):
         return (value,)
@@ -99,7 +103,7 @@ def _numbers(wording: Wording, node: ast.Expression) -> tuple[Num, ...]:
 def _difference(
     wording: Wording, one: Side, relation: str, other: Side, evaluate: Evaluate, tolerance: float
 ) -> str:
-    """What is said of a comparison that is false; empty for one that holds."""
+    """Returns the text for a false comparison; empty for one that holds."""
     pairs = _pairs(one, relation, other)
     if not pairs:
         return ""
@@ -113,7 +117,7 @@ def _difference(
 
 
 def _pairs(one: Side, relation: str, other: Side) -> list[Comparison]:
-    """The numbers that a comparison compares; nothing where they do not go together."""
+    """Returns the comparisons of numbers that a comparison stands for; empty if they do not go together."""
     pairs = []
     for a, b in zip(one[1], other[1], strict=True):
         left, right = spelled_out(a.expression, b.expression, equal=relation == "==")
@@ -126,8 +130,8 @@ def _pairs(one: Side, relation: str, other: Side) -> list[Comparison]:
 
 
 def compared(wording: Wording) -> tuple[Comparison, ...]:
-    """The comparisons of numbers that a statement asks to hold together, constants or not; nothing where it
-    is more than that, or a relation of which there is none.
+    """Returns the comparisons of numbers that a statement asks to hold together, constants or not; empty if
+    it is more than that, or a relation that cannot constrain.
     """
     if any(isinstance(n, ast.Binary) and n.operator == "or" for n in ast.walk(wording.node)):
         return ()
@@ -147,7 +151,7 @@ def _values(numbers: Sequence[Num], evaluate: Evaluate) -> list[float]:
 
 
 def _apart(one: Sequence[float], other: Sequence[float]) -> tuple[str, str]:
-    """Both in digits that tell them apart, where they differ."""
+    """Returns both in the digits that tell them apart, if they differ."""
     for digits in _DIGITS:
         texts = _shown(one, digits), _shown(other, digits)
         if texts[0] != texts[1]:
@@ -161,7 +165,7 @@ def _shown(values: Sequence[float], digits: int) -> str:
 
 
 def _in_numbers(wording: Wording, node: ast.Expression, evaluate: Evaluate) -> str:
-    """A sum or product with numbers in place of names; empty for what is none."""
+    """Returns a sum or product with numbers in place of names; empty for anything else."""
     if not _is_calculated(node):
         return ""
     from aidl_lang.syntax.expression_printer import format_expression
@@ -191,13 +195,13 @@ def _substituted(wording: Wording, node: ast.Expression, evaluate: Evaluate) -> 
 
 
 def _is_of_the_language(wording: Wording, node: ast.Name) -> bool:
-    """Whether a name is one such as `pi`."""
+    """Tells whether a name is built in, as `pi`."""
     symbol = wording.it.program.resolution.uses.get(node)
     return symbol is not None and symbol.kind is SymbolKind.BUILTIN
 
 
 def _leaves(node: ast.Expression) -> Iterator[ast.Expression]:
-    """What a side is calculated of and has a name."""
+    """Yields the named parts of a calculation."""
     match node:
         case ast.Binary(left=left, right=right):
             yield from _leaves(left)
@@ -209,7 +213,7 @@ def _leaves(node: ast.Expression) -> Iterator[ast.Expression]:
 
 
 def _origin(wording: Wording, leaf: ast.Expression) -> Span | None:
-    """Where it is written what a name stands for, or what has a size."""
+    """Returns the place where a name is given its value, or where the thing that has a size is written."""
     if isinstance(leaf, ast.Name):
         symbol = wording.it.program.resolution.uses.get(leaf)
         return symbol.node.span if symbol is not None and symbol.node is not None else None

@@ -1,4 +1,4 @@
-"""Attributes of structures and of geometry: which there are, and what they take."""
+"""Attributes of structures and of geometry: their names, and their arguments."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from aidl_lang.syntax import ast
 
 
 def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attribute], scope: Scope) -> None:
-    """Read what the checker has found to be attributes."""
+    """Reads the attributes that the checker has accepted."""
     for name, values, attribute in _read(it, attributes, Env(scope, s.parent or s, Reach.OWN)):
         if _fits(it, name, values, attribute):
             s.attributes[name] = tuple(values)
@@ -32,7 +32,7 @@ def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attr
 def read_own_attributes(
     it: Interpreter, node: ast.Assign, value: Value, container: Structure | Geometry, scope: Scope
 ) -> None:
-    """Read what is said of geometry alone; what holds for structures only is an error."""
+    """Reads the attributes of a geometry; reports those for structures only."""
     things = list(_geometry_in(value))
     here = container if isinstance(container, Structure) else container.owner
     for name, values, attribute in _read(it, node.attributes, Env(scope, here, Reach.OWN)):
@@ -45,7 +45,7 @@ def read_own_attributes(
 
 
 def _geometry_in(value: Value) -> Iterator[Geometry]:
-    """The geometry that a value is, or is a list of; nothing if there is anything else in it."""
+    """Yields the geometry of a value or a list of values; nothing if there is anything else in it."""
     if isinstance(value, Geometry):
         yield value
     elif (items := members(value)) is not None:
@@ -86,7 +86,7 @@ def _misplaced(
 def _read(
     it: Interpreter, attributes: Iterable[ast.Attribute], env: Env
 ) -> Iterator[tuple[str, list[Value], ast.Attribute]]:
-    """Attributes with the values of their arguments."""
+    """Yields attributes with the values of their arguments."""
     for attribute in attributes:
         name = find(attribute.name.text, dict.fromkeys(ATTRIBUTES))
         if name is None:
@@ -106,7 +106,7 @@ ORIENTATIONS = ("top", "front", "side")
 
 
 def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attribute) -> bool:
-    """Whether an attribute is given what it takes; an orientation is spelled as it is known."""
+    """Tells whether an attribute has fitting arguments, and corrects the spelling of an orientation."""
     if any(isinstance(value, Nothing) for value in values):
         return False
     wanted = ""

@@ -1,4 +1,4 @@
-"""Bodies: what they declare for the whole of themselves, and their statements one by one."""
+"""Bodies: the declarations that hold in the whole of one, and its statements one by one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from aidl_lang.syntax import ast
 
 
 def run_block(it: Interpreter, statements: Sequence[ast.Statement], scope: Scope, here: Structure) -> None:
-    """Run the statements of a body. Callables and constants are visible in the whole of it."""
+    """Runs the statements of a body. Callables and constants are visible in the whole of it."""
     hoist_callables(it, scope, statements)
     hoist_values(scope, statements, here)
     ahead = Ahead(statements, scope, here)
@@ -51,7 +51,7 @@ def hoist_values(scope: Scope, statements: Iterable[ast.Statement], here: Struct
 
 
 def execute(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) -> None:
-    """Do what a statement says; definitions were hoisted and say nothing here."""
+    """Carries out a statement; definitions were hoisted and do nothing here."""
     if (run := it.executors.get(type(node))) is None:
         return
     it.check_time(node)
@@ -62,7 +62,9 @@ def execute(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure)
 
 
 def declared_names(block: ast.Block, *, indexed: bool = False) -> Iterator[str]:
-    """Names that a block gives to geometry and structures, only those with an index if `indexed`."""
+    """Yields the names that a block gives to geometry and structures, only those with an index if
+    `indexed`.
+    """
     for node in block.statements:
         match node:
             case ast.Assign() | ast.Structure(parameters=None):

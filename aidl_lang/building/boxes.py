@@ -48,14 +48,14 @@ class Box:
     here: Structure
 
     def side(self, name: str) -> Expression:
-        """left, right, top or bottom; spelled out at once where no structure is in the box."""
+        """Returns left, right, top or bottom; spelled out at once if no structure is in the box."""
         side = _Side(self, name)
         if any(isinstance(source, Structure) for source in self.sources):
             return ex.lazy(side)
         return extent(side, frozenset())
 
     def field(self, name: str) -> Num | PointVal | None:
-        """One of `FIELDS`."""
+        """Returns one of `FIELDS`; None for another name."""
         match name:
             case "left" | "right" | "top" | "bottom":
                 return length(self.side(name))
@@ -104,7 +104,7 @@ class _Side:
 
 
 def source_unknowns(source: object, here: Structure) -> Iterator[Unknown]:
-    """The unknowns that place a source: its own, and the frames between it and `here`."""
+    """Yields the unknowns that place a source: its own, and the frames between it and `here`."""
     if isinstance(source, PointVal):
         yield from ex.unknowns([source.x.expression, source.y.expression])
     elif isinstance(source, Geometry):
@@ -119,7 +119,7 @@ def source_unknowns(source: object, here: Structure) -> Iterator[Unknown]:
 
 
 def _interior(structure: Structure) -> Iterable[Unknown]:
-    """The unknowns that place what is in a structure, each in the frame that it is in."""
+    """Returns the unknowns that place the contents of a structure, each in its own frame."""
     if structure.interior is not None:
         return structure.interior
     found = dict.fromkeys(
@@ -133,8 +133,8 @@ def _interior(structure: Structure) -> Iterable[Unknown]:
 
 
 def boxes_in(*roots: Expression) -> tuple[frozenset[Structure], frozenset[Unknown] | None]:
-    """The structures of whose boxes expressions speak, and the unknowns that they mention beside these; None
-    for the latter where they speak of no structure's box.
+    """Returns the structures whose boxes some expressions mention, and the unknowns that they mention beside
+    these; None for the latter if they mention no structure's box.
     """
     if not any(root.is_open for root in roots):
         return frozenset(), None
@@ -151,9 +151,9 @@ def boxes_in(*roots: Expression) -> tuple[frozenset[Structure], frozenset[Unknow
 
 
 def spelled_out(*roots: Expression, equal: bool = False) -> tuple[Expression, ...]:
-    """The expressions of one comparison with every side of a box replaced by what it is there. If they are
-    the same sides of an assembly of parts and of one of these, and shall be `equal`, that one is the
-    outermost: it is not left out.
+    """Returns the expressions of one comparison with every side of a box spelled out. If they are the same
+    sides of an assembly of parts and of one of these, and shall be `equal`, that part is the outermost: it is
+    not left out.
     """
     if not any(root.is_open for root in roots):
         return roots
@@ -178,7 +178,7 @@ def spelled_out(*roots: Expression, equal: bool = False) -> tuple[Expression, ..
 
 
 def extent(side: _Side, ignored: frozenset[Structure]) -> Expression:
-    """A side as the extreme of everything in the box; 0 when there is nothing in it."""
+    """Returns a side as the extreme of everything in the box; 0 if there is nothing in it."""
     here, name = side.box.here, side.name
     only = side.box.sources[0] if len(side.box.sources) == 1 else None
     whole = only if isinstance(only, Structure) and only.is_complete else None
@@ -231,19 +231,19 @@ def _structure(
 
 
 def _curve(primitive: Geometry, here: Structure, side: str) -> Iterable[Expression]:
-    """Candidates for the extreme of one curve towards a side."""
+    """Yields candidates for the extreme of one curve towards a side."""
     if primitive.recipe is not None and primitive.is_drawn_later:
         return _made(primitive, primitive.recipe, here, side)
     return curves.reach(primitive, here, side)
 
 
 _AS_WIDE = frozenset({"hull", "union", "shell"})
-"""Outlines whose box is the box of what they are made of."""
+"""Outlines whose box is the box of their sources."""
 
 
 def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iterator[Expression]:
-    """Of an outline made of others: theirs, or theirs moved out by as much as a disc reaches around them; any
-    other has a box only once it is drawn.
+    """Yields, for an outline made of others, their extremes, or these moved out by the radius of a disc
+    around them; any other has a box only once it is drawn.
     """
     grown: Expression | None = None
     match recipe.kind:
@@ -264,7 +264,7 @@ def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iter
 
 
 def box_of(value: object, here: Structure) -> Box | None:
-    """The box of a value; None when it has none."""
+    """Returns the box of a value; None if it has none."""
     if isinstance(value, Box):
         return value
     sources = tuple(_sources(value))

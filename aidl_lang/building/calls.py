@@ -1,4 +1,4 @@
-"""Calls: how the parameters of the definition that is meant are bound, and what running its body gives."""
+"""Calls: the parameters of the chosen definition are bound, and its body is run."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ from aidl_lang.syntax import ast
 
 
 def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
-    """`f(…)` or `a.f(…)`."""
+    """Returns the value of `f(…)` or `a.f(…)`."""
     receiver: Value | None = None
     if node.receiver is not None:
         receiver = evaluate(it, node.receiver, env)
@@ -58,7 +58,7 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
             return NOTHING
     candidates = candidates_of(it, node, env.scope, receiver)
     if not candidates:
-        return NOTHING  # the checker has said so, or what it would be in could not be imported
+        return NOTHING  # reported by the checker, or its file could not be imported
     site = site_of(it, node, candidates)
     around, env = env, _env_of_arguments(site, env)
     given, nodes = _given(it, site, receiver, node, env)
@@ -92,7 +92,9 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
 
 
 def _env_of_arguments(site: Site, env: Env) -> Env:
-    """Where the arguments of a call stand, which may reach further than what is around it, or less far."""
+    """Returns the environment of a call's arguments, which may reach further than what is around it, or less
+    far.
+    """
     if env.reach is Reach.OWN and site.instantiates:
         # References passed to a template are tied by its instantiating structure, which may reach further.
         return Env(env.scope, env.here, Reach.SUBTREE)
@@ -106,7 +108,7 @@ def _env_of_arguments(site: Site, env: Env) -> Env:
 def _given(
     it: Interpreter, site: Site, receiver: Value | None, node: ast.Call, env: Env
 ) -> tuple[list[Value], Sequence[ast.Node]]:
-    """The arguments of a call, what it is a method of among them, and the text each comes from."""
+    """Returns the arguments of a call, its receiver among them, and the text each comes from."""
     given = [evaluate(it, at, env) if word is None else word for at, word in site.written]
     if receiver is None or node.receiver is None or isinstance(receiver, Namespace):
         return given, site.nodes
@@ -116,7 +118,7 @@ def _given(
 def bound(
     it: Interpreter, binding: Binding, values: Sequence[Value], nodes: Sequence[ast.Node], env: Env
 ) -> dict[str, Value] | None:
-    """Parameter → argument, each as the kind of value the parameter asks for."""
+    """Returns parameter → argument, each as the kind of value the parameter asks for; None after an error."""
     result: dict[str, Value] = {}
     signature = binding.signature
     for name, kind, indices in binding.taken:
@@ -138,7 +140,7 @@ def bound(
 
 
 def _is_flag(signature: Signature, name: str) -> bool:
-    """Whether a condition decides how something is made: it has to be known then."""
+    """Tells whether a condition decides how something is made, and so has to be known then."""
     return signature.kind is None or name == "rotatable"
 
 
@@ -177,7 +179,7 @@ _CONVERSIONS: Mapping[type[Type], Callable[..., Value | None]] = {
     BoxType: lambda it, value, kind, node, env: box_of(value, env.here),
     ListType: _as_list,
 }
-"""What makes an argument the kind of value that its parameter asks for; the rest stays as it is."""
+"""Conversions of an argument to the kind of value of its parameter; other kinds stay as they are."""
 
 
 def invoke(
@@ -215,7 +217,7 @@ def invoke(
 
 
 def _constrains(it: Interpreter, node: ast.Call, env: Env) -> bool:
-    """Whether the author asks for something by a call, rather than the library on the way."""
+    """Tells whether the author states a constraint by a call, rather than the library within one."""
     return env.reach is Reach.SUBTREE and it.place(node) is node.span
 
 
@@ -236,7 +238,7 @@ def _body_scope(
 
 
 def default_of(it: Interpreter, parameter: ast.Parameter, kind: Type, env: Env) -> Value:
-    """The default of a parameter that got no argument, in the scope of the definition."""
+    """Returns the default of a parameter that got no argument, in the scope of the definition."""
     if parameter.default is None:
         return NOTHING
     value = evaluate(it, parameter.default, env)
@@ -248,7 +250,7 @@ def default_of(it: Interpreter, parameter: ast.Parameter, kind: Type, env: Env) 
 
 
 def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
-    """The items of a constraint's body as one condition."""
+    """Returns the items of a constraint's body as one condition."""
     scope = env.scope
     hoist_lets(scope, block)
     found: list[Value] = []
@@ -282,7 +284,7 @@ def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
 
 
 def _says_nothing(it: Interpreter, node: ast.Call, only: Value) -> None:
-    """A relation of several things that gets one; a list of one is no mistake, since its length may vary."""
+    """Reports a relation of several things that gets one; not of a list of one, since its length may vary."""
     if members(only) is None:
         message = f"`{node.span.one_line}` says nothing: it relates two things or more"
         hint = f"name what it is related to, as in `{node.callee.text}(a, b)`"
@@ -345,7 +347,9 @@ def _bind_shape(
     geometry: Geometry,
     scope: Scope,
 ) -> None:
-    """Number and point arguments become one unknown each (or what they refer to); the rest is constant."""
+    """Binds number and point arguments to one unknown each (or to what they refer to); the rest is
+    constant.
+    """
     # A point given by itself comes before those in lists: it is where an outline begins.
     order = sorted(given.items(), key=lambda item: not isinstance(item[1], PointVal))
     points = [found for name, value in order for found in _points_in(name, value)]
@@ -384,7 +388,7 @@ def _bind_number(
 
 
 def _points_in(name: str, value: Value) -> Iterator[tuple[str, PointVal]]:
-    """The points of an argument with their paths, those in lists and records too."""
+    """Yields the points of an argument with their paths, those in lists and records too."""
     match value:
         case PointVal():
             yield name, value
@@ -399,8 +403,8 @@ def _points_in(name: str, value: Value) -> Iterator[tuple[str, PointVal]]:
 def _bind_inside(
     it: Interpreter, value: Value, name: str, moved: Mapping[str, PointVal], geometry: Geometry
 ) -> Value:
-    """An argument that is no number: its points where they were placed, and the numbers that stand in
-    records as sizes. Lists of numbers stay constants.
+    """Returns an argument that is no number: its points where they were placed, and the numbers in records as
+    sizes. Lists of numbers stay constants.
     """
     match value:
         case PointVal():

@@ -1,6 +1,6 @@
-"""Values where a kind of value is expected: coercions, and what may be read from where.
+"""Coercions of values to the kind that is expected, and checks of what may be read from where.
 
-Each returns None after reporting what does not fit, unless it says otherwise.
+Each returns None after reporting a value that does not fit, unless it says otherwise.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from aidl_lang.syntax import ast
 
 
 def as_written(value: Value) -> Value:
-    """A value out of reach, read as the numbers it has at the first guesses."""
+    """Returns a value out of reach as the numbers it has at the first guesses."""
     match value:
         case Num():
             return _guessed(value)
@@ -50,7 +50,7 @@ def _guessed(value: Num) -> Num:
 
 
 def may_read(it: Interpreter, owner: Structure, node: ast.Node, env: Env) -> bool:
-    """Whether the unknowns of `owner` are within reach here; reported when they are not."""
+    """Tells whether the unknowns of `owner` are within reach here; reports them if not."""
     if env.reach in (Reach.READ, Reach.ABOVE) or (owner is env.here):
         return True
     if env.reach is Reach.SUBTREE and owner.is_within(env.here):
@@ -69,7 +69,9 @@ def may_read(it: Interpreter, owner: Structure, node: ast.Node, env: Env) -> boo
 
 
 def owners_of(value: Value, here: Structure) -> Iterator[Structure]:
-    """The structures other than `here` whose unknowns a number, a point, or what holds such depends on."""
+    """Yields the structures other than `here` whose unknowns a value (a number, a point, or a holder of such)
+    depends on.
+    """
     match value:
         case Num(expression=e):
             yield from (u.owner for u in ex.unknowns([e]) if u.owner is not here)
@@ -82,13 +84,13 @@ def owners_of(value: Value, here: Structure) -> Iterator[Structure]:
 
 
 def all_within(it: Interpreter, values: Iterable[Value], node: ast.Node, env: Env) -> bool:
-    """Whether the unknowns of all numbers and points are within reach here; reported when they are not."""
+    """Tells whether the unknowns of all numbers and points are within reach here; reports them if not."""
     owners = dict.fromkeys(owner for value in values for owner in owners_of(value, env.here))
     return all(may_read(it, owner, node, env) for owner in owners)
 
 
 def look(it: Interpreter, geometry: Geometry, node: ast.Node, env: Env) -> dict[str, Value]:
-    """What defines a primitive, in the frame of the structure that asks."""
+    """Returns the numbers and points that define a primitive, in the frame of the structure that asks."""
     core = primitives.view(geometry, env.here)
     if may_read(it, geometry.bound_to, node, env):
         return core
@@ -96,7 +98,7 @@ def look(it: Interpreter, geometry: Geometry, node: ast.Node, env: Env) -> dict[
 
 
 def numeric(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num | None:
-    """A value where a number is expected; None after an error, reported here."""
+    """Returns a value as a number; None after an error, which has been reported."""
     if isinstance(value, Num):
         return value
     if isinstance(value, Geometry) and value.type == "line":
@@ -107,7 +109,7 @@ def numeric(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num | No
 
 
 def coordinate(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num | None:
-    """A number as a coordinate; an edge of an axis-aligned shape stands for its own."""
+    """Returns a number as a coordinate; an edge of an axis-aligned shape stands for its own."""
     found = numeric(it, value, node, env)
     if found is None:
         return None
@@ -118,7 +120,7 @@ def coordinate(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num |
 
 
 def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -> Num | None:
-    """The coordinate that an edge parallel to an axis of the holder's frame stands for."""
+    """Returns the coordinate that an edge parallel to an axis of the holder's frame stands for."""
     core = look(it, edge, node, env)
     (x0, y0), (x1, y1) = primitives.xy(core["start"]), primitives.xy(core["end"])
     dx, dy = abs(x1.value - x0.value), abs(y1.value - y0.value)
@@ -139,7 +141,7 @@ def edge_coordinate(it: Interpreter, edge: Geometry, node: ast.Node, env: Env) -
 
 
 def _side_of_box(node: ast.Node) -> Fix | None:
-    """`plate.left` → `plate.bb.left`"""
+    """Returns the fix `plate.left` → `plate.bb.left`; None for other names."""
     if not isinstance(node, ast.Member) or node.name.text not in SIDES:
         return None
     at = node.name.span
@@ -147,7 +149,7 @@ def _side_of_box(node: ast.Node) -> Fix | None:
 
 
 def as_point(it: Interpreter, value: Value, node: ast.Node, env: Env) -> PointVal | None:
-    """A value where a point is expected; None when it is none (nothing is reported)."""
+    """Returns a value as a point; None if it is none (nothing is reported)."""
     match value:
         case PointVal():
             return value
@@ -161,7 +163,7 @@ def as_point(it: Interpreter, value: Value, node: ast.Node, env: Env) -> PointVa
 
 
 def constant(it: Interpreter, value: Num, node: ast.Node, what: str) -> float | None:
-    """The value of a number that has to be known while building; None after an error.
+    """Returns the value of a number that has to be known while building; None after an error.
 
     A number argument that is read so becomes a constant for good.
     """
@@ -177,7 +179,7 @@ def constant(it: Interpreter, value: Num, node: ast.Node, what: str) -> float | 
 
 
 def whole(it: Interpreter, value: Value, node: ast.Node, what: str) -> int | None:
-    """A whole number known while building; None after an error."""
+    """Returns a whole number known while building; None after an error."""
     if isinstance(value, Nothing):
         return None
     if not isinstance(value, Num):

@@ -1,4 +1,4 @@
-"""Conditions: comparing values, joining comparisons, and telling whether a condition holds."""
+"""Conditions: comparing values, joining comparisons, and testing whether a condition holds."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ from aidl_lang.checking.wording import shown
 from aidl_lang.syntax import ast
 
 RELATIONS = ("==", "<=", ">=", "<", ">")
-"""What can constrain; `!=` can only be asserted or tested."""
+"""Relations that can constrain; `!=` can only be asserted or tested."""
 
 EXACT = 1e-9
-"""How far constants may differ, relative to their size, and still count as equal."""
+"""The part of their size by which constants may differ and still count as equal."""
 
 
 def compare(
@@ -47,7 +47,7 @@ def compare(
     left_node: ast.Node,
     right_node: ast.Node,
 ) -> Value:
-    """`left relation right` as a condition, or as a truth where both are constants."""
+    """Returns `left relation right` as a condition, or as a truth if both are constants."""
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
     if isinstance(left, Text | bool) or isinstance(right, Text | bool):
@@ -108,7 +108,9 @@ def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.No
 def _relates(
     relation: str, a: float, b: float, is_angle: bool, tolerance: float, *, strict: bool = False
 ) -> bool:
-    """Whether a relation holds within a tolerance; `strict` keeps `<` and `>` from holding for equals."""
+    """Tells whether a relation holds within a tolerance; `strict` keeps `<` and `>` from holding for
+    equals.
+    """
     difference = a - b
     if is_angle and relation in ("==", "!="):
         difference = (difference + 180.0) % 360.0 - 180.0
@@ -129,7 +131,7 @@ def _relates(
 
 
 def conjunction(it: Interpreter, operator: str, left: Value, right: Value, node: ast.Node) -> Value:
-    """`left and right`, `left or right`; constants that decide nothing vanish."""
+    """Returns `left and right` or `left or right`, without constants that decide nothing."""
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
     for side in (left, right):
@@ -164,7 +166,7 @@ def negation(it: Interpreter, value: Value, node: ast.Node) -> Value:
 
 
 def all_of(parts: Iterable[Value]) -> Value:
-    """The conjunction of conditions that were made elsewhere; NOTHING if one of them failed."""
+    """Returns the conjunction of conditions; NOTHING if one of them failed."""
     found: list[Condition | Comparison | bool] = []
     for part in parts:
         if isinstance(part, Nothing):
@@ -183,7 +185,7 @@ def holds(
     *,
     strict: bool = False,
 ) -> bool:
-    """Whether a condition is true at given values, within a tolerance relative to what is compared; `strict`
+    """Tells whether a condition is true at given values, within a tolerance relative to their size; `strict`
     keeps `<` and `>` from holding for equals.
     """
     if isinstance(condition, bool):
@@ -211,7 +213,7 @@ def placed_by(comparison: Comparison, placed: frozenset[Unknown], parties: Parti
 
 
 def replace_placed(condition: Condition, placed: frozenset[Unknown], parties: Parties = ()) -> Condition:
-    """The same condition, with other unknowns moving first."""
+    """Returns the same condition, with other unknowns moving first."""
     return Condition(
         condition.operator,
         tuple(
@@ -226,7 +228,7 @@ def replace_placed(condition: Condition, placed: frozenset[Unknown], parties: Pa
 
 
 def value_unknowns(value: Value, here: Structure) -> Iterator[Unknown]:
-    """The unknowns that place a value, as seen from a structure."""
+    """Yields the unknowns that place a value, as seen from a structure."""
     match value:
         case Num(expression=e):
             yield from ex.unknowns([e])

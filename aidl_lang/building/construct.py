@@ -1,8 +1,8 @@
 """Geometry and the exactness of its numbers (language reference: numbers, parameters, exactness).
 
 A number becomes an unknown, a constant or an expression by its status and by the place it is given to:
-positions are free first guesses, sizes are kept. Several literal points given to one constructor move as
-one: the first is the position, the differences to it are kept sizes.
+positions are free first guesses, sizes are kept. Several literal points given to one constructor move as one:
+the first is the position, the differences to it are kept sizes.
 """
 
 from __future__ import annotations
@@ -32,12 +32,16 @@ Arguments = Mapping[str, Value]
 
 
 def solvable(it: Interpreter, value: Num, span: Span | None) -> Expression:
-    """What a number is for the solver; 0 for a measure of what is drawn after solving, which is reported."""
+    """Returns a number as the solver sees it; 0 for a measure of what is drawn after solving, which is
+    reported.
+    """
     return ex.ZERO if refuses_measure(it, value, span) else value.expression
 
 
 def refuses_measure(it: Interpreter, value: Num, span: Span | None) -> bool:
-    """Whether a number follows from a measure of what is drawn after solving, which is reported here."""
+    """Reports a number that follows from a measure of what is drawn after solving. Returns whether it
+    does.
+    """
     if not math.isnan(value.value):
         return False  # a measure has no value before
     found = (n.payload for n in ex.nodes([value.expression]) if isinstance(n.payload, Measurement))
@@ -55,7 +59,7 @@ def refuses_measure(it: Interpreter, value: Num, span: Span | None) -> bool:
 
 
 def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: MaybeDimension = LENGTH) -> Num:
-    """A number given as a size: kept if literal, exact if a param is in it, derived from unknowns."""
+    """Returns a number given as a size: kept if literal, exact if a param is in it, derived from unknowns."""
     expression = solvable(it, value, holder.span)
     if dimension in (None, LENGTH) and is_size(name) and expression.is_constant and value.value < 0:
         it.report(
@@ -78,7 +82,9 @@ def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: Ma
 
 
 def turn(it: Interpreter, value: Num, holder: Geometry, name: str, rotatable: bool) -> Num:
-    """An angle that stays exactly 0 until something asks for it: `rotatable`, another value, a constraint."""
+    """Returns an angle that stays exactly 0 until something asks for it: `rotatable`, another value, a
+    constraint.
+    """
     expression = value.expression
     if not expression.is_constant or value.status >= Status.PARAM or (value.value != 0 and not rotatable):
         return size(it, value, holder, name, ANGLE)
@@ -98,10 +104,10 @@ def positions(
     *,
     edges: bool = True,
 ) -> list[PointVal]:
-    """Points given as positions to one constructor; literal ones move as one.
+    """Returns points given as positions to one constructor; literal ones move as one.
 
     From one literal point to the next the way is kept as a length and a direction, so that what turns an edge
-    does not shorten it; where points are no corners (`edges` is false), as differences from the first.
+    does not shorten it; for points that are no corners (`edges` is false), as differences from the first.
     """
     placed: list[PointVal] = []
     anchors: dict[str, tuple[Num, Expression, str]] = {}
@@ -136,7 +142,7 @@ def _beyond(
     name: str,
     owner: Structure,
 ) -> PointVal:
-    """A literal point by its distance and direction from the literal point before it."""
+    """Returns a literal point by its distance and direction from the literal point before it."""
     written, base, since = before
     way, angle = (
         it.unknown(
@@ -148,7 +154,7 @@ def _beyond(
 
 
 def _way(a: PointVal, b: PointVal) -> tuple[Num, Num]:
-    """The distance and the direction from one literal point to another."""
+    """Returns the distance and the direction from one literal point to another."""
     x, y = b.x.value - a.x.value, b.y.value - a.y.value
     return Num(ex.constant(math.hypot(x, y)), LENGTH), Num(ex.constant(math.degrees(math.atan2(y, x))), ANGLE)
 
@@ -162,7 +168,7 @@ def _coordinate(
     name: str,
     owner: Structure,
 ) -> Expression:
-    """One coordinate: exact, a first guess, or a difference from the first guess before it."""
+    """Returns one coordinate: exact, a first guess, or a difference from the first guess before it."""
     if number.status >= Status.FIXED:
         return solvable(it, number, holder.span)
     if axis not in anchors or number.status is Status.GUESS:
@@ -194,7 +200,7 @@ def _point(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 
 def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
-    """A named point: its unknowns are called `p.x` and `p.y`."""
+    """Returns a named point: its unknowns are called `p.x` and `p.y`."""
     x, y = (
         solvable(it, n, g.span)
         if n.status >= Status.FIXED
@@ -205,7 +211,9 @@ def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
 
 
 def _points(it: Interpreter, g: Geometry, a: Arguments, names: Sequence[str]) -> dict[str, Value]:
-    """The named point arguments as positions of one geometry; a missing one is a guess at the origin."""
+    """Returns the named point arguments as positions of one geometry; a missing one is a guess at the
+    origin.
+    """
     found = positions(it, [_written(a, name) for name in names], g, names, g.owner)
     return dict(zip(names, found, strict=True))
 
@@ -274,7 +282,7 @@ def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 
 def _by_angles_if_round(a: Arguments) -> Arguments:
-    """Three literal points of one circle, rounded as numbers are by hand, are the radius of the start and two
+    """Returns three literal points of one circle, rounded as by hand, as the radius of the start and two
     angles: nothing is left to be held equal.
     """
     if not all(name in a and _is_literal(_written(a, name)) for name in ("center", "start", "end")):
@@ -297,7 +305,9 @@ def _arc_by_angles(it: Interpreter, g: Geometry, a: Arguments) -> None:
 
 
 def _arc_by_radius(it: Interpreter, g: Geometry, a: Arguments) -> None:
-    """The centre is an unknown tied by two equations: a formula for it would be singular at half a circle."""
+    """Makes the centre an unknown tied by two equations: a formula for it would be singular at half a
+    circle.
+    """
     g.fields = _points(it, g, a, ("start", "end"))
     g.fields["radius"] = radius = _size(it, g, a, "radius")
     start, end = g.fields["start"], g.fields["end"]
@@ -317,7 +327,7 @@ def _arc_by_radius(it: Interpreter, g: Geometry, a: Arguments) -> None:
 
 
 def hold(it: Interpreter, g: Geometry, equations: Sequence[tuple[Num, Num]]) -> None:
-    """Equations that belong to a geometry itself: constraints named after it."""
+    """Adds the equations that belong to a geometry itself: constraints named after it."""
     assert g.span is not None
     node = ast.Identifier(span=g.span, text=g.type)
     made = [compare_numbers(it, "==", left, right, node) for left, right in equations]
@@ -345,7 +355,7 @@ def _plain(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 @cache
 def _given(kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, NumberType, bool], ...]]:
-    """The points and the numbers among the parameters of a kind that are its fields."""
+    """Returns the points and the numbers among the parameters of a kind that are its fields."""
     (signature,) = SIGNATURES[kind]
     fields = [each for each in signature.parameters if each[0] in PRIMITIVES[kind].types]
     points = tuple(name for name, of, _ in fields if isinstance(of, PointType))
@@ -372,7 +382,7 @@ CONSTRUCTORS = {kind: _OWN.get(kind, _plain) for kind in PRIMITIVES}
 
 
 def construct(it: Interpreter, kind: str, arguments: Arguments, node: ast.Node, env: Env) -> Geometry:
-    """A primitive from arguments that fit one of its constructors."""
+    """Makes a primitive from arguments that fit one of its constructors."""
     it.count_entity(node)
     if kind == "arc" and isinstance(node, ast.Call):
         check_bare_points(it, node, arguments)
@@ -382,7 +392,7 @@ def construct(it: Interpreter, kind: str, arguments: Arguments, node: ast.Node, 
 
 
 def hidden_constraints(it: Interpreter) -> list[Constraint]:
-    """The equations of geometry that became part of the model."""
+    """Returns the equations of geometry that became part of the model."""
     found: list[Constraint] = []
     for g, comparisons in it.hidden:
         if (g.name or g.known_as) and g.span is not None:

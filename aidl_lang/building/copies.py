@@ -64,7 +64,7 @@ _NONE = number(0.0, LENGTH)
 
 
 def copied(it: Interpreter, value: Value, motion: Motion, node: ast.Call, env: Env) -> Value:
-    """The copy of anything that can be copied; NOTHING after an error, reported here."""
+    """Returns the copy of anything that can be copied; NOTHING after an error, reported here."""
     owners = [*(g.bound_to for g in _geometry_in(value)), *(u.owner for u in ex.unknowns(motion.parts))]
     copier = Copier(it, env.here, motion, reach_of(owners, env.here), it.place(node))
     return _copied(it, value, copier, node, env)
@@ -129,8 +129,8 @@ def _geometry_in(value: Value | None) -> Iterator[Geometry]:
 
 
 def centre_of(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Place:
-    """The place a thing turns and grows about: its centre if it has one, a structure's origin, else the
-    middle of its box.
+    """Returns the place a thing turns and grows about: its centre if it has one, a structure's origin, else
+    the middle of its box.
     """
     here = env.here
     match value:
@@ -229,13 +229,13 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _changed(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """`move`, `rotate` and `scale` as expressions."""
+    """Evaluates `move`, `rotate` and `scale` as expressions."""
     motion = motion_for(it, a, lambda: centre_of(it, a["x"], node, env), node)
     return copied(it, a["x"], motion, node, env) if motion is not None else NOTHING
 
 
 def motion_for(it: Interpreter, a: Arguments, centre: Callable[[], Place], node: ast.Call) -> Motion | None:
-    """What `move`, `rotate` or `scale` does, by its arguments; `centre` is where the thing is."""
+    """Returns the motion of `move`, `rotate` or `scale` for its arguments; `centre` is where the thing is."""
     if "by" in a:
         return translation(xy(a["by"]))
     if "dx" in a or "dy" in a:

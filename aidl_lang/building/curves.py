@@ -53,7 +53,7 @@ class Formulas:
 
 
 def field(g: Geometry, name: str, here: Structure) -> Value | None:
-    """A field of a primitive as `here` sees it; None when it has none of that name."""
+    """Returns a field of a primitive as `here` sees it; None when it has none of that name."""
     core = view(g, here)
     if name in core:
         return core[name]
@@ -137,7 +137,7 @@ def _cubic(g: Geometry, here: Structure) -> tuple[Piece]:
 
 
 def _cubic_extreme(controls: Sequence[Expression], positive: bool) -> Expression:
-    """The extreme of a cubic Bézier curve by one coordinate of its control points."""
+    """Returns the extreme of a cubic Bézier curve by one coordinate of its control points."""
     if positive:
         return ex.apply("cubic_max", *controls)
     return ex.apply("neg", ex.apply("cubic_max", *[ex.apply("neg", c) for c in controls]))
@@ -182,7 +182,7 @@ _TOWARDS = {"right": 0.0, "top": 90.0, "left": 180.0, "bottom": 270.0}
 
 
 def _arc_reach(arc: Geometry, here: Structure, side: str) -> Iterator[Expression]:
-    """The quadrant point if the arc passes through it, else the further end."""
+    """Yields the quadrant point if the arc passes through it, else the further end."""
     axis, positive = side in ("top", "bottom"), side in ("right", "top")
     core = view(arc, here)
     first, turn = _turn(arc, here)

@@ -26,7 +26,7 @@ def declare(
     value: Value | VarBinding,
     node: ast.Node,
 ) -> None:
-    """Give a value a name in the structure or shape whose body this is."""
+    """Gives a value a name in the structure or shape whose body this is."""
     target = scope.declaring()
     if name in it.rejected:
         return
@@ -89,7 +89,7 @@ def give_name(
 def adopt(
     value: Value, name: str, indices: tuple[int, ...], container: Geometry | Structure, node: ast.Assign
 ) -> None:
-    """Geometry made without a name gets the one it is assigned to; what has one keeps it."""
+    """Gives nameless geometry the name it is assigned to; geometry with a name keeps it."""
     if isinstance(value, Geometry):
         if value.name is None:
             give_name(value, name, indices, container, node)

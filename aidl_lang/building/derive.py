@@ -26,7 +26,7 @@ _SIDES = frozenset(_OPPOSITE)
 
 @record(frozen=False, eq=False)
 class Copier:
-    """Makes the copies that belong together: what they share in the source they share here.
+    """The copies that belong together: whatever their sources share, they share too.
 
     owner       the structure that gets copied geometry; None while a structure is copied as a whole, whose
                 contents are in the frame of their own copy what they are in that of the source
@@ -90,11 +90,13 @@ class Copier:
         return copy
 
     def _operand(self, source: Geometry) -> Geometry:
-        """What a copied outline is made of; a copied structure does not move what lies outside of it."""
+        """Returns an operand of a copied outline; a copied structure does not move geometry outside of it."""
         return self.geometry(source) if self.owner or source.owner in self.structures else source
 
     def _place(self, source: Geometry, copy: Geometry) -> None:
-        """A part belongs to the copy of what the source is a part of; what stands alone waits for a name."""
+        """Puts a part into the copy of what its source is a part of; a copy that stands alone waits for a
+        name.
+        """
         if isinstance(source.container, Geometry) and source.container in self.made:
             names = source.container.scope
             copy.container = self.made[source.container]
@@ -107,7 +109,7 @@ class Copier:
         for name, binding in names.values.items():
             new = self._renamed(name, names)
             if name == "angle" and self._swaps_sides and self._is_boxed(names) and isinstance(binding, Num):
-                # With left and right exchanged, the direction from left to right is what it was.
+                # With left and right exchanged, the direction from left to right stays.
                 turned = self._number(name, binding, source.owner)
                 scope.values[new] = replace(turned, expression=opposite(turned.expression))
             elif isinstance(binding, Geometry | Array | ListVal | RecordVal | PointVal | Num):
@@ -123,11 +125,11 @@ class Copier:
 
     @property
     def _swaps_sides(self) -> bool:
-        """Whether left becomes right; otherwise a reflection exchanges top and bottom."""
+        """True if left becomes right; otherwise a reflection exchanges top and bottom."""
         return self.owner is not None and self.motion.mirrored and self.motion.cos.value > 1e-9
 
     def _renamed(self, name: str, names: Scope) -> str:
-        """The name of a part after a reflection: what is called left is on the left again."""
+        """Returns the name of a part after a reflection: the part called left is on the left again."""
         if self.owner is None or not self.motion.mirrored:
             return name
         sides = ("left", "right") if self._swaps_sides else ("top", "bottom")
@@ -143,7 +145,9 @@ class Copier:
     # --- Values --------------------------------------------------------------------------------
 
     def value(self, name: str, value: Value, owner: Structure) -> Value:
-        """What a value of the source is in the copy. `name`: angles that are directions turn."""
+        """Returns the counterpart of a value of the source in the copy. `name`: angles that are directions
+        turn.
+        """
         match value:
             case Geometry():
                 return self._operand(value)
@@ -190,7 +194,7 @@ class Copier:
     # --- Finishes ------------------------------------------------------------------------------
 
     def finish(self) -> None:
-        """Give the copies the fillets and chamfers of what they copy, when all of these are known."""
+        """Gives the copies the fillets and chamfers of their sources, when all of these are known."""
         for source in dict.fromkeys([*self.structures, *(g.owner for g in self.made)]):
             for finish in tuple(source.finishes):
                 of = tuple(self.made[g] for g in finish.of if g in self.made)
@@ -206,8 +210,8 @@ class Copier:
     # --- Structures ----------------------------------------------------------------------------
 
     def structure(self, source: Structure, parent: Structure, name: str, frame: Frame) -> Structure:
-        """The copy of a structure with all it holds, its constraints aside: they are about the unknowns,
-        which are the source's.
+        """Returns the copy of a structure with all it holds except its constraints: they are about the
+        unknowns, which are the source's.
         """
         self.it.count_entity(self.span)
         copy = Structure(source.kind, name, parent, self.span or source.span, frame)
@@ -230,7 +234,7 @@ class Copier:
         return Frame(x, y, frame.rotation, frame.mirrored)
 
     def _members(self, source: Structure, copy: Structure) -> None:
-        from aidl_lang.building.structures import own_names  # which instantiate what is copied
+        from aidl_lang.building.structures import own_names  # they instantiate what is copied
 
         names = source.scope
         assert isinstance(names, Scope)
@@ -243,7 +247,9 @@ class Copier:
         copy.geometry = {name: self.value(name, v, source) for name, v in source.geometry.items()}
 
     def _binding(self, name: str, binding: Binding, source: Structure, scope: Scope) -> Binding:
-        """A `let` reads the members of the copy; what is no geometry is the source's own."""
+        """Returns a name's binding in the copy: a `let` reads the members of the copy; values that are no
+        geometry are the source's own.
+        """
         if isinstance(binding, LetBinding):
             return LetBinding(binding.node, scope)
         if isinstance(binding, Geometry | Structure | Array | ListVal | RecordVal | PointVal):
@@ -252,7 +258,7 @@ class Copier:
 
 
 def _around(scope: Scope | None, source: Structure, copy: Structure) -> Scope:
-    """What the body of the source sees around it, with its own name for the copy."""
+    """Returns the scope around the source's body, with the source's own name for the copy."""
     around = Scope(scope.parent if scope else None)
     if scope is not None:
         around.callables, around.aliases = scope.callables, scope.aliases

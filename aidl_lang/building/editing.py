@@ -28,12 +28,12 @@ from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 
 _CLOSE = 1e-9
-"""How far two numbers may differ, relative to the size of the shape, and count as one."""
+"""The part of the size of the shape by which two numbers may differ and count as one."""
 
 
 @record()
 class Placed:
-    """Where `at` and `rotated` put a geometry, and how exactly."""
+    """The place that `at` and `rotated` give a geometry, and how exact it is."""
 
     at: PointVal
     turn: Num | None
@@ -43,7 +43,7 @@ class Placed:
         return turned(self.turn.expression if self.turn is not None else ex.ZERO, to=xy(self.at))
 
     def point(self, p: PointVal) -> PointVal:
-        """A point as exact as what places it."""
+        """Returns a point as exact as its placement."""
         return PointVal(self._as_exact(p.x, self.at.x), self._as_exact(p.y, self.at.y))
 
     def direction(self, angle: Num) -> Num:
@@ -66,7 +66,7 @@ def edited(
     env: Env,
     placed: Placed | None = None,
 ) -> Value:
-    """What an assignment makes, where `at` puts it and with the edits below it applied."""
+    """Returns the value of an assignment, placed by `at` and with the edits below it applied."""
     cause = edits[0].call if edits else node.placement
     if cause is None or (not edits and placed is None):
         return value
@@ -99,8 +99,8 @@ def _edited_point(
 
 @record(frozen=False)
 class _Editing:
-    """The making of one geometry that is placed or edited: `first` is what the program makes without that,
-    `cause` what asks for it.
+    """The making of one geometry that is placed or edited: `first` is its value without that, `cause` the
+    node that asks for it.
     """
 
     it: Interpreter
@@ -131,7 +131,7 @@ class _Editing:
         return self._as_whole(self.first, replace(motion, about=centre, to=to))
 
     def _as_whole(self, made: Geometry, motion: Motion) -> Geometry:
-        """A shape that its arguments cannot turn: everything in it turns."""
+        """Turns everything in a shape that its arguments cannot turn."""
         made.known_as = None
         if (
             self.placed is not None
@@ -141,11 +141,13 @@ class _Editing:
             turn = self.it.unknown(motion.turn.value, made, "rotation", owner=made.owner, dimension=ANGLE)
             motion = replace(motion, turn=turn, cos=ex.cos(turn), sin=ex.sin(turn))
         turned = Copier(self.it, self.env.here, motion, span=made.span).geometry(made)
-        turned.source = None  # it stands in the place of what was written, and is no copy to the author
+        turned.source = None  # to the author it is what was written, and no copy
         return turned
 
     def _by_arguments(self, motion: Motion) -> Geometry | None:
-        """The same call with its arguments moved; None when that does not move the shape."""
+        """Returns the result of the same call with its arguments moved; None if that does not move the
+        shape.
+        """
         it = self.it
         calls = [c for c in (self.node.value, *_branches(self.node.value)) if isinstance(c, ast.Call)]
         before, hidden, said = dict(it.edits), len(it.hidden), len(it.diagnostics)
@@ -196,7 +198,7 @@ def _branches(node: ast.Expression) -> tuple[ast.Expression, ...]:
 
 
 def _defaults(binding: Binding) -> Iterator[tuple[str, Value]]:
-    """Positions and directions that are left out, by what stands for them."""
+    """Yields the omitted positions and directions of a call with their defaults."""
     definition = binding.signature.node
     if definition is None:
         for name, kind, optional in binding.signature.parameters:
@@ -218,7 +220,7 @@ def _at(x: float, y: float) -> PointVal:
 
 
 def _are_alike(a: Geometry, b: Geometry, env: Env) -> bool:
-    """Whether two geometries draw the same curves as written."""
+    """Tells whether two geometries draw the same curves as written."""
     one, other = list(a.primitives()) or [a], list(b.primitives()) or [b]
     return len(one) == len(other) and all(map(_is_same, one, other))
 

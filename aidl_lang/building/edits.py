@@ -1,7 +1,7 @@
-"""`move`, `rotate` and `scale` as statements: they change what was written of a thing made above them.
+"""`move`, `rotate` and `scale` as statements: they change a thing made above them.
 
-They are looked for when the thing is made, further down in its body, and applied to what it is made with:
-first guesses and sizes as written change, and how exact they are does not.
+They are looked for when the thing is made, further down in its body, and applied to its arguments: first
+guesses and sizes as written change, their exactness does not.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ T = TypeVar("T")
 
 @record()
 class Edit:
-    """One edit, the names it sees, and the indices of what it is about."""
+    """One edit, the names it sees, and the indices of the thing it changes."""
 
     call: ast.Call
     scope: Scope
@@ -62,7 +62,7 @@ class Edit:
 
 
 def is_edit(it: Interpreter, node: ast.Node, scope: Scope) -> bool:
-    """Whether a statement's expression is an edit, and not a definition of the program of that name."""
+    """Tells whether a statement's expression is an edit, and not a definition of the program of that name."""
     if not isinstance(node, ast.Call) or _target(node) is None:
         return False
     candidates = scope.candidates(it.spelled(node.callee))
@@ -70,7 +70,7 @@ def is_edit(it: Interpreter, node: ast.Node, scope: Scope) -> bool:
 
 
 def _target(call: ast.Call) -> ast.Expression | None:
-    """What a call is about: `a` in `move(a, …)` and in `a.move(…)`."""
+    """Returns the target of an edit call: `a` in `move(a, …)` and in `a.move(…)`."""
     if call.receiver is not None:
         return call.receiver
     named = (a.value for a in call.arguments if a.name is None or fold(a.name.text) == "x")
@@ -78,7 +78,7 @@ def _target(call: ast.Call) -> ast.Expression | None:
 
 
 def _path(it: Interpreter, node: ast.Expression | None) -> tuple[str, tuple[ast.Expression, ...]] | None:
-    """Name and indices of `a[i][j]`."""
+    """Returns name and indices of `a[i][j]`; None for other expressions."""
     indices: list[ast.Expression] = []
     while isinstance(node, ast.Index):
         indices.insert(0, node.index)
@@ -87,7 +87,9 @@ def _path(it: Interpreter, node: ast.Expression | None) -> tuple[str, tuple[ast.
 
 
 def edits_on(it: Interpreter, name: str, indices: tuple[int, ...], scope: Scope) -> list[Edit]:
-    """The edits of a thing that is being made, in text order: those below it in the bodies around it."""
+    """Returns the edits of a thing that is being made, in text order: those below it in the bodies
+    around it.
+    """
     found: list[Edit] = []
     for ahead in reversed(it.ahead):
         if ahead.scope.declaring() is not scope.declaring():
@@ -98,7 +100,7 @@ def edits_on(it: Interpreter, name: str, indices: tuple[int, ...], scope: Scope)
 
 
 def _edited_names(it: Interpreter, statements: Sequence[ast.Statement]) -> frozenset[str]:
-    """What calls that stand as statements of a body, its loops and branches are about."""
+    """Returns the targets of calls that are statements of a body, its loops and branches."""
     if (known := it.edited_names.get(id(statements))) is not None:
         return known
     found: set[str] = set()
@@ -155,7 +157,7 @@ def _is_on(it: Interpreter, call: ast.Call, env: Env, wanted: tuple[str, tuple[i
 
 
 def _tried(it: Interpreter, action: Callable[[], T]) -> T | None:
-    """The result of looking ahead; None if it fails, which is reported when its line is reached."""
+    """Returns the result of looking ahead; None if it fails, which is reported when its line is reached."""
     before = len(it.diagnostics)
     result = action()
     if len(it.diagnostics) > before:
@@ -175,7 +177,9 @@ def motion_of(
     here: Structure,
     placed: Motion = STILL,
 ) -> Motion:
-    """All edits together, as one motion after that of `at`; one that fails is told and changes nothing."""
+    """Returns all edits together, as one motion after that of `at`; one that fails is reported and changes
+    nothing.
+    """
     motion = placed
     for edit in edits:
         place = motion.place(*centre)
@@ -227,7 +231,9 @@ def _mentions(nodes: Sequence[ast.Expression], target: ast.Node | None, name: st
 
 
 def _seeing(it: Interpreter, edit: Edit, thing: Value) -> Scope:
-    """What the arguments of an edit see: the thing by its name, too, as the edits before have left it."""
+    """Returns the scope of an edit's arguments: the thing's name means it as the edits before have left
+    it.
+    """
     path = _path(it, _target(edit.call))
     assert path is not None
     scope = Scope(edit.scope, edit.scope.container, turn=True, labels=edit.scope.labels)
@@ -254,7 +260,7 @@ def follows(it: Interpreter, cause: ast.Node, name: str, source: str) -> None:
 
 
 def _asked(cause: ast.Node, name: str) -> tuple[str, str]:
-    """The word of an edit or a placement, and a copy of what it is about that is moved so."""
+    """Returns the word of an edit or a placement, and the text of a copy of its target that is moved so."""
     if isinstance(cause, ast.Call):
         return cause.callee.text, cause.span.one_line
     assert isinstance(cause, ast.Placement)
@@ -265,7 +271,7 @@ def _asked(cause: ast.Node, name: str) -> tuple[str, str]:
 
 
 def refuse(it: Interpreter, cause: ast.Node, name: str, value: Value) -> None:
-    """An edit of what has nothing of its own to change."""
+    """Reports an edit of a thing with nothing of its own to change."""
     word, other = _asked(cause, name)
     source: Geometry | Structure | Instantiation | None = None
     if isinstance(value, Structure):
@@ -294,7 +300,7 @@ def refuse(it: Interpreter, cause: ast.Node, name: str, value: Value) -> None:
 
 
 def referred(value: PointVal | Num) -> str | None:
-    """What a number or a point refers to; None where it was written in numbers."""
+    """Returns what a number or a point refers to; None if it was written in numbers."""
     numbers = (value.x, value.y) if isinstance(value, PointVal) else (value,)
     found = next(ex.unknowns([n.expression for n in numbers]), None)
     if found is None:
@@ -309,7 +315,7 @@ def referred(value: PointVal | Num) -> str | None:
 def frame_edited(
     it: Interpreter, edits: Sequence[Edit], s: Structure, at: PointVal, turn: Num | None
 ) -> tuple[PointVal, Num | None]:
-    """Where a structure is placed, with the edits below it applied."""
+    """Returns the place of a structure, with the edits below it applied."""
     assert s.parent is not None
     motion = motion_of(it, edits, s, (at.x.expression, at.y.expression), s.parent)
     if motion.scale.value != 1.0:
@@ -335,7 +341,7 @@ def frame_edited(
 
 
 def check_edit(it: Interpreter, call: ast.Call, env: Env) -> None:
-    """An edit that nothing was made with is an error."""
+    """Reports an edit that nothing was made with."""
     if (call, env.scope.labels) in it.edited or call in it.watched or call in it.rejected:
         return
     target = _target(call)

@@ -1,4 +1,4 @@
-"""Expressions of the language → values."""
+"""The evaluation of expressions of the language to values."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from aidl_lang.syntax import ast
 
 
 def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
-    """The value of an expression; NOTHING after an error, which has been reported."""
+    """Returns the value of an expression; NOTHING after an error, which has been reported."""
     if node in it.rejected:
         return NOTHING
     value = _EVALUATE[type(node)](it, node, env)
@@ -52,7 +52,7 @@ def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
 
 
 _UNBOUNDED = frozenset({ListVal, RecordVal, Text})
-"""Values that can be made as large as one likes by joining them with themselves."""
+"""Values that grow without limit when they are joined with themselves."""
 
 
 # --- Literals ------------------------------------------------------------------------------------
@@ -92,7 +92,7 @@ def _comprehension(it: Interpreter, node: ast.Comprehension, env: Env) -> Value:
 
 
 def iterate(it: Interpreter, node: ast.Expression, env: Env) -> list[Value] | None:
-    """What a `for` runs through; None after an error."""
+    """Returns the values that a `for` runs through; None after an error."""
     value = evaluate(it, node, env)
     items = lists.items_of(it, value, node)
     if items is None and isinstance(value, RangeVal):
@@ -106,7 +106,7 @@ def iterate(it: Interpreter, node: ast.Expression, env: Env) -> list[Value] | No
 def turn_scope(
     it: Interpreter, scope: Scope, variables: tuple[ast.Identifier, ...], item: Value, node: ast.Node
 ) -> Scope:
-    """The scope of one turn of a loop with its variables bound."""
+    """Returns the scope of one turn of a loop with its variables bound."""
     inner = Scope(scope, scope.container, turn=True, labels=scope.labels)
     items: list[Value] = [item]
     if len(variables) > 1:
@@ -125,7 +125,7 @@ def turn_scope(
 
 
 def truth(it: Interpreter, value: Value, node: ast.Node) -> bool:
-    """A condition that decides what is built; False after an error."""
+    """Returns the truth of a condition that decides what is built; False after an error."""
     if isinstance(value, bool):
         return value
     if isinstance(value, Condition):
@@ -155,7 +155,7 @@ def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
         return Text(node.text)
     if node in it.program.resolution.uses or node.span.source in it.library_sources:
         it.report("E0201", f"there is no `{node.text}` here yet", node, label="made further on")
-    return NOTHING  # else the checker has said so, or what it would be in could not be imported
+    return NOTHING  # else reported by the checker, or its file could not be imported
 
 
 def _member(it: Interpreter, node: ast.Member, env: Env) -> Value:
@@ -214,7 +214,7 @@ def _negative(value: Num) -> Num:
 def _binary(it: Interpreter, node: ast.Binary, env: Env) -> Value:
     left = evaluate(it, node.left, env)
     if node.operator in ("and", "or"):
-        # A constant that decides ends it: what guards an expression may make it meaningless.
+        # A constant that decides ends it: a guard may keep an expression from being evaluated.
         if left is (node.operator == "or"):
             return left
         return conjunction(it, node.operator, left, evaluate(it, node.right, env), node)
@@ -234,7 +234,7 @@ def _binary(it: Interpreter, node: ast.Binary, env: Env) -> Value:
 
 
 def _vector(it: Interpreter, node: ast.Binary, left: Value, right: Value, env: Env) -> Value:
-    """Points as vectors: sum, difference, and product or quotient with a number."""
+    """Evaluates points as vectors: sum, difference, and product or quotient with a number."""
     op = node.operator
     if isinstance(left, PointVal) and isinstance(right, PointVal) and op in "+-":
         x, y = arithmetic(it, op, left.x, right.x, node), arithmetic(it, op, left.y, right.y, node)
@@ -265,7 +265,7 @@ _OPERATION: dict[str, Callable[[ex.Expression, ex.Expression], ex.Expression]] =
 
 
 def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num | Nothing:
-    """Arithmetic on numbers, dimensions included; of two statuses the stronger counts."""
+    """Evaluates arithmetic on numbers, dimensions included; of two statuses the stronger counts."""
     status = a.status if a.status >= b.status else b.status
     try:
         if op in "+-" and a.dimension is b.dimension:
@@ -297,7 +297,7 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
 
 
 def _without_value(it: Interpreter, op: str, a: ex.Expression, b: ex.Expression, node: ast.Node) -> Nothing:
-    """Says of constants why nothing comes of them."""
+    """Reports why an operation on constants has no value."""
     if op == "^" and a.value < 0 and not b.value.is_integer():
         text = node.span.one_line
         it.report("E0504", f"`{text}` has no value: it takes the root of a negative number", node)

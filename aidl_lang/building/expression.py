@@ -1,4 +1,4 @@
-"""Expressions over unknowns: what a program's arithmetic becomes once a solver has to find the numbers.
+"""Expressions over unknowns: a program's arithmetic on numbers that a solver has to find.
 
 An expression is an immutable node of a shared graph. Each carries the value it has at the first guesses, so
 that branches and readings can be chosen by what was written. Arithmetic over constants is folded, hence an
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 DEGREE = math.pi / 180.0
 
 LARGEST = 1e30
-"""No number of a program is larger: squares and cubes of such numbers, and their sums, are still finite."""
+"""The largest number of a program: squares and cubes of such numbers, and their sums, are still finite."""
 
 
 def is_number(value: float) -> bool:
-    """Whether a program may work with a value: not with NaN, infinity, or what lies beyond LARGEST."""
+    """Tells whether a program may work with a value: not with NaN, infinity, or numbers beyond LARGEST."""
     return abs(value) <= LARGEST
 
 
@@ -75,16 +75,16 @@ class Unknown:
 
     @property
     def is_size(self) -> bool:
-        """Whether half of it is something else: not for an angle, nor a coordinate of the way to a point."""
+        """True if half of it is another size: not for an angle, nor a coordinate of the way to a point."""
         is_offset = bool(self.since) and self.field.endswith((".dx", ".dy"))
         return not self.angular and not (is_offset and "_to." not in self.field)
 
     @property
     def told(self) -> str:
-        """What it is, for people: not all that is unknown has a name in the program."""
+        """Its description for people, as not every unknown has a name in the program."""
         if self.since:
             target, _, measure = self.path.rpartition(".")
-            if target.endswith("_to"):  # how the library calls the point where a size ends
+            if target.endswith("_to"):  # the library's name for the point where a size ends
                 return f"`{target.removesuffix('_to')}`"
             return f"the {_WAYS[measure]} from `{self.holder.path}.{self.since}` to `{target}`"
         if self.holder.is_nameless:
@@ -93,7 +93,7 @@ class Unknown:
 
 
 def quoted(path: str) -> str:
-    """A path, for people: no program can name what is nameless inside an outline made of others."""
+    """Returns a path for people: no program can name the nameless parts of an outline made of others."""
     outline, is_source, rest = path.partition(".source[")
     if not is_source:
         return f"`{path}`"
@@ -110,16 +110,16 @@ class Lazy(Protocol):
 
     @property
     def spelled_out(self) -> Expression:
-        """What it is where nothing is left out of it."""
+        """The expression with nothing left out of it."""
         ...
 
     def unknowns(self) -> Iterable[Unknown]: ...
 
 
 class Expression:
-    """One node. `payload` is an `Unknown`, a `Lazy`, or a measurement for the ops that need one, and of a
-    constant that stands in the text as a number, where; `is_open` tells that a lazy or a measurement is in
-    it, so that no graph is searched for what few have.
+    """A node of an expression graph. `payload` is an `Unknown`, a `Lazy`, or a measurement for the ops that
+    need one, and for a constant written as a number in the text, its place; `is_open` marks a graph with a
+    lazy or a measurement in it, so that no other is searched for them.
     """
 
     __slots__ = ("args", "is_open", "op", "payload", "value")
@@ -152,7 +152,7 @@ def constant(value: float) -> Expression:
 
 
 def literal(value: float, written: object) -> Expression:
-    """A constant that is `written` as a number in the text; what is computed from it no longer is."""
+    """Returns a constant that is `written` as a number in the text; results computed from it are not."""
     return Expression("constant", (), value, payload=written)
 
 
@@ -169,12 +169,12 @@ def lazy(source: Lazy) -> Expression:
 
 
 def measure(source: object) -> Expression:
-    """What only the finished drawing can tell; it has no value before."""
+    """Returns a number that only the finished drawing has; it has no value before."""
     return Expression("measure", (), math.nan, is_open=True, payload=source)
 
 
 def _safe(function: Callable[..., float]) -> Callable[..., float]:
-    """Arithmetic that answers nan where a number does not exist, as the solver's does."""
+    """Wraps arithmetic to return nan for a number that does not exist, as the solver's does."""
 
     def evaluate(*args: float) -> float:
         try:
@@ -187,7 +187,7 @@ def _safe(function: Callable[..., float]) -> Callable[..., float]:
 
 
 def _cubic_max(p0: float, p1: float, p2: float, p3: float) -> float:
-    """The largest value of a cubic in Bernstein form over 0 <= t <= 1."""
+    """Returns the largest value of a cubic in Bernstein form over 0 <= t <= 1."""
     a, b, c = -p0 + 3 * p1 - 3 * p2 + p3, 2 * (p0 - 2 * p1 + p2), p1 - p0
     roots: list[float] = []
     if abs(a) > 1e-12 * (abs(b) + abs(c) + 1e-300):
@@ -233,7 +233,7 @@ EVALUATE: dict[str, Callable[..., float]] = {
 
 
 def apply(op: str, *args: Expression) -> Expression:
-    """A node, folded where all arguments are constants or where it changes nothing."""
+    """Returns a node, folded if all arguments are constants or if it changes nothing."""
     if (folded := _FOLDED.get(op)) is not None:
         return folded(*args)
     value = EVALUATE[op](*[a.value for a in args])
@@ -288,7 +288,7 @@ def div(a: Expression, b: Expression) -> Expression:
 
 
 _FOLDED: dict[str, Callable[..., Expression]] = {"add": add, "sub": sub, "mul": mul, "div": div}
-"""The operations that most nodes are made of, each with its own folding."""
+"""The operations of most nodes, each with its own folding."""
 
 
 def half(a: Expression) -> Expression:
@@ -308,12 +308,12 @@ def cos(degrees: Expression) -> Expression:
 
 
 def atan2(y: Expression, x: Expression) -> Expression:
-    """The direction of (x, y) in degrees."""
+    """Returns the direction of (x, y) in degrees."""
     return mul(apply("atan2", y, x), constant(1.0 / DEGREE))
 
 
 def exact_turn(degrees: float) -> tuple[float, float]:
-    """Cosine and sine, exact at multiples of a right angle."""
+    """Returns cosine and sine, exact at multiples of a right angle."""
     quarter = degrees / 90.0
     if not math.isfinite(quarter):
         return math.nan, math.nan
@@ -323,8 +323,8 @@ def exact_turn(degrees: float) -> tuple[float, float]:
 
 
 def nodes(roots: Iterable[Expression], *, only_open: bool = False) -> Iterator[Expression]:
-    """Every node below the roots once, arguments before those that use them; or only the open ones, which
-    form the top of each graph.
+    """Yields every node below the roots once, arguments before those that use them; or only the open ones,
+    which form the top of each graph.
     """
     seen: set[Expression] = set()
     for root in roots:
@@ -343,7 +343,7 @@ def nodes(roots: Iterable[Expression], *, only_open: bool = False) -> Iterator[E
 
 
 def unknowns(roots: Iterable[Expression]) -> Iterator[Unknown]:
-    """The unknowns that the roots depend on, in the order of `nodes`."""
+    """Yields the unknowns that the roots depend on, in the order of `nodes`."""
     seen: set[Expression] = set()
     for root in roots:
         stack = [root] if root.op != "constant" else []
@@ -362,9 +362,9 @@ def unknowns(roots: Iterable[Expression]) -> Iterator[Unknown]:
 
 @record(frozen=False)
 class Evaluator:
-    """Evaluates expressions at given values of the unknowns, each node once.
+    """An evaluator of expressions at given values of the unknowns, each node once.
 
-    `measure` answers nodes that only the finished drawing can (areas, clearances).
+    `measure` evaluates nodes that only the finished drawing can (areas, clearances).
     """
 
     values: Mapping[Unknown, float]

@@ -1,4 +1,4 @@
-"""Text → Program → Model: the stages before solving, with all that can be said of a program there."""
+"""The stages before solving, text → Program → Model, with all diagnostics that they can give."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class Settings:
     """Limits for programs that are not trusted, the solver's settings, the subset of the language, and
     whether it is an error that something gave way unasked.
 
-    drawing  seconds of the processor's time for what comes after solving, and for each thing that is done
-             with the drawing: writing a file, measuring, comparing
+    drawing  seconds of the processor's time for the stages after solving, and for each use of the drawing:
+             writing a file, measuring, comparing
     """
 
     text: parser.Limits = parser.DEFAULT_LIMITS
@@ -45,7 +45,7 @@ Front: TypeAlias = tuple[Program, list[Diagnostic]]
 
 
 def read(source: SourceFile, world: World | None, settings: Settings, watch: Stopwatch) -> Front:
-    """Text → Program: parsed, resolved and type-checked."""
+    """Reads a text into a Program: parsed, resolved and type-checked."""
     with watch("parse"):
         parsed = parser.parse(source, settings.text)
     with watch("library"):
@@ -55,7 +55,7 @@ def read(source: SourceFile, world: World | None, settings: Settings, watch: Sto
     with watch("typecheck"):
         program = typecheck(resolution, settings.variant)
     found = program.diagnostics
-    if has_errors(parsed.diagnostics):  # what was left out may have used them
+    if has_errors(parsed.diagnostics):  # the parts left out may have used them
         found = tuple(d for d in found if d.code != _UNUSED)
     return program, [*parsed.diagnostics, *found]
 
@@ -70,9 +70,9 @@ def build(
     turned: Mapping[int, int] | None = None,
     states_constants: bool = False,
 ) -> tuple[Interpretation, list[Diagnostic]]:
-    """Text → Model, with every diagnostic that does not need solving."""
+    """Builds the Model of a text. Returns it with every diagnostic that does not need solving."""
     program, found = checked or read(source, world, settings, watch)
-    if is_too_many(found):  # what would be built is of no use, and nothing of it would be told
+    if is_too_many(found):  # nothing of the model would be used or reported
         return nothing_built(), within_limit(ordered(adapted(found, settings.variant)))
     static = list(found)
     with watch("interpret"):

@@ -204,7 +204,7 @@ def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _choice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """A word, checked to be one of those that are allowed."""
+    """Returns a word, checked to be one of those that are allowed."""
     word = a["word"]
     words = [w.value for w in members(a["words"]) or () if isinstance(w, Text)]
     assert isinstance(word, Text)
@@ -225,7 +225,7 @@ _SAME_WORD = {"middle": "center", "centre": "center", "horizontal": "x", "vertic
 
 
 def _mark(status: Status) -> Function:
-    """`fixed(x)` and `guess(x)`: the value with another status, points and lists by member."""
+    """Makes `fixed(x)` or `guess(x)`: the value with another status, points and lists by member."""
 
     def mark(value: Value) -> Value:
         match value:
@@ -261,8 +261,8 @@ def _written(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _nearest(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """The candidate that is nearest to a value as written, or one further off where that is asked for; the
-    choice is part of the report.
+    """Returns the candidate nearest to a value as written, or on request one further off; the choice is part
+    of the report.
     """
     value = _num(it, a, "value", node, env)
     candidates = _numbers(it, a, "candidates", node, env)
@@ -287,7 +287,7 @@ def _nearest(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _where(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """One of two numbers by the sign of a third, which the solver may decide."""
+    """Returns one of two numbers by the sign of a third, which the solver may decide."""
     test, yes, no = (_num(it, a, name, node, env) for name in ("value", "positive", "negative"))
     if test is None or yes is None or no is None:
         return NOTHING
@@ -299,7 +299,9 @@ def _where(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _shown(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """A measure that tells a solver how to get out of an overlap, and a reader that there is no room."""
+    """Returns a measure that is negative in an overlap, for the solver to get out of it; for a reader, 0:
+    there is no room.
+    """
     value = _num(it, a, "value", node, env)
     if value is None or env.reach is not Reach.READ:
         return value if value is not None else NOTHING

@@ -109,7 +109,7 @@ _BOUNDS = {"<=": "at_most", "<": "at_most", ">=": "at_least", ">": "at_least"}
 
 
 def _turn(env: Env) -> str:
-    """The turn of the loops around, for messages."""
+    """Returns the turn of the loops around, for messages."""
     return f" [{', '.join(env.scope.labels)}]" if env.scope.labels else ""
 
 
@@ -149,7 +149,7 @@ def _state_constants(it: Interpreter, node: ast.Expression, env: Env, read: Read
 
 
 def _library_shape(it: Interpreter, node: ast.Expression, env: Env) -> Geometry | None:
-    """The shape of the library that holds a condition for itself."""
+    """Returns the shape of the library that holds a condition for itself."""
     shape = env.scope.declaring().container
     return shape if isinstance(shape, Geometry) and node.span.source in it.library_sources else None
 
@@ -211,7 +211,7 @@ def _impose_condition(
 
 
 def _is_angle(node: ast.Node) -> bool:
-    """Whether a part of a statement asks for the direction of something."""
+    """Tells whether a part of a statement asks for the direction of something."""
     match node:
         case ast.Member(name=name) | ast.Call(callee=name):
             return fold(name.text) == "angle"
@@ -227,7 +227,7 @@ def _following(it: Interpreter, comparisons: list[Comparison], here: Structure) 
 
 
 def _boxes_of(g: Geometry) -> set[Structure]:
-    """The structures whose boxes a geometry is in."""
+    """Returns the structures whose boxes a geometry is in."""
     around: set[Structure] = set()
     structure = None if g.construction else g.owner
     while structure is not None:
@@ -331,7 +331,7 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
 
 
 def _named(it: Interpreter, node: ast.Call) -> str:
-    """The name that is called, an alias being none of its own."""
+    """Returns the name that is called, an alias being none of its own."""
     return it.program.resolution.canonical.get(node.callee, node.callee.text)
 
 

@@ -20,7 +20,7 @@ Arguments = Mapping[str, Value]
 
 
 def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
-    """The characters of a text in units of its height; none after an error, reported here."""
+    """Returns the characters of a text in units of its height; none after an error, reported here."""
     node = it.call_sites[-1]
     text, align, spacing = a["text"], a["align"], a["line_spacing"]
     assert isinstance(text, Text)
@@ -68,7 +68,7 @@ def _report_unknown(it: Interpreter, unknown: list[str], node: ast.Node) -> None
 
 
 def ink(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """The box of the letters around the start of the first line, in heights of a capital."""
+    """Returns the box of the letters around the start of the first line, in heights of a capital."""
     glyphs = typeset(it, a)
     if not glyphs:
         return NOTHING

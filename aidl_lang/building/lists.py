@@ -28,7 +28,7 @@ Arguments = Mapping[str, Value]
 
 
 def run(it: Interpreter, value: RangeVal, node: ast.Node) -> list[Value] | None:
-    """The numbers of a range in order; None after an error. An empty range is empty."""
+    """Returns the numbers of a range in order; None after an error. An empty range is empty."""
     parts = [n for n in (value.start, value.end, value.step) if n is not None]
     known = [constant(it, n, node, "the ends of a range that is run through") for n in parts]
     if None in known:
@@ -48,12 +48,12 @@ def run(it: Interpreter, value: RangeVal, node: ast.Node) -> list[Value] | None:
 
 
 def items_of(it: Interpreter, value: Value, node: ast.Node) -> Sequence[Value] | None:
-    """The members of a list, an array or a range; None for anything else, or after an error."""
+    """Returns the members of a list, an array or a range; None for anything else, or after an error."""
     return run(it, value, node) if isinstance(value, RangeVal) else members(value)
 
 
 def entry(it: Interpreter, value: RecordVal, name: str, node: ast.Node) -> Value:
-    """A field of a record by its name, spelled as generously as any name."""
+    """Returns a field of a record by its name, spelled as generously as any name."""
     key = find(name, value.fields)
     if key is None:
         like = nearest(name, value.fields)
@@ -73,7 +73,9 @@ def joined(left: Value, right: Value) -> Value | None:
 
 
 def shown(value: Value) -> str | None:
-    """A number, text or truth as a reader writes it: lengths in mm and angles in degrees, without a unit."""
+    """Returns a number, text or truth as a reader writes it: lengths in mm and angles in degrees, without a
+    unit.
+    """
     match value:
         case Num():
             return f"{value.value:.10g}"

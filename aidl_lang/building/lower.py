@@ -62,7 +62,9 @@ def lower(model: Model) -> Lowered:
 
 
 def preference(lowered: Lowered) -> list[int]:
-    """The constraints in the order in which they are taken for granted: unwritten ones, then as written."""
+    """Returns the constraints in the order in which they are taken for granted: unwritten ones, then as
+    written.
+    """
 
     def place(index: int) -> tuple[bool, str, int, int]:
         stated = lowered.stated[index]
@@ -160,8 +162,8 @@ class _Lowering:
                     self.variables.setdefault(unknown.owner, []).append(unknown)
 
     def _placer(self, unknown: Unknown) -> Structure:
-        """The structure at whose turn an unknown is placed: for the box of an empty structure that says
-        nothing of itself, the parent, as if the box were its frame.
+        """Returns the structure at whose turn an unknown is placed: for the box of an empty structure that
+        says nothing of itself, the parent, as if the box were its frame.
         """
         parent = unknown.owner.parent
         return parent if parent is not None and self._is_outline(unknown) else unknown.owner
@@ -178,8 +180,9 @@ class _Lowering:
         return _RADIAN / self.size if unknown.angular else 1.0
 
     def _stands(self, unknown: Unknown) -> bool:
-        """Whether it shifts a frame that lies on its parent's, with something in it at an exact place: that
-        is exact in the parent, too, as long as the frame stays. A frame turns only where that is asked for.
+        """Tells whether it shifts a frame that lies on its parent's, with something in it at an exact place:
+        that is exact in the parent, too, as long as the frame stays. A frame turns only where that is asked
+        for.
         """
         s = unknown.frame_of
         if s is None or unknown.angular:
@@ -192,7 +195,7 @@ class _Lowering:
     # --- Expressions ---------------------------------------------------------------------------
 
     def _node(self, root: Expression) -> int:
-        """The number of an expression on the tape."""
+        """Returns the number of an expression on the tape."""
         known, make, leaf = self.node_of, self.make, self._leaf
         if root in known:
             return known[root]
@@ -253,8 +256,8 @@ class _Lowering:
         )
 
     def _named(self, constraint: Constraint) -> tuple[set[Structure], set[Structure]]:
-        """The structures that a constraint names as a whole, and those in which it names something. What a
-        shape asks of itself names nothing.
+        """Returns the structures that a constraint names as a whole, and those in which it names something.
+        What a shape asks of itself names nothing.
         """
         whole: set[Structure] = set()
         inside: set[Structure] = set()
@@ -288,7 +291,7 @@ class _Lowering:
         return Row(tape.sub(left, right), Relation.AT_MOST, scale)
 
     def _magnitude(self, dimension: MaybeDimension) -> float:
-        """A typical value of a residual, by which its tolerance is measured."""
+        """Returns a typical value of a residual, by which its tolerance is measured."""
         length, angle = dimension or LENGTH
         return float(self.size**length * _RADIAN**angle)
 
@@ -316,12 +319,12 @@ class _Lowering:
 
 
 def _is_exact(at: _Seen) -> bool:
-    """Whether it is a place that only sizes and angles could move."""
+    """Tells whether it is a place that only sizes and angles could move."""
     return len(at) == 2 and all(u.kept or u.angular for u in ex.unknowns(at))
 
 
 def _comparisons(condition: Condition | bool) -> Iterator[Comparison]:
-    """The comparisons that all have to hold for a condition; none where there is more to it."""
+    """Yields the comparisons that all have to hold for a condition; none where there is more to it."""
     if not isinstance(condition, Condition) or condition.operator != "and":
         return
     for part in condition.parts:
@@ -332,7 +335,7 @@ def _comparisons(condition: Condition | bool) -> Iterator[Comparison]:
 
 
 def _is_bound(part: Comparison) -> bool:
-    """Whether it is an inequality that holds at the first guesses."""
+    """Tells whether it is an inequality that holds at the first guesses."""
     if part.relation in ("==", "!=") or part.left.is_open or part.right.is_open:
         return False
     low, high = (part.left, part.right) if part.relation in ("<=", "<") else (part.right, part.left)
@@ -340,8 +343,8 @@ def _is_bound(part: Comparison) -> bool:
 
 
 def _clinging(parent: Structure) -> Sequence[Structure]:
-    """The children that belong to what is drawn around them: all that lie in a part, and holes and drawings
-    beside parts; but none that stands still, for its place was said in the frame of the root.
+    """Returns the children that belong to what is drawn around them: all that lie in a part, and holes and
+    drawings beside parts; but none that stands still, for its place was said in the frame of the root.
     """
     children = [c for c in parent.children if parent.parent is not None or not _is_placed(c)]
     if parent.plan or any(not geometry.construction for geometry in parent.own()):
@@ -354,12 +357,12 @@ _NO_BODY = ("hole", "drawing")
 
 
 def _is_placed(structure: Structure) -> bool:
-    """Whether a frame is exact in the one around it."""
+    """Tells whether a frame is exact in the one around it."""
     return structure.frame.x.is_constant and structure.frame.y.is_constant
 
 
 def _is_variable(unknown: Unknown) -> bool:
-    """Whether it is a number of a structure, and no part of its frame or outline."""
+    """Tells whether it is a number of a structure, and no part of its frame or outline."""
     return isinstance(unknown.holder, Structure) and unknown.frame_of is None and not unknown.outline
 
 
@@ -371,7 +374,7 @@ def _axis(unknown: Unknown) -> int:
 
 
 def _places(structure: Structure, holder: Structure) -> Iterator[Expression]:
-    """The frames by which a structure is placed in that which holds it."""
+    """Yields the frames by which a structure is placed in that which holds it."""
     for s in chain(structure):
         if s is holder:
             return
@@ -406,14 +409,14 @@ def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:
 
 
 def _is_spanned(unknown: Unknown) -> bool:
-    """Whether it is the way from one literal point of a shape to the next, for which no number was written.
-    The steps of a path do say where they lead.
+    """Tells whether it is the way from one literal point of a shape to the next, for which no number was
+    written. The steps of a path do say where they lead.
     """
     return unknown.implied and isinstance(unknown.holder, Geometry) and unknown.holder.type != "path"
 
 
 def _numbered(keys: Iterable[Hashable]) -> NDArray[np.int64]:
-    """A number for each key, the same for equal ones."""
+    """Returns a number for each key, the same for equal ones."""
     numbers: dict[Hashable, int] = {}
     return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.int64)
 

@@ -62,7 +62,7 @@ def not_built(it: Interpreter, node: ast.Name, branch: ast.If) -> Value:
 
 
 def read(it: Interpreter, binding: Binding, node: ast.Node, env: Env) -> Value:
-    """The value of a name for the expression that reads it."""
+    """Returns the value of a name for the expression that reads it."""
     reader = _READERS.get(type(binding))
     return binding if reader is None else reader(it, binding, node, env)  # type: ignore[return-value]
 
@@ -110,7 +110,7 @@ _READERS: Mapping[type, Callable[..., Value]] = {
 
 
 def is_same_everywhere(value: Value) -> bool:
-    """Whether a value does not depend on the frame or the reach of the code that reads it."""
+    """Tells whether a value does not depend on the frame or the reach of the code that reads it."""
     match value:
         case Num(expression=e):
             return e.is_constant
@@ -241,7 +241,9 @@ def _geometry_member(it: Interpreter, g: Geometry, name: str, node: ast.Node, en
 
 
 def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: Env) -> Value:
-    """A part, argument or let of a compound shape: read in the frame of its owner, then seen from here."""
+    """Returns a part, argument or let of a compound shape: read in the frame of its owner, then seen from
+    here.
+    """
     assert isinstance(g.scope, Scope)
     value = read(it, g.scope.values[key], node, Env(g.scope, g.owner, Reach.OWN))
     value = primitives.translate(key, value, g.owner, env.here)

@@ -34,7 +34,9 @@ KINDS = ("assembly", "solid", "hole", "drawing")
 
 
 def is_size(name: str) -> bool:
-    """Whether a field or an argument is a size by its last word: `radius`, `inner_radius`, `top_width`."""
+    """Tells whether a field or an argument is a size by its last word: `radius`, `inner_radius`,
+    `top_width`.
+    """
     return name.rpartition("_")[2] in _SIZE_WORDS
 
 
@@ -49,7 +51,7 @@ class Frame:
 
     @property
     def is_level(self) -> bool:
-        """Whether it is exactly not turned, as most are."""
+        """True if it is exactly not turned, as most are."""
         return self.rotation.is_constant and self.rotation.value == 0.0
 
     def outward(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
@@ -147,11 +149,13 @@ class Geometry:
 
     @property
     def is_drawn_later(self) -> bool:
-        """Whether its curves are worked out after solving; what the library makes has its own."""
+        """True if its curves are worked out after solving; what the library makes has its own."""
         return self.recipe is not None and self.recipe.kind == self.type
 
     def primitives(self, *, even_construction: bool = False) -> Iterator[Geometry]:
-        """The primitives that are drawn, in order of writing; of construction geometry only if asked for."""
+        """Yields the primitives that are drawn, in order of writing; of construction geometry only if asked
+        for.
+        """
         if self.construction and not even_construction:
             return
         if not self.is_compound:
@@ -181,7 +185,7 @@ class Recipe:
         return tuple(dict.fromkeys(g for group in self.operands for g in group))
 
     def made_of(self, copy: Callable[[Geometry], Geometry], measure: Callable[[Num], Num]) -> Recipe:
-        """The same of copies."""
+        """Returns the same of copies."""
         operands = tuple(tuple(map(copy, group)) for group in self.operands)
         return replace(self, operands=operands, numbers={n: measure(v) for n, v in self.numbers.items()})
 
@@ -274,7 +278,7 @@ class Structure:
         return tuple(own_geometry(self.geometry, self))
 
     def drawn(self) -> Iterable[Geometry]:
-        """The primitives of its own that are drawn, in order of writing."""
+        """Returns the primitives of its own that are drawn, in order of writing."""
         return self._drawn if self.is_complete else (p for g in self.own() for p in g.primitives())
 
     @cached_property
@@ -282,7 +286,7 @@ class Structure:
         return tuple(p for g in self._own for p in g.primitives())
 
     def is_within(self, other: Structure) -> bool:
-        """Whether this structure is `other` or lies below it."""
+        """Tells whether this structure is `other` or lies below it."""
         here: Structure | None = self
         while here is not None and here is not other:
             here = here.parent
@@ -311,7 +315,7 @@ def _geometry_in(value: Value, container: Geometry | Structure) -> Iterator[Geom
 
 
 def chain(structure: Structure) -> list[Structure]:
-    """The structure and its ancestors, innermost first."""
+    """Returns the structure and its ancestors, innermost first."""
     found = [structure]
     while (parent := found[-1].parent) is not None:
         found.append(parent)
@@ -326,8 +330,8 @@ def common_ancestor(a: Structure, b: Structure) -> Structure:
 
 
 def reach_of(owners: Iterable[Structure], here: Structure) -> Structure | None:
-    """The nearest structure around `here` and all the owners of what something in it is made of; None where
-    that is `here` itself.
+    """Returns the nearest structure around `here` and all the owners of what something in it is made of; None
+    where that is `here` itself.
     """
     reach = reduce(common_ancestor, owners, here)
     return reach if reach is not here else None
@@ -368,7 +372,7 @@ def convert_point(point: PointVal, source: Structure, target: Structure) -> Poin
 
 
 def convert_angle(angle: Expression, source: Structure, target: Structure) -> Expression:
-    """A direction in degrees in the frame of `source` → in that of `target`."""
+    """Returns a direction in degrees in the frame of `source` → in that of `target`."""
     meeting = common_ancestor(source, target)
     for start, outward in ((source, True), (target, False)):
         path: list[Structure] = chain(start)

@@ -19,7 +19,7 @@ from aidl_lang.syntax import ast
 
 
 def run_module(it: Interpreter, library: Scope) -> Structure:
-    """Run the main module; its root structure, or an implicit assembly around what stands at file level."""
+    """Runs the main module; its root structure, or an implicit assembly around what stands at file level."""
     module = it.program.main
     statements = module.statements
     scope = _file_scope(it, module, library, {})
@@ -60,7 +60,7 @@ def _register_params(it: Interpreter, scope: Scope) -> None:
 def _file_scope(
     it: Interpreter, module: ast.Module, library: Scope, loading: dict[ast.Module, Scope]
 ) -> Scope:
-    """The scope of a file: its definitions and what it imports."""
+    """Returns the scope of a file: its definitions and what it imports."""
     if module in loading:
         return loading[module]
     scope = loading[module] = Scope(library)

@@ -43,7 +43,7 @@ class Motion:
 
     @staticmethod
     def _from(a: Expression, b: Expression) -> Expression:
-        """The difference of two coordinates; exactly nothing for one and the same."""
+        """Returns the difference of two coordinates; exactly nothing for one and the same."""
         return ex.ZERO if a is b else ex.sub(a, b)
 
     def point(self, p: PointVal) -> PointVal:
@@ -51,19 +51,19 @@ class Motion:
         return PointVal(Num(x, p.x.dimension, p.x.status), Num(y, p.y.dimension, p.y.status))
 
     def direction(self, angle: Expression) -> Expression:
-        """A direction in degrees, seen after the motion."""
+        """Returns a direction in degrees, seen after the motion."""
         if self.mirrored:
             return _in_turn(ex.sub(ex.add(self.turn, _HALF_TURN), angle))
         return _in_turn(ex.add(angle, self.turn))
 
     def measure(self, value: Expression, dimension: MaybeDimension) -> Expression:
-        """A length, an area, …: it grows with the scale, and nothing else changes it."""
+        """Returns a length, an area, …: it grows with the scale, and nothing else changes it."""
         for _ in range(dimension.length if dimension else 0):
             value = ex.mul(self.scale, value)
         return value
 
     def frame(self, frame: Frame) -> Frame:
-        """The frame that a moved structure has; the scale is its contents' affair."""
+        """Returns the frame that a moved structure has; the scale is its contents' affair."""
         x, y = self.place(frame.x, frame.y)
         turned = ex.sub if self.mirrored else ex.add
         return Frame(x, y, _in_turn(turned(self.turn, frame.rotation)), frame.mirrored != self.mirrored)
@@ -75,7 +75,7 @@ class Motion:
 
     @property
     def is_still(self) -> bool:
-        """Whether it moves nothing."""
+        """True if it moves nothing."""
         return (
             not self.mirrored
             and all(p.is_constant for p in self.parts)
@@ -90,13 +90,13 @@ STILL = Motion()
 
 
 def _in_turn(angle: Expression) -> Expression:
-    """The angle that is between -180 (left out) and 180 as written."""
+    """Returns the angle that is between -180 (left out) and 180 as written."""
     turns = ex.constant(360.0 * ((180.0 - angle.value) // 360.0))
     return ex.add(angle, turns)
 
 
 def opposite(angle: Expression) -> Expression:
-    """The opposite direction."""
+    """Returns the opposite direction."""
     return _in_turn(ex.add(angle, _HALF_TURN))
 
 
@@ -113,7 +113,7 @@ def mirrored_at_point(about: Place) -> Motion:
 
 
 def mirrored_at_line(start: PointVal, end: PointVal) -> Motion:
-    """The reflection about the endless line through two points.
+    """Returns the reflection about the endless line through two points.
 
     About a line of direction φ it is the reflection of x, then the turn by 2φ + 180°.
     """

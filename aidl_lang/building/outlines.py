@@ -75,7 +75,7 @@ def _outline(kind: str, *words: str) -> Function:
 
 
 def _negative(it: Interpreter, a: Arguments, node: ast.Call) -> bool:
-    """Report a size that is less than nothing; only an offset has a direction."""
+    """Reports a size that is less than nothing; only an offset has a direction."""
     for name, v in a.items():
         is_size = name in SIZES or fold(node.callee.text) == "chamfer"
         if is_size and isinstance(v, Num) and v.expression.is_constant and v.value < 0:
@@ -110,7 +110,7 @@ def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> st
 
 
 def _sources(it: Interpreter, kind: str, value: Value, node: ast.Call, env: Env) -> list[Geometry] | None:
-    """The geometry in an argument; None after an error."""
+    """Returns the geometry in an argument; None after an error."""
     found: list[Geometry] = []
     for item in _flat(value):
         if isinstance(item, PointVal) and kind == "hull":
@@ -162,8 +162,8 @@ def keep_unnamed(geometry: Geometry) -> None:
 
 
 def usable(candidates: list[Candidate], values: Sequence[Value], env: Env) -> list[Candidate]:
-    """The overloads of an outline, without those of the library where a source or a size is not of this
-    structure: they would read its unknowns.
+    """Returns the overloads of an outline, without those of the library where a source or a size is not of
+    this structure: they would read its unknowns.
     """
     owners = (o for v in values for o in ((v.owner,) if isinstance(v, Geometry) else owners_of(v, env.here)))
     far = any(owner is not env.here for owner in owners)
@@ -223,7 +223,7 @@ def _named(key: str, kind: str) -> str:
 
 
 def _sizes(it: Interpreter, kind: str, a: Arguments, target: _Target) -> tuple[Num, ...]:
-    """The sizes by the table of exactness; a literal one is a parameter of the first corner."""
+    """Returns the sizes by the table of exactness; a literal one is a parameter of the first corner."""
     given = [a[name] for name in ("radius", "size", "distance", "second") if name in a]
     numbers = [replace(v, expression=spelled_out(v.expression)[0]) for v in given if isinstance(v, Num)]
     if target.of:
@@ -284,7 +284,9 @@ def _target(it: Interpreter, value: Value, node: ast.Node, env: Env, text: str) 
 
 
 def _base(it: Interpreter, node: ast.Node, env: Env) -> tuple[Geometry | None, str]:
-    """The geometry that a point was named as a field of, and the field, if it has a name of its own."""
+    """Returns the geometry that a point was named as a field of, and the field, if it has a name of its
+    own.
+    """
     key = node.name.text if isinstance(node, ast.Member) else ""
     while isinstance(node, ast.Index):
         node = node.value

@@ -105,7 +105,7 @@ def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) ->
 
 @lru_cache(maxsize=4096)
 def _standard_site(node: ast.Call, signatures: tuple[Signature, ...]) -> Site:
-    """A call that the library makes of its own, which is the same for all programs."""
+    """Returns a call that the library makes of its own, which is the same for all programs."""
     return Site(node, list(signatures))
 
 
@@ -113,7 +113,7 @@ _MOST_MEANINGS = 100  # of one call; lists of every length are types of their ow
 
 
 def candidates_of(it: Interpreter, node: ast.Call, scope: Scope, receiver: Value | None) -> list[Candidate]:
-    """The callables that a call may mean where it stands."""
+    """Returns the callables that a call may mean where it stands."""
     if isinstance(receiver, Namespace):
         inner = receiver.values.get("")
         return inner.candidates(it.spelled(node.callee)) if isinstance(inner, Scope) else []

@@ -36,13 +36,13 @@ _RANGE_SLACK = 1e-9
 
 
 def knob_path(structure: Structure, name: str) -> str:
-    """The path by which a param is set from outside: from the root, without the root's own name."""
+    """Returns the path by which a param is set from outside: from the root, without the root's own name."""
     below = structure.path.partition(".")[2] if structure.parent is not None else ""
     return f"{below}.{name}" if below else name
 
 
 def read_param(it: Interpreter, binding: ParamBinding, node: ast.Node) -> Value:
-    """The value of a knob; evaluated, checked against its range and registered on first use."""
+    """Returns the value of a knob; evaluated, checked against its range and registered on first use."""
     if binding.known is None:
         if binding.running:
             it.report("E0207", f"param `{binding.node.name.text}` is defined by way of itself", node)
@@ -163,7 +163,7 @@ def _is_allowed(
 def _from_outside(
     it: Interpreter, path: str, written: Value, choices: tuple[float | str | bool, ...]
 ) -> Value:
-    """The value set for a path with `-D path=value` or `compile(params=…)`, else the written one."""
+    """Returns the value set for a path with `-D path=value` or `compile(params=…)`, else the written one."""
     key = _override(it, path)
     if key is None:
         return written

@@ -70,7 +70,7 @@ class _Call:
         return found
 
     def size(self, name: str) -> Expression:
-        """A number that belongs to the pattern: kept if literal."""
+        """Returns a number that belongs to the pattern: kept if literal."""
         value = self.a[name]
         assert isinstance(value, Num)
         dimension = value.dimension or LENGTH
@@ -79,7 +79,7 @@ class _Call:
         return made.expression
 
     def position(self, name: str) -> Place:
-        """A position of the pattern: a first guess if literal, the origin if missing."""
+        """Returns a position of the pattern: a first guess if literal, the origin if missing."""
         value = self.a.get(name, _ORIGIN)
         assert isinstance(value, PointVal)
         (made,) = positions(self.it, [value], self.settings, [name], self.settings.owner)
@@ -92,7 +92,7 @@ class _Call:
 
     @property
     def has_place(self) -> bool:
-        """Whether the thing stands somewhere already, so that the pattern goes on from there."""
+        """True if the thing stands somewhere already, so that the pattern goes on from there."""
         return not isinstance(self.thing, Instantiation)
 
     def centre(self) -> Place:
@@ -109,7 +109,7 @@ class _Call:
         return NOWHERE
 
     def laid_out(self, motions: Iterable[tuple[Index, Motion | None]]) -> Value:
-        """The members; without a motion it is the thing itself."""
+        """Returns the members; without a motion it is the thing itself."""
         made = Pattern(self.node.callee.text, self.settings)
         for index, motion in motions:
             member = self.thing

@@ -25,9 +25,9 @@ def placing(
     values: Sequence[Value],
     env: Env,
 ) -> Value:
-    """The condition of a call with what it places. The last positional argument is held on the first try and
-    those before it are placed; equals are parties of one rank. A definition that only calls another leaves
-    the choice to that one (`contains` holds its first), unless it gathered what it hands on.
+    """Returns the condition of a call with what it places. The last positional argument is held on the first
+    try and those before it are placed; equals are parties of one rank. A definition that only calls another
+    leaves the choice to that one (`contains` holds its first), unless it gathered what it hands on.
     """
     if not isinstance(condition, Condition):
         return condition
@@ -48,7 +48,9 @@ def placing(
 
 
 def _equals(definition: ast.ConstraintDefinition, binding: Binding, values: Sequence[Value]) -> list[Value]:
-    """The things of one rank in a call, in the order of its arguments; none where it holds one of them."""
+    """Returns the things of one rank in a call, in the order of its arguments; none where it holds one of
+    them.
+    """
     given = binding.arguments
     declared = [
         values[i]
@@ -63,8 +65,8 @@ def _equals(definition: ast.ConstraintDefinition, binding: Binding, values: Sequ
 
 
 def _is_given_a_place(definition: ast.ConstraintDefinition, binding: Binding) -> bool:
-    """Whether what is done to a list is told by another thing, as in `spread(list, inside: box)`: then all
-    are placed and there is no anchor among them.
+    """Tells whether what is done to a list is told by another thing, as in `spread(list, inside: box)`: then
+    all are placed and there is no anchor among them.
     """
     related = {name for name, kind, _ in binding.taken if isinstance(kind, _PLACES)}
     word = definition.parameters[0].type
@@ -75,7 +77,7 @@ _PLACES = BoxType | PointType | GeometryType | StructureType
 
 
 def _delegates(definition: ast.ConstraintDefinition) -> bool:
-    """Whether it consists of one call, which then decides."""
+    """Tells whether it consists of one call, which then decides."""
     match definition.body.statements:
         case (ast.ExpressionStatement(value=ast.Call()),):
             return True
@@ -84,6 +86,6 @@ def _delegates(definition: ast.ConstraintDefinition) -> bool:
 
 
 def spliced(value: Value) -> Sequence[Value]:
-    """The members of a list, or the one thing."""
+    """Returns the members of a list, or the one thing."""
     items = members(value)
     return items if items is not None else [value]

@@ -33,7 +33,9 @@ DIRECTIONS = fields_of("direction")
 
 
 def translate(name: str, value: Value, owner: Structure, here: Structure) -> Value:
-    """A value read in the frame of `owner`, as `here` sees it: points and directions turn, lengths do not."""
+    """Returns a value read in the frame of `owner`, as `here` sees it: points and directions turn, lengths do
+    not.
+    """
     if owner is here:
         return value
     if isinstance(value, PointVal):
@@ -44,7 +46,7 @@ def translate(name: str, value: Value, owner: Structure, here: Structure) -> Val
 
 
 def is_reflected(owner: Structure, here: Structure) -> bool:
-    """Whether an odd number of mirrored frames lies between the two."""
+    """Tells whether an odd number of mirrored frames lies between the two."""
     if owner is here:
         return False
     meeting = common_ancestor(owner, here)
@@ -66,7 +68,7 @@ def view(geometry: Geometry, here: Structure) -> dict[str, Value]:
 
 
 def clockwise(geometry: Geometry, here: Structure) -> bool:
-    """The sense of an arc as `here` sees it."""
+    """Returns the sense of an arc as `here` sees it."""
     return geometry.clockwise != is_reflected(geometry.owner, here)
 
 
@@ -81,7 +83,7 @@ def number(value: Value) -> Expression:
 
 
 def direction(a: Value, b: Value) -> Expression:
-    """The direction from one point to another in degrees."""
+    """Returns the direction from one point to another in degrees."""
     (ax, ay), (bx, by) = xy(a), xy(b)
     return ex.atan2(ex.sub(by, ay), ex.sub(bx, ax))
 
@@ -121,7 +123,7 @@ def on_text(geometry: Geometry, here: Structure) -> Callable[[Vec], tuple[Expres
 
 
 def defining(geometry: Geometry, here: Structure) -> list[Expression]:
-    """Every number that defines a geometry, compound ones through their parts and arguments."""
+    """Returns every number that defines a geometry, compound ones through their parts and arguments."""
     found: list[Expression] = []
     for value in view(geometry, here).values():
         if isinstance(value, Num):

@@ -64,7 +64,7 @@ class Placing(Generic[N]):
     _ways: dict[Structure, tuple[_Step[N], ...]] = field(default_factory=dict)
 
     def __call__(self, x: N, y: N, owner: Structure) -> tuple[N, N]:
-        """A point in the frame of `owner`, as the root sees it."""
+        """Returns a point in the frame of `owner`, as the root sees it."""
         way = self._ways.get(owner)
         if way is None:
             way = self._way(owner)
@@ -81,7 +81,7 @@ class Placing(Generic[N]):
         return x, y
 
     def _way(self, s: Structure) -> tuple[_Step[N], ...]:
-        """The frames from that of a structure to the one in the root."""
+        """Returns the frames from that of a structure to the one in the root."""
         if (known := self._ways.get(s)) is None:
             known = () if s.parent is None else (self._step(s), *self._way(s.parent))
             self._ways[s] = known

@@ -129,7 +129,7 @@ class Scope:
         return scope
 
     def declaring(self) -> Scope:
-        """The scope whose container gets what is declared here."""
+        """Returns the scope whose container gets what is declared here."""
         scope = self
         while scope.turn and scope.parent is not None:
             scope = scope.parent
@@ -143,7 +143,7 @@ class Scope:
             self._candidates.clear()
 
     def candidates(self, name: str) -> list[Candidate]:
-        """All callables of a name, innermost first; aliases followed. The same list each time."""
+        """Returns all callables of a name, innermost first; aliases followed. The same list each time."""
         scope = self
         while scope.parent is not None and not (scope.callables or scope.aliases):
             scope = scope.parent

@@ -62,7 +62,7 @@ class Settling:
                 return value
 
     def _stands(self, value: StructureCopy | Pattern) -> None:
-        """Report an `at` of what has its place from elsewhere."""
+        """Reports an `at` of what has its place from elsewhere."""
         name = self.node.name.text
         if isinstance(value, Pattern):
             message, hint = f"the place of `{name}` is that of its members", "give it a `center` or a `start`"
@@ -107,7 +107,7 @@ class Settling:
     def _instance(
         self, template: Instantiation, motion: Motion, indices: tuple[int, ...], copy: StructureCopy
     ) -> Structure | Nothing:
-        """A template that is instantiated in order to be moved."""
+        """Returns a template that is instantiated in order to be moved."""
         if not (motion.scale.is_constant and motion.scale.value == 1.0):
             self.it.report(
                 "E0334",
@@ -138,7 +138,7 @@ class Settling:
 
 
 def _framed(source: Structure, here: Structure) -> Frame:
-    """The frame of a structure as one above it sees it."""
+    """Returns the frame of a structure as one above it sees it."""
     frame, around = source.frame, source.parent
     while around is not None and around is not here:
         frame, around = of_frame(around.frame).frame(frame), around.parent

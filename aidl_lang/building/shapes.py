@@ -19,7 +19,7 @@ _NONE = ListVal(())
 
 
 def _sizes(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """The lengths among the parameters of a compound shape, in their order; none of anything else."""
+    """Returns the lengths among the parameters of a compound shape, in their order; none of anything else."""
     shape = a["of"]
     if not isinstance(shape, Geometry) or not isinstance(shape.scope, Scope):
         return _NONE
@@ -28,7 +28,8 @@ def _sizes(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _convex_corners(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """The corners of a shape of straight edges, in order, if it is convex as written; none otherwise.
+    """Returns the corners of a shape of straight edges, in order, if it is convex as written; none
+    otherwise.
 
     Corners that were given one by one may become something else while solving, so they do not count.
     """
@@ -54,7 +55,7 @@ def _at(point: Value) -> tuple[float, float]:
 
 
 def _is_convex(corners: Sequence[tuple[float, float]]) -> bool:
-    """Whether all corners turn to the same side, and together once around."""
+    """Tells whether all corners turn to the same side, and together once around."""
     ways = [(q[0] - p[0], q[1] - p[1]) for p, q in zip(corners, _next(corners), strict=True)]
     turns = [
         math.atan2(v[0] * w[1] - v[1] * w[0], v[0] * w[0] + v[1] * w[1])
@@ -68,7 +69,7 @@ def _next(items: Sequence[tuple[float, float]]) -> Sequence[tuple[float, float]]
 
 
 def _refuse(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """A definition of the library says that it makes no sense of its arguments."""
+    """Returns a definition of the library says that it makes no sense of its arguments."""
     why = a["why"]
     assert isinstance(why, Text)
     it.refuse(node, why.value)

@@ -144,7 +144,7 @@ class Interpreter:
     # --- Reporting -----------------------------------------------------------------------------
 
     def place(self, node: ast.Node | Span | None) -> Span | None:
-        """The place of a node in the author's text: in library code, the call that led there."""
+        """Returns the place of a node in the author's text: in library code, the call that led there."""
         span = node.span if isinstance(node, ast.Node) else node
         if span is not None and span.source in self.library_sources:
             return next((s.span for s in self.call_sites if s.span.source not in self.library_sources), span)
@@ -177,7 +177,7 @@ class Interpreter:
             raise Stop
 
     def misfit(self, found: Misfit, node: ast.Node, fix: Fix | None = None) -> None:
-        """Say why a value does not go where it stands."""
+        """Says why a value does not go where it stands."""
         self.report(found.code, found.message, node, found.label, found.hints, fix)
 
     def refuse(self, node: ast.Node, why: str, hints: Sequence[str] = ()) -> None:
@@ -188,7 +188,7 @@ class Interpreter:
             self._add(Diagnostic("E0342", f"{text} says nothing: {why}", span, hints=tuple(hints)))
 
     def spelled(self, node: ast.Name | ast.Identifier) -> str:
-        """The name that is meant, as it is defined."""
+        """Returns the name that is meant, as it is defined."""
         return self.program.resolution.canonical.get(node, node.text)
 
     @property
@@ -196,7 +196,7 @@ class Interpreter:
         return self.program.library.sources
 
     def evaluate(self, node: ast.Expression, env: Env) -> Value:
-        """The value of an expression, for code that `evaluate` itself stands on."""
+        """Returns the value of an expression, for code that `evaluate` itself stands on."""
         return self.evaluator(self, node, env)
 
     # --- Limits --------------------------------------------------------------------------------
@@ -240,7 +240,9 @@ class Interpreter:
             self._stop(None, f"this program states more than {self.limits.constraints} constraints")
 
     def enter(self, node: ast.Node, definition: ast.Node | None) -> bool:
-        """Whether a call may be entered; `leave` ends it. A definition that ran too deep is not again."""
+        """Tells whether a call may be entered; `leave` ends it. A definition that ran too deep is not
+        again.
+        """
         self.check_time(node)
         if definition in self.runaway:
             return False
@@ -287,7 +289,7 @@ class Interpreter:
         cell: bool = False,
         since: str = "",
     ) -> ex.Expression:
-        """A new unknown, as an expression."""
+        """Returns a new unknown, as an expression."""
         if not abs(guess) <= _LARGEST_GUESS:
             guess = self._tamed(guess, holder, name)
         angular, implied = dimension == ANGLE, since != ""
@@ -298,7 +300,7 @@ class Interpreter:
         return ex.unknown(made)
 
     def _tamed(self, guess: float, holder: Geometry | Structure, name: str) -> float:
-        """A first guess for what was written without one that the solver could begin at."""
+        """Returns a first guess for what was written without one that the solver could begin at."""
         if math.isnan(guess):
             return guess
         self.report(
@@ -334,7 +336,7 @@ class Interpreter:
             self.became(written.y, made.y.expression, holder, f"{name}.y")
 
     def watch(self, node: ast.Node, value: Value) -> None:
-        """Keep the written value of an expression that breaks a rule of validity, for its fix."""
+        """Keeps the written value of an expression that breaks a rule of validity, for its fix."""
         if isinstance(value, Num):
             self.written[node] = value.value
         elif isinstance(value, PointVal):

@@ -42,7 +42,7 @@ _PLAN = 10.0
 def build_structure(
     it: Interpreter, node: ast.Structure, scope: Scope, parent: Structure | None, indices: tuple[int, ...]
 ) -> Structure:
-    """A structure from its definition in place."""
+    """Returns a structure from its definition in place."""
     name = indexed(node.name.text, indices)
     structure = _new(it, node.kind, name, parent, node)
     structure.doc = node.doc
@@ -66,7 +66,9 @@ def instantiate(
     indices: tuple[int, ...],
     framed: Callable[[Frame], Frame] | None = None,
 ) -> Structure | Nothing:
-    """An instance of a template under the name it is assigned to; `framed` moves its frame elsewhere."""
+    """Returns an instance of a template under the name it is assigned to; `framed` moves its frame
+    elsewhere.
+    """
     definition = template.definition
     name = indexed(node.name.text, indices)
     if not it.enter(template.node, definition):
@@ -205,7 +207,7 @@ def finish(it: Interpreter, structure: Structure) -> None:
 
 
 def _finishes(it: Interpreter, node: ast.Statement) -> bool:
-    """Whether a statement rounds corners or cuts them off."""
+    """Tells whether a statement rounds corners or cuts them off."""
     if not isinstance(node, ast.ExpressionStatement) or not isinstance(call := node.value, ast.Call):
         return False
     return it.program.resolution.canonical.get(call.callee, call.callee.text) in FINISHES

@@ -34,7 +34,7 @@ def passed(
 
 
 def _drawn(value: Value) -> Geometry | Structure | None:
-    """A geometry or a structure that a value is, or holds."""
+    """Returns a geometry or a structure that a value is, or holds."""
     if isinstance(value, Geometry | Structure):
         return value
     held = value.fields.values() if isinstance(value, RecordVal) else members(value) or ()
@@ -42,7 +42,7 @@ def _drawn(value: Value) -> Geometry | Structure | None:
 
 
 def read_passed(it: Interpreter, binding: PassedBinding, env: Env) -> Value:
-    """An argument as the structure that reads it has it."""
+    """Returns an argument as the structure that reads it has it."""
     here = env.here if env.here.is_within(binding.instance) else binding.instance
     if (known := binding.tied.get(here)) is None:
         known = binding.tied[here] = _tie(it, binding, here)
@@ -81,7 +81,9 @@ def _refers(point: PointVal) -> bool:
 
 
 def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: Structure) -> PointVal:
-    """A point of the instance at the place, in its frame, that the argument has at the first guesses."""
+    """Returns a point of the instance at the place, in its frame, that the argument has at the first
+    guesses.
+    """
     if _refers(point):
         numbers = as_written(point)
         assert isinstance(numbers, PointVal)

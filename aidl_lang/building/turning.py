@@ -22,7 +22,7 @@ def unlock(*of: Expression) -> None:
 
 
 def is_of_directions(definition: Signature) -> bool:
-    """Whether a constraint is about the directions of lines, which may be edges."""
+    """Tells whether a constraint is about the directions of lines, which may be edges."""
     return definition.standard and definition.name in _OF_DIRECTIONS
 
 

@@ -157,7 +157,7 @@ class Array:
         self.members: dict[tuple[int, ...], Value] = {}
 
     def items(self) -> list[Value]:
-        """The members in index order; of a many-index array its rows."""
+        """Returns the members in index order; of a many-index array its rows."""
         firsts = sorted({index[0] for index in self.members})
         return [self.members[(i,)] if (i,) in self.members else self._row(i) for i in firsts]
 
@@ -167,7 +167,7 @@ class Array:
         return row
 
     def row(self, index: int) -> Array | None:
-        """The members of a many-index array whose first index is `index`."""
+        """Returns the members of a many-index array whose first index is `index`."""
         row = Array(f"{self.name}[{index}]")
         row.members = {key[1:]: v for key, v in self.members.items() if key[0] == index and len(key) > 1}
         return row if row.members else None
@@ -242,7 +242,7 @@ def point(x: Expression, y: Expression, status: Status = Status.REFERENCE) -> Po
 
 
 def members(value: Value) -> Sequence[Value] | None:
-    """The items of something that can be run through; None for anything else."""
+    """Returns the items of something that can be run through; None for anything else."""
     match value:
         case ListVal(items):
             return items
@@ -253,7 +253,7 @@ def members(value: Value) -> Sequence[Value] | None:
 
 
 def holds(value: Value, kind: type) -> bool:
-    """Whether a value is of a kind, or a list with something of it."""
+    """Tells whether a value is of a kind, or a list with something of it."""
     if isinstance(value, kind):
         return True
     items = members(value)
@@ -261,7 +261,7 @@ def holds(value: Value, kind: type) -> bool:
 
 
 def type_of(value: Value) -> Type:
-    """The type by which overloads are chosen."""
+    """Returns the type by which overloads are chosen."""
     make = _types().get(type(value))
     return make(value) if make is not None else ANY
 

@@ -38,8 +38,8 @@ class Wording:
         return tuple(value.comparisons()) if isinstance(value, Condition) else ()
 
     def dials(self) -> Iterator[tuple[ast.Expression, float]]:
-        """The literals and the names of constants in the statement with their values, in mm or degrees; a
-        literal with its sign. Indices are none: they say which thing is meant.
+        """Yields the literals and the names of constants in the statement with their values, in mm or
+        degrees; a literal with its sign. Indices are none: they say which thing is meant.
         """
         stack: list[ast.Node] = [self.node]
         while stack:
@@ -64,7 +64,9 @@ class Wording:
                 stack.extend(reversed(list(ast.children(node))))
 
     def named(self) -> Iterator[Geometry | Structure]:
-        """The geometry and structures of which the statement speaks, as far as each name in it leads."""
+        """Yields the geometry and structures of which the statement speaks, as far as each name in it
+        leads.
+        """
         stack: list[ast.Node] = [self.node]
         while stack:
             node = stack.pop()
@@ -78,7 +80,7 @@ class Wording:
             stack.extend(reversed(list(ast.children(node))))
 
     def param(self, name: ast.Expression) -> ast.Param | None:
-        """The declaration of a `param` that nothing but this name reads."""
+        """Returns the declaration of a `param` that nothing but this name reads."""
         uses = self.it.program.resolution.uses
         symbol = uses.get(name)
         readers = [node for node, other in uses.items() if other is symbol and isinstance(node, ast.Name)]
@@ -106,7 +108,7 @@ def _is_exact(value: Value | None) -> bool:
 
 
 def replaced(node: _Tree, old: ast.Node, new: ast.Node) -> _Tree:
-    """The tree with one node below `node` exchanged."""
+    """Returns the tree with one node below `node` exchanged."""
     changed: dict[str, object] = {}
     for field in fields(node):
         value = getattr(node, field.name)

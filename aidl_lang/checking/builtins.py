@@ -165,7 +165,7 @@ WORDED = frozenset({"orientation", "color", "colour", "layer", "material", "note
 
 
 def is_word(argument: ast.Argument, candidates: Iterable[Signature]) -> bool:
-    """Whether a bare name is the word itself: given by name to a parameter that takes a text."""
+    """Tells whether a bare name is the word itself: given by name to a parameter that takes a text."""
     if argument.name is None or not isinstance(argument.value, ast.Name) or argument.value.text not in WORDS:
         return False
     word = fold(argument.name.text)

@@ -120,10 +120,10 @@ DECLARATIONS = tuple(f"{kind}({call})" for kind, each in PRIMITIVES.items() for 
 
 
 def fields_of(word: str) -> frozenset[str]:
-    """The names of all fields of a type, by its word."""
+    """Returns the names of all fields of a type, by its word."""
     return frozenset(n for each in PRIMITIVES.values() for n, of in each.types.items() if of == word)
 
 
 def offered(kind: str) -> tuple[str, ...]:
-    """The fields that a primitive is said to have; none for a kind that is no primitive."""
+    """Returns the fields that a primitive is said to have; none for a kind that is no primitive."""
     return PRIMITIVES[kind].names if kind in PRIMITIVES else ()

@@ -158,12 +158,12 @@ PEERS = ("peer", "peers")
 
 
 def parameter_type(parameter: ast.Parameter, shapes: Iterable[str] = ()) -> Type | None:
-    """The type a parameter asks for; None when the word is unknown."""
+    """Returns the type a parameter asks for; None when the word is unknown."""
     return type_named(parameter.type.text, shapes) if parameter.type is not None else ANY
 
 
 def type_named(word: str, shapes: Iterable[str] = ()) -> Type | None:
-    """The type of a word, the name of a shape being one; None when it is unknown."""
+    """Returns the type of a word, the name of a shape being one; None when it is unknown."""
     word = fold(word)
     if (known := PARAMETER_TYPES.get(word)) is not None:
         return known
@@ -258,7 +258,7 @@ class Signature:
 
     @cached_property
     def gathers(self) -> bool:
-        """Whether positional arguments are collected: the first parameter is a list."""
+        """True if positional arguments are collected: the first parameter is a list."""
         return bool(self.parameters) and isinstance(self.parameters[0][1], ListType)
 
     @cached_property
@@ -267,8 +267,8 @@ class Signature:
         return sum(not optional for _, _, optional in self.parameters)
 
     def may_take(self, positional: int, words: Set[str]) -> bool:
-        """Whether so many arguments without a name and these (folded) names could fit, whatever their types:
-        a look that spares most overloads of a name the matching.
+        """Tells whether so many arguments without a name and these (folded) names could fit, whatever their
+        types: a look that spares most overloads of a name the matching.
         """
         if self.takes_any or self.gathers:
             return self.takes_any or words <= self.by_fold.keys()
@@ -317,7 +317,7 @@ class Binding:
         return tuple((n, kind, given[n]) for n, kind, _ in self.signature.parameters if n in given)
 
     def parameter_of(self, index: int) -> str | None:
-        """The parameter that gets an argument of the call, whole."""
+        """Returns the parameter that gets an argument of the call, whole."""
         return self._meant.get(index)
 
     @cached_property
@@ -404,7 +404,7 @@ def _fitted(
     gathered: str | None,
     positional: tuple[int, ...],
 ) -> Binding | Mismatch:
-    """Whether every parameter is given something that fits, and how far it is from what it wants."""
+    """Tells whether every parameter is given something that fits, and how far it is from what it wants."""
     distance, defaulted = (_GATHERED if gathered is not None else 0), 0
     for name, kind, optional in signature.parameters:
         if name not in arguments:
@@ -427,7 +427,7 @@ def with_article(kind: object) -> str:
 
 @lru_cache(maxsize=256)
 def number_type(dimension: MaybeDimension, whole: bool) -> NumberType:
-    """The type of a number, made once: types are compared, and looked up, all the time."""
+    """Returns the type of a number, made once: types are compared, and looked up, all the time."""
     return NumberType(dimension, whole)
 
 
