@@ -1,4 +1,4 @@
-"""Where what a name means is defined."""
+"""Go to definition."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from aidl_lang.tools.ide.view import View
 
 
 def definitions(view: View, offset: int) -> list[Span]:
-    """The declarations of the name at an offset, or the beginning of the file that an import names; in this
-    file, in others, or in the library (see `View.file`).
+    """Returns the declarations of the name at an offset, or the beginning of the file that an import names;
+    in this file, in others, or in the library (see `View.file`).
     """
     mention = mention_at(view, offset)
     if mention is not None:

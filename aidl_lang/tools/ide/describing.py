@@ -1,4 +1,4 @@
-"""What is to be said of a name, in Markdown."""
+"""Descriptions of names, in Markdown."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from aidl_lang.tools.reference.signatures import split_items, written
 
 MOST_FORMS = 6
 _FEWEST_WORDS = 2
-"""Blanks in what says anything: a list of names says nothing of one."""
+"""Fewest blanks of a useful sentence: a list of names describes none of them."""
 _SENTENCE_END = re.compile(r"(?<=[.!?])\s+(?=[A-Z`(])|\n\n+")
 _NAME = re.compile(r"\W")
 _CLAUSE_END = re.compile(r";\s+|,\s+(?=`)")
@@ -25,14 +25,12 @@ def fenced(code: str) -> str:
 
 
 def joined(blocks: Iterable[str]) -> str:
-    """Paragraphs, without those that are empty."""
+    """Joins paragraphs, without empty ones."""
     return "\n\n".join(block.strip("\n") for block in blocks if block.strip())
 
 
 def of_entry(entry: Entry, *, example: bool = True) -> str:
-    """A public name of the library, of what is built in or a word: how it is called, what it does, how it is
-    used.
-    """
+    """Describes a public name of the library, a built-in or a keyword: its form, its effect, its use."""
     listed = forms(entry)
     more = [f"// and {len(listed) - MOST_FORMS} more forms"] if len(listed) > MOST_FORMS else []
     head = fenced("\n".join([*listed[:MOST_FORMS], *more]))
@@ -41,13 +39,13 @@ def of_entry(entry: Entry, *, example: bool = True) -> str:
 
 
 def of_public(name: str) -> str:
-    """The same by a name or a word; nothing of one that the reference does not have."""
+    """Describes a name or word by its entry in the reference; returns "" without one."""
     entry = reference().entries.get(name)
     return of_entry(entry) if entry is not None else ""
 
 
 def of_definition(node: ast.Node) -> str:
-    """A definition of a program: its head and its `///` comment."""
+    """Describes a definition of a program by its head and its `///` comment."""
     return joined([fenced(head(node)), of_comment(getattr(node, "doc", None))])
 
 
@@ -60,7 +58,7 @@ def of_doc(about: Doc) -> str:
 
 
 def head(node: ast.Node) -> str:
-    """The first line of a definition, as `solid bolt(size = 4)`."""
+    """Returns the first line of a definition, as `solid bolt(size = 4)`."""
     match node:
         case ast.FunctionDefinition():
             return f"fn {written(node)} = {_short(node.value.span.one_line)}"
@@ -92,7 +90,7 @@ def _short(text: str, most: int = 100) -> str:
 
 
 def of_callable(name: str, signatures: Sequence[Signature]) -> str:
-    """What can be called by a name, of several definitions all."""
+    """Describes all definitions that a name may call."""
     nodes = [s.node for s in signatures if not s.standard and s.node is not None]
     blocks = [fenced("\n".join(map(head, nodes))), *(of_comment(n.doc) for n in nodes)] if nodes else []
     standard = next((s for s in signatures if s.standard), None)
@@ -105,7 +103,7 @@ def of_callable(name: str, signatures: Sequence[Signature]) -> str:
 
 
 def is_public(signature: Signature) -> bool:
-    """Whether an overload is there for programs, and not for the library itself."""
+    """Tells whether an overload is meant for programs, and not for the library itself."""
     node = signature.node
     if not signature.standard or node is None:
         return True
@@ -114,7 +112,7 @@ def is_public(signature: Signature) -> bool:
 
 
 def doc_of(signature: Signature) -> Doc:
-    """The comment of one overload; where it has none, that of its name."""
+    """Returns the comment of one overload, else that of its name."""
     node = signature.node
     if node is not None and node.doc:
         return doc(node.doc)
@@ -124,7 +122,7 @@ def doc_of(signature: Signature) -> Doc:
 
 @record()
 class Label:
-    """An overload in a line; `parameters` are where each stands in it."""
+    """An overload in one line; `parameters` are their places in it."""
 
     text: str
     parameters: tuple[tuple[int, int], ...]
@@ -159,7 +157,7 @@ def _items(signature: Signature) -> list[str]:
 
 
 def of_parameter(signature: Signature, name: str) -> str:
-    """What the comment of a definition says of one of its parameters: the sentences that name it."""
+    """Returns the sentences of a definition's comment that name the parameter."""
     about = doc_of(signature)
     said = [
         sentence
@@ -171,7 +169,7 @@ def of_parameter(signature: Signature, name: str) -> str:
 
 
 def _clause(sentence: str, name: str) -> str:
-    """The part of a sentence that is about a name, where it tells of several one by one."""
+    """Returns the part of a sentence about a name, if it describes several one by one."""
     parts = _CLAUSE_END.split(sentence)
     told = [part for part in parts if f"`{name}`" in part]
     return told[0] if len(parts) > 1 and len(told) == 1 else sentence

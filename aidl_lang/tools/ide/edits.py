@@ -1,4 +1,4 @@
-"""Edits of one text: carried out, and found between two versions of it."""
+"""Edits of one text: applying them, and finding them between two versions."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from aidl_lang.common.source import SourceFile, Span
 
 
 def applied(text: str, edits: Iterable[Edit]) -> str:
-    """The text after edits that do not overlap; insertions at one place stay in their order."""
+    """Returns the text after edits that do not overlap; insertions at one place stay in their order."""
     for _, edit in sorted(enumerate(edits), key=lambda pair: (-pair[1].span.start, -pair[0])):
         text = text[: edit.span.start] + edit.replacement + text[edit.span.end :]
     return text
 
 
 def between(source: SourceFile, text: str) -> list[Edit]:
-    """The edits, by whole lines, that make another text of one."""
+    """Returns the edits, by whole lines, from one text to another."""
     old, new = source.text.splitlines(keepends=True), text.splitlines(keepends=True)
     starts = [0]
     for line in old:
@@ -31,12 +31,12 @@ def between(source: SourceFile, text: str) -> list[Edit]:
 
 
 def line_start(text: str, offset: int) -> int:
-    """Where the line of an offset begins."""
+    """Returns the beginning of the line of an offset."""
     return text.rfind("\n", 0, offset) + 1
 
 
 def above_comments(text: str, offset: int) -> int:
-    """The beginning of the line of an offset, or of the comments that stand right above it."""
+    """Returns the beginning of the line of an offset, or of the comments right above it."""
     start = line_start(text, offset)
     while start and text[line_start(text, start - 1) : start].lstrip().startswith(("//", "#")):
         start = line_start(text, start - 1)
@@ -44,7 +44,7 @@ def above_comments(text: str, offset: int) -> int:
 
 
 def indent_at(text: str, offset: int) -> str:
-    """The white space that the line of an offset begins with."""
+    """Returns the white space at the beginning of the line of an offset."""
     line = text[line_start(text, offset) : offset]
     return line[: len(line) - len(line.lstrip())]
 

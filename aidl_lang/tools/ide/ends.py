@@ -1,4 +1,4 @@
-"""What is said above each param: what becomes of the program at the ends of its range, once tried."""
+"""Lenses above params: the results of the program at the ends of their ranges, once tried."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from aidl_lang.tools.ide.view import View
 
 
 def can_be_tried(view: View) -> bool:
-    """Whether the program works as it is written, and has a param with a range."""
+    """True for a program that works as written, and has a param with a range."""
     outcome = view.outcome
     return outcome is not None and outcome.ok and any(ends.has_range(knob) for knob in outcome.knobs)
 
 
 def tried(view: View, settings: Settings, progress: Callable[[int, int], None], seconds: float) -> Sweep:
-    """What becomes of a program at the ends of its params. Raises ValueError where that cannot be tried, and
-    Cancelled where nobody waits for it any more.
+    """Tries a program at the ends of its params. Raises ValueError if it cannot be tried, and Cancelled if
+    the request was given up.
     """
     if view.outcome is None or not can_be_tried(view):
         raise ValueError("the program has to work as it is written, and have a param with a range")
@@ -31,7 +31,7 @@ def tried(view: View, settings: Settings, progress: Callable[[int, int], None], 
 
 
 def end_lenses(view: View, found: Sweep | None) -> list[Lens]:
-    """One above each param that was turned; before, one that offers to."""
+    """Returns one lens above each param that was tried; before, one that offers to try."""
     if not can_be_tried(view):
         return []
     return list(_offer(view) if found is None else _told(view, found))
@@ -62,7 +62,7 @@ def _told(view: View, found: Sweep) -> Iterator[Lens]:
 
 
 def _title(turned: Sequence[Turned], name: str) -> str:
-    """What came of one param."""
+    """Returns the results of one param as a title."""
     said = [text for each in turned if (text := ends.sentence(each, name))]
     if said:
         return " · ".join(said)

@@ -1,4 +1,4 @@
-"""What can be folded: blocks, calls and lists over several lines, comments, imports.
+"""Folding ranges: blocks, calls and lists over several lines, comments, imports.
 
 Brackets are paired in the text itself, so a program that does not parse folds too.
 """
@@ -16,7 +16,7 @@ _CLOSES = {"}": "{", "]": "[", ")": "("}
 
 @record()
 class Fold:
-    """Lines from `start`, which stays in sight, to `end`, both from 1. `kind` is `region`, `comment` or
+    """Lines from `start`, which stays visible, to `end`, both from 1. `kind` is `region`, `comment` or
     `imports`.
     """
 
@@ -26,7 +26,7 @@ class Fold:
 
 
 def folds(view: View) -> list[Fold]:
-    """By their first line; of two that begin in one line the longer."""
+    """Returns folds by their first line; of two that begin in one line the longer."""
     tokens = view.tokens
 
     def line(offset: int) -> int:
@@ -46,7 +46,7 @@ def folds(view: View) -> list[Fold]:
 
 
 def _brackets(tokens: Iterable[Token]) -> Iterator[tuple[int, int]]:
-    """Where pairs of brackets open and close; a bracket that closes nothing that is open is passed over."""
+    """Yields the offsets of paired brackets; a closing bracket without an open one is skipped."""
     opened: list[tuple[str, int]] = []
     for token in tokens:
         if token.kind in _CLOSES.values() or token.kind == "CALL":
@@ -58,7 +58,7 @@ def _brackets(tokens: Iterable[Token]) -> Iterator[tuple[int, int]]:
 
 
 def _runs(lines: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    """What stands line below line, joined."""
+    """Joins adjacent ranges of lines."""
     start = end = -1
     for first, last in lines:
         if first > end + 1:

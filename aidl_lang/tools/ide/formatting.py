@@ -1,4 +1,4 @@
-"""The canonical form of a program, as few edits."""
+"""Formats a program with few edits."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from aidl_lang.tools.ide.view import View
 
 
 def format_document(view: View) -> list[Edit]:
-    """The edits that bring a text into its canonical form; none where it does not parse."""
+    """Returns the edits that bring a text into its canonical form; none if it does not parse."""
     text, _ = pipeline.formatted(view.source, view.world)
     return [] if text is None else between(view.source, text)
 
 
 def format_range(view: View, wanted: Span) -> list[Edit]:
-    """Those edits that concern the lines of a range."""
+    """Returns the formatting edits for the lines of a range."""
     text = view.source.text
     start = line_start(text, wanted.start)
     end = text.find("\n", wanted.end)

@@ -1,4 +1,4 @@
-"""Numbers of the text that the solver may change, first guesses and kept sizes, beside what it found."""
+"""Numbers of the text that the solver may change, first guesses and kept sizes, with their solved values."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from aidl_lang.tools.ide.meaning import chosen
 from aidl_lang.tools.ide.view import View
 
 VISIBLE = 1e-4
-"""The least difference that is worth telling, as a share of the number, or of one where it is smaller."""
+"""Least difference that is shown, as a share of the number, or of one for smaller ones."""
 _SAME = 1e-7
 """The same for places that share a number and count as agreeing."""
 _MEASURES = {LENGTH: "mm", ANGLE: "deg"}
@@ -57,25 +57,25 @@ class Guess:
 
     @property
     def behind(self) -> str:
-        """Its measure, as it stands behind a number in a sentence."""
+        """Its measure, as written after a number in a sentence."""
         return f" {self.measure}" if self.measure else ""
 
     @property
     def unknowns(self) -> frozenset[Unknown]:
-        """What the solver moves where the number is another."""
+        """The unknowns that the number became."""
         return frozenset(ex.unknowns(use.became for use in self.uses))
 
     def valued(self, evaluate: Value) -> float | None:
-        """What it is by other values of the unknowns, in its unit; None where its places differ."""
+        """Returns the number at other values of the unknowns, in its unit; None if its places differ."""
         return _agreed([evaluate(use.became) / self.factor for use in self.uses])
 
     def is_off(self, solved: float | None) -> bool:
-        """Whether a value differs visibly from what is written."""
+        """True for a value that differs visibly from the written one."""
         return solved is not None and abs(solved - self.written) > VISIBLE * max(1.0, abs(solved))
 
 
 def guesses(view: View) -> list[Guess]:
-    """The first guesses and kept sizes of the text in order; none where it was not solved."""
+    """Returns the first guesses and kept sizes of the text in order; none before it was solved."""
     outcome = view.outcome
     if outcome is None or outcome.built is None or outcome.evaluate is None or outcome.status != "solved":
         return []
@@ -89,7 +89,7 @@ def guesses(view: View) -> list[Guess]:
 
 
 def as_kept(view: View) -> Evaluator | None:
-    """What evaluates at the solved positions with every kept size as it is written."""
+    """Returns an evaluator at the solved positions with every kept size as written."""
     outcome = view.outcome
     if outcome is None or outcome.evaluate is None:
         return None
@@ -120,14 +120,14 @@ def _factor(unit: str) -> float:
 
 
 def _agreed(values: list[float]) -> float | None:
-    """What all of the values are; None where they differ or one is no number."""
+    """Returns the common value; None if values differ or one is no number."""
     first = values[0]
     same = all(abs(value - first) <= _SAME * max(1.0, abs(first)) for value in values)
     return first if same and math.isfinite(first) else None
 
 
 def _is_open(became: Expression) -> bool:
-    """Whether the solver may change it: a number that was read while building is a constant after all."""
+    """True if the solver may change it: a number that was read while building is a constant after all."""
     return any(not unknown.exact for unknown in ex.unknowns([became]))
 
 
@@ -139,7 +139,7 @@ def _is_kept(became: Expression) -> bool:
 
 
 def _read_more_than_once(view: View) -> Iterator[ast.Node]:
-    """The numbers that stand behind a name which is read more than once: another use may compute with it."""
+    """Yields the numbers of a name that is read more than once: another use may compute with it."""
     uses = view.resolution.uses
     reads = Counter(symbol for node, symbol in uses.items() if isinstance(node, ast.Name))
     for node in ast.walk(view.module):
@@ -149,7 +149,7 @@ def _read_more_than_once(view: View) -> Iterator[ast.Node]:
 
 
 def _named(view: View, node: ast.Node) -> Iterator[tuple[tuple[ast.Identifier, ...], ast.Expression]]:
-    """Names that read parts of an expression as it stands."""
+    """Yields names with the parts of an expression that they read as it stands."""
     match node:
         case ast.Let(name=name, value=value):
             yield (name,), value
@@ -173,7 +173,7 @@ def _named(view: View, node: ast.Node) -> Iterator[tuple[tuple[ast.Identifier, .
 def _given_to_function(
     view: View, call: ast.Call
 ) -> Iterator[tuple[tuple[ast.Identifier, ...], ast.Expression]]:
-    """What a call of a `fn` is given: any of its parameters may be read more than once."""
+    """Yields the arguments of a `fn`: any of its parameters may be read more than once."""
     signature = chosen(view, call)
     if signature is not None and isinstance(signature.node, ast.FunctionDefinition):
         names = tuple(parameter.name for parameter in signature.node.parameters)

@@ -1,5 +1,5 @@
-"""What an editor shows between the words: what first guesses were solved to, the meaning in which an
-ambiguous call was taken, and values of `param`s that were set from outside.
+"""Inlay hints: the solved values of first guesses, the chosen meaning of an ambiguous call, and values of
+`param`s that were set from outside.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class InlayKind(StrEnum):
 
 @record()
 class Inlay:
-    """A hint behind what stands before an offset; `edits` write it into the text, where that can be done."""
+    """A hint shown at an offset; `edits` write it into the text, if that can be done."""
 
     offset: int
     text: str
@@ -41,7 +41,7 @@ class Inlay:
 
 
 def inlays(view: View, span: Span | None = None) -> list[Inlay]:
-    """The hints in a part of the text, or in all of it; none while it is not the text that is drawn."""
+    """Returns the hints in a part of the text, or in all of it; none while another text is drawn."""
     if view.outcome is None or view.outcome.model is None or view.is_stale:
         return []
     found = [*_solved(view), *_readings(view), *_set_from_outside(view)]
@@ -77,7 +77,7 @@ def _readings(view: View) -> Iterator[Inlay]:
 
 
 def _set_from_outside(view: View) -> Iterator[Inlay]:
-    """The values that a run was given for `param`s, where they are not those of the text."""
+    """Yields the `param` values given to a run, if they differ from the text."""
     assert view.outcome is not None
     given = {fold(name.strip()) for name in view.params or ()}
     values = {node.span: node.value for node in ast.walk(view.module) if isinstance(node, ast.Param)}
@@ -93,7 +93,7 @@ def _set_from_outside(view: View) -> Iterator[Inlay]:
 
 
 def _as_written(node: ast.Expression) -> Scalar | None:
-    """The value that a literal stands for; None for any other expression."""
+    """Returns the value of a literal; None for any other expression."""
     match node:
         case ast.String(value=value) | ast.Boolean(value=value):
             return value

@@ -1,4 +1,4 @@
-"""What is said above each structure: whether it solves, and what in it can still move."""
+"""Lenses above structures: whether each solves, and its remaining motions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.view import View
 
 _NAMED = 3
-"""Things that one title names, and different things that it says."""
+"""Most things that one title names, and most different statements in it."""
 _HELD = "fully constrained"
 
 
@@ -27,7 +27,7 @@ class Lens:
 
 
 def lenses(view: View) -> list[Lens]:
-    """One for each structure of the text that was solved; none while the text is being solved."""
+    """Returns one lens for each structure of the solved text; none while it is being solved."""
     outcome = view.outcome
     if outcome is None or outcome.model is None:
         return []
@@ -64,7 +64,7 @@ def _status(outcome: Compiled, model: SolvedModel) -> str:
 def _title(
     found: Sequence[SolvedStructure], motions: Sequence[Motion], reports: Sequence[ConstraintReport]
 ) -> str:
-    """What is said of the structures that one piece of text made."""
+    """Returns the title for the structures that one piece of text made."""
     said = list(dict.fromkeys(_one(structure, motions, reports) for structure in found))
     times = f"{len(found)} times · " if len(found) > 1 else ""
     return times + first_few(said, _NAMED, " …", " | ")
@@ -88,6 +88,6 @@ def _one(structure: SolvedStructure, motions: Sequence[Motion], reports: Sequenc
 
 
 def _names(motion: Motion, inside: str) -> str:
-    """What moves, as it is called in a structure; nothing for the structure itself."""
+    """Returns the moving things as named in a structure; "" for the structure itself."""
     names = [thing.removeprefix(inside) for thing in motion.things if thing.startswith(inside)]
     return first_few(names, _NAMED, " …") + " " * bool(names)

@@ -1,4 +1,4 @@
-"""The files that a program names in its imports."""
+"""Links to imported files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Link:
 
 
 def links(view: View) -> list[Link]:
-    """In the order of writing; none for a file that cannot be read."""
+    """Returns the links in order of writing; none for a file that cannot be read."""
     found = []
     for statement in view.module.statements:
         target = view.resolution.imports.get(statement) if isinstance(statement, ast.Import) else None

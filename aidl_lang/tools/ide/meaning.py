@@ -1,4 +1,4 @@
-"""What each name in a text means: the one table that hover, definitions, references and renaming read."""
+"""The meaning of each name in a text: the one table for hover, definitions, references and renaming."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Place: TypeAlias = tuple[Path, int]
 
 @record()
 class Mention:
-    """A name where it is written. `node` is what it names there: a Name, Member, Call, Identifier, …"""
+    """One occurrence of a name. `node` is the named node: a Name, Member, Call, Identifier, …"""
 
     span: Span
     node: ast.Node
@@ -34,13 +34,13 @@ class Mention:
 
 
 def mentions(view: View, module: ast.Module | None = None) -> Iterator[Mention]:
-    """Every name of the file, or of one that it imports, whose meaning is known."""
+    """Yields every name of the file, or of one that it imports, whose meaning is known."""
     for node in ast.walk(module or view.module):
         yield from _mentions_of(view, node)
 
 
 def mention_at(view: View, offset: int) -> Mention | None:
-    """The name at an offset, or that ends there."""
+    """Returns the name at an offset, or that ends there."""
     for node in reversed(around(view.module, offset)):
         for mention in _mentions_of(view, node):
             if mention.span.start <= offset <= mention.span.end:
@@ -49,7 +49,7 @@ def mention_at(view: View, offset: int) -> Mention | None:
 
 
 def place_of(view: View, symbol: Symbol) -> Place | None:
-    """Where a symbol is declared first; None for what is built in."""
+    """Returns the first declaration of a symbol; None for a built-in."""
     if not symbol.declarations:
         return None
     first = symbol.declarations[0].span
@@ -78,7 +78,7 @@ def _mentions_of(view: View, node: ast.Node) -> Iterator[Mention]:
 
 
 def _as_written(view: View, call: ast.Call, symbol: Symbol) -> Symbol:
-    """The alias that a call names, where it does not name what it calls."""
+    """Returns the alias that a call uses, else the symbol itself."""
     if fold(call.callee.text) == fold(symbol.name):
         return symbol
     for scope in scope_at(view, call.span.start).chain():
@@ -88,7 +88,7 @@ def _as_written(view: View, call: ast.Call, symbol: Symbol) -> Symbol:
 
 
 def chosen(view: View, call: ast.Call) -> Signature | None:
-    """The overload that a call means; of several that fit, the best."""
+    """Returns the overload that a call means; of several that fit, the best."""
     fits = view.program.inference.fits.get(call)
     return fits[0].signature if fits else None
 
@@ -105,7 +105,7 @@ def _named_arguments(view: View, call: ast.Call) -> Iterator[Mention]:
 
 
 def parameter(view: View, signature: Signature, name: str) -> Symbol:
-    """The parameter of a callable by its name."""
+    """Returns the parameter of a callable by its name."""
     node = parameter_node(signature, name)
     if node is not None and signature.node is not None:
         view.resolution.scope_of(signature.node)  # which enters the names of a library definition
@@ -115,13 +115,15 @@ def parameter(view: View, signature: Signature, name: str) -> Symbol:
 
 
 def parameter_node(signature: Signature, name: str) -> ast.Parameter | None:
-    """Where a definition declares a parameter; None for what is built in."""
+    """Returns the declaration of a parameter; None for a built-in."""
     parameters = (signature.node.parameters or ()) if signature.node is not None else ()
     return next((p for p in parameters if p.name.text == name), None)
 
 
 def free_name(view: View, name: str) -> str:
-    """The name, or the first with a number behind it, that neither the text nor the library has."""
+    """Returns the name, or the first one with a number appended, that neither the text nor the library
+    has.
+    """
     taken = {fold(node.text) for node in ast.walk(view.module) if isinstance(node, ast.Identifier | ast.Name)}
     taken |= set(map(fold, view.program.library.callables))
     candidate, count = name, 1
@@ -132,7 +134,7 @@ def free_name(view: View, name: str) -> str:
 
 
 def _imported_names(view: View, node: ast.Import) -> Iterator[Mention]:
-    """`import a, b from "file"`: what each name is there."""
+    """Yields the meaning of each name in `import a, b from "file"`."""
     target = view.resolution.imports.get(node)
     if target is None:
         return

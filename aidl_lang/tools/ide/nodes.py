@@ -1,4 +1,4 @@
-"""From an offset in a text to the nodes and the token that stand there."""
+"""Finds the nodes and the token at an offset."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from aidl_lang.tools.ide.view import View
 
 
 def around(module: ast.Module, offset: int) -> list[ast.Node]:
-    """The nodes that an offset lies in or at the end of, the file first, the innermost last."""
+    """Returns the nodes that an offset lies in or at the end of, the file first, the innermost last."""
     path: list[ast.Node] = [module]
     while (inner := _child_at(path[-1], offset)) is not None:
         path.append(inner)
@@ -19,7 +19,7 @@ def around(module: ast.Module, offset: int) -> list[ast.Node]:
 
 
 def _child_at(node: ast.Node, offset: int) -> ast.Node | None:
-    """The child that an offset lies in; of two that touch there, the one that begins."""
+    """Returns the child that an offset lies in; of two that touch there, the one that begins."""
     touching = None
     for child in ast.children(node):
         if child.span.start <= offset < child.span.end:
@@ -30,14 +30,14 @@ def _child_at(node: ast.Node, offset: int) -> ast.Node | None:
 
 
 def scope_at(view: View, offset: int) -> Scope:
-    """The innermost scope around an offset."""
+    """Returns the innermost scope around an offset."""
     scopes = view.resolution.scopes
     path = around(view.module, offset)
     return next(scopes[node] for node in reversed(path) if node in scopes and _opens_here(node, offset))
 
 
 def _opens_here(node: ast.Node, offset: int) -> bool:
-    """Whether an offset lies where the names of a node are seen: its head belongs to what is around it."""
+    """True if the names of a node are visible at an offset: its head belongs to what is around it."""
     match node:
         case ast.Structure(parameters=None) | ast.For():
             return node.body.span.start < offset <= node.body.span.end
@@ -46,7 +46,7 @@ def _opens_here(node: ast.Node, offset: int) -> bool:
 
 
 def token_at(view: View, offset: int) -> Token | None:
-    """The token that an offset lies in, or else the one that ends there."""
+    """Returns the token that an offset lies in, or else the one that ends there."""
     touching = None
     for token in view.tokens.tokens:
         if token.start <= offset < token.end:
@@ -57,7 +57,7 @@ def token_at(view: View, offset: int) -> Token | None:
 
 
 def structures_around(view: View, offset: int) -> Iterator[ast.Structure]:
-    """The structures whose bodies an offset lies in, innermost first."""
+    """Yields the structures whose bodies an offset lies in, innermost first."""
     for node in reversed(around(view.module, offset)):
         if isinstance(node, ast.Structure) and node.body.span.start < offset:
             yield node

@@ -1,4 +1,4 @@
-"""How the overloads of a call take the arguments that it has so far, and which of them is meant."""
+"""Matches the overloads of a call with its arguments so far, and finds the meant one."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
 
 _WRONG = 100
-"""What an argument that does not fit costs, against the conversions of those that do."""
+"""Cost of an argument that does not fit, against the conversions of those that do."""
 _GATHERED = 1
 
 
@@ -31,7 +31,7 @@ class Reading:
 
     @property
     def fits(self) -> bool:
-        """Whether nothing that is given so far speaks against it."""
+        """True if no argument so far contradicts it."""
         return self.cost < _WRONG
 
     def type_of(self, parameter: str) -> Type | None:
@@ -39,12 +39,12 @@ class Reading:
 
     @property
     def open(self) -> list[tuple[str, Type, bool]]:
-        """The parameters that get nothing yet."""
+        """The parameters without an argument yet."""
         return [p for p in self.signature.parameters if p[0] not in self.taken]
 
 
 def readings(program: Program, scope: Scope, call: ast.Call) -> list[Reading]:
-    """Of all overloads of a call: those that fit first, the nearest first, else as they are defined."""
+    """Returns the readings of a call: those that fit, the nearest first; else all as they are defined."""
     candidates = program.resolution.candidates.get(call)
     if candidates is None:
         found = scope.called(call.callee.text)
@@ -78,7 +78,7 @@ def _read(signature: Signature, words: Sequence[str | None], kinds: Sequence[Typ
 
 
 def meant(signature: Signature, word: str, taken: set[str]) -> str | None:
-    """The parameter that an argument's name stands for, by itself or as the only one that it can mean."""
+    """Returns the parameter of a named argument, by its name or as the only one it can mean."""
     if (name := signature.by_fold.get(fold(word))) is not None:
         return name
     names = (signature.by_fold.get(fold(m)) for m in PARAMETERS.get(fold(word), ()))
@@ -87,7 +87,7 @@ def meant(signature: Signature, word: str, taken: set[str]) -> str | None:
 
 
 def _positional(signature: Signature, words: Sequence[str | None], kinds: Sequence[Type]) -> list[str]:
-    """The parameters of the arguments without a name, in order."""
+    """Returns the parameters of the arguments without a name, in order."""
     names = [name for name, _, _ in signature.parameters]
     count = sum(word is None for word in words)
     if _gathers(signature, words, kinds):
@@ -101,6 +101,6 @@ def _positional(signature: Signature, words: Sequence[str | None], kinds: Sequen
 
 
 def _gathers(signature: Signature, words: Sequence[str | None], kinds: Sequence[Type]) -> bool:
-    """Whether the arguments without a name are the members of the list that comes first."""
+    """True if the arguments without a name are the members of the list that comes first."""
     first = [kind for word, kind in zip(words, kinds, strict=True) if word is None][:2]
     return signature.gathers and not (len(first) == 1 and isinstance(first[0], ListType))

@@ -1,4 +1,4 @@
-r"""Offsets in a text ↔ lines and characters as protocols count them: in UTF-16 units, or as agreed.
+r"""Converts between offsets in a text and lines and characters of protocols: in UTF-16 units, or as agreed.
 
 Lines end with `\n`, `\r\n` or `\r`. Lines and characters count from 0.
 """
@@ -19,7 +19,7 @@ _WIDE = {"utf-16": re.compile("[\U00010000-\U0010ffff]"), "utf-8": re.compile("[
 
 
 class Unit(StrEnum):
-    """What characters of a line are counted in."""
+    """The unit in which characters of a line are counted."""
 
     UTF_8 = "utf-8"
     UTF_16 = "utf-16"
@@ -27,7 +27,7 @@ class Unit(StrEnum):
 
 
 class Positions:
-    """Places of one text. Making it reads the text once; a look-up takes a few comparisons."""
+    """Positions in one text. Making it reads the text once; a look-up takes a few comparisons."""
 
     def __init__(self, text: str, unit: Unit = Unit.UTF_16) -> None:
         self._starts, self._ends = [0], []
@@ -46,14 +46,18 @@ class Positions:
         return len(self._starts)
 
     def position(self, offset: int) -> Position:
-        """Where an offset is; one outside the text is taken to its end, one in a line break to its start."""
+        """Returns the position of an offset; one outside the text is taken to its end, one in a line break to
+        its start.
+        """
         offset = max(0, min(offset, self._ends[-1]))
         line = bisect_right(self._starts, offset) - 1
         offset = min(offset, self._ends[line])
         return line, self._units(offset) - self._units(self._starts[line])
 
     def offset(self, line: int, character: int) -> int:
-        """The offset of a place; beyond a line it is the end of it, within a character its start."""
+        """Returns the offset of a position; beyond a line it is the end of it, within a character its
+        start.
+        """
         if line < 0:
             return 0
         if line >= self.lines:
@@ -65,11 +69,11 @@ class Positions:
         return start + bisect_right(range(start, end), wanted, key=self._units) - 1
 
     def length(self, start: int, end: int) -> int:
-        """Units from one offset to another, line breaks included."""
+        """Returns the units from one offset to another, line breaks included."""
         return self._units(end) - self._units(start)
 
     def _units(self, offset: int) -> int:
-        """Units before an offset."""
+        """Returns the units before an offset."""
         return offset + self._more[bisect_left(self._wide, offset)]
 
 

@@ -1,4 +1,4 @@
-"""Dragging: which points of a drawing can be moved, where all goes then, what that changes in the text."""
+"""Dragging: the movable points of a drawing, their motion, and the edits it makes in the text."""
 
 from aidl_lang.tools.ide.dragging.drag import MOST_HANDLES, Dragged, Handle, drag, handles
 from aidl_lang.tools.ide.dragging.grips import grips, is_somewhere

@@ -1,4 +1,4 @@
-"""Points that follow a `param`: which ones do is found by turning each a little, and how far by a secant."""
+"""Points that follow a `param`: found by turning each param a little; the value wanted by a secant."""
 
 from __future__ import annotations
 
@@ -22,30 +22,30 @@ from aidl_lang.tools.ide.view import View, run
 
 MOST_KNOBS = 12
 _SECONDS = 0.6
-"""For trying all params once; those that are left are not dragged by."""
+"""Time for trying all params once; the rest are not used for dragging."""
 _NUDGE = 1e-3
-"""How far a param is turned to see what follows, as a share of its range or value."""
+"""Change of a param that shows what follows it, as a share of its range or value."""
 _FOLLOWS = 1e-2
-"""Millimetres for one of its units by which a point follows a param at least."""
+"""Least motion of a point that follows a param, mm per unit."""
 _LAZY = 0.1
-"""Millimetres for one of its units of a param that half as gladly is turned as one that does much."""
+"""Motion per unit, mm, at which a param is preferred half as much as one with a large effect."""
 _ROUNDS = 3
 _BESIDE = 0.3
-"""Sine of the angle between the ways of two params that are not the same way."""
+"""Sine of the least angle between the ways of two params that count as different."""
 
 Slopes = Mapping[str, Vec]
-"""For each param by its path, the way of a point as it is turned by one unit."""
+"""Per param path, the velocity of a point per unit of the param."""
 
 
 def moved_by_params(view: View, known: Sequence[Grip]) -> dict[str, tuple[str, ...]]:
-    """The params, by name, that each point follows."""
+    """Returns the params, by name, that each point follows."""
     ids = {grip.id for grip in known}
     return {i: tuple(p.rpartition(".")[2] for p in s) for i, s in _slopes(view).items() if i in ids}
 
 
 def turned(view: View, grip: Grip, to: Vec, step: float) -> tuple[View, Vec, tuple[Edit, ...]] | Refusal:
-    """The program with one or two params turned so that a point comes near a place, the point, and the edits
-    of their defaults.
+    """Returns the program with one or two params changed so that a point comes near a place, the point, and
+    the edits of their defaults.
     """
     slopes = dict(_slopes(view).get(grip.id, {}))
     values: dict[str, float] = {}
@@ -77,7 +77,7 @@ def turned(view: View, grip: Grip, to: Vec, step: float) -> tuple[View, Vec, tup
 
 @lru_cache(maxsize=4)
 def _slopes(view: View) -> Mapping[str, Slopes]:
-    """For each point that follows params, its ways."""
+    """Returns the slopes of each point that follows params."""
     outcome = view.outcome
     if outcome is None or outcome.built is None or outcome.evaluate is None or outcome.status != "solved":
         return {}
@@ -97,7 +97,7 @@ def _slopes(view: View) -> Mapping[str, Slopes]:
 
 
 def _numeric(view: View) -> Iterator[Knob]:
-    """The params whose numbers are written in the text of the view, and not set from outside."""
+    """Yields the params with a number in the text of the view that are not set from outside."""
     assert view.outcome is not None
     given = {fold(name.strip()) for name in view.params or ()}
     for knob in view.outcome.knobs:
@@ -107,7 +107,7 @@ def _numeric(view: View) -> Iterator[Knob]:
 
 
 def _declaration(view: View, knob: Knob) -> ast.Param | None:
-    """Where the text says the value of a param as a number."""
+    """Returns the declaration of a param whose value is a number in the text."""
     if knob.span is None or knob.span.source is not view.source:
         return None
     if (node := view.params_written.get(knob.span)) is None:
@@ -117,7 +117,7 @@ def _declaration(view: View, knob: Knob) -> ast.Param | None:
 
 
 def _set(view: View, path: str, value: float) -> Iterator[Edit]:
-    """Raises RefusalError where the value does not fit."""
+    """Yields the edits that set a param. Raises RefusalError for a value that does not fit."""
     for knob in view.outcome.knobs if view.outcome is not None else ():
         declared = _declaration(view, knob)
         if knob.path == path and declared is not None:
@@ -133,7 +133,7 @@ def _nudge(knob: Knob) -> float:
 
 
 def _places(view: View, values: Mapping[str, float]) -> dict[str, Vec]:
-    """Where all points are with other values of params; empty where it does not solve."""
+    """Returns all points with other values of params; empty if that does not solve."""
     found = pipeline.placed(view.program, {**(view.params or {}), **values})
     if found is None:
         return {}
@@ -158,8 +158,8 @@ def _place_in(view: View, grip: str) -> Vec | None:
 def _value(
     view: View, grip: str, path: str, values: Mapping[str, float], to: Vec, way: Vec, step: float
 ) -> float | None:
-    """The value of a param for which a point comes nearest to a place along its way; None where nothing
-    solves but what is there.
+    """Returns the param value that brings a point nearest to a place along its way; None if only the present
+    one solves.
     """
     assert view.outcome is not None
     knob = next(k for k in view.outcome.knobs if k.path == path)
@@ -185,8 +185,8 @@ def _value(
 
 
 def _promise(view: View, path: str, wanted: Vec, way: Vec) -> float:
-    """How far of a wanted way a param could take a point within its range, the more gladly the more it does
-    for each of its units.
+    """Returns how far a param could move a point along a wanted way within its range, weighted by its effect
+    per unit.
     """
     assert view.outcome is not None
     knob = next(k for k in view.outcome.knobs if k.path == path)
@@ -203,7 +203,7 @@ def _clamped(knob: Knob, value: float) -> float:
 
 
 def _rounded(knob: Knob, value: float, tolerance: float) -> float:
-    """To the steps of a param, or to few digits; at its ends as it is."""
+    """Rounds a value to the steps of a param, or to few digits; keeps the ends of its range."""
     if value in (knob.low, knob.high):
         return value
     if knob.step:
@@ -214,7 +214,7 @@ def _rounded(knob: Knob, value: float, tolerance: float) -> float:
 
 
 def _along(v: Vec, way: Vec) -> float:
-    """The length of a vector along a way."""
+    """Returns the length of a vector along a way."""
     return (v[0] * way[0] + v[1] * way[1]) / math.hypot(*way)
 
 

@@ -1,8 +1,7 @@
-"""Taking hold of a point of the drawing: what can be moved, where everything goes when it is, and how the
-text has to change for that.
+"""Drags a point of the drawing: the movable points, the new drawing, and the edits of the text.
 
-A point moves by what the text leaves open, in this order: first guesses, as the points of a sketch do; the
-sizes of what it is a point of; a `param`; and the place of the drawing as a whole, by first guesses again.
+A point moves by what the text leaves open, in this order: first guesses, as the points of a sketch do; its
+own sizes; a `param`; and the place of the drawing as a whole, by first guesses again.
 """
 
 from __future__ import annotations
@@ -30,15 +29,15 @@ from aidl_lang.tools.ide.refusing import Refusal
 from aidl_lang.tools.ide.view import View, edited
 
 STEP = 0.1
-"""Millimetres to which numbers are rounded that dragging writes."""
+"""Step to which dragging rounds the numbers it writes, mm."""
 MOST_HANDLES = 60
 _MOST_GRIPS = 400
-"""Points of a model that are looked at; the outermost ones of a larger model."""
+"""Most points considered; of a larger model the outermost ones."""
 _FARTHEST = 1e6
-"""Millimetres from the origin that a point may be dragged."""
+"""Farthest place from the origin to which a point may be dragged, mm."""
 _FINE = 1e-6
 _NAMED = 2
-"""Params that a hint names."""
+"""Most params that a hint names."""
 
 
 @record()
@@ -58,8 +57,8 @@ class Handle:
 
 @record()
 class Dragged:
-    """What comes of dragging a point: `view` is the program as it is shown meanwhile, `at` where the point
-    came to. `edits` are tried, which takes longer than the rest.
+    """The result of dragging a point: `view` is the program as shown meanwhile, `at` the place of the point.
+    `edits` are tried, which takes longer than the rest.
     """
 
     view: View
@@ -71,14 +70,14 @@ class Dragged:
 
     @cached_property
     def edits(self) -> tuple[Edit, ...] | Refusal:
-        """What puts the point there for good: the numbers that changed by it, and nothing else."""
+        """Returns the edits that keep the point there: only the numbers that changed."""
         if self._settled is not None:
             return self._settled
         return _edits(self._origin, self)
 
 
 def handles(view: View, *, params: bool = True) -> list[Handle]:
-    """The points that can be dragged; without `params`, only those that take no further runs to tell."""
+    """Returns the points that can be dragged; without `params`, only those found without further runs."""
     found = [*_by_numbers(view)]
     if params and view.outcome is not None and view.outcome.built is not None:
         taken = {handle.id for handle in found if not _is_slide(view, handle.id)}
@@ -93,7 +92,7 @@ def handles(view: View, *, params: bool = True) -> list[Handle]:
 
 
 def drag(view: View, handle: str, to: Vec, step: float = STEP) -> Dragged | Refusal:
-    """The program with a point dragged towards a place, as near as it can come."""
+    """Returns the program with a point dragged as near to a place as it can come."""
     if not (is_somewhere(to) and max(abs(to[0]), abs(to[1])) <= _FARTHEST):
         return Refusal("that place is too far away")
     if not (math.isfinite(step) and step > 0):
@@ -148,7 +147,7 @@ def _ways(view: View) -> Ways:
 
 @lru_cache(maxsize=4)
 def _editable(view: View) -> tuple[Guess, ...]:
-    """The numbers that dragging may write."""
+    """Returns the numbers that dragging may write."""
     return tuple(guess for guess in guesses(view) if not guess.is_shared)
 
 
@@ -178,13 +177,13 @@ def _by_numbers(view: View) -> Iterator[Handle]:
 
 
 def _is_slide(view: View, handle: str) -> bool:
-    """Whether a point is moved by what moves everything."""
+    """True for a point that moves only with everything else."""
     known = _ways(view)
     return handle in known.whole and handle not in known.own and handle not in known.sizes
 
 
 def _outermost(view: View, found: list[Handle]) -> list[Handle]:
-    """One for each place, those of outer things before those of inner ones, and far ones before near ones."""
+    """Returns one handle for each place, those of outer things first, and far ones before near ones."""
     outcome = view.outcome
     if outcome is None or outcome.model is None:
         return []
@@ -236,7 +235,7 @@ def _pulled(view: View, grip: Grip, to: Vec, step: float) -> Dragged | Refusal:
 
 
 def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...] | Refusal:
-    """The fewest and shortest numbers for which the point comes to lie where it was shown."""
+    """Returns the fewest and shortest numbers that place the point as shown."""
     shown = dragged.view.outcome
     assert shown is not None
     changed = _changed(view, shown)
@@ -256,7 +255,7 @@ def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...] | Refusal:
 
 
 def _changed(view: View, shown: Compiled) -> list[tuple[Guess, float]]:
-    """The numbers that were solved to something else by the dragging, and to what."""
+    """Returns the numbers that dragging changed, with their new values."""
     assert view.outcome is not None
     assert view.outcome.evaluate is not None
     assert shown.evaluate is not None
@@ -276,7 +275,7 @@ def _written_as(view: View, numbers: list[tuple[Guess, float]], step: float) -> 
 
 
 def _comes_to(view: View, edits: tuple[Edit, ...], dragged: Dragged, tolerance: float) -> bool:
-    """Whether the edited text solves, says nothing worse, and has the point where it was shown."""
+    """Tells whether the edited text solves, without new errors, with the point where it was shown."""
     again = edited(view, edits)
     assert again.outcome is not None
     assert view.outcome is not None
@@ -288,7 +287,7 @@ def _comes_to(view: View, edits: tuple[Edit, ...], dragged: Dragged, tolerance: 
         return False
     if math.dist(grip.at(again.outcome.evaluate), dragged.at) <= tolerance:
         return True
-    # A drawing whose place the text does not say may come to lie elsewhere.
+    # A drawing that the text does not place may move as a whole.
     shown = dragged.view.outcome
     is_same_shape = shown is not None and is_same(shown, again.outcome, slid=True, tolerance=tolerance)
     return is_same_shape and not _is_slide(view, grip.id)

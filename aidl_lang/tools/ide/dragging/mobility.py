@@ -1,4 +1,4 @@
-"""Which points of a solved model can be moved, and by which of its numbers: linear algebra at the solution.
+"""The movable points of a solved model and the numbers that move them: linear algebra at the solution.
 
 A small motion is possible where no equation that holds minds it. The motions of positions alone say where a
 first guess moves a point; those of positions and sizes together, where a size would.
@@ -32,21 +32,21 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 MOST_UNKNOWNS = 300
-"""Unknowns that hang together; a larger part of a model is not looked at."""
+"""Most unknowns of a connected part that is analysed."""
 _RANK = 1e-9
 _MOVES = 1e-6
-"""Velocities that count as none, where one is typical."""
+"""Velocity, relative to a typical one, below which a point stands still."""
 _HOLDS = 1e-6
 _NARROW = 1e-3
-"""A second direction counts if it is this much of the first."""
+"""Least size of a second direction, relative to the first."""
 AXES: tuple[Vec, Vec] = ((1.0, 0.0), (0.0, 1.0))
 _NOWHERE = Span(SourceFile("dragging", ""), 0, 0)
 
 
 @record()
 class Way:
-    """How a point can be moved: along any of some directions (unit vectors, one or two), while another point,
-    by its id, is to stay where it is, for else everything would be drawn along.
+    """The motion of a point: along any of some directions (unit vectors, one or two), while another point, by
+    its id, stays, since otherwise everything would move along.
     """
 
     directions: tuple[Vec, ...]
@@ -55,10 +55,9 @@ class Way:
 
 @record()
 class Ways:
-    """
-    own    points that a first guess moves against others
+    """own    points that a first guess moves against others
     sizes  points that a kept size of their own moves
-    whole  points that move as the drawing slides as a whole, by first guesses too
+    whole  points that move with the whole drawing, by first guesses too
     """
 
     own: Mapping[str, Way] = field(default_factory=dict)
@@ -67,7 +66,9 @@ class Ways:
 
 
 def pull(model: Model, grip: Grip, directions: Sequence[Vec], to: Vec, weight: float | None) -> Constraint:
-    """The wish that a point be somewhere, as far as some directions tell; without a weight, the command."""
+    """Returns the wish that a point be somewhere, along some directions; without a weight, a hard
+    constraint.
+    """
     rows = []
     for u, v in directions:
         x, y = ex.mul(ex.constant(u), grip.x), ex.mul(ex.constant(v), grip.y)
@@ -83,7 +84,7 @@ def ways(
     written: AbstractSet[Unknown],
     movable: AbstractSet[Unknown],
 ) -> Ways:
-    """How each point can be moved; `written` are the unknowns that a number of the text stands for."""
+    """Returns the ways of all points; `written` are the unknowns with a number in the text."""
     wishes = {grip: pull(model, grip, AXES, grip.at(evaluate), 1.0) for grip in grips}
     lowered = lower(replace(model, constraints=[*model.constraints, *wishes.values()]))
     scene = _Scene(lowered, evaluate, wishes, written, movable)
@@ -112,13 +113,13 @@ def movable(model: Model, evaluate: Evaluator, written: AbstractSet[Unknown]) ->
 
 
 def values_at(lowered: Lowered, evaluate: Evaluator) -> Floats:
-    """The solved values (n,) of the unknowns of a problem."""
+    """Returns the solved values (n,) of the unknowns of a problem."""
     values = evaluate.values
     return np.array([values.get(u, u.guess) for u in lowered.unknowns], dtype=np.float64)
 
 
 class _Scene:
-    """The equations that hold and the points, over the unknowns that may move, in typical units."""
+    """The satisfied equations and the points, over the movable unknowns, in typical units."""
 
     def __init__(
         self,
@@ -150,7 +151,7 @@ class _Scene:
         self.equations = len(equal)
 
     def parts(self) -> Iterator[_Part]:
-        """What hangs together and has points in it."""
+        """Yields connected parts that contain points."""
         count, width = len(self.matrix), len(self.unknowns)
         x = self.equations + 2 * np.arange(len(self.grips))
         links = np.concatenate((self.matrix.rows, x)), np.concatenate((self.matrix.columns + count, x + 1))
@@ -163,7 +164,7 @@ class _Scene:
 
 
 class _Part:
-    """Points that hang together, by their ids, and how they can be moved (see `Ways`)."""
+    """Connected points, by their ids, with their possible motions (see `Ways`)."""
 
     def __init__(self, scene: _Scene, columns: Ints, equations: Ints, grips: Ints) -> None:
         self.scene, self.columns = scene, columns
@@ -181,7 +182,7 @@ class _Part:
         self.everything = _null_space(jacobian)
 
     def by_positions(self) -> tuple[dict[str, Way], dict[str, Way]]:
-        """The points that move against most others, and those that move with them."""
+        """Returns the points that move against most others, and those that move with them."""
         moved = self.velocity @ self.positions
         world = _World(moved, self.others)
         own: dict[str, Way] = {}
@@ -196,7 +197,7 @@ class _Part:
         return own, whole
 
     def by_sizes(self) -> dict[str, Way]:
-        """The points that move against most others where a size of what they are points of changes."""
+        """Returns the points that move against most others if a size of their own thing changes."""
         found: dict[str, Way] = {}
         for thing in dict.fromkeys(grip.thing for grip in self.grips):
             own = np.array([belongs(self.scene.unknowns[c], thing) for c in self.columns.tolist()])
@@ -212,11 +213,11 @@ class _Part:
         return found
 
     def _pin(self, world: _World) -> str | None:
-        """A point of those that are to stay, if they could be drawn along."""
+        """Returns a point that is to stay, if it could be drawn along."""
         return self.grips[world.member].id if world.member is not None else None
 
     def _is_written(self, moved: Floats) -> bool:
-        """Whether numbers of the text take part in the shortest motions that move a point."""
+        """True if numbers of the text take part in the shortest motions of a point."""
         return _moves((self.positions @ np.linalg.pinv(moved, rcond=_MOVES))[self.written])
 
     def _dense(self, rows: Ints) -> Floats:
@@ -224,7 +225,9 @@ class _Part:
 
 
 class _World:
-    """The most points that keep together in all motions: what stays while something else is dragged.
+    """The largest set of points that keep together in all motions: it stays while others are dragged.
+
+    velocity (2, d) of them all; `member` is one of them, if they move
 
     velocity (2, d) of them all; `member` is one of them, if they move
     """
@@ -246,7 +249,7 @@ class _World:
 
 
 def belongs(unknown: Unknown, thing: Geometry | Structure) -> bool:
-    """Whether a number is one of a geometry, or of a structure around it."""
+    """True for a number of a geometry, or of a structure around it."""
     holder: Geometry | Structure | None = unknown.holder
     if isinstance(holder, Structure):
         around = thing.owner if isinstance(thing, Geometry) else thing
@@ -259,7 +262,7 @@ def belongs(unknown: Unknown, thing: Geometry | Structure) -> bool:
 
 
 def _directions(velocity: Floats) -> tuple[Vec, ...]:
-    """The directions of the velocities (2, d) of a point; the axes where there are two."""
+    """Returns the directions of the velocities (2, d) of a point; the axes if there are two."""
     left, sizes, _ = np.linalg.svd(velocity, full_matrices=False)
     if len(sizes) > 1 and sizes[1] > _NARROW * sizes[0]:
         return AXES

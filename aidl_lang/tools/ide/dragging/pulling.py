@@ -1,4 +1,4 @@
-"""Pulling a point of a solved model towards a place: what has to moves along, and as little as may be."""
+"""Pulls a point of a solved model towards a place with as little other motion as possible."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from aidl_lang.tools.ide.dragging.grips import Grip, is_somewhere
 from aidl_lang.tools.ide.dragging.mobility import AXES, Way, pull, values_at
 
 _WEIGHT = 1e4
-"""Of the wish that the point be there, beside the preferences of the program."""
+"""Weight of the wish that moves the point, beside the preferences of the program."""
 _DEAR = 1e-3
-"""How much shorter a change is that counts as much as one of what is pulled, where it is only to follow."""
+"""Ratio of changes that count alike: of a number that only follows, and of one that is pulled."""
 _CHANGED = 1e-9
 _THERE = 1e-6
 _SETTINGS = Settings(tolerance=1e-10, seconds=1.0, explain=False)
@@ -30,9 +30,8 @@ _SETTINGS = Settings(tolerance=1e-10, seconds=1.0, explain=False)
 
 @record()
 class Pull:
-    """
-    way      how the point can go, and `pin` the point that stays meanwhile
-    written  what numbers of the text say, `movable` that and what follows it
+    """way      how the point can go, and `pin` the point that stays meanwhile
+    written  numbers in the text; `movable` those and what follows them
     sizes    kept sizes that are to change; positions then only follow
     """
 
@@ -45,9 +44,9 @@ class Pull:
 
 
 def pulled(outcome: Compiled, pull: Pull, to: Vec) -> tuple[Compiled, Vec] | None:
-    """The outcome with the point as near to a place as it can come, and where that is; None if the
-    constraints do not hold then. What no number of the text says moves only if nothing else will do. Raises
-    TooLongError.
+    """Returns the outcome with the point as near to a place as it can come, and its place; None if the
+    constraints do not hold then. Unknowns without a number in the text move only if nothing else will do.
+    Raises TooLongError.
     """
     if outcome.built is None or outcome.evaluate is None:
         return None
@@ -68,7 +67,7 @@ def pulled(outcome: Compiled, pull: Pull, to: Vec) -> tuple[Compiled, Vec] | Non
 
 
 def _wishing(model: Model, evaluate: Evaluator, by: Pull, to: Vec) -> Model:
-    """The model with the wish that the point be there, and the pin where it is."""
+    """Returns the model with the wish that moves the point, and the pin that holds another."""
     more = [pull(model, by.grip, by.way.directions, to, _WEIGHT)]
     if by.pin is not None:
         more.append(pull(model, by.pin, AXES, by.pin.at(evaluate), None))
@@ -78,8 +77,8 @@ def _wishing(model: Model, evaluate: Evaluator, by: Pull, to: Vec) -> Model:
 def _solved(
     lowered: Lowered, evaluate: Evaluator, by: Pull, loose: AbstractSet[Unknown]
 ) -> tuple[Solution, Vec] | None:
-    """The solution nearest to the present one in which only what is `loose` has moved, and sizes that are to;
-    and where the point is then. All is solved at once, since it all holds as it is.
+    """Returns the nearest solution that changes only `loose` unknowns and the sizes to change, and the
+    point's place. All is solved at once, since it all holds as it is.
     """
     problem, at = lowered.problem, values_at(lowered, evaluate)
     resized, said = _are(lowered, by.sizes), _are(lowered, by.written) & ~problem.kept

@@ -1,4 +1,4 @@
-"""Hover: what a word means, its type, and what it came out as."""
+"""Hover: the meaning of a word, its type, and its solved value."""
 
 from aidl_lang.tools.ide.hover.hover import Hover, hover
 

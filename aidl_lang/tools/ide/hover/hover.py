@@ -1,4 +1,4 @@
-"""Hover: what a word means, its type, and what it came out as."""
+"""Hover: the meaning of a word, its type, and its solved value."""
 
 from __future__ import annotations
 
@@ -55,8 +55,8 @@ class Hover:
 
 
 def hover(view: View, offset: int, end: int | None = None) -> Hover | None:
-    """What is to be said of the word at an offset, or of the expression that is selected from there to `end`;
-    None where there is nothing.
+    """Returns the hover for the word at an offset, or for the expression selected from there to `end`; None
+    for anything else.
     """
     if end is not None and end > offset:
         return _of_selection(view, offset, end)
@@ -100,7 +100,7 @@ def _of_name(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
 
 
 def _headed(view: View, mention: Mention) -> str:
-    """The line that says what a name is: its definition, or its type."""
+    """Returns the line that introduces a name: its definition, or its type."""
     symbol = mention.symbol
     fact = _fact(view, mention.node)
     kind = "" if fact is None or isinstance(fact.type, AnyType) else str(fact.type)
@@ -129,7 +129,7 @@ def _doc(symbol: Symbol) -> str:
 
 
 def _values(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
-    """What a name came out as, in a list."""
+    """Returns the solved values of a name as a list."""
     solved = solved_of(view)
     if solved is None:
         return not_solved(view)
@@ -138,7 +138,7 @@ def _values(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
         return ""
     found = solved.values(node, _body_path(mention, path))
     if mention.symbol.kind is SymbolKind.LOOP:
-        found = [replace(each, label="") for each in found]  # it would say the value twice
+        found = [replace(each, label="") for each in found]  # it would repeat the value
     told = lines(solved, _shown_name(node), found)
     if mention.symbol.kind is SymbolKind.PARAM and isinstance(mention.symbol.node, ast.Param):
         told = [line.replace(", exact (param)", ", param") for line in told]
@@ -150,7 +150,7 @@ def _shown_name(node: ast.Expression) -> str:
 
 
 def _expression(mention: Mention) -> ast.Expression | None:
-    """What to read to get the value of a name: the name, or for a declaration a name like it."""
+    """Returns the expression to evaluate for a name: the name itself, or for a declaration a name like it."""
     match mention.node:
         case ast.Name() | ast.Member() as node:
             return node
@@ -161,8 +161,8 @@ def _expression(mention: Mention) -> ast.Expression | None:
 
 
 def _body_path(mention: Mention, path: Sequence[ast.Node]) -> Sequence[ast.Node]:
-    """The nodes around a name, as those see it that use it: the members of an array belong to what is around
-    the loop, and its variable to the turns of it.
+    """Returns the nodes around a name as its readers see them: the members of an array belong outside the
+    loop, and its variable to the turns of it.
     """
     symbol = mention.symbol
     if symbol.is_array and mention.is_declaration:
@@ -186,7 +186,7 @@ def _range(symbol: Symbol) -> str:
 
 
 def _of_call(view: View, call: ast.Call, path: Sequence[ast.Node], symbol: Symbol) -> str:
-    """What a call means: its form first, then all that is said of the name."""
+    """Describes a call: its form first, then the name."""
     candidates = view.resolution.candidates.get(call, ())
     if not candidates:
         return ""
@@ -212,7 +212,7 @@ def _of_named_argument(view: View, argument: ast.Argument, path: Sequence[ast.No
 
 
 def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
-    """What is given for a parameter; of the geometry that is made of it, what became of it."""
+    """Describes a parameter's value; for the geometry made of it, the solved one."""
     solved = solved_of(view)
     made = next((n for n in reversed(path) if isinstance(n, ast.Assign)), None)
     if solved is None or made is None or argument.name is None:
@@ -234,7 +234,7 @@ def _is_made(made: ast.Assign, argument: ast.Argument) -> bool:
 
 
 def _of_selection(view: View, start: int, end: int) -> Hover | None:
-    """The value of the expression that is selected, blanks around it aside."""
+    """Returns the hover for the selected expression, ignoring blanks around it."""
     text = view.source.text[start:end]
     start, end = start + len(text) - len(text.lstrip()), end - len(text) + len(text.rstrip())
     path = around(view.module, start)

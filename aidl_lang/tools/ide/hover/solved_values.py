@@ -1,4 +1,4 @@
-"""What an expression of a text came out as: its values in the solved model, one for each time it is built.
+"""The values of an expression in the solved model, one for each time it was built.
 
 An expression in a template, a shape or a loop has as many values as there are instances and turns. It is read
 again in the scope that each of these had, and evaluated at the solved values of the unknowns.
@@ -27,19 +27,19 @@ from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.view import View
 
 MOST = 4
-"""Instances and turns that are told of."""
+"""Most instances and turns that are listed."""
 _LOOKED_AT = 200
 _LIMITS = Limits(entities=1_000, turns=2_000, depth=30, items=2_000, seconds=0.2)
-"""For reading one expression: far less than a program may ask for."""
+"""Limits for reading one expression: far less than a program may ask for."""
 _DEEPEST = 60
 _STEP = 1e-4
-"""How far things are moved to see whether a number changes with them, in mm or degrees."""
+"""Step by which things are moved to see whether a number changes with them, in mm or degrees."""
 _UNMOVED = 1e-3
 
 
 @record(eq=False)
 class Found:
-    """A value where it was built: `label` is which instance or turn, "" where there is but one."""
+    """A value where it was built: `label` names the instance or turn, "" for a single one."""
 
     label: str
     value: Value
@@ -64,8 +64,8 @@ class Solved:
         return frozenset(self.outcome.model.free) if self.outcome.model is not None else frozenset()
 
     def values(self, node: ast.Expression, path: Sequence[ast.Node]) -> list[Found]:
-        """The values of an expression, the first of many; `path` are the nodes around it, outermost first.
-        None of one that has an error in it, or makes something.
+        """Returns the values of an expression, the first of many; `path` are the nodes around it, outermost
+        first. Returns none for one that has an error in it, or makes something.
         """
         if _depth(node) > _DEEPEST:
             return []
@@ -79,7 +79,7 @@ class Solved:
         return found
 
     def read(self, node: ast.Expression, env: Env) -> Value | None:
-        """The value of an expression at a place; None where it has none that was solved."""
+        """Returns the value of an expression in a scope; None if it has no solved value."""
         it = self._interpreter()
         value = evaluate(it, node, env)
         if isinstance(value, Nothing) or has_errors(it.diagnostics) or it.unknowns:
@@ -87,7 +87,7 @@ class Solved:
         return value
 
     def number(self, value: Num) -> float | None:
-        """The solved value of a number that is spelled out; None where it stands on what was not solved."""
+        """Returns the solved value of a spelled-out number; None if it depends on something not solved."""
         if not self._known.issuperset(ex.unknowns([value.expression])):
             return None
         return self.evaluate(value.expression)
@@ -98,7 +98,7 @@ class Solved:
     # --- Where it was built ------------------------------------------------------------------------
 
     def _places(self, path: Sequence[ast.Node]) -> Iterator[tuple[str, Env]]:
-        """The instances of the body that a node stands in, and in each the turns of the loops around it."""
+        """Yields the instances of the body around a node, each with the turns of its loops."""
         number = _owner(path)
         if number is None:
             return
@@ -127,7 +127,7 @@ class Solved:
                 return
 
     def _turns(self, env: Env, inside: Sequence[ast.Node]) -> Iterator[tuple[str, Env]]:
-        """The environments of a place in a body: one for each turn of the loops around it."""
+        """Yields the environments of a place in a body: one for each turn of the loops around it."""
         loop = next((n for n, node in enumerate(inside) if isinstance(node, ast.For)), None)
         block = inside[:loop]
         for node in block:
@@ -151,7 +151,7 @@ class Solved:
     # --- How exact it is ---------------------------------------------------------------------------
 
     def moves(self, value: Num) -> bool | None:
-        """Whether a number changes with what can still move; None where that is not known."""
+        """Tells whether a number changes with the remaining motions; None if that is not known."""
         model = self.outcome.model
         if model is None:
             return None
@@ -173,7 +173,7 @@ class Solved:
 
 
 def solved_of(view: View) -> Solved | None:
-    """None where the text as it stands was not built and solved."""
+    """Returns the solved values of a view; None if its present text was not built and solved."""
     outcome = view.outcome
     if outcome is None or outcome.built is None or outcome.evaluate is None:
         return None
@@ -181,8 +181,8 @@ def solved_of(view: View) -> Solved | None:
 
 
 def _owner(path: Sequence[ast.Node]) -> int | None:
-    """The innermost node whose body the last one stands in; None within a function or a constraint, which
-    have no values of their own.
+    """Returns the innermost node with a body around the last one; None within a function or a constraint,
+    which have no values of their own.
     """
     for number in range(len(path) - 1, -1, -1):
         node = path[number]
@@ -202,7 +202,7 @@ def _owner(path: Sequence[ast.Node]) -> int | None:
 
 
 def _is_made_by(structure: Structure, node: ast.Structure) -> bool:
-    """Whether a structure was built from a definition: in place, or as an instance of the template."""
+    """Tells whether a structure was built from a definition: in place, or as an instance of the template."""
     if node.parameters is None:
         return structure.span == node.span
     scope = structure.scope
@@ -217,7 +217,7 @@ def _below(root: Structure, path: str) -> str:
 
 
 def _all_of(found: Iterable[Geometry]) -> Iterator[Geometry]:
-    """Geometry with the parts of which it is made."""
+    """Yields geometry with all its parts."""
     stack = list(found)
     while stack:
         yield (top := stack.pop(0))
@@ -225,7 +225,7 @@ def _all_of(found: Iterable[Geometry]) -> Iterator[Geometry]:
 
 
 def _with_lets(env: Env, block: ast.Block) -> Env:
-    """An environment with the names that a block of constraints, or a turn, has for expressions."""
+    """Returns the environment extended by the names of a block of constraints, or of a turn."""
     scope = Scope(env.scope, env.scope.container, turn=True, labels=env.scope.labels)
     for node in block.statements:
         match node:
@@ -247,7 +247,7 @@ def _depth(node: ast.Node) -> int:
 
 
 def spelled(*values: Value) -> list[Value]:
-    """Values with the sides of boxes in them spelled out, as one comparison has them."""
+    """Spells out the sides of boxes in values, as one comparison has them."""
     numbers = [n for value in values for n in _numbers(value)]
     known = iter(spelled_out(*(n.expression for n in numbers)))
 
@@ -271,7 +271,7 @@ def _numbers(value: Value) -> list[Num]:
 
 
 def items_of(value: Value) -> list[tuple[str, Value]] | None:
-    """The members of a list or an array, each with its index; None for anything else."""
+    """Returns the members of a list or an array, each with its index; None for anything else."""
     match value:
         case Array():
             firsts = sorted({index[0] for index in value.members})

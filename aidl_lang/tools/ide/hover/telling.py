@@ -33,7 +33,7 @@ _STATES = {
 
 
 def number_text(value: float, dimension: MaybeDimension) -> str:
-    """A number as people write it, with its unit: `112.4 mm`."""
+    """Returns a number as people write it, with its unit: `112.4 mm`."""
     if not math.isfinite(value):
         return "no number"
     if dimension is None or dimension == PLAIN:
@@ -42,7 +42,7 @@ def number_text(value: float, dimension: MaybeDimension) -> str:
 
 
 def lines(solved: Solved, name: str, found: list[Found]) -> list[str]:
-    """A value for each instance or turn, with what it is a value of."""
+    """Returns a line with the value for each instance or turn."""
     told: list[str] = []
     for each in found:
         head = f"{each.label}: " if each.label else ""
@@ -51,7 +51,7 @@ def lines(solved: Solved, name: str, found: list[Found]) -> list[str]:
 
 
 def compared(solved: Solved, sides: list[tuple[str, list[Found]]]) -> list[str]:
-    """The sides of a comparison, which read the boxes in it together."""
+    """Returns lines for the sides of a comparison, which read the boxes in it together."""
     told: list[str] = []
     for row in zip(*(found for _, found in sides), strict=False):
         head = f"{row[0].label}: " if row[0].label else ""
@@ -98,8 +98,8 @@ def _number(solved: Solved, value: Num) -> str | None:
 
 
 def standing(solved: Solved, value: Num) -> str:
-    """How far a number may change: `free`, `kept`, `solved`, `exact`; "" for a constant, and where it is not
-    known.
+    """Returns how far a number may change: `free`, `kept`, `solved`, `exact`; "" for a constant, and if that
+    is not known.
     """
     unknowns = list(ex.unknowns([value.expression]))
     changing = [u for u in unknowns if not u.exact and u in solved.evaluate.values]
@@ -142,7 +142,7 @@ def _point(solved: Solved, value: PointVal) -> str | None:
 
 
 def _frame(env: Env) -> str:
-    """In which frame coordinates are, where that is not the root's."""
+    """Returns the name of the frame of coordinates, unless it is the root's."""
     return f" (in {env.here.name})" if env.here.parent is not None else ""
 
 
@@ -160,7 +160,7 @@ _SUBJECT = "subject"
 
 
 def _member(geometry: Geometry, field: str) -> ast.Member:
-    """`subject.field`, for `_named` to give the subject."""
+    """Returns `subject.field`; `_named` replaces the subject."""
     span = geometry.span
     assert span is not None or geometry.owner.span is not None
     at = span or geometry.owner.span
@@ -209,7 +209,7 @@ def _truth(solved: Solved, value: bool | Condition) -> str:
 
 
 def constraint_lines(solved: Solved, span: Span) -> list[str]:
-    """How well the constraint at a place holds; of one in a loop, in how many turns."""
+    """Tells how well the constraint at a place holds; for one in a loop, in how many turns."""
     model = solved.outcome.model
     reports = [r for r in model.constraints if r.span == span] if model is not None else []
     if not reports:

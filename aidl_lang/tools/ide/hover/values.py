@@ -1,4 +1,4 @@
-"""The values that hovering shows, as lists in Markdown, and why there are none."""
+"""The values shown on hovering, as lists in Markdown, or the reason why there are none."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def listed(told: Sequence[str]) -> str:
 
 
 def not_solved(view: View) -> str:
-    """Why there is no value; nothing while the text is being worked on for the first time."""
+    """Returns the reason for a missing value; "" while the text is being worked on for the first time."""
     if view.outcome is not None:
         return "*There is no value: the program has errors.*"
     return "" if view.drawn is None else "*The value is being worked out.*"
@@ -32,7 +32,7 @@ def failed(solved: Solved) -> str:
 
 
 def stated_at(view: View, node: ast.Node, path: Sequence[ast.Node]) -> str:
-    """How well the constraint holds that a call or a sign is the head of."""
+    """Tells how well the constraint holds whose head is a call or a sign."""
     solved = solved_of(view)
     if solved is None:
         return ""

@@ -1,4 +1,4 @@
-"""Hovering over what is no name: keywords, attributes, the signs of comparisons, numbers.
+"""Hover over keywords, attributes, the signs of comparisons, and numbers.
 
 Each answer is Markdown with the place that it is about.
 """
@@ -27,7 +27,7 @@ Told = tuple[str, Span]
 
 
 def of_word(view: View, offset: int) -> Told | None:
-    """A keyword, a kind, or the sign of a comparison."""
+    """Describes a keyword, a kind, or the sign of a comparison."""
     token = token_at(view, offset)
     if token is None:
         return None
@@ -51,7 +51,7 @@ def _keyword(entry: Entry) -> str:
 
 
 def _compared(view: View, token: Token) -> str:
-    """Both sides of a comparison, and how well it holds."""
+    """Returns both sides of a comparison, and how well it holds."""
     path = around(view.module, token.start)
     node = path[-1]
     if not isinstance(node, ast.Comparison):
@@ -64,7 +64,7 @@ def _compared(view: View, token: Token) -> str:
 
 
 def of_attribute(view: View, offset: int) -> Told | None:
-    """The name behind an `@`."""
+    """Describes the attribute after an `@`."""
     node = next((n for n in reversed(around(view.module, offset)) if isinstance(n, ast.Attribute)), None)
     if node is None or offset > node.name.span.end:
         return None
@@ -74,7 +74,7 @@ def of_attribute(view: View, offset: int) -> Told | None:
 
 
 def of_number(view: View, start: int) -> Told | None:
-    """A number in mm or degrees, and what the solver made of it."""
+    """Describes a number in mm or degrees, with its solved value."""
     path = around(view.module, start)
     node = path[-1]
     if not isinstance(node, ast.Number):
