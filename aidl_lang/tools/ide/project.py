@@ -1,4 +1,4 @@
-"""Views of all the programs of a workspace, each made anew only when a text that it stands on has changed."""
+"""Views of all the programs of a workspace, each remade only when one of its texts has changed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Project:
     _views: dict[Path, View] = field(default_factory=dict)
 
     def view(self, path: Path) -> View | None:
-        """The program in a file; None if it cannot be read."""
+        """Returns the program in a file; None if it cannot be read."""
         try:
             text = self.workspace.text(path)
         except FileError:
@@ -32,18 +32,18 @@ class Project:
         return known
 
     def views_with(self, name: str) -> Iterator[View]:
-        """The programs in whose text a name stands, however it is spelled."""
+        """Yields the programs in whose text a name occurs, however it is spelled."""
         wanted = fold(name)
         for path in self.workspace.programs():
             try:
                 text = self.workspace.text(path)
             except FileError:
-                continue  # gone since, or no program; compiling it would tell
+                continue  # gone since, or no program; compiling reports that
             if wanted in fold(text) and (view := self.view(path)) is not None:
                 yield view
 
     def _is_fresh(self, view: View) -> bool:
-        """Whether all that a program imports could be read, and still says the same."""
+        """True if all that a program imports could be read, and is unchanged."""
         resolution = view.resolution
         imports = (s for m in resolution.modules for s in m.statements if isinstance(s, ast.Import))
         return all(statement in resolution.imports for statement in imports) and all(

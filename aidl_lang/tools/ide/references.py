@@ -1,4 +1,4 @@
-"""Every place where a thing is named, in all programs of a project."""
+"""Finds every place that names a thing, in all programs of a project."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from aidl_lang.tools.ide.view import View
 
 @record()
 class Occurrence:
-    """A place in a file where a thing is named, or declared."""
+    """A place in a file that names or declares a thing."""
 
     path: Path
     span: Span
@@ -23,7 +23,7 @@ class Occurrence:
 
 
 def references(project: Project, view: View, offset: int) -> list[Occurrence]:
-    """Where the thing that is named at an offset is named, its declarations included."""
+    """Returns all occurrences of the thing named at an offset, including its declarations."""
     mention = mention_at(view, offset)
     if mention is None:
         return []
@@ -36,7 +36,7 @@ def references(project: Project, view: View, offset: int) -> list[Occurrence]:
 
 
 def highlights(view: View, offset: int) -> list[Occurrence]:
-    """The same in this file alone."""
+    """Returns the same in this file alone."""
     mention = mention_at(view, offset)
     place = place_of(view, mention.symbol) if mention is not None else None
     if mention is None or place is None:
@@ -46,21 +46,21 @@ def highlights(view: View, offset: int) -> list[Occurrence]:
 
 
 def occurrences(view: View, place: Place) -> Iterator[Occurrence]:
-    """Where a program names what is declared at a place."""
+    """Yields the places where a program names a thing declared at a place."""
     for mention in mentions(view):
         if place_of(view, mention.symbol) == place:
             yield Occurrence(view.path, mention.span, mention.is_declaration)
 
 
 def declarations(view: View, symbol: Symbol) -> Iterator[Occurrence]:
-    """Where a symbol is declared; in the branches of an `if` there may be several places."""
+    """Yields the declarations of a symbol; the branches of an `if` may have several."""
     for declaration in symbol.declarations:
         if (file := view.file(declaration.span.source)) is not None:
             yield Occurrence(file, declaration.span, True)
 
 
 def _named(project: Project, view: View, symbol: Symbol, place: Place) -> Iterator[Occurrence]:
-    """In the view that was asked, and in all other programs."""
+    """Yields occurrences in the view that was asked, and in all other programs."""
     yield from occurrences(view, place)
     for other in project.views_with(symbol.name):
         if other.path != view.path:
@@ -68,6 +68,6 @@ def _named(project: Project, view: View, symbol: Symbol, place: Place) -> Iterat
 
 
 def _ordered(found: Iterator[Occurrence] | list[Occurrence]) -> list[Occurrence]:
-    """By file and place, each once."""
+    """Orders occurrences by file and place, each once."""
     unique = {(o.path, o.span.start, o.span.end): o for o in found}
     return [unique[key] for key in sorted(unique)]

@@ -1,4 +1,4 @@
-"""What is said where something that was asked for cannot be done."""
+"""Reasons for which a request cannot be carried out."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from aidl_lang.common.records import record
 
 
 class CannotError(Exception):
-    """Why what was asked for cannot be done, for people."""
+    """Raised if a request cannot be carried out, with the reason for people."""
 
 
 @record()
 class Refusal:
-    """The same as a value, where it is asked at every move of a mouse: most places cannot be dragged to."""
+    """The same as a value, for requests at every move of a mouse: most places cannot be dragged to."""
 
     reason: str

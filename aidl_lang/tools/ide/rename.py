@@ -1,4 +1,4 @@
-"""Giving a thing another name, wherever it is named, so that the programs mean what they meant."""
+"""Renames a thing everywhere, so that the programs keep their meaning."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from aidl_lang.tools.ide.workspace import Workspace
 
 @record()
 class Renaming:
-    """Edits by file, each to the text that the file has now."""
+    """Edits by file, each to its present text."""
 
     edits: Mapping[Path, tuple[Edit, ...]]
 
 
 def renameable(view: View, offset: int) -> Span:
-    """The name at an offset that can be changed. Raises CannotError."""
+    """Returns the name at an offset if it can be changed. Raises CannotError."""
     return _own(view, offset).span
 
 
 def rename(project: Project, view: View, offset: int, name: str) -> Renaming:
-    """The edits that give what is named at an offset another name. Raises CannotError where this is no
-    name, or where some name would mean something else then.
+    """Returns the edits that rename the thing named at an offset. Raises CannotError if the new name is not
+    one, or would change the meaning of any name.
     """
     mention = _own(view, offset)
     _require_name(name)
@@ -77,7 +77,7 @@ def _require_same_meaning(
     edits: Mapping[Path, tuple[Edit, ...]],
     name: str,
 ) -> None:
-    """Read the programs as they would be, and compare what every name in them means with what it meant."""
+    """Reads the renamed programs, and compares the meaning of every name in them with the old one."""
     before = {view.path: view}
     for known in (symbol.name, name):
         before |= {other.path: other for other in project.views_with(known) if other.path != view.path}
@@ -98,7 +98,7 @@ def _require_same_meaning(
 
 
 def _difference(old: View, new: View, edits: Mapping[Path, tuple[Edit, ...]]) -> str | None:
-    """What a name means otherwise than before, in words."""
+    """Describes a name whose meaning changed."""
     meant = _meanings(old)
     means = _meanings(new)
     expected = {
@@ -116,12 +116,12 @@ def _difference(old: View, new: View, edits: Mapping[Path, tuple[Edit, ...]]) ->
 
 
 def _meanings(view: View) -> dict[int, tuple[Place | None, str]]:
-    """By the offset of each name: where what it means is declared, or else its name."""
+    """Returns, per offset of a name, the declaration of its meaning, or else its text."""
     return {m.span.start: (place_of(view, m.symbol), m.symbol.name) for m in mentions(view)}
 
 
 def _moved(place: Place, edits: Mapping[Path, tuple[Edit, ...]]) -> Place:
-    """A place after the edits."""
+    """Returns a place after the edits."""
     path, offset = place
     grown = sum(
         len(e.replacement) - (e.span.end - e.span.start) for e in edits.get(path, ()) if e.span.end <= offset

@@ -1,4 +1,4 @@
-"""Growing a selection from a word to what it is part of."""
+"""Grows a selection from a word to the nodes around it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from aidl_lang.tools.ide.view import View
 
 
 def selections(view: View, offset: int) -> list[Span]:
-    """The ranges around an offset, each larger than the one before and around it, the whole file last."""
+    """Returns the ranges around an offset, each larger than the one before and around it, the whole file
+    last.
+    """
     found: list[Span] = []
     for node in reversed(around(view.module, offset)):
         for span in (*_parts(node, offset), node.span):
@@ -21,7 +23,9 @@ def selections(view: View, offset: int) -> list[Span]:
 
 
 def _parts(node: ast.Node, offset: int) -> list[Span]:
-    """What of a node is no node itself: the name of a call or a member, the inside of a block."""
+    """Returns the parts of a node that are no nodes: the name of a call or a member, the inside of a
+    block.
+    """
     match node:
         case ast.Call(callee=name) | ast.Member(name=name):
             return [name.span]

@@ -1,6 +1,6 @@
-"""What each word of a program is, for colours that follow its meaning.
+"""The role of each word of a program, for colours that follow its meaning.
 
-Types and modifiers are those of editors at large; a theme knows them without being told of AIDL.
+Types and modifiers are the standard ones of editors; themes colour them without knowing AIDL.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Colored:
 
 
 def semantic_tokens(view: View) -> list[Colored]:
-    """All of a text in its order, comments included; what is mere punctuation is left out."""
+    """Returns all tokens of a text in its order, including comments; mere punctuation is left out."""
     names = {m.span.start: _of_mention(view, m) for m in mentions(view)}
     names |= {c.span.start: c for c in _heads(view)}
     tokens = view.tokens
@@ -89,7 +89,7 @@ def _of_token(kind: str, text: str) -> str | None:
 
 
 def _heads(view: View) -> Iterator[Colored]:
-    """Words before names, and behind `@`, which name nothing themselves."""
+    """Yields words before names, and after `@`, which name nothing themselves."""
     for node in ast.walk(view.module):
         match node:
             case ast.Structure():
@@ -123,7 +123,7 @@ def _of_mention(view: View, mention: Mention) -> Colored:
 
 
 def _lines(colored: Colored) -> Iterator[Colored]:
-    """A piece for each line, as editors want it."""
+    """Yields a piece for each line, as editors want it."""
     start = colored.span.start
     for line in colored.span.text.split("\n"):
         if text := line.rstrip("\r"):

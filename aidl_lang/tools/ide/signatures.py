@@ -1,4 +1,4 @@
-"""Signature help: how the call around a place can be made, and which parameter is being given there."""
+"""Signature help: the possible forms of the call at a place, and the current parameter."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from aidl_lang.tools.ide.view import View
 
 @record()
 class ParameterHelp:
-    """`place` is where it stands in the label of its overload, in code points; `about` is Markdown."""
+    """`place` is its range in the label of its overload, in code points; `about` is Markdown."""
 
     name: str
     place: tuple[int, int]
@@ -26,7 +26,7 @@ class ParameterHelp:
 
 @record()
 class OverloadHelp:
-    """`active` is the number of the parameter that is being given; None where there is none for it."""
+    """`active` is the number of the current parameter; None if the overload has none for it."""
 
     label: str
     about: str
@@ -37,14 +37,14 @@ class OverloadHelp:
 
 @record()
 class SignatureHelp:
-    """All overloads of a call, as they are defined; `active` is the number of the one that is meant."""
+    """All overloads of a call, as they are defined; `active` is the number of the meant one."""
 
     overloads: tuple[OverloadHelp, ...]
     active: int
 
 
 def signature_help(view: View, offset: int) -> SignatureHelp | None:
-    """The innermost call whose parentheses an offset lies in, closed or not."""
+    """Returns help for the innermost call whose parentheses, closed or not, contain an offset."""
     spot = spot_at(view, offset)
     if spot.where is Where.COMMENT:
         return None
@@ -71,7 +71,7 @@ def signature_help(view: View, offset: int) -> SignatureHelp | None:
 
 
 def _open_call(automaton: Automaton) -> Token | None:
-    """The innermost call in the innermost block that is not closed."""
+    """Returns the innermost open call in the innermost open block."""
     for token in reversed(automaton.open_brackets()):
         if token.kind == "{":
             return None
@@ -81,8 +81,8 @@ def _open_call(automaton: Automaton) -> Token | None:
 
 
 def _argument_at(view: View, opening: Token, offset: int) -> tuple[ast.Call, int] | None:
-    """The call that begins with a token, and the number of the argument that an offset lies in, the receiver
-    counted. None where it has arguments, and the offset lies in none.
+    """Returns the call that begins with a token, and the number of the argument at an offset, the receiver
+    counted. Returns None if it has arguments, and the offset lies in none.
     """
     for node in around(view.module, opening.start):
         if isinstance(node, ast.Call) and node.callee.span.start == opening.start:
@@ -95,20 +95,20 @@ def _argument_at(view: View, opening: Token, offset: int) -> tuple[ast.Call, int
 
 
 def _place(reading: Reading) -> tuple[int, str, int]:
-    """Definitions in the order of writing, what is built in first."""
+    """Returns the sort key of definitions in the order of writing, built-ins first."""
     node = reading.signature.node
     return (0, "", 0) if node is None else (1, node.span.source.name, node.span.start)
 
 
 def _best(ordered: list[Reading], argument: int) -> Reading:
-    """The overload that is meant: the first of those that fit alike and have a parameter for the argument."""
+    """Returns the meant overload: the first of those that fit alike and have a parameter for the argument."""
     alike = [r for r in ordered if r.cost == ordered[0].cost]
     having = [r for r in alike if _parameter(r, argument) is not None]
     return (having or alike)[0]
 
 
 def _parameter(reading: Reading, argument: int) -> int | None:
-    """The number of the parameter that an argument goes to. Where there is none yet, it is the next."""
+    """Returns the number of the parameter that an argument fills; the next one before it is written."""
     names = [name for name, _, _ in reading.signature.parameters]
     if argument >= len(reading.taken):
         return next((n for n, name in enumerate(names) if name not in reading.taken), None)

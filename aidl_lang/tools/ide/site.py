@@ -1,7 +1,7 @@
-"""A place in a text where something is being written: what stands around it, and what the grammar takes.
+"""A place in a text under editing: the nodes around it, and the tokens that the grammar takes there.
 
-What is being written is seldom a program. So a name is put there in its stead, in the way that leaves the
-fewest mistakes, and the program is understood with it: what became of that name tells what is wanted.
+A text under editing is seldom a program. So a placeholder name is inserted, in the way that leaves the fewest
+mistakes, and the program is checked with it: the node that it became shows what is wanted.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from aidl_lang.tools.ide.nodes import around, scope_at
 from aidl_lang.tools.ide.view import View, look
 
 PLACEHOLDER = "_what_is_being_written_here_" + "_" * 40
-"""The name that stands for what is being written: too long to be a misspelling of another, for which many
-names would have to be compared.
+"""The name inserted at the place: too long to be a misspelling of another, for which many names would have to
+be compared.
 """
 _CLOSERS = {"(": ")", "CALL": ")", "[": "]"}
 _DIGITS = re.compile(r"(\d+(\.\d+)?|\.\d+)([eE][+-]?\d+)?")
@@ -38,7 +38,7 @@ class Where(Enum):
 
 @record()
 class Spot:
-    """What an offset lies in or at the end of: a comment, string or number, or code.
+    """The text that an offset lies in or at the end of: a comment, string or number, or code.
 
     start, end  what a word written here replaces: the word that is there (for a string what is in it, for a
                 number its unit), or nothing
@@ -74,7 +74,7 @@ def spot_at(view: View, offset: int) -> Spot:
 
 
 def _in_comment(tokens: Tokens, text: str, offset: int) -> bool:
-    """Whether an offset lies in a comment; what is written at the end of a line comment belongs to it."""
+    """Tells whether an offset lies in a comment; the end of a line comment belongs to it."""
     for comment in tokens.comments:
         to_line_end = not comment.text.startswith("/*")
         if comment.span.start < offset < comment.span.end + to_line_end:
@@ -84,7 +84,7 @@ def _in_comment(tokens: Tokens, text: str, offset: int) -> bool:
 
 
 def _word_end(token: Token) -> int:
-    """Where the word ends that a token is, or begins with; -1 if it is none."""
+    """Returns the end of the word that a token is, or begins with; -1 if it is none."""
     if token.kind == "CALL":
         return token.start + len(token.text.rstrip("( \t"))
     return (
@@ -93,7 +93,7 @@ def _word_end(token: Token) -> int:
 
 
 def _literal(token: Token, before: Token | None, text: str, offset: int) -> Spot | None:
-    """The string or number that an offset lies in."""
+    """Returns the string or number that an offset lies in."""
     is_string = token.text[:1] in ("'", '"')
     if is_string and (offset < token.end or (token.kind == UNKNOWN and offset == token.end)):
         end = token.end - (token.kind == "STRING")
@@ -135,7 +135,7 @@ class Site:
 
     @property
     def node(self) -> ast.Node | None:
-        """The Name or Identifier that the placeholder is."""
+        """The Name or Identifier that the placeholder became."""
         return self.path[-1] if self.path else None
 
     @property
@@ -144,27 +144,27 @@ class Site:
 
     @property
     def prefix(self) -> str:
-        """What is written of the word already."""
+        """The written part of the word."""
         return self.original.source.text[self.spot.start : self.spot.offset]
 
     @property
     def following(self) -> str:
-        """The text behind the word."""
+        """The text after the word."""
         return self.original.source.text[self.spot.end :]
 
     @cached_property
     def scope(self) -> Scope | None:
-        """The names that are seen at the place."""
+        """The names visible at the place."""
         return None if self.view is None else scope_at(self.view, self.spot.start + 1)
 
     @cached_property
     def may_end(self) -> bool:
-        """Whether a statement may begin here, the one before being whole or there being none."""
+        """True if a statement may begin here: the one before is complete, or there is none."""
         return self.automaton.between_statements or self.automaton.accepts([";"])
 
     @cached_property
     def begins_statement(self) -> bool:
-        """Whether a statement may begin here, and is likely to: not behind another on the same line."""
+        """True if a statement may begin here, and is likely to: not after another on the same line."""
         if not self.may_end:
             return False
         before = self.spot.before
@@ -174,7 +174,7 @@ class Site:
         return "\n" in between or (before.kind == "," and self.automaton.between_statements)
 
     def takes(self, *kinds: str) -> bool:
-        """Whether these tokens may stand here."""
+        """Tells whether these tokens may stand here."""
         return self.automaton.accepts(kinds)
 
     def parent(self, above: int = 1) -> ast.Node | None:
@@ -195,8 +195,8 @@ def site_at(view: View, spot: Spot) -> Site:
 
 
 def _filled(site: Site) -> str | None:
-    """The text with the placeholder, in the way of those tried that leaves the fewest mistakes; None if it is
-    left out of the program in all.
+    """Returns the text with the placeholder, in the way that leaves the fewest mistakes; None if it is lost
+    from the program in all.
     """
     text, spot = site.original.source.text, site.spot
     head, tail = text[: spot.start], text[spot.end :]
@@ -215,7 +215,7 @@ def _filled(site: Site) -> str | None:
 
 
 def _endings(site: Site) -> Iterator[str]:
-    """What may have to stand behind the placeholder to make it part of a program, the likelier first."""
+    """Yields texts that may complete the placeholder to a part of a program, the likelier first."""
     following = site.following
     if following.startswith("("):
         plain = [""]
@@ -232,7 +232,7 @@ def _endings(site: Site) -> Iterator[str]:
 
 
 def closers(opened: Sequence[Token]) -> str:
-    """What closes the brackets that were opened in the innermost block."""
+    """Returns the closing brackets for those opened in the innermost block."""
     found = ""
     for token in reversed(opened):
         if token.kind == "{":
@@ -242,6 +242,6 @@ def closers(opened: Sequence[Token]) -> str:
 
 
 def _has_placeholder(module: ast.Module, start: int) -> bool:
-    """Whether a tree has the placeholder that stands at an offset."""
+    """Tells whether a tree has the placeholder at an offset."""
     node = around(module, start + 1)[-1]
     return isinstance(node, ast.Name | ast.Identifier) and node.text == PLACEHOLDER

@@ -1,4 +1,4 @@
-"""The outline of a program, and the search for a thing by its name in all programs of a project."""
+"""The outline of a program, and the search for names in all programs of a project."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MOST_FOUND = 200
 
 @record()
 class Entry:
-    """Something that is declared: `detail` is what it is, `span` all of it, `name_span` its name."""
+    """A declared thing: `detail` describes it, `span` is all of it, `name_span` its name."""
 
     name: str
     detail: str
@@ -30,7 +30,7 @@ class Entry:
 
 @record()
 class Found:
-    """An entry of the file `path`; `container` is the dotted path of what it lies in."""
+    """An entry of the file `path`; `container` is the dotted path of the one around it."""
 
     path: Path
     entry: Entry
@@ -38,12 +38,14 @@ class Found:
 
 
 def outline(view: View) -> list[Entry]:
-    """What a file declares, in the order of writing; what stands in loops and branches with the rest."""
+    """Returns the declarations of a file in order of writing, with those in loops and branches."""
     return list(_entries(view, view.module.statements))
 
 
 def search(project: Project, query: str) -> list[Found]:
-    """What has the letters of the query in its name, in this order; whole names and beginnings first."""
+    """Returns entries whose names have the letters of the query, in this order; whole names and beginnings
+    first.
+    """
     wanted = fold(query)
     found = [
         each

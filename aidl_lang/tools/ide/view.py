@@ -1,4 +1,4 @@
-"""One text of a program with all that is known of it: what every question of an editor is asked of."""
+"""One text of a program with all that is known of it, from which every question of an editor is answered."""
 
 from __future__ import annotations
 
@@ -26,11 +26,10 @@ SETTINGS = Settings()
 
 @record(eq=False)
 class View:
-    """
-    path      of the file, absolute
-    program   the text as it is understood, however broken
-    found     what checking found in it, building and solving aside
-    outcome   what came of this very text; None until it was run
+    """path      of the file, absolute
+    program   the text as checked, however broken
+    found     diagnostics of checking it, without building and solving
+    outcome   the result of this very text; None until it was run
     drawn     the last outcome with a picture, which may be that of an earlier text
     params    values that were set from outside for `outcome`
     """
@@ -54,12 +53,12 @@ class View:
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """The best that is known of what is wrong."""
+        """The diagnostics of the outcome, else those of checking."""
         return self.found if self.outcome is None else self.outcome.diagnostics
 
     @property
     def is_stale(self) -> bool:
-        """Whether the picture is that of another text."""
+        """True if the picture is that of another text."""
         return self.drawn is not self.outcome
 
     @cached_property
@@ -70,7 +69,7 @@ class View:
         return source in self._library
 
     def file(self, source: SourceFile) -> Path | None:
-        """The file that a source was read from; None for what is built in."""
+        """Returns the file of a source; None for a built-in one."""
         if source is self.source:
             return self.path
         if self.is_library(source):
@@ -97,7 +96,7 @@ class View:
 
 
 def look(path: Path, text: str, world: World, settings: Settings = SETTINGS) -> View:
-    """A program as checking understands it. Never raises for what it says."""
+    """Checks a program. Never raises for its contents."""
     source = SourceFile(path.name, text)
     program, found = pipeline.front(source, world, settings)
     return View(path, source, world, program, found)
@@ -110,7 +109,7 @@ def run(
     params: Mapping[str, str | float | bool] | None = None,
     settings: Settings = SETTINGS,
 ) -> View:
-    """The view with its outcome; where that has no picture, with the picture of the `last` view.
+    """Returns the view with its outcome; if that has no picture, with the picture of the `last` view.
 
     Raises Cancelled where the run is given up (see `cancelling`).
     """
@@ -127,6 +126,6 @@ def run(
 
 
 def edited(view: View, edits: Iterable[Edit]) -> View:
-    """What comes of the text with edits made, run with the same values from outside."""
+    """Returns the view of the text with edits made, run with the same values from outside."""
     changed = look(view.path, applied(view.source.text, edits), view.world)
     return run(changed, params=view.params)

@@ -1,4 +1,4 @@
-"""The programs of a project as an editor has them: open ones from memory, all others from disk."""
+"""The programs of a project in an editor: open ones from memory, all others from disk."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from aidl_lang.common.records import record
 from aidl_lang.common.world import DiskWorld, FileError, Reason, normalize
 
 MOST_FILES = 2_000
-"""Programs of a project that are looked through."""
+"""Most programs of a project that are searched."""
 _PASSED_OVER = frozenset({"node_modules", "build", "dist", "__pycache__"})
 
 
 @record(frozen=False)
 class Workspace:
-    """`roots` are the folders that are looked through for programs; `open` maps the absolute path of an open
-    program to its text.
+    """`roots` are the folders searched for programs; `open` maps the absolute path of an open program to its
+    text.
     """
 
     roots: Sequence[Path] = ()
     open: dict[Path, str] = field(default_factory=dict)
 
     def text(self, path: Path) -> str:
-        """The text of a file. Raises FileError."""
+        """Returns the text of a file. Raises FileError."""
         if (text := self.open.get(path)) is not None:
             return text
         return DiskWorld(path.parent).read(path.name)
 
     def world(self, path: Path) -> OpenWorld:
-        """The world that a program lives in: its folder and what lies below, as for the command line."""
+        """Returns the world of a program: its folder and those below, as for the command line."""
         return OpenWorld(self, path.parent)
 
     def programs(self) -> list[Path]:
-        """The programs below the roots, and the open ones; the first of very many."""
+        """Returns the programs below the roots, and the open ones; the first of very many."""
         found = dict.fromkeys(self.open)
         for root in self.roots:
             for path in _below(root):
@@ -46,7 +46,7 @@ class Workspace:
 
 
 def _below(folder: Path) -> Iterator[Path]:
-    """The programs in a folder and in those below it, hidden ones and what tools make aside."""
+    """Yields the programs in a folder and in those below it, except hidden and generated ones."""
     try:
         entries = sorted(folder.iterdir())
     except OSError:
@@ -62,7 +62,7 @@ def _below(folder: Path) -> Iterator[Path]:
 
 @record()
 class OpenWorld:
-    """The files below a folder, those that are open as they stand in the editor."""
+    """The files below a folder, open ones with their text in the editor."""
 
     workspace: Workspace
     folder: Path

@@ -1,6 +1,6 @@
-"""Writing solved values into the text in place of its first guesses, and the sizes that had to change.
+"""Writes solved values into the text in place of its first guesses, and of sizes that had to change.
 
-Nothing is proposed that was not tried: the edited text is solved again, and has to draw the same.
+Every proposal is tried: the edited text is solved again, and has to draw the same.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from aidl_lang.tools.ide.refusing import CannotError
 from aidl_lang.tools.ide.view import View, edited
 
 _PRECISIONS = (VISIBLE / 2, 1e-9, 0.0)
-"""Errors of a number, as shares of it (or of one where it is smaller): each is tried where one before it was
+"""Errors of a number, as shares of it (or of one for smaller numbers): each is tried if the one before it was
 too coarse. With none, all digits are written.
 """
 _MOST_TRIES = 8
@@ -26,20 +26,20 @@ _MOST_TRIES = 8
 
 @record()
 class Rewriting:
-    """Edits that write solved values into the text, tried: `view` is what comes of them."""
+    """Tried edits that write solved values into the text; `view` is the result."""
 
     edits: tuple[Edit, ...]
     view: View
 
 
 def can_write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> bool:
-    """Whether there is anything to write, which is known without trying."""
+    """Tells, without trying, whether there is anything to write."""
     return bool(_targets(view, span, sizes))
 
 
 def write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> Rewriting:
-    """The edits that write solved values as first guesses, in a part of the text or in all of it; with
-    `sizes`, the values of the kept sizes that had to change. Raises CannotError.
+    """Returns the edits that write solved values as first guesses, in a part of the text or in all of it;
+    with `sizes`, the values of the kept sizes that had to change. Raises CannotError.
     """
     targets = _targets(view, span, sizes)
     if not targets:
@@ -52,7 +52,7 @@ def write_back(view: View, span: Span | None = None, *, sizes: bool = False) -> 
 
 
 def number_for(guess: Guess, value: float, precision: float = VISIBLE / 2) -> str:
-    """A value for a number of the text, with its unit: the shortest within a share of it."""
+    """Writes a value as a number of the text, with its unit: the shortest within a share of it."""
     return shortest(value, precision * max(1.0, abs(value))) + guess.unit
 
 
@@ -60,7 +60,7 @@ def number_for(guess: Guess, value: float, precision: float = VISIBLE / 2) -> st
 
 
 def _targets(view: View, span: Span | None, sizes: bool) -> dict[Guess, float]:
-    """The numbers to write, and what."""
+    """Returns the numbers to write, with their values."""
     outcome, kept = view.outcome, as_kept(view)
     if outcome is None or outcome.evaluate is None or kept is None:
         return {}
@@ -81,7 +81,7 @@ def _targets(view: View, span: Span | None, sizes: bool) -> dict[Guess, float]:
 
 
 def _holds_changed_size(guess: Guess) -> bool:
-    """Whether a number says a kept size, by itself or as the place of a further point of a geometry."""
+    """True for the number of a kept size, by itself or as the place of a further point of a geometry."""
     return any(unknown.kept for unknown in guess.unknowns)
 
 
@@ -89,10 +89,11 @@ def _holds_changed_size(guess: Guess) -> bool:
 
 
 def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...], View] | None:
-    """The shortest numbers for which the program draws the same, and what it is then.
+    """Returns the shortest numbers that draw the same, with the resulting view.
 
-    Where the drawing is free to slide as a whole, it may: a position that the text does not say still begins
-    where it did, and draws the rest along. The numbers follow until nothing moves any more.
+    If the drawing is free to slide as a whole, it may: a position that the text does not say still begins
+    where it
+    did, and draws the rest along. The numbers follow until nothing moves any more.
     """
     assert view.outcome is not None
     order = {guess.span: index for index, guess in enumerate(guesses(view))}
@@ -120,7 +121,7 @@ def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[tuple[Edit, ...]
 
 
 def _moved(again: View, wanted: Mapping[Guess, float], order: Mapping[Span, int]) -> dict[Guess, float]:
-    """The numbers that are solved to something else than what was meant, and to what."""
+    """Returns the numbers that solve to other values than intended, with these values."""
     now = guesses(again)
     if len(now) != len(order):
         return {}
@@ -133,5 +134,5 @@ def _moved(again: View, wanted: Mapping[Guess, float], order: Mapping[Span, int]
 
 
 def _is_no_worse(before: Compiled, after: Compiled) -> bool:
-    """Whether nothing is said of the program that was not said before."""
+    """True if the program has no diagnostics that it did not have before."""
     return {d.code for d in after.diagnostics} <= {d.code for d in before.diagnostics}

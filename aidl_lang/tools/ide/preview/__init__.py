@@ -1,4 +1,4 @@
-"""The picture beside the text: what is drawn and where it is written, what can be set, what is wrong."""
+"""The preview beside the text: the drawing with its places in the text, sliders, problems."""
 
 from aidl_lang.tools.ide.preview.elements import elements_at
 from aidl_lang.tools.ide.preview.making import preview, tried, with_handles

@@ -1,4 +1,4 @@
-"""What is drawn, by number: structures, their geometry, and the parts of shapes."""
+"""The numbered elements of a drawing: structures, their geometry, and the parts of shapes."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from aidl_lang.tools.ide.preview.values import Element
 from aidl_lang.tools.ide.view import View
 
 MOST_PARTS = 40
-"""Parts beyond this are not told apart: a gear has hundreds, and a text a curve for each stroke."""
+"""Most parts told apart: a gear has hundreds, and a text a curve for each stroke."""
 
 
 @record()
 class Drawn:
-    """An element, what it is in the model, and the structure that it is in."""
+    """An element, its counterpart in the model, and its structure."""
 
     element: Element
     model: SolvedStructure | SolvedGeometry
@@ -31,7 +31,7 @@ class Drawn:
 
 
 class Elements:
-    """The elements of a picture in order of writing: a structure before what is in it."""
+    """The elements of a picture in order of writing: a structure before its contents."""
 
     def __init__(self, drawn: Iterable[Drawn]) -> None:
         self.drawn = tuple(drawn)
@@ -45,7 +45,7 @@ class Elements:
                 self._of_span[span.source, span.start, span.end].append(k)
 
     def near(self, path: str) -> int | None:
-        """The element at a path, or the innermost one around what is there."""
+        """Returns the element at a path, or the innermost one around it."""
         while path:
             if path in self.number:
                 return self.number[path]
@@ -53,15 +53,15 @@ class Elements:
         return None
 
     def all_near(self, paths: Iterable[str]) -> list[int]:
-        """The elements at or around these paths, each once."""
+        """Returns the elements at or around these paths, each once."""
         return list(dict.fromkeys(k for path in paths if (k := self.near(path)) is not None))
 
     def written_at(self, span: Span) -> list[int]:
-        """The elements that are written in exactly this place, copies and turns of loops among them."""
+        """Returns the elements written in exactly this place, including copies and turns of loops."""
         return list(self._of_span.get((span.source, span.start, span.end), ()))
 
     def around(self, span: Span) -> list[int]:
-        """The elements of the smallest place that this one lies in."""
+        """Returns the elements of the smallest place that contains this one."""
         places = [
             (end - start, numbers)
             for (source, start, end), numbers in self._of_span.items()
@@ -71,7 +71,7 @@ class Elements:
 
 
 def elements(view: View) -> Elements:
-    """What is in the picture of a view; nothing where there is none."""
+    """Returns the elements in the picture of a view; none without a picture."""
     if view.drawn is None or view.drawn.model is None:
         return Elements(())
     return Elements(_Reading(view).all(view.drawn.model))
@@ -119,14 +119,14 @@ def _is_value_of(span: Span, statement: Span) -> bool:
 
 
 def curves_of(geometry: SolvedGeometry) -> Iterator[Piece]:
-    """The curves of a geometry and its parts, those of construction geometry too."""
+    """Yields the curves of a geometry and its parts, including construction geometry."""
     for each in geometry.walk():
         if each.curve is not None:
             yield each.curve
 
 
 def point_of(geometry: SolvedGeometry) -> Vec | None:
-    """Where a point is; None for other geometry, and for a point that is nowhere."""
+    """Returns the place of a point; None for other geometry, and for a point without finite coordinates."""
     match geometry.values.get("at"):
         case (float() as x, float() as y) if math.isfinite(x) and math.isfinite(y):
             return x, y
@@ -135,7 +135,7 @@ def point_of(geometry: SolvedGeometry) -> Vec | None:
 
 
 def box_of(thing: SolvedStructure | SolvedGeometry) -> Bounds | None:
-    """The box of a structure, or of the curves of a geometry; None where there is none in finite numbers."""
+    """Returns the box of a structure, or of the curves of a geometry; None without one in finite numbers."""
     if isinstance(thing, SolvedStructure):
         own = thing.box
         box = None if own is None else (own.left, own.bottom, own.right, own.top)
@@ -171,27 +171,27 @@ def _sizes(geometry: SolvedGeometry) -> str:
 
 
 def _extent(thing: SolvedStructure | SolvedGeometry) -> str:
-    """Width and height."""
+    """Returns width and height as text."""
     box = box_of(thing)
     return "" if box is None else f"{_mm(box[2] - box[0])} × {_mm(box[3] - box[1])} mm"
 
 
 def _mm(value: float) -> str:
-    """To a thousandth, as much as anybody makes."""
+    """Writes a length to a thousandth, as fine as anybody makes."""
     return short(value, 3) if math.isfinite(value) else "?"
 
 
 def elements_at(view: View, offset: int) -> list[int]:
-    """The elements that the text at an offset is about: those that it defines, or that it constrains."""
+    """Returns the elements that the text at an offset defines or constrains."""
     found, place = elements(view), view.span(offset, offset)
     numbers = found.around(place)
     if any(found.values[k].kind == "geometry" for k in numbers):
-        return numbers  # what it shares with other geometry is a constraint, too
+        return numbers  # a part shared with other geometry is a constraint, too
     return _constrained(view, found, place) or numbers
 
 
 def _constrained(view: View, found: Elements, place: Span) -> list[int]:
-    """The elements that the smallest constraint around a place relates."""
+    """Returns the elements that the smallest constraint around a place relates."""
     if view.drawn is None or view.drawn.model is None:
         return []
     places, around = Places(view), list[tuple[int, ConstraintReport]]()

@@ -1,4 +1,4 @@
-"""A preview of a view: the picture and all that is said of it."""
+"""Makes the preview of a view: the picture and the data beside it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _NOWHERE = (0.0, 0.0, 0.0, 0.0)
 def preview(
     view: View, show: Collection[str] = (), *, tried: bool = False, known: Iterable[Handle] = ()
 ) -> Preview:
-    """What there is to see of a program that was run, with some of LAYERS over it, and FREEDOM if wanted.
+    """Returns the preview of a program that was run, with some of LAYERS over it, and FREEDOM if wanted.
 
     A program that does not draw shows the last one that did, and its own problems. What can be dragged takes
     longer to find out than all the rest (see `with_handles`): here are those that are `known` from another
@@ -55,7 +55,7 @@ def preview(
 def _painted(
     drawn: Compiled, found: Elements, show: Collection[str]
 ) -> tuple[str | None, tuple[Diagnostic, ...]]:
-    """The SVG; or, where painting takes too long, what there is to say of that."""
+    """Returns the SVG; or, if painting takes too long, the diagnostics about that."""
     try:
         with within(drawn.limit, "painting"):
             return svg_of(drawn, found, set(show) & set(LAYERS)), ()
@@ -64,12 +64,12 @@ def _painted(
 
 
 def with_handles(made: Preview, view: View) -> Preview:
-    """The preview of a view with all that can be dragged. Raises Cancelled as `run` does."""
+    """Returns the preview with all handles. Raises Cancelled as `run` does."""
     return replace(made, handles=tuple(handles(view)))
 
 
 def _moved(view: View, known: Iterable[Handle]) -> Iterator[Handle]:
-    """Those of the handles that are there, where they are now."""
+    """Yields those handles that still exist, at their present places."""
     outcome, wanted = view.outcome, {handle.id: handle for handle in known}
     if not wanted or view.is_stale or outcome is None or outcome.built is None or outcome.evaluate is None:
         return
@@ -85,7 +85,7 @@ def _is_anything_drawn(outcome: Compiled) -> bool:
 
 
 def _ways(view: View, found: Elements) -> Iterator[Way]:
-    """What can still move; of an earlier text nobody can tell."""
+    """Yields the remaining motions; none for the picture of an earlier text."""
     if view.outcome is not None and not view.is_stale:
         yield from ways(view.outcome, found)
 
@@ -96,5 +96,5 @@ def tried(
     memory: Memory | None = None,
     settings: Settings = SETTINGS,
 ) -> View:
-    """The view as it would be with other values of some params. Raises Cancelled as `run` does."""
+    """Returns the view with other values of some params. Raises Cancelled as `run` does."""
     return run(view, view, memory, {**(view.params or {}), **knobs}, settings)

@@ -32,7 +32,7 @@ _END = "</svg>\n"
 
 
 def svg_of(outcome: Compiled, elements: Elements, show: Collection[str] = ()) -> str:
-    """The SVG of a drawing with some of LAYERS over it."""
+    """Returns the SVG of a drawing with some of LAYERS over it."""
     assert outcome.model is not None
     assert outcome.drawing is not None
     options = Options(frozenset(show) - {_DIMENSIONS}, dimension=_DIMENSIONS in show)
@@ -41,12 +41,12 @@ def svg_of(outcome: Compiled, elements: Elements, show: Collection[str] = ()) ->
     groups = tuple(_numbered(group, elements) for group in painted.groups)
     text = to_svg(replace(painted, groups=groups))
     assert text.endswith(_END)
-    # Numbers alone, so nothing is to be escaped: not worth a tree of objects.
+    # Only numbers, so nothing needs escaping: not worth a tree of objects.
     return text.removesuffix(_END) + "".join(hit.svg for hit in hits(outcome.drawing, elements)) + _END
 
 
 def _numbered(group: Group, elements: Elements) -> Group:
-    """A structure with its number."""
+    """Returns the group of a structure with its number."""
     number = elements.number.get(group.attributes.get("data-path", ""))
     if number is None:
         return group
@@ -55,7 +55,7 @@ def _numbered(group: Group, elements: Elements) -> Group:
 
 @record()
 class Hit:
-    """A shape that an element is pointed at by: `path` is SVG path data, `extent` the larger side."""
+    """A shape by which an element is pointed at: `path` is SVG path data, `extent` the larger side."""
 
     element: int
     path: str
@@ -70,7 +70,7 @@ class Hit:
 
 
 def hits(drawing: Drawing, elements: Elements) -> Iterator[Hit]:
-    """What can be pointed at, body by body, and what belongs to none of them last."""
+    """Yields the shapes to point at, body by body, those that belong to no body last."""
     bodies = {body.path: k for k, body in enumerate(drawing.bodies)}
     of_body: list[list[tuple[int, Drawn]]] = [[] for _ in range(len(bodies) + 1)]
     for number, drawn in enumerate(elements.drawn):
@@ -83,7 +83,7 @@ def hits(drawing: Drawing, elements: Elements) -> Iterator[Hit]:
 
 
 def _body_of(drawn: Drawn, bodies: Mapping[str, int]) -> int:
-    """The place of the body that an element belongs to; of drawings, which are painted last, the last."""
+    """Returns the index of an element's body; the last for drawings, which are painted last."""
     path = drawn.owner.path
     while drawn.owner.kind != "drawing" and path:
         if path in bodies:
@@ -100,7 +100,7 @@ def _large_first(
 
 
 def _area(number: int, drawn: Drawn, drawing: Drawing) -> Hit | None:
-    """What a structure covers."""
+    """Returns the area that a structure covers."""
     is_structure = isinstance(drawn.model, SolvedStructure)
     region = drawing.regions.get(drawn.element.path) if is_structure else None
     if not region:
@@ -110,7 +110,7 @@ def _area(number: int, drawn: Drawn, drawing: Drawing) -> Hit | None:
 
 
 def _lines(number: int, drawn: Drawn, elements: Elements) -> Hit | None:
-    """The curves of a geometry, unless they are elements of their own."""
+    """Returns the curves of a geometry, unless they are elements of their own."""
     geometry = drawn.model
     if isinstance(geometry, SolvedStructure):
         return None
@@ -121,7 +121,7 @@ def _lines(number: int, drawn: Drawn, elements: Elements) -> Hit | None:
 
 
 def _dot(number: int, drawn: Drawn, radius: float) -> Hit | None:
-    """A point."""
+    """Returns the dot of a point."""
     at = point_of(drawn.model) if isinstance(drawn.model, SolvedGeometry) else None
     return None if at is None else Hit(number, open_path([Circle(at, radius)]), radius)
 

@@ -1,4 +1,6 @@
-"""Places of a program that is drawn, in the text as it is now: the picture may be that of an earlier one."""
+"""Converts places in the drawn program to places in the present text: the picture may be of an earlier
+one.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,7 @@ from aidl_lang.tools.ide.view import View
 
 
 class Places:
-    """What spans of the drawn outcome are in the texts of a view."""
+    """Converts spans of the drawn outcome to spans of a view's texts."""
 
     def __init__(self, view: View) -> None:
         self._view = view
@@ -16,7 +18,7 @@ class Places:
         self._shifts: dict[SourceFile, _Shift | None] = {}
 
     def now(self, span: Span | None) -> Span | None:
-        """The place as it is now; None in the library, or where an edit has changed it."""
+        """Returns the present place; None in the library, or if an edit has changed it."""
         if span is None or self._view.is_library(span.source):
             return None
         source = span.source
@@ -28,7 +30,7 @@ class Places:
 
 
 class _Shift:
-    """From one text to another that was made of it by an edit in one place."""
+    """Converts offsets between two texts that differ in one place."""
 
     def __init__(self, before: SourceFile, after: SourceFile) -> None:
         self.before, self.after = before, after
@@ -53,13 +55,13 @@ class _Shift:
         return offset if offset <= self.same else self._from_end(offset)
 
     def _from_end(self, offset: int) -> int | None:
-        """None for what lies in the text that was changed."""
+        """Returns None for an offset in the changed text."""
         if offset < self.rest:
             return None
         return offset + len(self.after.text) - len(self.before.text)
 
 
 def _alike(one: str, other: str) -> int:
-    """How many characters two texts begin alike with."""
+    """Counts the equal characters at the beginning of two texts."""
     pairs = zip(one, other, strict=False)
     return next((k for k, (a, b) in enumerate(pairs) if a != b), min(len(one), len(other)))

@@ -1,4 +1,4 @@
-"""What is wrong, on the drawing: the elements and points that each problem is about."""
+"""Problems on the drawing, each with its elements and points."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _QUOTED = re.compile("`([^`]+)`")
 
 
 def problems(view: View, elements: Elements, painting: Sequence[Diagnostic] = ()) -> Iterator[Problem]:
-    """The diagnostics of the text, and those of painting it, each with what it is about."""
+    """Yields the diagnostics of the text, and those of painting it, each with its elements and points."""
     finder = _Finder(view, elements)
     for found in (*view.diagnostics, *painting):
         yield Problem(
@@ -34,7 +34,7 @@ def problems(view: View, elements: Elements, painting: Sequence[Diagnostic] = ()
 
 
 def conflicts(view: View, elements: Elements) -> Iterator[Conflict]:
-    """The constraints that do not hold together, of a program that does not solve."""
+    """Yields the conflicting constraints of a program that does not solve."""
     if view.outcome is None or view.outcome.status == "solved":
         return
     finder = _Finder(view, elements)
@@ -62,10 +62,11 @@ class _Finder:
                 self.constraints.setdefault(span, []).append(report)
 
     def about(self, found: Diagnostic) -> list[int]:
-        """The elements that are written, or constrained, in the places that a diagnostic names.
+        """Returns the elements written, or constrained, in the places that a diagnostic names.
 
-        Where several share a place, as the turns of a loop do, those whose paths the message quotes before
-        it goes on to what is beside them.
+        If several share a place, as the turns of a loop do, only those whose paths the message quotes, before
+        it
+        names what is beside them.
         """
         spans = [s for s in (found.span, *(label.span for label in found.secondary)) if s is not None]
         here = [k for span in spans for k in self._at(span)]
@@ -77,7 +78,7 @@ class _Finder:
         return self.elements.written_at(span) or self.related(span)
 
     def related(self, span: Span, holder: str | None = None) -> list[int]:
-        """What the constraints in a place relate, those of one structure if it is given."""
+        """Returns the elements that the constraints in a place relate; only those of `holder`, if given."""
         reports = self.constraints.get(span, [])
         paths = [path for r in reports if holder in (None, r.path) for path in r.mentions]
         return self.elements.all_near(paths)

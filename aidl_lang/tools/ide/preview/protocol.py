@@ -17,7 +17,7 @@ Json: TypeAlias = dict[str, Any]
 
 
 class Writer:
-    """Writes what belongs to one view; `uri_of` names its files."""
+    """Writes the JSON of one view; `uri_of` names its files."""
 
     def __init__(self, view: View, uri_of: Callable[[Path], str] = Path.as_uri) -> None:
         self._view, self._uri_of = view, uri_of
@@ -25,7 +25,7 @@ class Writer:
         self._uris: dict[SourceFile, str | None] = {}
 
     def preview(self, preview: Preview, version: int, source: Json | None = None) -> Json:
-        """Numbers that have no value are null. `source` is that of `source`, or null."""
+        """Returns the preview; numbers without a value are null. `source` is that of `source`, or null."""
         made = {
             "uri": self._uri_of(self._view.path),
             "version": version,
@@ -49,7 +49,7 @@ class Writer:
         return {**rounded(made), "source": source}
 
     def source(self, view: View) -> Json:
-        """The text with its colours, for who sees no editor."""
+        """Returns the text with its colours, for viewers without an editor."""
         positions = self.positions(view.source)
         tokens = [
             (*positions.position(c.span.start), positions.length(c.span.start, c.span.end), c.type)
@@ -58,7 +58,7 @@ class Writer:
         return {"text": view.source.text, "tokens": tokens}
 
     def place(self, span: Span | None) -> Json:
-        """`range` and `uri` of a place; both null for what is in the library, or nowhere."""
+        """Returns `range` and `uri` of a place; both null for the library, or without a place."""
         uri = None if span is None else self._uri(span.source)
         if span is None or uri is None:
             return {"range": None, "uri": None}

@@ -1,4 +1,4 @@
-"""The `param`s of a program as sliders, and writing the value of one into the text."""
+"""The `param`s of a program as sliders, and edits that set their values in the text."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from aidl_lang.tools.ide.view import View
 
 _LITERALS = (ast.Number, ast.String, ast.Boolean)
 _SLACK = 1e-9
-"""Of a number at the end of a range, relative to it."""
+"""Tolerance at the ends of a range, relative to the number."""
 
 
 def sliders(view: View) -> Iterator[Slider]:
-    """The params of the text, in order of writing; of one that is too broken to have any, those of the
+    """Yields the params of the text, in order of writing; of one too broken to have any, those of the
     picture, which cannot be written.
     """
     outcome, places = view.outcome, Places(view)
@@ -47,7 +47,7 @@ def sliders(view: View) -> Iterator[Slider]:
 
 
 def set_knob(view: View, path: str, value: float | str | bool) -> list[Edit]:
-    """The edits that make a value the default of a param. Raises RefusalError where it cannot be one."""
+    """Returns the edits that make a value the default of a param. Raises RefusalError for an invalid one."""
     knob = knobs.find(view.outcome.knobs if view.outcome is not None else (), path)
     declared = _declaration(view, knob)
     if declared is None or knob.span is None:
@@ -61,7 +61,7 @@ def set_knob(view: View, path: str, value: float | str | bool) -> list[Edit]:
 
 
 def _declaration(view: View, knob: Knob) -> ast.Param | None:
-    """Where a param is written in the texts of the view, none of the library's."""
+    """Returns the declaration of a param in the texts of the view; None for one of the library."""
     return None if knob.span is None else view.params_written.get(knob.span)
 
 
@@ -70,7 +70,7 @@ def _is_literal(node: ast.Expression) -> bool:
 
 
 def _step(knob: Knob, value: ast.Expression) -> float | None:
-    """1 for what counts something: a whole number without a unit, from one to another."""
+    """Returns 1 for a count: a whole number without a unit, with a range from one whole number to another."""
     numbers = (knob.value, knob.low, knob.high)
     is_whole = all(isinstance(n, float) and n.is_integer() for n in numbers)
     return 1.0 if is_whole and not knob.unit and value.span.text.isdecimal() else None

@@ -1,4 +1,4 @@
-"""What a preview is made of. Coordinates in mm in the frame of the root, y upwards; places are spans."""
+"""The data of a preview. Coordinates in mm in the frame of the root, y upwards; places are spans."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.tools.ide.dragging import Handle
 
 FREEDOM = "freedom"
-"""As a layer: what can still move, which is told beside the picture and not drawn in it."""
+"""The layer of remaining motions, which are listed beside the picture and not drawn in it."""
 LAYERS = ("names", "points", "bbox", "constraints", "dof", "plan", "dimensions")
-"""What may be drawn over the picture."""
+"""Layers that may be drawn over the picture."""
 
 
 @record()
 class Element:
-    """Something that is drawn, by the number that it has in the picture.
+    """A drawn thing; its number in the picture is its index.
 
     kind  `structure` or `geometry`; `type` says which of them
     span  where it is written in the text as it is now; for what the library makes, where it is asked for.
@@ -53,7 +53,7 @@ class Slider:
 
 @record()
 class Problem:
-    """A diagnostic with the numbers of the elements that it is about, and points of the drawing."""
+    """A diagnostic with the numbers of its elements, and points of the drawing."""
 
     severity: str
     code: str
@@ -67,7 +67,7 @@ class Problem:
 
 @record()
 class Party:
-    """A constraint of a conflict; `off` by how much it is missed, None where that has no value."""
+    """A constraint of a conflict; `off` is its residual, None if that has no value."""
 
     text: str
     span: Span
@@ -99,7 +99,7 @@ class Turn:
 
 @record()
 class Way:
-    """How some elements can still move: in words, and drawn."""
+    """A remaining motion of some elements: in words, and drawn."""
 
     words: str
     elements: tuple[int, ...]

@@ -1,6 +1,6 @@
-"""What can still move, as arrows and arcs on the drawing.
+"""The remaining motions as arrows and arcs on the drawing.
 
-A motion of the model says how fast each unknown changes. The velocities of points follow by changing the
+A motion of the model gives the velocity of each unknown. The velocities of points follow by changing the
 unknowns a very little and evaluating their places again.
 """
 
@@ -23,23 +23,23 @@ from aidl_lang.tools.ide.preview.elements import Elements, box_of
 from aidl_lang.tools.ide.preview.values import Arrow, Turn, Way
 
 MOST = 40
-"""Motions that are told."""
+"""Most motions shown."""
 MOST_THINGS = 8
-"""Things of one motion that get arrows of their own."""
+"""Most things of one motion with arrows of their own."""
 MOST_POINTS = 40
-"""Points of a thing by which its motion is told."""
+"""Most points of a thing used for its motion."""
 LENGTH = 0.14
-"""Of an arrow, relative to the drawing."""
+"""Length of an arrow, relative to the drawing."""
 _ARC = 70.0
-"""Degrees of the arc of a turn about a near place."""
+"""Sweep of the arc for a turn about a near place, degrees."""
 _NUDGE = 1e-6
-"""How far the fastest number goes, relative to the drawing."""
+"""Change of the fastest unknown, relative to the drawing."""
 _SLOW = 1e-3
-"""Part of the greatest speed below which a point stays where it is."""
+"""Part of the greatest speed below which a point counts as still."""
 
 
 def ways(outcome: Compiled, elements: Elements) -> Iterator[Way]:
-    """The motions of a solved model."""
+    """Yields the motions of a solved model."""
     model = outcome.model
     if model is None or outcome.built is None or outcome.evaluate is None or outcome.drawing is None:
         return
@@ -59,7 +59,7 @@ def ways(outcome: Compiled, elements: Elements) -> Iterator[Way]:
 
 
 def _words(motion: Motion, elements: Elements) -> str:
-    """What the elements can do; with the name of the point or number of an element that does it."""
+    """Describes a motion of elements, with the name of the moving point or number of an element."""
     if len(motion.things) != 1 or (number := elements.near(motion.things[0])) is None:
         return motion.words
     inside = motion.things[0].removeprefix(elements.values[number].path).removeprefix(".")
@@ -69,7 +69,7 @@ def _words(motion: Motion, elements: Elements) -> str:
 
 
 class _Flow:
-    """The points of a model with their paths, and how they move."""
+    """The points of a model with their paths and velocities."""
 
     def __init__(self, model: Model, evaluate: Evaluator, size: float) -> None:
         self.size = size
@@ -81,7 +81,7 @@ class _Flow:
             self._unknowns[unknown.path].append(unknown)
 
     def nudged(self, motion: Motion) -> Evaluator | None:
-        """What evaluates the model after a very little of a motion."""
+        """Returns an evaluator of the model after a very little of a motion."""
         fastest = max((abs(rate) for rate in motion.moves.values()), default=0.0)
         if not fastest or not math.isfinite(fastest):
             return None
@@ -93,7 +93,7 @@ class _Flow:
         return Evaluator(values, self._evaluate.measure)
 
     def moving(self, nudged: Evaluator, thing: str) -> list[tuple[Vec, Vec]]:
-        """Points of the thing at a path, and where they go; some of very many."""
+        """Returns points of the thing at a path with their velocities; some of very many."""
         inside = f"{thing}."
         found = [k for k, (path, *_) in enumerate(self._points) if path == thing or path.startswith(inside)]
         moving = []
@@ -105,7 +105,7 @@ class _Flow:
         return moving
 
     def _at(self, k: int) -> tuple[Expression, Expression]:
-        """In the frame of the root."""
+        """Returns a point in the frame of the root."""
         if k not in self._in_root:
             _, structure, x, y = self._points[k]
             self._in_root[k] = convert(x, y, structure, self._model.root)
@@ -113,7 +113,7 @@ class _Flow:
 
 
 def _points(structure: Structure) -> Iterator[tuple[str, Expression, Expression]]:
-    """Points of the geometry of a structure itself, in its frame, and two on each circle."""
+    """Yields points of a structure's own geometry, in its frame, and two on each circle."""
     center: tuple[str, Expression, Expression] | None = None
     for _, path, numbers in seen(structure):
         if len(numbers) == 2:
@@ -129,8 +129,8 @@ def _points(structure: Structure) -> Iterator[tuple[str, Expression, Expression]
 
 @record()
 class _Thing:
-    """Some points that move, of one thing with a box. `velocity` is their mean; `spin` radians, about the
-    `middle`, in the same time.
+    """Moving points of one thing with a box. `velocity` is their mean; `spin` radians, about the `middle`, in
+    the same time.
     """
 
     box: Bounds
@@ -162,12 +162,14 @@ class _Thing:
 
     @property
     def is_turning(self) -> bool:
-        """Whether it turns rather than shifts."""
+        """True if it turns rather than shifts."""
         reach = math.hypot(self.box[2] - self.box[0], self.box[3] - self.box[1]) / 2
         return abs(self.spin) * reach > math.hypot(*self.velocity)
 
     def arrows(self, kind: str, slow: float) -> Iterator[Arrow]:
-        """One for what slides; for what grows, from its ends outwards. What is `slow` stands still."""
+        """Yields one arrow for a slide; for growth, arrows from its ends outwards. Points slower than `slow`
+        stand still.
+        """
         if kind == "turn" or (kind == "together" and self.is_turning):
             return
         if kind in ("slide", "together") and math.hypot(*self.velocity) > slow:
@@ -209,7 +211,7 @@ class _Thing:
 
 
 def _things(flow: _Flow, motion: Motion, elements: Elements) -> Iterator[_Thing]:
-    """What moves in a motion, as far as it has points and is somewhere."""
+    """Yields the things that move in a motion, if they have points and a place."""
     nudged = flow.nudged(motion)
     if nudged is None:
         return
