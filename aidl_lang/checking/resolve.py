@@ -310,7 +310,7 @@ class Resolver:
             if space is not None and space.kind is SymbolKind.NAMESPACE:
                 assert isinstance(node.receiver, ast.Name)
                 assert space.scope is not None
-                self.resolution.uses[node.receiver] = space
+                self._name(node.receiver, scope)
                 where = space.scope.spaces[space.name]
             else:
                 self.expression(node.receiver, scope)

@@ -22,7 +22,7 @@ def a(kind: Type) -> str:
     word = "thing" if isinstance(kind, AnyType) else str(kind)
     if isinstance(kind, NumberType) and kind.whole:
         word = "number" if kind.dimension is None else "whole number"
-    return with_article(word)
+    return with_article(f"number in {word}" if word.startswith(("mm", "deg")) else word)
 
 
 def shown(node: ast.Node) -> str:
