@@ -41,6 +41,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
+_MISDECLARED = {"E0208", "E0209"}
 _EVALUATED = ast.Expression | ast.Equation
 """The nodes that the builder evaluates, or leaves out if they are wrong."""
 
@@ -92,27 +93,23 @@ def check(resolution: Resolution, variant: Variant = Variant.FULL) -> Program:
 
 
 def _rejected(modules: Sequence[ast.Module], found: Sequence[Diagnostic]) -> Iterator[ast.Node]:
-    """Yields for each error the innermost expression or equation around it, and the names on the way
-    there.
-    """
+    """Yields the innermost expression or equation in which each error was found, and names declared twice."""
     for error in found:
         for module in modules:
             if error.is_error and error.span is not None and error.span.source is module.source:
-                yield from _innermost(module, error.span)
+                around = list(_around(module, error.span))
+                yield from [n for n in around if isinstance(n, _EVALUATED)][-1:]
+                if error.code in _MISDECLARED:
+                    yield around[-1]
 
 
-def _innermost(module: ast.Module, place: Span) -> Iterator[ast.Node]:
-    found: ast.Node | None = None
-    around: ast.Node | None = module
-    while around is not None:
-        if isinstance(around, ast.Identifier):
-            yield around
-        elif isinstance(around, _EVALUATED):
-            found = around
-        inner = (n for n in ast.children(around) if n.span.start <= place.start and place.end <= n.span.end)
-        around = next(inner, None)
-    if found is not None:
-        yield found
+def _around(module: ast.Module, place: Span) -> Iterator[ast.Node]:
+    """Yields the nodes in which a place lies, the outermost first."""
+    node: ast.Node | None = module
+    while node is not None:
+        yield node
+        inner = (n for n in ast.children(node) if n.span.start <= place.start and place.end <= n.span.end)
+        node = next(inner, None)
 
 
 class Checker:

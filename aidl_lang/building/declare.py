@@ -10,7 +10,6 @@ from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.scopes import LetBinding, Scope, VarBinding, indexed
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.values import (
-    NOTHING,
     Array,
     ListVal,
     Nothing,
@@ -30,7 +29,6 @@ def declare(
     """Gives a value a name in the structure or shape whose body this is."""
     target = scope.declaring()
     if name in it.rejected:
-        target.values.setdefault(name.text, NOTHING)
         return
     if not indices:
         if scope.turn and name.text in target.values and not isinstance(target.values[name.text], LetBinding):
