@@ -97,7 +97,7 @@ class _Tries:
         if not (solving.explain and has_errors(found)):
             return found
         from aidl_lang.building.lower import lower
-        from aidl_lang.explaining.decided import NEVER, answered, failing
+        from aidl_lang.explaining.decided import NEVER, with_failing_constants, with_remedies
         from aidl_lang.solver import solve
 
         is_decided = any(d.code == NEVER for d in found) or any(
@@ -106,8 +106,8 @@ class _Tries:
         if not is_decided or (built := self.built(states_constants=True)) is None:
             return found
         lowered = lower(built.model)
-        solution = failing(lowered, solve(lowered.problem, replace(solving, explain=False)))
-        return answered(found, everything, self.trials(lowered, solution, states_constants=True))
+        solution = with_failing_constants(lowered, solve(lowered.problem, replace(solving, explain=False)))
+        return with_remedies(found, everything, self.trials(lowered, solution, states_constants=True))
 
     def built(
         self, turned: Mapping[int, int] | None = None, states_constants: bool = False
@@ -257,7 +257,7 @@ class _Troubles:
 
 def _is_troubled(solution: Solution) -> bool:
     """Tells whether something failed, gave way, or holds only far from the first guesses."""
-    return bool(solution.failures) or any(s.gave is not None or s.despite for s in solution.stages)
+    return bool(solution.failures) or any(s.concession is not None or s.despite for s in solution.stages)
 
 
 def _explained(
@@ -332,9 +332,9 @@ def _finish(
     except TooLongError as reason:
         return Compiled("wrong", ordered([*diagnostics, reason.diagnostic]), watch.seconds, known)
     if settings.strict and troubles.given:
-        from aidl_lang.explaining.giving import refused
+        from aidl_lang.explaining.giving import as_error
 
-        found = list(map(refused, found))
+        found = list(map(as_error, found))
     if solution.status is not Status.SOLVED:
         notes = []  # nothing to note on parts that are not in place
     notes = list(_beside([*troubles.elsewhere, *notes], found))
@@ -381,9 +381,9 @@ def _drawn(
     model, evaluator, drawing, notes = pictured(built.model, lowered, solution, freedom, watch)
     with watch("asserts"):
         if troubles.given:
-            from aidl_lang.explaining.giving import explained
+            from aidl_lang.explaining.giving import with_reasons
 
-            model = explained(model, troubles.given)
+            model = with_reasons(model, troubles.given)
         found = solution_notes(lowered, solution, freedom, model, troubles.given, troubles.failures)
         is_solved = solution.status.value == "solved"
         found += assertion_notes(built.model, model, drawing, evaluator, solved_fully=is_solved)

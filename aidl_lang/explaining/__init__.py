@@ -1,4 +1,4 @@
-"""What there is to say of a solution: who conflicts, what gave way, what would fit, which assertions fail.
+"""Explanations of a solution: conflicts, sizes that gave way, numbers that would fit, assertions that fail.
 
-What would help is tried on the program before it is said (`trials`). `outcome` tells a drawing that solved.
+A remedy is tried on the program before it is offered (`trials`). `outcome` explains a drawing that solved.
 """

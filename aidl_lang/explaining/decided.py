@@ -1,4 +1,4 @@
-"""What would have to be another number where a condition over constants does not hold (E0513, E0604).
+"""Numbers that would fit where a condition over constants does not hold (E0513, E0604).
 
 Such a condition is put to the solver like any other, as a conflict of one statement; what is told of
 conflicts, numbers that were tried as they are printed, can then be told of it.
@@ -14,8 +14,7 @@ from aidl_lang.building.model import Constraint
 from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.source import Span
-from aidl_lang.explaining.givens import Dial, behind
-from aidl_lang.explaining.givens import stated as stated_in
+from aidl_lang.explaining.givens import Dial, exact_numbers, written_numbers
 from aidl_lang.explaining.remedies import Remedy, Search, remedies
 from aidl_lang.explaining.trials import Trials
 from aidl_lang.explaining.verifying import mends
@@ -25,13 +24,13 @@ from aidl_lang.solver.solution import Failure, GroupFailure, Member
 NEVER, _ASSERTED = "E0513", "E0604"
 _CODES = frozenset({NEVER, _ASSERTED})
 _MOST = 0.5
-"""Part by which a number may change that is offered: beyond that it is told only."""
+"""Greatest relative change of a number that is offered as a fix: a greater one is mentioned only."""
 _PLACES = 5
-"""That a message shows beside its own."""
+"""The most places that a message shows beside its own."""
 
 
-def failing(lowered: Lowered, solution: Solution) -> Solution:
-    """Returns the solution of a problem that states constants, with each of these that does not hold as a
+def with_failing_constants(lowered: Lowered, solution: Solution) -> Solution:
+    """Returns the solution of a problem that states constants, with each of them that does not hold as a
     failure of its own.
     """
     found = []
@@ -42,11 +41,12 @@ def failing(lowered: Lowered, solution: Solution) -> Solution:
     return replace(solution, failures=tuple(found))
 
 
-def answered(
+def with_remedies(
     found: Sequence[Diagnostic], everything: Sequence[Diagnostic], trials: Trials
 ) -> list[Diagnostic]:
-    """Findings among everything that is said of a program, those on constants with what would fit instead.
-    The trials are those of the program that states constants, with what is `failing`.
+    """Returns findings about a program, those on constants with what would fit instead; `everything` are all
+    findings about it. The trials are those of the program that states constants, with the solution made by
+    `with_failing_constants`.
     """
     failures: dict[Span, tuple[Constraint, GroupFailure]] = {}
     for failure in trials.solution.failures:
@@ -65,7 +65,7 @@ def _answered(
     d: Diagnostic, stated: Constraint, failure: GroupFailure, everything: Sequence[Diagnostic], trials: Trials
 ) -> Diagnostic:
     """Returns a finding with what fits where its numbers are given, and the least change of these as the fix.
-    Where there is none, it is told what fits in a constraint; what an `assert` asks is not up for change.
+    If there is none, tells what fits in a constraint; what an `assert` asks is not up for change.
     """
     wording = stated.wording
     if not isinstance(wording, Wording) or wording.node.span != stated.span:
@@ -76,21 +76,21 @@ def _answered(
         return (each for each in remedies(searches) if mends(d, each.fix, everything, trials))
 
     uses = wording.it.program.resolution.uses
-    given = sorted(fitting(behind([wording.node], uses)), key=lambda each: (each.counts, each.share))
+    given = sorted(fitting(exact_numbers([wording.node], uses)), key=lambda each: (each.counts, each.share))
     if given:
         labels = d.secondary
         for each in given:
             labels = _with(labels, each)
         fix = given[0].fix if given[0].share <= _MOST else None
         return replace(d, secondary=labels[:_PLACES], fix=fix)
-    dials = stated_in(wording.node) if d.code == NEVER else []
+    dials = written_numbers(wording.node) if d.code == NEVER else []
     if (own := next(fitting(dials), None)) is None:
         return d
     return replace(d, label="; ".join(filter(None, (d.label, own.would_fit(len(dials))))))
 
 
 def _with(labels: tuple[Label, ...], found: Remedy) -> tuple[Label, ...]:
-    """Returns the labels, one of them with what would fit in place of a number."""
+    """Returns the labels, with what would fit in place of a number added to one of them or as a new one."""
     place, text = found.dial.place, found.would_fit()
     for index, label in enumerate(labels):
         if found.dial.name and label.span.overlaps(place):

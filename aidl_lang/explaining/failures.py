@@ -1,4 +1,4 @@
-"""What there is to say of a program that cannot be solved: who conflicts, where, and what would fit."""
+"""Explanations of a program that cannot be solved: what conflicts, where, and what would fit."""
 
 from __future__ import annotations
 
@@ -20,8 +20,7 @@ from aidl_lang.common.numbers import short
 from aidl_lang.common.prose import listed
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.explaining.givens import Dial, behind
-from aidl_lang.explaining.givens import stated as stated_in
+from aidl_lang.explaining.givens import Dial, exact_numbers, written_numbers
 from aidl_lang.explaining.remedies import Remedy, Search, dear, left_out, remedies, wished
 from aidl_lang.explaining.trials import Trials
 from aidl_lang.solver.solution import Failure, GroupFailure, Member, Solution
@@ -30,20 +29,20 @@ from aidl_lang.syntax import ast
 _PROVEN = (Failure.CONTRADICTORY, Failure.OVERDETERMINED)
 """Reasons that do not depend on where the search began."""
 _TOLERANCE = 1e-6
-"""Below this a constraint is not called off, in its own units."""
+"""Violations below this, in the constraint's own units, are not mentioned."""
 _FINISHED = 5
-"""Fixes of which it is tried whether the program then compiles to the end."""
+"""The most fixes that are tried for whether the program then compiles to the end."""
 NAMED = 3
-"""Things that a list names."""
+"""The most things that a list names."""
 _SHOWN = 12
-"""Places beside the one that a message is about."""
+"""The most places shown beside the one that a message is about."""
 _QUOTED = 60
-"""Characters of a constraint that a headline quotes."""
+"""The most characters of a constraint that a headline quotes."""
 
 
 def explained(lowered: Lowered, solution: Solution, trials: Trials) -> list[Explanation]:
-    """One explanation for each group that could not be solved for reasons of its own. What would help is
-    tried by `trials` when it is first asked for.
+    """Returns an explanation of each group that could not be solved for reasons of its own; `trials` tries
+    remedies when they are first asked for.
     """
     own = [f for f in solution.failures if not _follows(f, solution.failures, lowered.groups)]
     found: list[Explanation] = []
@@ -67,7 +66,7 @@ class Party:
 
 
 @record()
-class Given:
+class ExactNumber:
     """An exact number behind a conflict: its name if it has one, its place, and what would fit there."""
 
     name: str
@@ -85,11 +84,11 @@ class Conflict:
     headline: str
     is_minimal: bool
     parties: tuple[Party, ...]
-    givens: tuple[Given, ...] = ()
+    givens: tuple[ExactNumber, ...] = ()
 
 
 def _follows(failure: GroupFailure, failures: Sequence[GroupFailure], paths: Sequence[str]) -> bool:
-    """Tells whether a search that found nothing may owe that to a failure in the same group or inside it."""
+    """Tells whether a search may have found nothing because of a failure in the same group or inside it."""
     if failure.reason in _PROVEN:
         return False
     here = f"{paths[failure.group]}."
@@ -111,21 +110,23 @@ class _Party:
 
     @property
     def node(self) -> ast.Expression | None:
-        """The statement, where what is written at its place is just that."""
+        """The statement, if it is all that is written at its place; else None."""
         wording = self.stated.wording
         if isinstance(wording, Wording) and wording.node.span == self.stated.span:
             return wording.node
         return None
 
     def value(self, part: ast.Expression) -> Expression | None:
-        """Returns the number that a part of the statement is."""
+        """Returns the number expression of a part of the statement; None if it is not a number."""
         wording = self.stated.wording
         value = wording.value(part) if isinstance(wording, Wording) else None
         return value.expression if isinstance(value, Num) else None
 
 
 class Explanation:
-    """Why a group could not be solved, and what would help: perhaps what helps against an `earlier` one."""
+    """The reason why a group could not be solved, and remedies, which may be those of an `earlier`
+    explanation.
+    """
 
     def __init__(
         self,
@@ -143,7 +144,7 @@ class Explanation:
         parties = [_Party(m, stated) for m in failure.members if (stated := lowered.stated[m.index])]
         self.parties = sorted(parties, key=lambda party: party.stated.span.start)
         self.turns: dict[Span, list[_Party]] = {}
-        """The parties by the place at which they are stated, in the turns of a loop perhaps."""
+        """The parties by the place at which they are stated; a loop states several at one place."""
         for party in self.parties:
             self.turns.setdefault(party.stated.span, []).append(party)
 
@@ -168,7 +169,9 @@ class Explanation:
     def conflict(self) -> Conflict:
         parties = tuple(map(self._told, self.parties))
         givens = tuple(
-            Given(r.dial.name, r.dial.place, r.would_fit(), r.fix) for r in self._remedies if r.dial.is_exact
+            ExactNumber(r.dial.name, r.dial.place, r.would_fit(), r.fix)
+            for r in self._remedies
+            if r.dial.is_exact
         )
         return Conflict(self._headline()[1], self.failure.minimal, parties, givens)
 
@@ -179,7 +182,7 @@ class Explanation:
         return Party(stated.holder.path, stated.text, stated.span, party.member.off, would_fit, fix)
 
     def _size(self, index: int) -> Unknown:
-        """Returns the size that a constraint which nobody stated keeps from vanishing: `least - size <= 0` or
+        """Returns the size that a constraint which nobody wrote keeps from vanishing: `least - size <= 0` or
         `-size <= 0`.
         """
         problem = self.lowered.problem
@@ -191,7 +194,9 @@ class Explanation:
 
     @cached_property
     def _remedies(self) -> list[Remedy]:
-        """What would fit in place of numbers: those of the parties, one for each place, and exact ones."""
+        """The remedies: numbers that would fit in the parties, one for each place, and in place of exact
+        ones.
+        """
         if not self.is_proven:
             return []
         searches = list(self._searches())
@@ -225,15 +230,15 @@ class Explanation:
         if not self.sizes:
             wordings = [party.stated.wording for party in self.parties]
             uses = next((w.it.program.resolution.uses for w in wordings if isinstance(w, Wording)), {})
-            for dial in behind([p.node for p in self.parties if p.node is not None], uses):
+            for dial in exact_numbers([p.node for p in self.parties if p.node is not None], uses):
                 yield Search(dial, self.failure, self.trials, dial.place)
 
     @staticmethod
     def _dials(party: _Party) -> list[Dial]:
-        """Returns the numbers of a statement for which others may be told: by what something is multiplied is
-        no measure.
-        """
-        return [] if party.node is None else [dial for dial in stated_in(party.node) if not dial.is_factor]
+        """Returns the numbers of a statement that may be changed: factors are no measures."""
+        return (
+            [] if party.node is None else [dial for dial in written_numbers(party.node) if not dial.is_factor]
+        )
 
     def _remedy_of(self, party: _Party) -> Remedy | None:
         span = party.stated.span
@@ -242,8 +247,8 @@ class Explanation:
 
     @cached_property
     def _fix(self) -> Fix | None:
-        """The smallest change of a number that mends it, those first that keep what is written alike alike;
-        at last that one of the constraints is a wish.
+        """The smallest change of a number that resolves the conflict, preferring those that keep equal
+        numbers equal; as a last resort, making one of the constraints a wish.
         """
         cheapest = sorted(self._remedies, key=self._dearness)
         for found in cheapest[:_FINISHED]:
@@ -260,7 +265,9 @@ class Explanation:
         return None
 
     def _once(self, found: Remedy) -> Fix:
-        """Returns the fix; where it would say what another party says, that the statement is left out."""
+        """Returns the fix, or the one that leaves the statement out if the changed statement would repeat
+        another party.
+        """
         for party in self.parties:
             span = party.stated.span
             if party.node is None or not span.overlaps(found.dial.place):
@@ -275,7 +282,9 @@ class Explanation:
         return found.fix
 
     def _dearness(self, found: Remedy) -> tuple[int, bool, bool, float, int]:
-        """What is to be kept: what takes part in other failures goes first, as one cause has several."""
+        """Returns the sort key of remedies, cheapest first: numbers in other failures too come first, as one
+        cause has several.
+        """
         shared = self._shares(found.dial.place)
         others = [d for parties in self.turns.values() for d in self._dials(parties[0])]
         size = abs(found.dial.value)
@@ -285,18 +294,20 @@ class Explanation:
         return -shared, found.counts, breaks, round(share, 4), -found.dial.place.start
 
     def _shares(self, place: Span) -> int:
-        """Returns the number of other failures in which what stands at a place takes part."""
+        """Returns the number of other failures in which the statement at a place takes part."""
         return sum(any(span.overlaps(place) for span in spans) for spans in self._others)
 
     @cached_property
     def _others(self) -> list[set[Span]]:
-        """Where the constraints of each other failure are stated."""
+        """The places at which the constraints of each other failure are stated."""
         others = [f for f in self.solution.failures if f is not self.failure]
         return [{c.span for i in f.conflict if (c := self.lowered.stated[i]) is not None} for f in others]
 
     @cached_property
     def _chief(self) -> _Party:
-        """The party that the message is about: the one that is mended, else the last of those that can be."""
+        """The party that the message is about: the one that the fix changes, else the last that has a
+        remedy.
+        """
         if not self.is_proven:
             return max(self.parties, key=lambda party: (party.member.off, party.stated.span.start))
         places = [edit.span for edit in self._fix.edits] if self._fix else []
@@ -329,7 +340,9 @@ class Explanation:
                 return "E0603", f"the time for solving ran out before {names} held"
 
     def _claim(self, chief: _Party) -> str:
-        """What is wrong with the one that the message is about."""
+        """Returns the label of the party that the message is about: what would fit, or what is wrong with
+        it.
+        """
         if (would_fit := self._would_fit(chief)) != "":
             return would_fit
         off = chief.member.off
@@ -345,10 +358,14 @@ class Explanation:
             return ""
         assert party.node is not None
         times = self.times[party.stated.span]
-        return found.would_fit(len(stated_in(party.node))) + (f", all {times} times" if times > 1 else "")
+        return found.would_fit(len(written_numbers(party.node))) + (
+            f", all {times} times" if times > 1 else ""
+        )
 
     def _labels(self, chief: _Party) -> Iterator[Label]:
-        """Yields the other places, each once; of many those where something would fit, and the first."""
+        """Yields labels at the other places, each once; if there are too many, first those at which something
+        would fit.
+        """
         text = "conflicts with this" if self.is_proven else "takes part"
         spans = [span for span in self.turns if span != chief.stated.span]
         fitting = {span: self._would_fit(self.turns[span][0]) for span in spans}
@@ -356,7 +373,7 @@ class Explanation:
             yield Label(span, "; ".join(filter(None, (text, fitting[span]))))
 
     def _givens(self) -> Iterator[Label]:
-        """Yields the exact numbers that have a share in it."""
+        """Yields labels at the exact numbers that have a remedy."""
         for found in self._remedies:
             if found.dial.is_exact:
                 yield Label(found.dial.place, f"exact; {found.would_fit()}")
@@ -383,8 +400,8 @@ class Explanation:
 
 
 def _apart(party: _Party, gap: float) -> str:
-    """How far the sides of `a == b` are apart where the other parties hold; "" for what is no such
-    equation.
+    """Returns a sentence on the difference of the sides of `a == b` where the other parties hold; "" for any
+    other statement.
     """
     node, stated = party.node, party.stated
     if not isinstance(node, ast.Comparison) or node.operators != ("==",) or len(stated.comparisons) != 1:
@@ -400,7 +417,7 @@ def _apart(party: _Party, gap: float) -> str:
 
 
 def _name(parties: Sequence[_Party]) -> str:
-    """What is stated at one place, in the turns of a loop perhaps."""
+    """Returns the name of the parties stated at one place: a loop states several."""
     first, label = parties[0].name, parties[0].stated.label
     if len(parties) > 1:
         return f"{first} ({len(parties)} times)"
@@ -408,7 +425,7 @@ def _name(parties: Sequence[_Party]) -> str:
 
 
 def measured_in(value: float, stated: Constraint) -> str:
-    """Returns a value with its unit, where all that a constraint compares has the same."""
+    """Returns a value with its unit, if all that a constraint compares has the same unit."""
     dimensions = {comparison.dimension for comparison in stated.comparisons}
     unit = " mm" if dimensions <= {LENGTH, None} else "°" if dimensions == {ANGLE} else ""
     return f"{short(value)}{unit}"

@@ -1,5 +1,5 @@
 """The numbers of the text that have a share in some constraints: those written in them, and the exact ones
-behind what they mention.
+behind the names that they mention.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
 _MOST = 12
-"""Exact numbers behind what is mentioned; nearer ones first."""
+"""The most exact numbers behind the names mentioned; nearer ones first."""
 _FACTORING = ("*", "/", "%", "^")
 _BY_DEFINITION = frozenset({SymbolKind.FUNCTION, SymbolKind.SHAPE, SymbolKind.CONSTRAINT, SymbolKind.ALIAS})
-"""What belongs to the vocabulary rather than to the drawing."""
+"""Kinds of symbols that belong to the vocabulary rather than to the drawing."""
 
 
 class Sign(Enum):
-    """What a number may be that is not negative as it is written."""
+    """The values possible for a number that is not negative as it is written."""
 
     ANY = "a coordinate"
     NOT_NEGATIVE = "a gap, a margin, or what is added"
@@ -53,15 +53,15 @@ class Dial:
     is_rough: bool = False
 
     def may_be(self, value: float) -> bool:
-        """Tells whether its author can have meant a value: none whose sign turns what is said round."""
+        """Tells whether its author can have meant a value: none whose sign reverses the meaning."""
         if self.value < 0.0 or self.sign is Sign.ANY:
             return True
         return value > 0.0 if self.sign is Sign.POSITIVE else value >= 0.0
 
 
-def stated(node: ast.Expression) -> list[Dial]:
-    """Returns the numbers written in a statement, the last first: those that count among arguments and what
-    is compared. Indices are none: they say which thing is meant.
+def written_numbers(node: ast.Expression) -> list[Dial]:
+    """Returns the numbers written in a statement, the last first: those that count among its arguments and
+    its comparisons. Indices are left out: they say which thing is meant.
     """
     found: list[Dial] = []
     stack: list[ast.Node] = [node]
@@ -88,7 +88,7 @@ def stated(node: ast.Expression) -> list[Dial]:
 def _among(
     nodes: Iterable[ast.Node], sign: Sign, further: list[ast.Node], operator: str = ""
 ) -> Iterator[Dial]:
-    """Yields the literals among the operands of an operator; what is none goes `further`."""
+    """Yields the literals among the operands of an operator; appends the other operands to `further`."""
     for node in nodes:
         if _is_literal(node):
             yield replace(_dial(node), sign=sign, is_factor=operator in _FACTORING)
@@ -96,10 +96,10 @@ def _among(
             further.append(node)
 
 
-def behind(nodes: Iterable[ast.Node], uses: Mapping[ast.Node, Symbol]) -> list[Dial]:
-    """Returns the exact numbers behind what is mentioned in some nodes: values of `param`s and `let`s, and
-    what is `fixed`, in what is mentioned and what that mentions in turn; zeros, which mostly say where to
-    begin, last.
+def exact_numbers(nodes: Iterable[ast.Node], uses: Mapping[ast.Node, Symbol]) -> list[Dial]:
+    """Returns the exact numbers behind the names in some nodes: values of `param`s and `let`s, and of
+    `fixed(…)`, in the definitions mentioned and in those that these mention in turn; zeros, which mostly say
+    where to begin, come last.
     """
     found: dict[Span, Dial] = {}
     waiting, seen = list(nodes), set[ast.Node]()
@@ -109,7 +109,7 @@ def behind(nodes: Iterable[ast.Node], uses: Mapping[ast.Node, Symbol]) -> list[D
             for part in ast.walk(node):
                 if isinstance(part, ast.Call) and fold(part.callee.text) == "fixed":
                     for argument in part.arguments:
-                        for dial in stated(argument.value):
+                        for dial in written_numbers(argument.value):
                             found.setdefault(dial.place, _exact(dial))
                 symbol = uses.get(part)
                 if symbol is None or symbol.node is None or symbol.node in seen:

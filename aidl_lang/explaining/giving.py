@@ -1,5 +1,5 @@
-"""What gave way unasked, and because of which constraints: sizes that changed, frames whose content is exact
-or that no constraint names and that moved all the same (language, "What gives way").
+"""The sizes and frames that gave way unasked, with the constraints that ask for it: sizes that changed,
+frames that moved though their content is exact or no constraint names them (language, "What gives way").
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from aidl_lang.solver import Settings, Solution
 from aidl_lang.solver.reasons import Reason, reasons
 
 _A_TENTH = 0.1 + 1e-9
-"""Part of a size by which it may change without a warning."""
+"""Greatest relative change of a size that is no warning."""
 _STILL = 1e-6
-"""A frame that moved by less, in mm or degrees, is where it was."""
+"""Moves of a frame below this, in mm or degrees, count as none."""
 
 
 @record()
@@ -39,13 +39,13 @@ class GaveWay:
 
 
 def gave_way(lowered: Lowered, solution: Solution, settings: Settings) -> tuple[GaveWay, ...]:
-    """What gave way in a solution."""
+    """Returns what gave way in a solution, by reason."""
     found, told = list[GaveWay](), set[int]()
     for stage in reversed(solution.stages):
-        if (gave := stage.gave) is None:
+        if (concession := stage.concession) is None:
             continue
         together: dict[tuple[Constraint, ...], GaveWay] = {}
-        for reason in reasons(lowered.problem, settings, gave, solution.values):
+        for reason in reasons(lowered.problem, settings, concession, solution.values):
             one = _given(lowered, solution, reason, told)
             told |= reason.unknowns
             if one.moved:
@@ -59,7 +59,7 @@ def gave_way(lowered: Lowered, solution: Solution, settings: Settings) -> tuple[
 
 
 def _given(lowered: Lowered, solution: Solution, reason: Reason, told: Container[int]) -> GaveWay:
-    """What gave way for a reason, but for what was told."""
+    """Returns what gave way for a reason, without what was `told` before."""
     moved = {}
     for index in sorted(reason.unknowns):
         before, now = float(lowered.problem.initial[index]), float(solution.values[index])
@@ -70,22 +70,21 @@ def _given(lowered: Lowered, solution: Solution, reason: Reason, told: Container
     return GaveWay(moved, tuple(stated), reason.minimal)
 
 
-def explained(model: SolvedModel, given: Sequence[GaveWay]) -> SolvedModel:
+def with_reasons(model: SolvedModel, given: Sequence[GaveWay]) -> SolvedModel:
     """Returns the model with the reasons of its changed sizes."""
     texts = {u.path: tuple(c.text for c in g.because) for g in given for u in g.moved}
     changed = tuple(replace(c, because=texts.get(c.path, ())) for c in model.changed)
     return replace(model, changed=changed)
 
 
-def refused(note: Diagnostic) -> Diagnostic:
-    """Returns a diagnostic, as an error if it tells that something gave way."""
+def as_error(note: Diagnostic) -> Diagnostic:
+    """Returns a diagnostic, as an error if it reports that something gave way."""
     return replace(note, code="E0606") if note.code in GAVE_WAY else note
 
 
 def giving_notes(given: Sequence[GaveWay], model: SolvedModel) -> Iterator[Diagnostic]:
-    """What is said of it: one message for all sizes that changed for the same reason, one for each frame.
-    Nothing is said of a length between literal points: no number was written for it, and its points were
-    placed.
+    """Yields one message for all sizes that changed for the same reason, and one for each frame that moved. A
+    length between literal points is left out: no number was written for it, and its points were placed.
     """
     changes = {change.path: change for change in model.changed}
     for one in given:
@@ -106,7 +105,7 @@ def giving_notes(given: Sequence[GaveWay], model: SolvedModel) -> Iterator[Diagn
 
 
 def _of_sizes(sizes: Sequence[Change], given: GaveWay) -> Diagnostic:
-    """Returns a note; a warning where a size changed by more than a tenth."""
+    """Returns a note on changed sizes; a warning if one changed by more than a tenth."""
     chief = max(sizes, key=lambda c: (round(_share(c), 6), -c.span.start if c.span else 0))
     rest = [c for c in sizes if c is not chief]
     written, solved = short(chief.written), short(chief.solved)
@@ -134,16 +133,14 @@ def _of_sizes(sizes: Sequence[Change], given: GaveWay) -> Diagnostic:
 
 
 def _share(change: Change) -> float:
-    """Returns the part of a size by which it changed; of an angle or offset that of a right angle, or
-    nothing.
-    """
+    """Returns the relative change of a size; 0 for an angle, an offset, or a size written as 0."""
     if not change.is_size or not change.written:
         return 0.0
     return abs(change.solved / change.written - 1.0)
 
 
 def _distortion(change: Change) -> str:
-    """What became of a size that is hardly meant; "" for one that is less off."""
+    """Returns words for a change of a size that is hardly meant; "" for a smaller one."""
     share = change.solved / change.written
     if share < 0.0:
         return "turned around"
@@ -181,7 +178,7 @@ def _of_frame(structure: Structure, unknowns: Sequence[Unknown], given: GaveWay)
 
 
 def _is_named(structure: Structure, given: GaveWay) -> bool:
-    """Tells whether one of the constraints speaks of something in it."""
+    """Tells whether one of the constraints mentions something in a structure."""
     parts = [part for c in given.because for part in c.comparisons]
     spoken = {s for part in parts for s in part.boxes}
     spoken.update(u.frame_of or u.owner for part in parts for u in part.spoken_of)
@@ -192,7 +189,7 @@ def _is_named(structure: Structure, given: GaveWay) -> bool:
 
 
 def _whose(given: GaveWay) -> tuple[str, ...]:
-    """Who asks for it, in a sentence."""
+    """Returns a sentence on the constraints that ask for it."""
     if not given.because:
         return ()
     names = [f"`{c.text}`" + (f" [{c.label}]" if c.label else "") for c in given.because]

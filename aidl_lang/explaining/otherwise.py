@@ -24,19 +24,19 @@ from aidl_lang.explaining.failures import NAMED
 from aidl_lang.explaining.trials import Trials
 from aidl_lang.interp import Interpretation
 from aidl_lang.solver import Settings, Solution, Status, solve
-from aidl_lang.solver.lacking import lack
 from aidl_lang.solver.newton import Clock
+from aidl_lang.solver.shortfall import shortfall
 from aidl_lang.solver.solution import Failure
 from aidl_lang.syntax import ast
 
 _FIRST, _MOST = 16, 64
 """Other ways that are solved at once, and those that are tried at all."""
 _RANKS = (1, 2, 3)
-"""How many places further off than the nearest a reading is tried."""
+"""Ranks by distance of the readings that are tried, after the nearest."""
 _SECONDS, _LONGEST = 10.0, 0.5
 """Time for all of them, and for one."""
 _MUCH = 0.1
-"""Part of a size by which it may change before it is asked whether something was meant otherwise."""
+"""Relative change of a size above which other readings are tried."""
 _STILL = 1e-6
 _DIGITS = (2, 3, 6)
 _LOOK = "look whether this is how it is meant"
@@ -44,8 +44,8 @@ _LOOK = "look whether this is how it is meant"
 
 @record()
 class Otherwise:
-    """A program that solved with some ambiguous calls taken otherwise; `calls` are their places, and how each
-    was taken.
+    """A program that solved with some ambiguous calls read differently; `calls` are their places and
+    readings.
     """
 
     built: Interpretation
@@ -61,9 +61,9 @@ def otherwise(
     again: Callable[[Mapping[int, int]], Interpretation | None],
     settings: Settings,
 ) -> tuple[Otherwise | None, Solution]:
-    """Returns the program with ambiguous calls taken so that it solves and nothing dear gives way; None where
-    it does as it is, or no way was found. With the solution as it is: what conflicts by such calls is no
-    contradiction in it unless they were taken in every way.
+    """Returns the program with ambiguous calls read so that it solves and nothing dear gives way (None if it
+    does so as it is, or no such reading was found), and the solution as it is: a conflict of such calls is no
+    contradiction in it unless every reading was tried.
     """
     readings = list(built.model.readings)
     troubled = _troubled(lowered, solution) if readings and settings.explain else ()
@@ -83,29 +83,29 @@ def otherwise(
         if _still_fails(made, solution, settings):
             continue
         found = solve(made.problem, replace(settings, explain=False, seconds=min(settings.seconds, _LONGEST)))
-        if found.status is Status.SOLVED and not any(stage.gave for stage in found.stages):
+        if found.status is Status.SOLVED and not any(stage.concession for stage in found.stages):
             calls = tuple(taken[n] for n in turned if n < len(taken))
             return Otherwise(other, made, found, calls), solution
     return None, solution
 
 
 def _still_fails(made: Lowered, solution: Solution, settings: Settings) -> bool:
-    """Tells whether what conflicted does so with calls taken otherwise, by a search that is quicker than
-    solving. The same statements in the same order have the same numbers there.
+    """Tells whether a conflict remains with calls read differently, by a search that is quicker than solving.
+    The same statements in the same order have the same numbers there.
     """
     return any(
-        lack(made.problem, settings, f.conflict, f.conflict, dict(f.nearest)) for f in solution.failures
+        shortfall(made.problem, settings, f.conflict, f.conflict, dict(f.nearest)) for f in solution.failures
     )
 
 
 def _numbers(readings: Sequence[tuple[Span, str]], lowered: Lowered, indices: Iterable[int]) -> list[int]:
-    """Returns the readings, by number, that have a share in some constraints."""
+    """Returns the numbers of the readings that have a share in some constraints."""
     spans = {c.span for i in indices if (c := lowered.stated[i]) is not None}
     return [n for n, (span, _) in enumerate(readings) if any(map(span.overlaps, spans))]
 
 
 def _ways(numbers: Sequence[int]) -> Iterator[dict[int, int]]:
-    """Yields the ways in which readings can be taken otherwise: one of them, two, and so on."""
+    """Yields changes of readings, as ranks by number: of one reading, of two, and so on."""
     for count in range(1, len(numbers) + 1):
         for chosen in itertools.combinations(numbers, count):
             for ranks in itertools.product(_RANKS, repeat=count):
@@ -113,9 +113,7 @@ def _ways(numbers: Sequence[int]) -> Iterator[dict[int, int]]:
 
 
 def _undecided(lowered: Lowered, solution: Solution, readings: Sequence[tuple[Span, str]]) -> Solution:
-    """Returns the solution, in which failures that ambiguous calls have a share in are not taken for
-    proven.
-    """
+    """Returns the solution with failures that ambiguous calls have a share in no longer counted as proven."""
     failures = tuple(
         replace(f, reason=Failure.NOT_CONVERGED) if _numbers(readings, lowered, f.conflict) else f
         for f in solution.failures
@@ -124,14 +122,14 @@ def _undecided(lowered: Lowered, solution: Solution, readings: Sequence[tuple[Sp
 
 
 def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:
-    """Returns the constraints that take part in a failure, or left a size no way but to change much."""
+    """Returns the constraints that take part in a failure, or that made a size change much."""
     found = {i for failure in solution.failures for i in failure.conflict}
     for stage in solution.stages:
-        for unknown in stage.gave.unknowns if stage.gave is not None else ():
+        for unknown in stage.concession.unknowns if stage.concession is not None else ():
             was, now = lowered.problem.initial[unknown], solution.values[unknown]
             if lowered.problem.kept[unknown] and abs(now - was) > _MUCH * abs(was):
-                assert stage.gave is not None
-                found.update(stage.gave.constraints)
+                assert stage.concession is not None
+                found.update(stage.concession.constraints)
     return found
 
 
@@ -141,8 +139,8 @@ def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:
 def elsewhere_notes(
     model: Model, lowered: Lowered, solution: Solution, other: Otherwise | None, trials: Trials
 ) -> Iterator[Diagnostic]:
-    """Yields a note on what was not taken, or not found, as the first guesses have it, with first guesses
-    that do.
+    """Yields notes on calls that were read differently from the first guesses, and on places found far from
+    them, each with first guesses that fit.
     """
     if solution.status is not Status.SOLVED:
         return
@@ -180,8 +178,8 @@ def elsewhere_notes(
 def _guesses(
     model: Model, lowered: Lowered, solution: Solution, stated: Sequence[Constraint], trials: Trials
 ) -> Fix | None:
-    """Writes first guesses near to where things are now, from which the program solves as it is written; None
-    if none were found.
+    """Returns a fix that writes first guesses near to where things are now, from which the program solves as
+    it is written; None if none were found.
     """
     places = dict(zip(lowered.unknowns, solution.values.tolist(), strict=True))
     was = dict(zip(lowered.unknowns, lowered.problem.initial.tolist(), strict=True))

@@ -1,4 +1,4 @@
-"""What there is to say of a solved model: conflicts, sizes that had to change, assertions that fail."""
+"""Diagnostics of a solved model: conflicts, sizes that had to change, assertions that fail."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from aidl_lang.explaining.giving import GaveWay
 
 _TOLERANCE = 1e-6
-"""How far an assertion may be off, relative to what it compares (and never less than this in mm)."""
+"""Violation that an assertion may have, relative to the values compared (and never less than this in mm)."""
 _WORD = "assert"
 
 
@@ -43,7 +43,9 @@ def solution_notes(
     given: Sequence[GaveWay],
     failures: Sequence[Explanation],
 ) -> list[Diagnostic]:
-    """Failures as errors; for a model that solved, what gave way and redundant constraints."""
+    """Returns failures as errors; for a model that solved, notes on what gave way and on redundant
+    constraints.
+    """
     found = [failure.diagnostic for failure in failures]
     if solution.status is not Status.SOLVED:
         return found
@@ -84,7 +86,9 @@ def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
 def assertion_notes(
     model: Model, solved: SolvedModel, drawing: Drawing, evaluator: Evaluator, *, solved_fully: bool
 ) -> list[Diagnostic]:
-    """Assertions that do not hold on the solved model; nothing when it did not solve."""
+    """Returns a diagnostic for each assertion that does not hold on the solved model; none if it did not
+    solve.
+    """
     if not solved_fully:
         return []
     evaluator.measure = _Measure(solved, drawing)
@@ -92,8 +96,8 @@ def assertion_notes(
 
 
 def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | None:
-    """Returns an assertion that does not hold at the values of the evaluator, with the numbers; None if it
-    does.
+    """Returns a diagnostic for an assertion that does not hold at the values of the evaluator, with the
+    numbers; None if it holds.
     """
     if holds(assertion.condition, evaluate, _TOLERANCE):
         return None
@@ -115,7 +119,9 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
 
 
 def _hint(assertion: Assertion, false: Sequence[Comparison], places: Sequence[Label]) -> str:
-    """What is true of an assertion that does not hold, and nothing that would be an error in its turn."""
+    """Returns a hint on an assertion that does not hold; it proposes nothing that would be an error in its
+    turn.
+    """
     if assertion.shape:
         return f"`{assertion.shape}` asks this of its arguments: see `aidl doc {assertion.shape}`"
     if not false and isinstance(assertion.condition, bool):
@@ -130,8 +136,8 @@ def _hint(assertion: Assertion, false: Sequence[Comparison], places: Sequence[La
 
 
 def _stated(assertion: Assertion) -> Fix | None:
-    """Constrains what an assertion asks, before it; None where no `assert` of the author stands, or where it
-    is nothing that constrains.
+    """Returns a fix that constrains what an assertion asks, before it; None if no `assert` of the author
+    stands there, or if it cannot be constrained.
     """
     span, wording = assertion.span, assertion.wording
     before = span.source.text[: span.start].rstrip()
@@ -151,8 +157,8 @@ def _is_measured(comparisons: Sequence[Comparison]) -> bool:
 
 
 def _can_be_stated(condition: Condition | bool) -> bool:
-    """Tells whether `constrain` takes it: comparisons that all hold, by relations that a solver knows, of
-    what is known before everything is solved.
+    """Tells whether `constrain` takes a condition: comparisons that all hold, by relations that a solver
+    knows, of values known before everything is solved.
     """
     if not isinstance(condition, Condition) or condition.operator != "and":
         return False
@@ -194,7 +200,7 @@ def measured(kind: str, regions: Sequence[Region], size: float) -> float:
 
 
 class _Measure:
-    """Answers what only the drawing can: areas, perimeters, clearances, overlaps."""
+    """Measures what only the drawing knows: areas, perimeters, clearances, overlaps."""
 
     def __init__(self, model: SolvedModel, drawing: Drawing) -> None:
         self.model = model
@@ -207,8 +213,8 @@ class _Measure:
         return measured(payload.kind, [self._region(thing) for thing in payload.of], self.drawing.size)
 
     def _side(self, payload: Measurement) -> float:
-        """Returns a side of the box of an outline that was worked out after solving, as a structure sees
-        it.
+        """Returns a side of the box of an outline that was worked out after solving, in the frame of a
+        structure.
         """
         assert payload.here is not None
         found = [g for g in all_geometry(self.model.root) if g.path == payload.of[0].path]
@@ -223,7 +229,9 @@ class _Measure:
         return {"left": left, "bottom": bottom, "right": right, "top": top}[payload.kind]
 
     def _region(self, thing: Structure | Geometry) -> Region:
-        """What a structure covers in the drawing; what a geometry would cover as a solid of its own."""
+        """Returns the region that a structure covers in the drawing, or that a geometry would cover as a
+        solid of its own.
+        """
         if isinstance(thing, Structure):
             return self.drawing.regions.get(thing.path, Region(()))
         return region_alone(self.model, thing.path)

@@ -1,4 +1,4 @@
-"""What else a number would have to be for constraints that conflict to hold, and the edits that say so.
+"""Numbers that would make constraints hold which conflict, and the edits that write them.
 
 A number of the text is turned a little and the program built again; from how much nearer that brings the
 constraints follows where the number would have to be. It is told only if the program, with just what is
@@ -25,39 +25,39 @@ from aidl_lang.explaining.trials import Trials
 from aidl_lang.solver.solution import GroupFailure
 
 _NUDGE = 1e-3
-"""How far a number is turned to see what it does, as a share of itself."""
+"""Relative change of a number by which its influence is measured."""
 _ABREAST = 6
-"""Numbers of which it is first asked how far they would have to change."""
+"""Number of searches that are compared by the change they would need before they start."""
 _FIXED = 2.0
-"""How much dearer it is to change what is `fixed` than another number by the same part."""
+"""Factor by which a change of a `fixed` number costs more than the same change of another."""
 _LONG = 2.0
-"""How much dearer it is to write a number of many digits."""
+"""Factor by which a number of many digits costs more."""
 _STEPS = 4
-"""Times that the place of a number is sought anew where what it does is not even."""
+"""The most times that the place of a number is sought anew if its influence is not linear."""
 _NOTHING = 1e-9
-"""A change of what is lacking, relatively, that is none."""
+"""Relative change of the violation that counts as none."""
 _VANISHES = 1e-4
-"""A number so near to nothing, relatively, is 0."""
+"""Relative distance from 0 below which a number is 0."""
 _ARRIVED = 1e-7
-"""Part of what is lacking that is left by rounding where a number fits."""
+"""Part of the violation that is left by rounding at a number that fits."""
 _FAR = 20.0
-"""A number so many times as large is not what anyone means."""
+"""Factor of the number's size beyond which no author means another one."""
 _NEAR, _MEANT = 1e-9, 4
-"""How near, relatively, a number lies to a shorter one that is meant, and the decimals of such a one."""
+"""Relative distance to a shorter number at which that one is meant, and the most decimals of such a one."""
 _COARSE = 1e-2
-"""Part of a change that may be added to make a number short, where there is a choice."""
+"""Part of a change that may be added to make a number short, if there is a range."""
 _FURTHER = 0.25
-"""Part of a change at which it is tried whether more of it would do as well."""
+"""Part of a change that is added to try whether numbers beyond fit as well."""
 _SHARP = 0.03
-"""Part of a change that would be too little of it where it leads to an end."""
+"""Part of a change by which a number before the end of a range must fail to fit."""
 _BEYOND = (1.0, 8.0)
-"""Parts of a change at which it is tried whether there is an end to that."""
+"""Parts of a change that are added in search of the other end of a range."""
 _LITTLE = 0.02
-"""Part of a number at which it is tried in the place of nothing."""
+"""Part of a number that is tried in place of 0."""
 _DIVISORS = range(2, 65)
 _DIGITS = (6, 9, 12)
 _PLAIN, _ROUGH = 3, 5
-"""Digits of a number that is easily written, and of one that is worth telling where any point would do."""
+"""Digits of a number that is easily written, and of one that is worth mentioning where any point would do."""
 _WHOLE = (-1.0, 1.0, -2.0, 2.0)
 """Changes that are tried of a number that must be whole."""
 
@@ -65,11 +65,11 @@ _WHOLE = (-1.0, 1.0, -2.0, 2.0)
 @record()
 class Remedy:
     """
-    dial   the number that would have to be another one
-    value  what it would have to be
-    fix    writes that
-    shown  that it would fit, as it is told: `exactly 76 / 3 (about 25.33)`, `at most 50`, `10 to 70`
-    share  by how much it changes, relative to what it is
+    dial   the number to change
+    value  its new value
+    fix    the edit that writes it
+    shown  the values that fit, in words: `exactly 76 / 3 (about 25.33)`, `at most 50`, `10 to 70`
+    share  the relative change
     plain  whether it is a number of few digits
     counts whether it is a number of things
     """
@@ -83,25 +83,29 @@ class Remedy:
     counts: bool = False
 
     def would_fit(self, numbers: int = 1) -> str:
-        """What is said where so many `numbers` are written, of which this is one."""
+        """Returns the words of a message; they name the number if several `numbers` are written at its
+        place.
+        """
         instead = f" instead of `{self.dial.place.text}`" if numbers > 1 else ""
         return f"{self.shown}{instead} would fit"
 
     @property
     def written(self) -> str:
-        """The text that is put in its place."""
+        """The text that the fix writes."""
         return self.fix.edits[0].replacement
 
 
 def dear(dial: Dial, share: float, plain: bool) -> float:
-    """How dear it is to change a number by a share of itself, to one of few digits if that is `plain`."""
+    """Returns the cost of changing a number by a `share` of itself; `plain` if the new number has few
+    digits.
+    """
     return share * (_FIXED if dial.is_exact and not dial.name else 1.0) * (1.0 if plain else _LONG)
 
 
 def remedies(searches: Iterable[Search]) -> Iterator[Remedy]:
-    """What would fit in place of numbers, one for each place; nothing for those for which no number was found
-    that would, or for which there was no time: a first one of few digits is worth more of that. Of each few,
-    those are sought first that would change least.
+    """Yields remedies, at most one for each place; none for searches that find no number, or for which there
+    is no time. A first remedy of few digits ends what is sought late. Of each few searches, those start first
+    that would change least.
     """
     found, is_enough = set[Span](), False
     waiting = iter(searches)
@@ -120,7 +124,7 @@ def remedies(searches: Iterable[Search]) -> Iterator[Remedy]:
 
 @record()
 class _Written:
-    """A number as it is written and as it is told."""
+    """A number with the text to write and the text to show."""
 
     value: float
     text: str
@@ -128,8 +132,8 @@ class _Written:
 
 
 class Search:
-    """For what would fit in place of a number. If it stands in one member of the failure alone, that is the
-    `member`. What is found for one of several numbers at a `place` is enough.
+    """A search for a number that would fit in place of another. `member` is the one member of the failure
+    that contains it, if only one does. One remedy is enough for all numbers at a `place`.
     """
 
     def __init__(
@@ -140,8 +144,8 @@ class Search:
 
     @cached_property
     def reach(self) -> float:
-        """By what part of itself a small turn says that the number would have to change, weighed by how dear
-        that is; infinite if that says nothing.
+        """The relative change of the number that its influence predicts, times its cost; infinite if nothing
+        is predicted.
         """
         value = self.dial.value
         if self.trials.is_late:
@@ -164,7 +168,7 @@ class Search:
         return (self._found() if is_range else None) or self._remedy(pinned, pinned.shown)
 
     def turned(self) -> Remedy | None:
-        """Returns a negative number without its sign."""
+        """Returns the remedy that drops the sign of a negative number; None if that does not fit."""
         opposite = self._plain(-self.dial.value)
         fits = self.dial.value < 0.0 and self._fits(opposite)
         return self._remedy(opposite, opposite.shown) if fits else None
@@ -176,7 +180,9 @@ class Search:
 
     @cached_property
     def _even_target(self) -> float | None:
-        """What the number would have to be if what is lacking fell evenly with it."""
+        """The value at which the violation would vanish if it fell linearly with the number; None if
+        unknown.
+        """
         value = self.dial.value
         if not (off := self._lack(value)):
             return None
@@ -189,7 +195,7 @@ class Search:
 
     @cached_property
     def _pinned_target(self) -> float | None:
-        """What the number would have to be where the other members hold."""
+        """The value at which the member holds where the other members hold; None if unknown."""
         value, step = self.dial.value, self._step
         now, nudged = self._residual(value), self._residual(value + step)
         if not now or nudged is None or nudged == now:
@@ -201,7 +207,7 @@ class Search:
         return _NUDGE * max(abs(self.dial.value), 1.0)
 
     def _pinned(self) -> _Written | None:
-        """What fits where the other members hold."""
+        """Returns a number that fits where the other members hold; None if there is none."""
         if self._member is None or self._pinned_target is None:
             return None
         target = self._rounded(self._pinned_target)
@@ -216,7 +222,7 @@ class Search:
         return self.dial.may_be(target) and abs(target - value) <= _FAR * max(abs(value), 10.0)
 
     def _near(self, target: float) -> Remedy | None:
-        """What fits at about a number, or where that leads."""
+        """Returns the remedy at about a target, corrected by secant steps; None if no number there fits."""
         value = self.dial.value
         if not (off := self._lack(value)):
             return None
@@ -242,7 +248,7 @@ class Search:
         return None
 
     def _whole(self) -> Remedy | None:
-        """What fits in place of a number that cannot be turned a little, as one that counts things."""
+        """Returns the remedy for a number that cannot be changed a little, as one that counts things."""
         value = self.dial.value
         if value != round(value) or self.dial.unit or self._lack(value + self._step) is not None:
             return None
@@ -252,10 +258,10 @@ class Search:
                 return replace(self._remedy(written, written.shown), counts=True)
         return None
 
-    # -- what is said
+    # -- remedies in words
 
     def _range(self, end: _Written, target: float, change: float) -> Remedy:
-        """What is told of numbers that fit from an `end` onward, which was sought at a `target`."""
+        """Returns the remedy for numbers that fit from an `end` onward, which was sought at a `target`."""
         end = self._ending(end, target, change)
         further = self._plain(_neat(end.value, change, _FURTHER * abs(change)))
         if not self._is_sharp(end, change) or not self._fits(further):
@@ -266,7 +272,7 @@ class Search:
         return self._remedy(end, f"{'at least' if change > 0.0 else 'at most'} {end.shown}")
 
     def _other_end(self, end: float, change: float) -> _Written | None:
-        """Where the numbers that fit end on the other side; None if no such end was found."""
+        """Returns the other end of the numbers that fit; None if no such end was found."""
         inside = end
         for part in _BEYOND:
             outside = end + part * change
@@ -286,7 +292,7 @@ class Search:
 
     def _ending(self, written: _Written, target: float, onward: float) -> _Written:
         """Returns the short number at a `target` that was found by going `onward`, if it fits and is an end;
-        else the one `written`.
+        else `written`.
         """
         limits = (self._plain(round(target, digits)) for digits in range(_PLAIN))
         near = 0.1 * _NUDGE * max(abs(target), 1.0)
@@ -295,7 +301,7 @@ class Search:
         return limit if limit is not written and self._lack(beyond) and self._fits(limit) else written
 
     def _is_sharp(self, end: _Written, onward: float) -> bool:
-        """Tells whether a number that lies hardly less far `onward` than an end does not fit."""
+        """Tells whether a number a little before an end, seen in the direction `onward`, does not fit."""
         aside = max(_SHARP * abs(onward), _NUDGE * abs(end.value))
         return bool(self._lack(end.value - math.copysign(aside, onward)))
 
@@ -312,15 +318,15 @@ class Search:
         return (Edit(self.dial.place, text),)
 
     def _at(self, value: float) -> tuple[Edit, ...]:
-        """Returns the number turned to a value, with all its digits."""
+        """Returns the edits that set the number to a value, with all its digits."""
         return self._edits(f"{value + 0.0:.15g}{self.dial.unit}")
 
     def _lack(self, value: float) -> float | None:
         return self.trials.lack(self._at(value), self.failure)
 
     def _fitting(self, spelled: Iterable[_Written]) -> _Written | None:
-        """Returns the first way to write a number that fits. Where one does not for other reasons than its
-        digits, no other will.
+        """Returns the first spelling of a number that fits. If one fails for other reasons than its digits,
+        no other is tried.
         """
         for written in spelled:
             if self._fits(written):
@@ -341,8 +347,8 @@ class Search:
     # -- digits
 
     def _spelled(self, target: float, onward: float) -> Iterator[_Written]:
-        """Ways to write a number, the shortest first. If `onward` is not 0, what lies a little further that
-        way will do as well.
+        """Yields spellings of a number, the shortest first. If `onward` is not 0, numbers a little further in
+        that direction will do as well.
         """
         for digits in range(_MEANT + 1):
             if abs(round(target, digits) - target) <= _NEAR * max(1.0, abs(target)):

@@ -1,5 +1,5 @@
-"""What is said of constraints that follow from others, and of parts of which that could not be told; and of
-a single one whether it does.
+"""Reports constraints that follow from others and parts whose freedom is undecided; tells whether one
+constraint follows.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ from aidl_lang.solver.redundancy import Redundancy
 from aidl_lang.solver.solution import Failure
 
 _NAMED = 4
-"""Constraints that are named in the headline."""
+"""The most constraints that the headline names."""
 _LARGEST = 2000
-"""Unknowns of a model that is solved again to see whether a constraint can be left out."""
+"""The most unknowns of a model that is solved again to see whether a constraint can be left out."""
 _SAME = 1e-6
 """Change of a value, in units of its scale, that counts as none."""
 _BROKEN = 1e-2
-"""How far an inequality is off to see whether others forbid it, in units of its scale."""
+"""Violation of an inequality, in units of its scale, that is tried to see whether others forbid it."""
 _TRIED = 20
-"""Inequalities that are tried so, one by one."""
+"""The most inequalities that are tried so, one by one."""
 _SECONDS = 1.0
-"""For each of them."""
+"""Time for each of them."""
 
 
 def repetition_notes(lowered: Lowered, solution: Solution, freedom: Freedom) -> list[Diagnostic]:
-    """Returns a note for each stated constraint that follows from others, and for each part that is
+    """Returns a note for each written constraint that follows from others, and for each part that is
     undecided.
     """
     redundant = [found for found in freedom.redundant if _stated(lowered, found.constraint)]
@@ -53,7 +53,7 @@ def repetition_notes(lowered: Lowered, solution: Solution, freedom: Freedom) -> 
 
 
 def _stated(lowered: Lowered, index: int) -> Constraint | None:
-    """Returns the constraint if somebody wrote it."""
+    """Returns the constraint if somebody wrote it; else None."""
     stated = lowered.stated[index]
     return stated if stated is not None and stated.wording is not None else None
 
@@ -88,7 +88,7 @@ def _is_single(stated: Constraint | None, times: Counter[Span]) -> bool:
 
 
 def _changes_nothing(lowered: Lowered, solution: Solution, left_out: Sequence[int]) -> bool:
-    """Tells whether the drawing is the same without these constraints: they may have said what moves
+    """Tells whether the solution stays the same without these constraints: they may have decided what moves
     first.
     """
     problem = lowered.problem
@@ -125,9 +125,9 @@ def _undecided(lowered: Lowered, freedom: Freedom) -> Iterator[Diagnostic]:
 
 
 def follows(lowered: Lowered, solution: Solution, span: Span) -> bool:
-    """Tells whether what is stated in a place of a solved model holds wherever the other constraints hold: an
-    equation near by and with sizes kept, as degrees of freedom are counted; an inequality everywhere. False
-    as well where that is too much to tell.
+    """Tells whether the statement at a place of a solved model holds wherever the other constraints hold: an
+    equation near by and with sizes kept, as degrees of freedom are counted; an inequality everywhere. Returns
+    False as well if that is too costly to decide.
     """
     problem = lowered.problem
     own = {i for i, stated in enumerate(lowered.stated) if stated is not None and stated.span.overlaps(span)}
@@ -149,7 +149,7 @@ def _are_redundant(
     others: Sequence[SolverConstraint],
     equations: Sequence[SolverConstraint],
 ) -> bool:
-    """Tells whether equations follow from others, sizes being kept."""
+    """Tells whether equations follow from others while sizes are kept."""
     tape = problem.tape
     is_size = tape.ops == Op.UNKNOWN
     is_size[is_size] = problem.kept[tape.operands[is_size, 0]]
@@ -168,7 +168,9 @@ def _are_redundant(
 def _can_be_broken(
     problem: Problem, solution: Solution, others: Sequence[SolverConstraint], inequality: SolverConstraint
 ) -> bool:
-    """Tells whether others hold somewhere where an inequality does not, or may do so."""
+    """Tells whether the others hold somewhere where an inequality does not; True as well if the time runs
+    out.
+    """
     (row,), tape = inequality.rows, problem.tape
     node, level = len(tape), tape.levels[row.expression] + 1
     longer = replace(  # by a difference that is at most zero where the inequality is off

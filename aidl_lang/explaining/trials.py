@@ -1,6 +1,6 @@
-"""The program with edits: built again, and held against what could not hold in it before.
+"""Builds the program with edits and compares it with what could not hold in it before.
 
-What a message says would help is first tried here, as it is printed.
+Each remedy is tried here, as it is printed, before a message offers it.
 """
 
 from __future__ import annotations
@@ -17,31 +17,31 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, apply_fixes, has
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.solver import Settings, Solution, solve
-from aidl_lang.solver.lacking import lack, residual, settled
 from aidl_lang.solver.newton import Clock
+from aidl_lang.solver.shortfall import nearby_solution, residual, shortfall
 from aidl_lang.solver.solution import GroupFailure
 
 SECONDS, LONGEST = 1.5, 3.0
-"""Time after which nothing more is begun of all that is tried for the messages of one run, and after which
-nothing is tried at all: some programs take long to build.
+"""Time after which no new search is begun for the messages of one run, and time after which nothing is tried
+at all: some programs take long to build.
 """
 GAVE_WAY = frozenset({"N0601", "W0601", "W0602"})
-"""Codes of what is said where something gave way."""
+"""Codes of diagnostics that report what gave way."""
 _TOLD = GAVE_WAY | {"N0604"}
-"""The same, or where a program was solved from elsewhere."""
+"""These codes, and that of a program solved from elsewhere."""
 _LONGEST = 0.5
 """Seconds for one solve."""
 _MOVED = 1e-6
-"""What moved by less, in mm or degrees, did not give way."""
+"""Moves below this, in mm or degrees, count as none."""
 
 
 @record(frozen=False)
 class Trials:
     """
     source   the program as it is
-    build    makes the problem of another text; None where that is wrong
-    compile  what there is to say of another text
-    lowered  the problem of the program as it is, and what came of it
+    build    returns the problem of another text; None if that has errors
+    compile  returns the diagnostics of another text
+    lowered  the problem of the program as it is; `solution` is its solution
     """
 
     source: SourceFile
@@ -53,35 +53,37 @@ class Trials:
     _built: dict[str, Lowered | None] = field(default_factory=dict, repr=False)
     _said: dict[str, Sequence[Diagnostic]] = field(default_factory=dict, repr=False)
     _lacks: dict[tuple[int, tuple[int, ...]], float] = field(default_factory=dict, repr=False)
-    """By the problem, which `_built` keeps, and the constraints of the failure."""
+    """Violations by the problem, which `_built` keeps, and the constraints of the failure."""
     _mended: dict[tuple[int, tuple[int, ...]], bool] = field(default_factory=dict, repr=False)
     _places: dict[tuple[tuple[int, ...], int], dict[int, float] | None] = field(
         default_factory=dict, repr=False
     )
-    """Where the constraints of a failure hold without one of them, which may be in several failures."""
+    """Values at which the constraints of a failure hold without one of them, which may be in several
+    failures.
+    """
 
     @cached_property
     def _clock(self) -> Clock:
-        """Runs from the first trial."""
+        """The time of all trials; it runs from the first one."""
         return Clock(LONGEST)
 
     @property
     def is_late(self) -> bool:
-        """Whether nothing more should be begun."""
+        """True if no new search should be begun."""
         return self._clock.left < LONGEST - SECONDS
 
     @property
     def is_over(self) -> bool:
-        """Whether the time is spent: nothing more is tried then, and so nothing more is said."""
+        """True if the time is spent: nothing more is tried or offered."""
         return self._clock.expired
 
     def can_edit(self, edits: Iterable[Edit]) -> bool:
-        """Tells whether edits are of the program itself, and not of what it imports."""
+        """Tells whether edits are of the program itself, and not of a file that it imports."""
         return all(edit.span.source is self.source for edit in edits)
 
     def lack(self, edits: Sequence[Edit], failure: GroupFailure) -> float | None:
-        """How far the constraints of a failure are from holding with no kept size changed, after the edits
-        (see `solver.lacking`); None where the program is another one then, or wrong.
+        """Returns the violation of the constraints of a failure with no kept size changed, after the edits
+        (see `solver.shortfall`); None if the program then has errors or is another one.
         """
         found = self._counterpart(edits, failure)
         if found is None:
@@ -92,13 +94,13 @@ class Trials:
         start = {numbered[u]: value for u, value in self._free(failure).items()}
         members = [matched[index] for index in failure.conflict]
         within = [matched[index] for index in self._together(failure)]
-        off = lack(other.problem, self._quick, members, within, start)
+        off = shortfall(other.problem, self._quick, members, within, start)
         self._lacks[id(other), failure.conflict] = off
         return off
 
     def _together(self, failure: GroupFailure) -> list[int]:
-        """Returns the constraints of a failure and those that took part in the search, but for what other
-        failures are about.
+        """Returns the constraints of a failure and those that took part in the search, without those of other
+        failures.
         """
         others = self._others(failure)
         hard = np.isnan(self.lowered.problem.weight)
@@ -110,8 +112,8 @@ class Trials:
         return others.difference(failure.conflict)
 
     def residual(self, edits: Sequence[Edit], failure: GroupFailure, member: int) -> float | None:
-        """How far a member of a failure is from holding after the edits, with its sign, where its other
-        members hold; None where they were not found to.
+        """Returns the residual of a member of a failure after the edits, with its sign, where its other
+        members hold; None if no such place was found.
         """
         if (place := self._without(failure, member)) is None:
             return None
@@ -126,12 +128,12 @@ class Trials:
         key = failure.conflict, member
         if key not in self._places:
             rest = [index for index in self._together(failure) if index != member]
-            self._places[key] = settled(self.lowered.problem, self._quick, rest, self._free(failure))
+            self._places[key] = nearby_solution(self.lowered.problem, self._quick, rest, self._free(failure))
         return self._places[key]
 
     def _free(self, failure: GroupFailure) -> dict[int, float]:
-        """Returns the unknowns that may move where nothing is to give way, and where the search came
-        nearest.
+        """Returns the unknowns that may move if nothing is to give way, with their values where the search
+        came nearest.
         """
         unknowns = self.lowered.unknowns
         return {
@@ -143,8 +145,8 @@ class Trials:
     def _counterpart(
         self, edits: Sequence[Edit], failure: GroupFailure
     ) -> tuple[Lowered, dict[int, int], dict[int, int]] | None:
-        """Returns the problem after the edits, with the constraints and unknowns that have other numbers
-        there; None where it is wrong, or not one of the same kind.
+        """Returns the problem after the edits, with its numbers of the constraints and of the unknowns; None
+        if it has errors or is of another kind.
         """
         if self.is_over or (other := self._with(edits)) is None:
             return None
@@ -155,8 +157,8 @@ class Trials:
         return (other, matched, numbered) if len(numbered) == len(failure.nearest) else None
 
     def mends(self, edits: Sequence[Edit], failure: GroupFailure) -> bool:
-        """Tells whether after the edits all holds but what other failures are about, and nothing gives way
-        but what did before and sizes that the constraints are about.
+        """Tells whether all constraints hold after the edits, but for those of other failures, and nothing
+        gives way but what did before and the sizes that the constraints are about.
         """
         if self.is_over or (other := self._with(edits)) is None:
             return False
@@ -177,20 +179,20 @@ class Trials:
         return _gave_way(other, found) <= _gave_way(self.lowered, self.solution) | asked
 
     def finishes(self, edits: Sequence[Edit]) -> bool:
-        """Tells whether edits that mend a failure leave no errors, as another failure or an assertion that
-        fails.
+        """Tells whether edits that resolve a failure leave no errors, such as another failure or a failing
+        assertion.
         """
-        return not has_errors(self.found(edits))
+        return not has_errors(self.diagnostics(edits))
 
     def settles(self, edits: Sequence[Edit]) -> bool:
-        """Tells whether after the edits the program solves from its first guesses, and nothing gives way."""
+        """Tells whether the program after the edits solves from its first guesses, and nothing gives way."""
         if self.is_over or not self.can_edit(edits):
             return False
-        found = self.found(edits)
+        found = self.diagnostics(edits)
         return not has_errors(found) and not any(d.code in _TOLD for d in found)
 
-    def found(self, edits: Sequence[Edit]) -> Sequence[Diagnostic]:
-        """What there is to say of the program after edits."""
+    def diagnostics(self, edits: Sequence[Edit]) -> Sequence[Diagnostic]:
+        """Returns the diagnostics of the program after edits."""
         changed = self.edited(edits)
         if changed.text not in self._said:
             self._said[changed.text] = self.compile(changed)
@@ -219,7 +221,9 @@ class Trials:
 
 
 def _matched(one: Lowered, other: Lowered) -> dict[int, int] | None:
-    """Returns the constraints of another problem by those of one, which must be stated in the same order."""
+    """Returns the numbers of the constraints in another problem by those in this one; None if they are not
+    stated in the same order.
+    """
     pairs = list(zip(_in_order(one), _in_order(other), strict=False))
     if len(one.stated) != len(other.stated) or any(_label(one, a) != _label(other, b) for a, b in pairs):
         return None
@@ -227,14 +231,16 @@ def _matched(one: Lowered, other: Lowered) -> dict[int, int] | None:
 
 
 def _by_text(one: Lowered, other: Lowered) -> dict[int, int]:
-    """Returns the same where constraints were left out, for those that read the same."""
+    """Returns the numbers of the constraints in another problem, some of which were left out, by those that
+    read the same.
+    """
     found = {(c.text, c.label, c.holder.path): i for i, c in enumerate(other.stated) if c is not None}
     keys = ((i, (c.text, c.label, c.holder.path)) for i, c in enumerate(one.stated) if c is not None)
     return {i: found[key] for i, key in keys if key in found}
 
 
 def _in_order(lowered: Lowered) -> list[int]:
-    """Returns the constraints as they stand in the text; what nobody stated comes last."""
+    """Returns the constraints in the order of the text; those that nobody stated come last."""
 
     def place(index: int) -> tuple[bool, str, int, str, int]:
         stated = lowered.stated[index]
@@ -251,8 +257,8 @@ def _label(lowered: Lowered, index: int) -> str | None:
 
 
 def _keys(lowered: Lowered) -> list[tuple[str, int]]:
-    """Returns a name for each unknown that it has in another problem, too: its path, and how many had that
-    before.
+    """Returns a key for each unknown that it keeps in another problem: its path, and the number of earlier
+    unknowns with that path.
     """
     met: Counter[str] = Counter()
     found = []
@@ -265,5 +271,5 @@ def _keys(lowered: Lowered) -> list[tuple[str, int]]:
 def _gave_way(lowered: Lowered, solution: Solution) -> set[str]:
     """Returns the paths of what gave way unasked."""
     moved = np.abs(solution.values - lowered.problem.initial) > _MOVED
-    gave = {u for stage in solution.stages if stage.gave is not None for u in stage.gave.unknowns}
+    gave = {u for stage in solution.stages if stage.concession is not None for u in stage.concession.unknowns}
     return {lowered.problem.names[u] for u in gave if moved[u] and not lowered.unknowns[u].implied}

@@ -1,4 +1,4 @@
-"""Fixes for what is found after solving, each tried: one that does not mend what it is for is not offered."""
+"""Verifies the fixes of findings made after solving: one that does not resolve its finding is not offered."""
 
 from __future__ import annotations
 
@@ -11,25 +11,26 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.explaining.trials import GAVE_WAY, Trials
 
 _TRIED = frozenset({"E0601", "E0602", "E0603", "E0605", "N0604"})
-"""Findings that come with fixes that were tried already."""
+"""Codes of findings whose fixes were tried already."""
 
 
 def verified(
     found: Sequence[Diagnostic], everything: Sequence[Diagnostic], trials: Trials
 ) -> list[Diagnostic]:
-    """Findings among everything that is said of a program, without the fixes after which it still has the
-    finding, has another error or something else gives way, and without the hints that say the same as these.
+    """Returns findings without the fixes after which the program still has the finding, has another error or
+    something else gives way, and without the hints that repeat these fixes. `everything` are all findings
+    about the program.
     """
     return [_verified(d, everything, trials) for d in found]
 
 
 def mends(found: Diagnostic, fix: Fix, before: Sequence[Diagnostic], trials: Trials) -> bool:
-    """Tells whether a program of which `before` is said no longer has a finding after a fix, and nothing
+    """Tells whether a program with the findings `before` no longer has `found` after a fix, and nothing
     worse.
     """
     if trials.is_over or not trials.can_edit(fix.edits):
         return False
-    after = trials.found(fix.edits)
+    after = trials.diagnostics(fix.edits)
     worse = _errors(after) - _errors(before) or _gave_way(after) - _gave_way(before)
     return not worse and not any(_is_same(d, found, fix.edits) for d in after)
 

@@ -21,7 +21,7 @@ from aidl_lang.solver.mobility import SEEN, Mobility, Motions, Watch, mobility
 from aidl_lang.solver.operations import Bools, Floats, Ints
 from aidl_lang.solver.problem import Problem
 from aidl_lang.solver.redundancy import Equations, Redundancy, redundancies
-from aidl_lang.solver.riding import Riding, rides
+from aidl_lang.solver.riding import Riding, groups_riding
 from aidl_lang.solver.solution import Solution
 
 SINGULAR = 1e-7
@@ -78,7 +78,7 @@ def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = 
     equal = _equal_rows(problem, hard & satisfied, order)
     observed = np.array([node for _, node in problem.observables], dtype=np.int64)
     nodes, node_of = np.unique(observed, return_inverse=True)
-    riding = rides(problem)
+    riding = groups_riding(problem)
     with np.errstate(all="ignore"):
         _, slopes = linearise(problem.tape, solution.values, problem.rows.expression[equal])
         places, seen = linearise(problem.tape, solution.values, nodes, riding.movable)

@@ -56,7 +56,7 @@ SEED = 1
 
 
 @record()
-class _Trial:
+class _SearchResult:
     """The result of a search: how it ended, the values of the free unknowns there, and the greatest
     violation.
     """
@@ -109,7 +109,7 @@ class _Search:
     scope: Scope
     before: dict[int, float]
     clock: Clock = field(init=False)
-    trials: dict[tuple[int, ...], _Trial] = field(default_factory=dict)
+    trials: dict[tuple[int, ...], _SearchResult] = field(default_factory=dict)
     left: int = field(init=False)
     work: int = 0
 
@@ -122,7 +122,7 @@ class _Search:
         hierarchy, scope = self.hierarchy, self.scope
         refuted = self._refuted(scope.constraints)
         if not refuted and self._cost(scope.constraints) <= COSTLY:
-            whole = self._nearest(scope.constraints, _Trial(End.INFEASIBLE, best, np.inf), FIRST)
+            whole = self._nearest(scope.constraints, _SearchResult(End.INFEASIBLE, best, np.inf), FIRST)
             if whole.holds:
                 return self._found(group, self._violated(best), whole)
         conflict = self._conflict(best, refuted)
@@ -156,7 +156,7 @@ class _Search:
             gaps=self._gaps(conflict) if is_proven else (),
         )
 
-    def _found(self, group: int, failing: Sequence[int], place: _Trial) -> GroupFailure:
+    def _found(self, group: int, failing: Sequence[int], place: _SearchResult) -> GroupFailure:
         """Returns the failure of constraints that hold in another place."""
         hierarchy = self.hierarchy
         hierarchy.values.assign(self.before.items())
@@ -171,7 +171,7 @@ class _Search:
             nearest=tuple(sorted(place.reached.items())),
         )
 
-    def _nearest(self, conflict: Sequence[int], best: _Trial, starts: int) -> _Trial:
+    def _nearest(self, conflict: Sequence[int], best: _SearchResult, starts: int) -> _SearchResult:
         """Returns the best of searches from many places: one where the constraints hold, if any finds it,
         with no kept size changed if possible.
         """
@@ -358,10 +358,10 @@ class _Search:
                 return not refuted
         return self._try(wanted).holds
 
-    def _try(self, constraints: tuple[int, ...]) -> _Trial:
+    def _try(self, constraints: tuple[int, ...]) -> _SearchResult:
         if constraints not in self.trials:
             self.work += self._cost(constraints)
-            empty = _Trial(End.CONVERGED, self.before)
+            empty = _SearchResult(End.CONVERGED, self.before)
             self.trials[constraints] = self._attempt(constraints, RESTARTS) if constraints else empty
         return self.trials[constraints]
 
@@ -375,7 +375,7 @@ class _Search:
         restarts: int,
         start: dict[int, float] | None = None,
         free: frozenset[int] | None = None,
-    ) -> _Trial:
+    ) -> _SearchResult:
         """Searches from `start`, or from where the group was; leaves the values where the group was."""
         hierarchy = self.hierarchy
         hierarchy.values.assign((start or self.before).items())
@@ -383,4 +383,4 @@ class _Search:
         verdict = hierarchy.attempt(scope, restarts, self.clock, turning=start is None)
         reached = hierarchy.save(self.scope.free)
         hierarchy.values.assign(self.before.items())
-        return _Trial(verdict.end, reached, verdict.violation)
+        return _SearchResult(verdict.end, reached, verdict.violation)

@@ -19,7 +19,7 @@ from aidl_lang.solver.forms import Affine
 from aidl_lang.solver.freezing import Freezer
 from aidl_lang.solver.gradients import FLAT, gradients
 from aidl_lang.solver.preferences import prefer
-from aidl_lang.solver.solution import Giving, GroupFailure, StageReport
+from aidl_lang.solver.solution import Concession, GroupFailure, StageReport
 from aidl_lang.solver.thinning import thin
 from aidl_lang.solver.tiers import DEEP, OWN, POSITIONS, SIZES, Scope, Tier, Tiers, stage_name
 
@@ -326,7 +326,7 @@ class Group:
         """Reports a stage. If it succeeded, from the values `before`, what need not move is held first; those
         it held `despite` are the constraints for which a search from there had failed.
         """
-        hierarchy, gave = self.hierarchy, None
+        hierarchy, concession = self.hierarchy, None
         if before is not None:
             before = hierarchy.since(before, scope.free)
             thin(hierarchy, scope, before, self.tiers.tier)
@@ -336,10 +336,10 @@ class Group:
             if moved:
                 values = np.array(hierarchy.values.unknowns)
                 values[list(before)] = list(before.values())
-                gave = Giving(moved, scope.free, scope.constraints, values)
+                concession = Concession(moved, scope.free, scope.constraints, values)
         rows = len(hierarchy.rows(scope.constraints))
         name = "elsewhere" if despite else stage_name(tier)
-        report = StageReport(self.group, name, len(scope.free), rows, before is not None, gave, despite)
+        report = StageReport(self.group, name, len(scope.free), rows, before is not None, concession, despite)
         hierarchy.stages.append(report)
 
     def _fail(self, failure: GroupFailure, everything: Scope, best: dict[int, float]) -> None:

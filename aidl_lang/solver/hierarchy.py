@@ -18,7 +18,7 @@ from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, vio
 from aidl_lang.solver.expression import mentioned
 from aidl_lang.solver.group import Group
 from aidl_lang.solver.memory import Recollection
-from aidl_lang.solver.naming import rides
+from aidl_lang.solver.naming import riding_depths
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Bools, Floats
 from aidl_lang.solver.problem import Problem, Row, Settings, depths, violations
@@ -72,7 +72,7 @@ class Hierarchy:
         places) that no constraint around that group names: for groups above that depth it rides along with
         its parent. 0 if all are named.
         """
-        return list(map(int, rides(self.problem, self._group_depths)))
+        return list(map(int, riding_depths(self.problem, self._group_depths)))
 
     @cached_property
     def _standing(self) -> list[bool]:

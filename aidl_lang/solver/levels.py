@@ -19,7 +19,7 @@ from aidl_lang.solver.array_freezing import ArrayFreezing
 from aidl_lang.solver.array_program import ArrayProgram
 from aidl_lang.solver.branches import TIGHTER, Metric
 from aidl_lang.solver.components import components
-from aidl_lang.solver.naming import rides
+from aidl_lang.solver.naming import riding_depths
 from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.operations import Bools, Floats, Ints
 from aidl_lang.solver.problem import Problem, Settings, depths, violations
@@ -62,7 +62,7 @@ class Levels:
         depth = depths(problem.parent)
         self._holder_depth = depth[problem.holder]
         self._unknown_depth = depth[problem.group]
-        self._rides = rides(problem, depth)
+        self._rides = riding_depths(problem, depth)
         self._has_things = bool(problem.thing.any())
         self._hard = np.isnan(problem.weight)
         self.binding = self._hard.copy()

@@ -14,7 +14,7 @@ from dataclasses import field
 import numpy as np
 
 from aidl_lang.common.records import record
-from aidl_lang.solver.naming import rides
+from aidl_lang.solver.naming import riding_depths
 from aidl_lang.solver.operations import Bools, Floats, Ints, Op
 from aidl_lang.solver.problem import Problem, Settings, depths
 from aidl_lang.solver.solution import StageReport
@@ -84,7 +84,7 @@ def subtree_keys(problem: Problem, settings: Settings) -> tuple[int, ...]:
     own: list[list[object]] = [[] for _ in problem.parent]
     bounds = [0.0] * len(problem.initial) if longest is None else longest.tolist()
     # What rides along depends on constraints further up, too.
-    riding = rides(problem, depths(problem.parent))
+    riding = riding_depths(problem, depths(problem.parent))
     dearness = (problem.standing, problem.spanned, riding)
     columns = (problem.initial, problem.scale, problem.kept, problem.frame_of, *dearness)
     for index, (group, bound, *entry) in enumerate(

@@ -51,7 +51,7 @@ def naming(problem: Problem) -> Naming:
     return Naming(frames, inside, whole)
 
 
-def rides(problem: Problem, depths: Ints) -> Ints:
+def riding_depths(problem: Problem, depths: Ints) -> Ints:
     """Returns for each unknown (n,) the depth of the innermost group around it, or of the group whose frame
     it places, that no constraint around that group names; 0 if all are named. Above that depth it rides along
     with its parent.

@@ -74,7 +74,7 @@ class End(Enum):
 
 
 @record()
-class Outcome:
+class NewtonResult:
     """`z` (k,) is the solution, or the best point reached; `violation` its greatest scaled violation.
 
     `contradiction` (r,), of affine rows that have no solution: factors, the greatest of them 1 or -1, with
@@ -190,7 +190,7 @@ def solve(
     clock: Clock,
     start: Floats | None = None,
     restarts: int = 1,
-) -> Outcome:
+) -> NewtonResult:
     """Returns the feasible point nearest to z = 0, searched from `start` (default 0).
 
     Tries up to `restarts` perturbed starts if the search ends at a singular place; stops after CONVINCING
@@ -253,7 +253,7 @@ class _Newton:
         self._isolated: Matrix | None = None
         """The Jacobian of the last step if it left no choice, so that the solution is the only one nearby."""
 
-    def run(self, start: Floats) -> Outcome:
+    def run(self, start: Floats) -> NewtonResult:
         system = self.system
         if system.linear:
             projected = self._project()
@@ -263,7 +263,7 @@ class _Newton:
             return reached
         return self._refine(self._polish(reached) if self._isolated is None else reached)
 
-    def _refine(self, found: Outcome) -> Outcome:
+    def _refine(self, found: NewtonResult) -> NewtonResult:
         """Takes a last step for the last digits: the tolerance says when to stop, not how exact a drawing
         is.
         """
@@ -278,9 +278,9 @@ class _Newton:
             return found
         z = found.z + step.point
         violation = self._greatest(system.residuals(z))
-        return Outcome(z, found.end, violation) if violation < found.violation else found
+        return NewtonResult(z, found.end, violation) if violation < found.violation else found
 
-    def _project(self) -> Outcome:
+    def _project(self) -> NewtonResult:
         """Solves an affine system by one projection, and another for the rounding of the first."""
         system = self.system
         z = np.zeros(system.size)
@@ -288,18 +288,18 @@ class _Newton:
             residuals = system.residuals(z)
             violation = self._greatest(residuals)
             if violation <= self.tolerance:
-                return Outcome(z, End.CONVERGED, violation)
+                return NewtonResult(z, End.CONVERGED, violation)
             if not np.isfinite(violation):
-                return Outcome(z, End.INFEASIBLE, violation)
+                return NewtonResult(z, End.INFEASIBLE, violation)
             jacobian = system.jacobian()
             found = nearest(jacobian, jacobian @ z - residuals, system.inequality)
             z = found.point
             if found.contradiction is not None:
                 violation = self._greatest(system.residuals(z))
-                return Outcome(z, End.INFEASIBLE, violation, found.contradiction)
+                return NewtonResult(z, End.INFEASIBLE, violation, found.contradiction)
         violation = self._greatest(system.residuals(z))
         holds = violation <= self.tolerance
-        return Outcome(z, End.CONVERGED if holds else End.INFEASIBLE, violation)
+        return NewtonResult(z, End.CONVERGED if holds else End.INFEASIBLE, violation)
 
     def _greatest(self, residuals: Floats) -> float:
         violation = float(np.abs(self.system.violations(residuals)).max(initial=0.0))
@@ -307,7 +307,7 @@ class _Newton:
 
     # -- reaching a feasible point
 
-    def _approach(self, start: Floats, iterations: int) -> Outcome:
+    def _approach(self, start: Floats, iterations: int) -> NewtonResult:
         """Takes damped Newton steps from `start`, each the shortest that satisfies the linearised rows."""
         system = self.system
         z = start
@@ -320,19 +320,19 @@ class _Newton:
         norms: list[float] = []
         for _ in range(iterations):
             if violation <= self.tolerance:
-                return Outcome(z, End.CONVERGED, violation)
+                return NewtonResult(z, End.CONVERGED, violation)
             norms.append(float(np.linalg.norm(system.violations(residuals))))
             if violation == np.inf or (len(norms) > PATIENCE and norms[-1] > STALLED * norms[-1 - PATIENCE]):
-                return Outcome(z, End.INFEASIBLE, violation)
+                return NewtonResult(z, End.INFEASIBLE, violation)
             if self.clock.expired:
                 break
             found = self._step(z, residuals, damping)
             if found is None:
-                return Outcome(z, End.INFEASIBLE, violation)
+                return NewtonResult(z, End.INFEASIBLE, violation)
             z, residuals, damping = found
             violation = self._greatest(residuals)
         converged = violation <= self.tolerance
-        return Outcome(z, End.CONVERGED if converged else End.EXHAUSTED, violation)
+        return NewtonResult(z, End.CONVERGED if converged else End.EXHAUSTED, violation)
 
     def _step(self, z: Floats, residuals: Floats, damping: float) -> tuple[Floats, Floats, float] | None:
         """Returns the next point, its residuals and the damping to go on with; None if no step leads down."""
@@ -411,7 +411,7 @@ class _Newton:
 
     # -- polishing
 
-    def _polish(self, feasible: Outcome) -> Outcome:
+    def _polish(self, feasible: NewtonResult) -> NewtonResult:
         """Moves from a feasible point to the nearest one; returns the point as it is if that cannot be
         reached.
         """

@@ -16,7 +16,7 @@ from aidl_lang.solver.hierarchy import Hierarchy
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.operations import Floats
 from aidl_lang.solver.problem import Problem, Settings
-from aidl_lang.solver.solution import Giving
+from aidl_lang.solver.solution import Concession
 from aidl_lang.solver.tiers import Scope
 
 
@@ -31,24 +31,28 @@ class Reason:
     minimal: bool
 
 
-def reasons(problem: Problem, settings: Settings, gave: Giving, solved: Floats) -> Iterator[Reason]:
+def reasons(problem: Problem, settings: Settings, concession: Concession, solved: Floats) -> Iterator[Reason]:
     """Yields the reason of each unknown that gave way; `solved` are the values (n,) of the solution."""
     hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
-    hierarchy.reached[:] = gave.values
-    hierarchy.values.assign(enumerate(gave.values.tolist()))
-    left = gave.unknowns
+    hierarchy.reached[:] = concession.values
+    hierarchy.values.assign(enumerate(concession.values.tolist()))
+    left = concession.unknowns
     while left:
-        scope = Scope(gave.free - left, gave.constraints)
-        before = {unknown: float(gave.values[unknown]) for unknown in gave.free}
+        scope = Scope(concession.free - left, concession.constraints)
+        before = {unknown: float(concession.values[unknown]) for unknown in concession.free}
         found, minimal = conflict(hierarchy, scope, before)
         mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, found))
-        share = _bound(hierarchy, found, left & mentioned, gave, solved) or left & mentioned or left
+        share = _bound(hierarchy, found, left & mentioned, concession, solved) or left & mentioned or left
         yield Reason(share, tuple(found), minimal and bool(found))
         left -= share
 
 
 def _bound(
-    hierarchy: Hierarchy, constraints: list[int], unknowns: frozenset[int], gave: Giving, solved: Floats
+    hierarchy: Hierarchy,
+    constraints: list[int],
+    unknowns: frozenset[int],
+    concession: Concession,
+    solved: Floats,
 ) -> frozenset[int]:
     """Returns the unknowns that the constraints hold at the solution: put back to its value before, each of
     them breaks one.
@@ -59,7 +63,7 @@ def _bound(
     hierarchy.values.assign(enumerate(solved.tolist()))
     found = set()
     for unknown in unknowns:
-        hierarchy.values.assign([(unknown, float(gave.values[unknown]))])
+        hierarchy.values.assign([(unknown, float(concession.values[unknown]))])
         if hierarchy.unmet(constraints):
             found.add(unknown)
         hierarchy.values.assign([(unknown, float(solved[unknown]))])

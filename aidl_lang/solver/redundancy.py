@@ -69,7 +69,7 @@ def redundancies(
     rows_of: dict[int, list[int]] = defaultdict(list)
     for row, owner in enumerate(equations.owner.tolist()):
         rows_of[owner].append(row)
-    tried = _Trial(problem, values, equations, set(relations))
+    tried = _ImplicationTest(problem, values, equations, set(relations))
     found: list[Redundancy] = []
     for constraint in whole:
         rows = rows_of[constraint]
@@ -82,7 +82,7 @@ def redundancies(
     return found
 
 
-class _Trial:
+class _ImplicationTest:
     """Tries rows away from the solution."""
 
     def __init__(self, problem: Problem, values: Floats, equations: Equations, dependent: set[int]) -> None:

@@ -63,7 +63,7 @@ def _pinned(home: Ints, jacobian: Sparse, groups: int) -> list[int]:
     return [int(u) for g, u in zip(own.tolist(), first.tolist(), strict=True) if g >= 0 and g not in held]
 
 
-def rides(problem: Problem) -> Riding:
+def groups_riding(problem: Problem) -> Riding:
     """Returns the groups of a problem that ride along, by the names in its constraints."""
     named = naming(problem)
     moved = problem.frame_of

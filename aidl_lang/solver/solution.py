@@ -80,7 +80,7 @@ class GroupFailure:
 
 
 @record(eq=False)
-class Giving:
+class Concession:
     """The dear unknowns that moved at a stage: kept sizes, frames that stood where their content is exact,
     unknowns that ride along. The values (n,) are those before the stage; `reasons.reasons` finds the
     constraints that asked for it.
@@ -105,7 +105,7 @@ class StageReport:
     unknowns: int
     rows: int
     succeeded: bool
-    gave: Giving | None = None
+    concession: Concession | None = None
     despite: tuple[int, ...] = ()
     """The constraints that no search from the first guesses satisfied, where one from elsewhere did."""
 

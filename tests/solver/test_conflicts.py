@@ -14,7 +14,7 @@ from scipy.optimize import least_squares
 
 from aidl_lang.solver import Settings, Solution, solve
 from aidl_lang.solver.conflicts import WORK
-from aidl_lang.solver.lacking import lack
+from aidl_lang.solver.shortfall import shortfall
 from aidl_lang.solver.solution import GroupFailure
 from tests.amount import tries
 
@@ -42,7 +42,7 @@ def test_what_is_lacking_tells_what_would_fit(seed: int) -> None:
 
     def lacking(member: int, shift: float) -> float:
         model = changed(member, shift).model().problem()
-        return lack(model, Settings(), failure.conflict, failure.conflict, dict(failure.nearest))
+        return shortfall(model, Settings(), failure.conflict, failure.conflict, dict(failure.nearest))
 
     for member in failure.conflict:
         off, nudged = lacking(member, 0.0), lacking(member, 1e-3)

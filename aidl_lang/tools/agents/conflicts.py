@@ -38,7 +38,7 @@ class Remedies:
         parties, givens = list(map(self._party, found.parties)), list(map(self._given, found.givens))
         return Conflict(found.headline, found.is_minimal, parties, givens)
 
-    def _given(self, given: failures.Given) -> Given:
+    def _given(self, given: failures.ExactNumber) -> Given:
         return Given(
             given.name,
             place(given.span),

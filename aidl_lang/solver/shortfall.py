@@ -18,7 +18,7 @@ FEW = 40
 """Rows up to which all of `within` is searched for together."""
 
 
-def lack(
+def shortfall(
     problem: Problem,
     settings: Settings,
     constraints: Collection[int],
@@ -44,7 +44,7 @@ def lack(
     return least
 
 
-def settled(
+def nearby_solution(
     problem: Problem, settings: Settings, constraints: Collection[int], start: Mapping[int, float]
 ) -> dict[int, float] | None:
     """Returns values near those of `start` at which constraints hold with its unknowns free; None if no
