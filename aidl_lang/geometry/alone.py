@@ -1,4 +1,4 @@
-"""One piece of geometry by itself, as what is asked of its area needs it."""
+"""The region of one piece of geometry by itself, for questions about its area."""
 
 from __future__ import annotations
 

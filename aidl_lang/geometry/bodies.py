@@ -1,4 +1,4 @@
-"""From the faces of each structure, bottom-up, to the bodies of the whole.
+"""Builds the bodies of the whole, bottom-up, from the faces of each structure.
 
 The region of a solid is (own faces + solid children) − holes + islands: a hole cuts all of the structure that
 holds it, a solid inside a hole is an island. An assembly keeps its solid children as separate bodies; what it
@@ -37,7 +37,7 @@ _FEW_HOLES, _FEW_VERTICES = 8, 200
 
 @record()
 class Void:
-    """What a hole removed."""
+    """The material that a hole removed."""
 
     hole: SolvedStructure
     section: Section
@@ -58,7 +58,7 @@ class Mass:
 
 @record()
 class Cut:
-    """What a hole takes away: the holes it consists of, and the islands that stay."""
+    """The holes that a hole consists of, and the islands that stay in it."""
 
     holes: tuple[Void, ...]
     islands: tuple[Mass, ...]
@@ -141,7 +141,7 @@ class Bodies:
         return self._separate(structure, own, children, cuts)
 
     def cut(self, hole: SolvedStructure) -> Cut:
-        """What a hole and the holes in it take away, and its islands."""
+        """Returns the area that a hole and the holes in it take away, and its islands."""
         own = self._own(hole)
         inner = [self.cut(c) for c in hole.structures if c.kind == "hole"]
         islands = [m for c in hole.structures if c.kind != "hole" for m in self.masses(c)]
@@ -154,7 +154,7 @@ class Bodies:
         return Cut(tuple(holes), tuple(islands))
 
     def _own(self, structure: SolvedStructure) -> Section | None:
-        """What a structure draws itself."""
+        """Returns the area that a structure draws itself; None if it encloses nothing."""
         shapes = self.shapes.get(structure.path, ())
         if not shapes:
             return None
@@ -208,7 +208,7 @@ class Bodies:
     def _united(
         self, solid: SolvedStructure, own: Section | None, children: list[Mass], cuts: list[Cut]
     ) -> list[Mass]:
-        """One mass for a solid."""
+        """Returns the one mass of a solid; none if its holes take away all of it."""
         islands = [island for c in cuts for island in c.islands]
         before = union([*([] if own is None else [own]), *(m.section for m in children)])
         after = difference(before, union([c.section for c in cuts]))
@@ -239,7 +239,7 @@ class Bodies:
         return [m for m in masses if not m.section.is_empty()]
 
     def _voids(self, holder: SolvedStructure, material: Section, cuts: Iterable[Cut]) -> list[Void]:
-        """What each hole removes from the material; tells of those that remove nothing."""
+        """Returns the material that each hole removes; reports holes that remove nothing."""
         voids = []
         cuts = list(cuts)
         near = _around(material, [hole.section for cut in cuts for hole in cut.holes])
@@ -273,7 +273,7 @@ class Bodies:
 
 
 def _around(material: Section, holes: Sequence[Section]) -> Iterator[Section]:
-    """For each hole the material near it: with it, the hole has the same in common as with all.
+    """Yields for each hole the material near it, with which it has the same in common as with all of it.
 
     All holes together have in common with the material what they have one by one, in small components.
     """

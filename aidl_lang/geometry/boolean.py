@@ -21,17 +21,17 @@ from aidl_lang.geometry.trace import trace
 
 
 def united(*regions: Region) -> Region:
-    """What lies in any of them."""
+    """Returns the union of regions."""
     return _combined(regions, lambda *sections: union(sections))
 
 
 def without(a: Region, *others: Region) -> Region:
-    """What lies in a and in none of the others."""
+    """Returns the region `a` without the others."""
     return _combined((a, *others), lambda base, *sections: difference(base, union(sections)))
 
 
 def common(a: Region, b: Region) -> Region:
-    """What lies in both."""
+    """Returns the intersection of two regions."""
     return _combined((a, b), intersection)
 
 

@@ -24,7 +24,9 @@ _CHUNK = 400_000
 
 @record(slots=True)
 class Chords:
-    """By row: a length, its ends, the elements they lie on, how far along these (0..1), and the kind."""
+    """Chords by row: a length, its ends, the elements they lie on, their places along these (0..1), and the
+    kind.
+    """
 
     length: Floats
     a: Floats
@@ -103,7 +105,7 @@ def _by_direction(o: Skeleton) -> tuple[Ints, Ints, Ints]:
 
 
 def _listed(begin: Ints, count: Ints) -> Iterator[tuple[Ints, Ints]]:
-    """Each element with each of the `count` ranks from `begin`, some at a time."""
+    """Yields each element with each of its `count` ranks from `begin`, some at a time."""
     total = np.concatenate(([0], np.cumsum(count)))
     first = 0
     while first < len(count):
@@ -158,7 +160,9 @@ def _line_to_round(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:
 
 
 def _between_rounds(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:
-    """On the line through both centers; for concentric ones in the middle of the directions they share."""
+    """Returns chords on the line through both centres; for concentric elements, in the middle of the
+    directions they share.
+    """
     offset = o.start[j] - o.start[i]
     distance = np.hypot(offset[:, 0], offset[:, 1])
     same = distance <= np.maximum(least, 1e-9 * (o.radius[i - o.straight] + o.radius[j - o.straight]))
@@ -210,7 +214,7 @@ def _shared_direction(o: Skeleton, i: Ints, j: Ints) -> tuple[Floats, NDArray[np
 
 
 def _share(o: Skeleton, k: Ints, toward: Floats) -> Floats:
-    """How far along a round element a direction lies, counter-clockwise, 0..1."""
+    """Returns the place along a round element that lies in a direction, counter-clockwise, 0..1."""
     angle = np.arctan2(toward[:, 1], toward[:, 0]) - o.middle[k]
     away = (angle + math.pi) % (2 * math.pi) - math.pi
     share: Floats = np.clip((away / np.where(o.half[k] > 0, o.half[k], 1.0) + 1) / 2, 0.0, 1.0)

@@ -76,7 +76,7 @@ def rgb(color: str) -> tuple[int, int, int]:
 
 
 _ALIKE = 16
-"""How far, of 255, each of red, green and blue may differ in colours that are hard to tell apart."""
+"""Greatest difference, of 255, of each of red, green and blue in colours that are hard to tell apart."""
 
 
 @lru_cache(maxsize=256)

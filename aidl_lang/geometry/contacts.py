@@ -1,4 +1,4 @@
-"""How the bodies of a drawing lie to each other: touching, apart or overlapping.
+"""The contacts between the bodies of a drawing: touching, apart or overlapping.
 
 Pairs that may touch are compared at once; how far others are apart is worked out when it is asked for. Up to
 `ALL_PAIRS` bodies every pair is listed. In larger drawings only pairs whose boxes are closer than `NEAR`
@@ -42,13 +42,13 @@ class Contact:
 
     @property
     def is_close(self) -> bool:
-        """Whether the bodies touch or overlap, as far as anybody will see."""
+        """True if the bodies touch or overlap, as far as a reader can see."""
         return self.relation != "apart" or (self.gap or 0.0) <= UNNOTICED
 
 
 @record(slots=True)
 class Solid:
-    """What is compared: a body's region and the same as polygons of the network."""
+    """A body to be compared: its region, and the same as polygons of the network."""
 
     path: str
     region: Region
@@ -82,7 +82,7 @@ class Contacts:
 
 
 def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
-    """How some bodies lie to each other."""
+    """Returns the contacts between some bodies."""
     margin = max(UNNOTICED, 2 * network.tolerance)
     pairs = sorted(near_pairs([s.box for s in solids], margin))
     near = tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
@@ -99,7 +99,7 @@ def _compare(network: Network, a: Solid, b: Solid) -> Contact:
 
 
 def _apart(a: str, ours: Region, b: str, theirs: Region, tolerance: float) -> Contact:
-    """Of two bodies that do not overlap."""
+    """Returns the contact of two bodies that do not overlap."""
     closest = region_distance(ours, theirs)
     gap = closest[0] if closest else 0.0
     return Contact(a, b, "apart", gap=gap) if gap > tolerance else Contact(a, b, "touching")

@@ -17,7 +17,7 @@ Closest = tuple[float, Vec, Vec]
 
 
 def region_distance(a: Region, b: Region) -> Closest | None:
-    """Between the outlines of two regions that do not overlap; None if one is empty."""
+    """Returns the distance between the outlines of two regions that do not overlap; None if one is empty."""
     if not (a and b):
         return None
     apart = np.maximum(a.boxes[:, None, :2] - b.boxes[:, 2:], b.boxes[:, :2] - a.boxes[:, None, 2:])
@@ -88,8 +88,8 @@ def _sampled_candidates(a: Piece, b: Piece) -> list[Vec]:
 
 
 def _facing(a: Piece, b: Piece, t: float, s: float) -> float | None:
-    """Where on a the way to b is at right angles to both, from parameters nearby: Newton on e·a' = 0 and
-    e·b' = 0 with e = b - a. None where that leads off the curves, or to no minimum.
+    """Returns the parameter on `a` at which the way to `b` is at right angles to both, by Newton on e·a' = 0
+    and e·b' = 0 with e = b - a from parameters nearby. None if that leads off the curves, or to no minimum.
     """
     for _ in range(30):
         (x, y), (u, v) = point(a, t), point(b, s)

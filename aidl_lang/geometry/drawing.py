@@ -31,7 +31,9 @@ from aidl_lang.geometry.trace import Traced, trace_all
 
 @record()
 class Style:
-    """What the attributes of a structure, or of the nearest one around it that has them, say of its looks."""
+    """The looks that the attributes of a structure, or of the nearest one around it that has them, ask
+    for.
+    """
 
     color: str | None = None
     layer: str | None = None
@@ -108,7 +110,7 @@ class Drawing:
 
     @property
     def pairs(self) -> tuple[Contact, ...]:
-        """How the bodies lie to each other."""
+        """The contacts between the bodies."""
         return self.contacts.all
 
     @property
@@ -160,7 +162,9 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
 def _closed(
     root: SolvedStructure, network: Network, shapes: dict[str, list[Shape]]
 ) -> tuple[Network, Bodies, list[Mass], dict[str, Traced], list[Gap]]:
-    """What the curves enclose, once small gaps between them are closed, and their network and gaps."""
+    """Returns the network after small gaps between curves are closed, what the curves enclose, and these
+    gaps.
+    """
     found = exactly(network, lambda: _arranged(root, network, shapes))
     gaps = open_gaps(network, found[0].findings, shapes)
     while gaps:
@@ -344,7 +348,9 @@ def _inked(
     is_own: bool,
     notes: list[Diagnostic],
 ) -> Iterator[Stroke]:
-    """The strokes of a drawing; a warning if it has the colour of what it lies on, or lies under a body."""
+    """Yields the strokes of a drawing; reports those in the colour of what they lie on and those under a
+    body.
+    """
     lost: dict[str, list[str]] = {}
     covered: dict[str, list[str]] = {}
     for shape in shapes:

@@ -1,4 +1,4 @@
-"""Which part a drawing is engraved on, when the parts are taken from one another."""
+"""The parts that drawings are engraved on, for drawings whose parts are taken from one another."""
 
 from __future__ import annotations
 
@@ -66,7 +66,9 @@ def _by_cover(stroke: Stroke, bodies: Sequence[Body]) -> list[Body]:
 
 
 def divided(curves: Sequence[Piece], region: Region) -> tuple[tuple[Piece, ...], tuple[Piece, ...]]:
-    """What of curves lies in a region or on its edge, and what outside; uncut ones are as they were."""
+    """Returns the parts of curves in a region or on its edge, and those outside; uncut curves stay as they
+    were.
+    """
     outline = [p for loop in region.loops for p in loop.pieces]
     network = Network([*outline, *curves])
     own, others = network.uses[: len(outline)], network.uses[len(outline) :]

@@ -39,7 +39,7 @@ class Shape:
 
 @record()
 class OwnFace:
-    """What one named geometry, or some free curves together, enclose."""
+    """The area that one named geometry, or some free curves together, enclose."""
 
     geometries: tuple[SolvedGeometry, ...]
     section: Section
@@ -99,7 +99,7 @@ def _end(network: Network, use: Use) -> int:
 
 
 def _without_dangling(network: Network, uses: Iterable[Use]) -> list[Use]:
-    """Without the edges that lead to an open end, repeatedly."""
+    """Returns the edges without those that lead to an open end, removed repeatedly."""
     kept = list(uses)
     while True:
         degree: dict[int, int] = defaultdict(int)
@@ -142,7 +142,7 @@ def _loops(network: Network, uses: list[Use]) -> list[list[Use]]:
 
 
 def _walk(network: Network, first: Use, ways: dict[int, list[Use]], left: dict[int, int]) -> list[Use]:
-    """From an edge onwards until its start comes round again."""
+    """Returns the loop of edges from the first onwards until its start comes round again."""
     loop = [first]
     left[first[0]] -= 1
     while (node := _end(network, loop[-1])) != _start(network, first):
@@ -176,7 +176,7 @@ def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[NDArray[np.fl
 
 
 def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
-    """For each way along an edge, the one to take at its end."""
+    """Returns for each way along an edge the next one, clockwise at its end."""
     leaving: dict[int, list[tuple[float, Use]]] = defaultdict(list)
     for edge in edges:
         for forward in (True, False):

@@ -41,7 +41,7 @@ class Arm:
 
 @record(slots=True)
 class Corner:
-    """Where two curves end."""
+    """A point where two curves end."""
 
     at: Vec
     arms: tuple[Arm, Arm]
@@ -72,7 +72,7 @@ class Work:
 
 @record(slots=True)
 class Finished:
-    """How much each arm loses, and the curve that takes the place of the corner."""
+    """The shares that the arms of a corner lose, and the curve that takes its place."""
 
     work: Work
     cuts: tuple[float, float]
@@ -207,7 +207,7 @@ def _trimmed(curve: Piece, start: Finished | None, end: Finished | None, number:
 
 
 def _end_at(made: Finished, number: int, first: bool) -> Vec:
-    """Where the new curve touches this arm."""
+    """Returns the point where the new curve touches this arm."""
     arm = made.work.corner.arms[0]
     return ends(made.piece)[0 if (arm.number, arm.first) == (number, first) else 1]
 
@@ -236,7 +236,7 @@ def solve(work: Work) -> Finished | None:
 
 
 def _arc(corner: Corner, radius: float, center: Vec, p: Vec, q: Vec) -> Arc:
-    """From the first arm to the second: with the second one to its left, the arc turns right."""
+    """Returns the arc from the first arm to the second: with the second one to its left, it turns right."""
     first, last = (math.atan2(e[1] - center[1], e[0] - center[0]) for e in (p, q))
     sweep = (last - first) % math.tau if corner.turn < 0 else -((first - last) % math.tau)
     return Arc(center, radius, p, q, sweep)
@@ -258,7 +258,7 @@ def _along(curve: Piece, distance: float) -> float | None:
 
 
 def _round(corner: Corner, radius: float) -> tuple[float, float, Vec] | None:
-    """Where a fillet touches both arms, and its centre."""
+    """Returns the parameters at which a fillet touches both arms, and its centre; None if it does not fit."""
     a, b = corner.arms[0].curve, corner.arms[1].curve
     side = math.copysign(1.0, corner.turn)
     if not (isinstance(a, Line | Arc) and isinstance(b, Line | Arc)):

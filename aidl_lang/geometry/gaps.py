@@ -23,7 +23,7 @@ from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 
 WIDEST = 5e-4
-"""Of a gap that is closed, relative to the size of the drawing: two decimals in a drawing of 30 mm."""
+"""Width of a gap that is closed, relative to the size of the drawing: two decimals in a drawing of 30 mm."""
 WIDEST_MM = 0.05
 ROUNDING = 1e-8
 """Distance of two ends, relative to the size, that is rounding and no gap."""
@@ -96,7 +96,9 @@ def welded_gaps(
     structures: Iterable[SolvedStructure],
     shapes: Mapping[str, Sequence[Shape]],
 ) -> Iterator[Gap]:
-    """Where ends that are not quite the same became one node, in the outlines of single curves."""
+    """Yields gaps between ends in the outlines of single curves that are not quite the same and became one
+    node.
+    """
     gaps = []
     for structure in structures:
         if structure.kind not in ("solid", "hole"):

@@ -51,8 +51,8 @@ def hull(curves: Sequence[Piece]) -> Region:
 
 
 def _distinct(curves: Sequence[Piece]) -> list[Piece]:
-    """Each curve once, and none that lies in the disc of a circle: on circles that all but coincide, no line
-    touches two.
+    """Returns each curve once, without those in the disc of a circle: on circles that all but coincide, no
+    line touches two.
     """
     kept: list[Piece] = []
     for curve in sorted(dict.fromkeys(curves), key=lambda c: -c.radius if isinstance(c, Circle) else 0.0):
@@ -73,7 +73,7 @@ def _size(pieces: Sequence[Piece]) -> float:
 
 
 def _contacts(curves: Sequence[Piece]) -> list[_Contact]:
-    """What the hull of the samples touches, counter-clockwise, neighbours on one curve as one."""
+    """Returns the stretches of curves that the hull of the samples touches, counter-clockwise."""
     samples = [_spread(curve) for curve in curves]
     owner = [number for number, ts in enumerate(samples) for _ in ts]
     place = [k for ts in samples for k in range(len(ts))]
@@ -183,7 +183,9 @@ def _tangent(c: Vec, r: float, d: Vec, s: float) -> tuple[Vec, Vec] | None:
 
 
 def _parameter(curve: Piece, p: Vec, about: float) -> float | None:
-    """Where a point of its circle lies on a curve; None if that is beyond the end that the hull touches."""
+    """Returns the parameter at which a curve passes a point of its circle; None if that is beyond the end
+    that the hull touches.
+    """
     if isinstance(curve, Line):
         return about
     t = nearest(curve, p)
@@ -228,7 +230,7 @@ def _along(curve: Piece, t0: float, t1: float, p: Vec, q: Vec) -> Piece:
 
 
 def _joined(pieces: list[Piece]) -> list[Piece]:
-    """Each piece starts where the one before it ends."""
+    """Returns the pieces with each starting where the one before it ends."""
     result: list[Piece] = []
     for k, piece in enumerate(pieces):
         start = ends(pieces[k - 1])[1]

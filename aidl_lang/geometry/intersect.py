@@ -1,4 +1,5 @@
-"""Where two curves meet: closed forms for lines and circles, Newton from a sampling for the others.
+"""The points where two curves meet: closed forms for lines and circles, Newton from a sampling for the
+others.
 
 A near miss within the tolerance counts as a touch. Curves that lie on each other have no crossing here; what
 they share begins and ends at end points, which `network` places on both.
@@ -159,7 +160,7 @@ def _on(curve: Piece, p: Vec, tolerance: float) -> bool:
 
 
 def _crossed(p: NDArray[np.float64], q: NDArray[np.float64]) -> list[tuple[float, float]]:
-    """Where two polylines cross, counted in their sides."""
+    """Returns the crossings of two polylines, counted in their sides."""
     dp, dq = np.diff(p, axis=0)[:, None, :], np.diff(q, axis=0)[None, :, :]
     gap = q[None, :-1, :] - p[:-1, None, :]
     cross = dp[..., 0] * dq[..., 1] - dp[..., 1] * dq[..., 0]
@@ -197,7 +198,9 @@ def _touch_beside(a: Piece, b: Piece, crossing: Crossing, tolerance: float) -> C
 
 
 def _touch(a: Piece, b: Piece, t: float, s: float, tolerance: float) -> Crossing | None:
-    """Where the curves are parallel and within the tolerance: Newton on (b - a)·a' = 0 and a' x b' = 0."""
+    """Returns the touch where the curves are parallel and within the tolerance, by Newton on (b - a)·a' = 0
+    and a' x b' = 0.
+    """
     for _ in range(30):
         t, s = _within(a, t), _within(b, s)
         (x, y), (u, v) = point(a, t), point(b, s)

@@ -44,14 +44,16 @@ class Lying:
 
 @record()
 class Ground:
-    """What strokes lie on, or under: the bodies from back to front. `inked` are the curves of all strokes."""
+    """The bodies that strokes lie on, or under, from back to front. `inked` are the curves of all strokes."""
 
     network: Network
     bodies: Sequence[Lying]
     inked: Sequence[int]
 
     def hides(self, color: str | None, curves: Sequence[int], place: int) -> list[bool]:
-        """For each edge of some curves drawn at a place whether what is below has nearly their colour."""
+        """Returns for each edge of some curves drawn at a place whether the body below has nearly their
+        colour.
+        """
         if color is None or not any(look_alike(known, color) for known in self._colors):
             return []
         count = bisect_left(self._places, place)
@@ -78,7 +80,9 @@ class Ground:
         )
 
     def covered_part(self, curves: Sequence[int], place: int) -> tuple[float, list[str]]:
-        """How much of some curves drawn at a place, of their length, later bodies lie over, and which."""
+        """Returns the share of the length of some curves drawn at a place that later bodies cover, and these
+        bodies.
+        """
         first, edges = bisect_right(self._places, place), self._edges(curves)
         above = [[k for k in self._within[edge] if k >= first] for edge in edges]
         if not any(above):
@@ -111,7 +115,7 @@ class Ground:
 
     @cached_property
     def _within(self) -> dict[int, list[int]]:
-        """For each edge of a stroke the bodies that its middle lies in, by number."""
+        """The numbers of the bodies that the middle of each edge of a stroke lies in."""
         edges = sorted(set(self._edges(self.inked)))
         found: dict[int, list[int]] = {edge: [] for edge in edges}
         spots = self.network.midpoints(edges)
@@ -130,7 +134,7 @@ def _lies_within(inner: Bounds, outer: Bounds) -> bool:
 
 
 def covered_note(drawing: SolvedStructure, names: Sequence[str], by: str) -> Diagnostic:
-    """For curves of a drawing that a later body lies over."""
+    """Returns the diagnostic on curves of a drawing that a later body covers."""
     name = by.rpartition(".")[2]
     return Diagnostic(
         "W0709",
@@ -144,7 +148,7 @@ def covered_note(drawing: SolvedStructure, names: Sequence[str], by: str) -> Dia
 def lettering_note(
     structure: SolvedStructure, text: SolvedGeometry, share: float, by: Sequence[str]
 ) -> Diagnostic:
-    """For letters that later bodies lie over, in part or as a whole."""
+    """Returns the diagnostic on letters that later bodies cover, in part or as a whole."""
     part = f"{max(1, round(100 * share))} % of the" if share < _WHOLE else "the"
     names = [path.rpartition(".")[2] for path in by]
     over = "is" if len(by) == 1 else "are"
@@ -161,7 +165,7 @@ def lettering_note(
 
 
 def unseen_note(drawing: SolvedStructure, names: Sequence[str], color: str) -> Diagnostic:
-    """For curves of a drawing that was given the colour of what they lie on."""
+    """Returns the diagnostic on curves of a drawing that was given the colour of what they lie on."""
     return Diagnostic(
         "W0709",
         f"{named(names)} of drawing `{drawing.path}` cannot be seen: {color} on what has that colour",

@@ -34,7 +34,9 @@ class Misfit:
 def misfits(
     result: Result, works: Sequence[Work], reasons: Sequence[Finish], leaves: Leaves, told: SolvedStructure
 ) -> Iterator[Misfit]:
-    """What does not fit, each fault once: failures of one statement are one, as are those that meet."""
+    """Yields the finishes that do not fit, each fault once: failures of one statement are one, as are those
+    that meet.
+    """
     reason_of = {id(work): reason for work, reason in zip(works, reasons, strict=True)}
     curves = [curve for _, curve in leaves]
     for group in _groups(result.failures, reason_of):

@@ -46,7 +46,9 @@ class Inertia:
 
     @property
     def angle(self) -> float:
-        """From the x axis to the axis of the largest moment, degrees over -90 to 90; 0 if all are equal."""
+        """The angle from the x axis to the axis of the largest moment, degrees over -90 to 90; 0 if all are
+        equal.
+        """
         largest, least = self.principal
         if largest - least <= _ISOTROPIC * largest:
             return 0.0
@@ -71,14 +73,14 @@ def inertia(region: Region, centroid: Vec) -> Inertia:
 
 
 def _squares(loop: Loop, origin: Vec) -> Squares:
-    """Of a loop about a point, as if it were not `reversed`."""
+    """Returns the second moments of a loop about a point, as if it were not `reversed`."""
     columns = zip(*(_piece_squares(piece, origin) for piece in loop.pieces), strict=True)
     x, y, xy = map(math.fsum, columns)
     return x, y, xy
 
 
 def _piece_squares(piece: Piece, origin: Vec) -> Squares:
-    """Of the triangle fan from the origin to the piece."""
+    """Returns the second moments of the triangle fan from the origin to the piece."""
     match piece:
         case Line(start, end):
             return _triangle(

@@ -12,7 +12,7 @@ from aidl_lang.common.cancelling import checkpoint, give_up
 from aidl_lang.geometry.evaluate import Bounds
 
 _AT_ONCE = 1 << 20
-"""How many candidates are looked at in one step, which bounds the memory."""
+"""Number of candidates looked at in one step, which bounds the memory."""
 
 _MOST_PAIRS = 2_000_000
 """Pairs of boxes that meet, beyond which no drawing is worked out in time."""
@@ -130,7 +130,7 @@ class Sides:
 
 
 def inside(polygons: Sequence[Floats], spots: Floats) -> NDArray[np.bool_]:
-    """Which points lie inside an odd number of polygons, by the crossings of rays to the right."""
+    """Returns the mask of points inside an odd number of polygons, by the crossings of rays to the right."""
     crossings = np.zeros(len(spots), dtype=np.int64)
     if polygons and len(spots):
         start = np.concatenate(polygons)

@@ -301,7 +301,7 @@ class Network:
         return halfway
 
     def look_up(self, polygon: NDArray[np.float64]) -> tuple[Ints, Ints]:
-        """For each vertex of a result the edge it lies inside of and its place there.
+        """Returns for each vertex of a result the edge it lies inside of, and its place there.
 
         For a node the edge is NODE and the place its number; for a vertex of no edge it is UNKNOWN.
         """
@@ -317,12 +317,12 @@ class Network:
         return float(x), float(y)
 
     def nearest_edges(self, spots: NDArray[np.float64]) -> Ints:
-        """For each spot on a result the edge whose polyline passes nearest."""
+        """Returns for each spot on a result the edge whose polyline passes nearest."""
         numbers, sides = self._all_sides()
         return numbers[sides.nearest(spots, 4 * GRID)]
 
     def blur(self, vertices: NDArray[np.float64]) -> None:
-        """Note the curves whose chords pass a vertex that none of them owns."""
+        """Notes the curves whose chords pass a vertex that none of them owns."""
         numbers, sides = self._all_sides()
         _, near, _ = sides.near(vertices, 4 * GRID)
         found = {*numbers[near].tolist(), *self.nearest_edges(vertices).tolist()}
@@ -348,7 +348,7 @@ class Network:
 
 
 def exactly(network: Network, work: Callable[[], T]) -> T:
-    """What is made of a network, once more with finer chords where curves came too close for them."""
+    """Returns the result of `work`, done again with finer chords while curves come too close for them."""
     network.may_refine = True
     while True:
         checkpoint()
@@ -362,7 +362,7 @@ def exactly(network: Network, work: Callable[[], T]) -> T:
 
 
 def pack(grid: Ints) -> Ints:
-    """One number for each grid point; coordinates have at most 32 bits."""
+    """Returns one number for each grid point; coordinates have at most 32 bits."""
     return (grid[:, 0] << 32) + grid[:, 1]
 
 

@@ -1,4 +1,4 @@
-"""What the passes of this package found, as diagnostics with places, reasons and remedies."""
+"""Diagnostics on the findings of this package, with places, reasons and remedies."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def _fresh(structure: SolvedStructure, name: str) -> str:
 
 @lru_cache(maxsize=4)
 def _words(text: str) -> Counter[str]:
-    """How often each word is written."""
+    """Counts the words of a text."""
     return Counter(re.findall(r"\w+", text))
 
 
@@ -133,7 +133,9 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
 
 
 def _lost(finding: LooseCurves, names: Sequence[str], network: Network) -> Diagnostic:
-    """Of curves that are less than the drawing can tell apart: their ends are as good as one point."""
+    """Returns the diagnostic on curves too small for the drawing to tell apart: their ends are as good as one
+    point.
+    """
     s = finding.structure
     plural = len(set(names)) > 1
     return Diagnostic(
@@ -197,7 +199,7 @@ def _end(structure: SolvedStructure, end: End) -> str:
 
 
 def gap_note(gap: Gap) -> Diagnostic:
-    """That two ends which do not quite meet were taken for one."""
+    """Returns the note that two ends which do not quite meet were taken for one."""
     s = gap.structure
     moved, kept = ((e.geometry, e.at, "end" if e.is_last else "start") for e in (gap.moved, gap.kept))
     one, other = _end(s, moved), _end(s, kept)
@@ -349,7 +351,9 @@ def _detached(structure: SolvedStructure, nearest: tuple[float, str] | None) -> 
 
 
 def unusable_note(structure: SolvedStructure, leaf: SolvedGeometry, whole: SolvedGeometry) -> Diagnostic:
-    """For a curve without extent or without finite coordinates; `whole` is what cannot be seen."""
+    """Returns the diagnostic on a curve without extent or finite coordinates; `whole` is the geometry not
+    drawn.
+    """
     name, curve = local(structure, whole), leaf.curve
     if curve is not None and not is_finite(curve):
         what = "has no place"
@@ -369,7 +373,7 @@ def unusable_note(structure: SolvedStructure, leaf: SolvedGeometry, whole: Solve
 
 
 _MEASURES = ("radius", "rx", "width", "length", "size", "diameter", "module")
-"""What a geometry may be held open by."""
+"""Measures by which a geometry may be held open."""
 
 
 def color_note(of: SolvedStructure | SolvedGeometry, values: tuple[Scalar, ...]) -> Diagnostic:

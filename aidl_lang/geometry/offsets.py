@@ -65,7 +65,9 @@ def _along(pieces: Sequence[Piece], left: float, sharp: bool) -> Iterator[Strip]
 
 
 def thick(curves: Sequence[Piece], width: float, caps: str = "round", sharp: bool = False) -> Region:
-    """What a pen of a width draws along curves; where more than two meet, the joint is round."""
+    """Returns the region that a pen of a width draws along curves; where more than two meet, the joint is
+    round.
+    """
     half = width / 2
     left, bottom, right, top = union_bounds([bounds(c) for c in curves])
     near = NEAR * (max(right - left, top - bottom) or 1.0)

@@ -1,4 +1,4 @@
-"""What is wrong with derived outlines and finished corners, as diagnostics."""
+"""Diagnostics on derived outlines and finished corners."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def all_wall(g: SolvedGeometry, recipe: Recipe, depth: float) -> Diagnostic:
 
 
 def no_corner(f: Finish, leaves: Leaves, near: float) -> Diagnostic:
-    """For a place where no two curves end, or where they run on smoothly."""
+    """Returns the diagnostic on a place where no two curves end, or where they run on smoothly."""
     if f.at is None:
         return Diagnostic(
             "E0335",

@@ -106,15 +106,15 @@ class _Outliner:
     # --- Outlines made of others -------------------------------------------------------------------
 
     def _completed(self, g: SolvedGeometry) -> SolvedGeometry:
-        """With the curves of derived outlines as parts, its own or those of its parts."""
+        """Returns a geometry with the curves of derived outlines as parts, its own or those of its parts."""
         if g.recipe is None or g.curve is not None or any(True for _ in _leaves(_shown(g))):
             return replace(g, parts=tuple(map(self._completed, g.parts)))
         exact = self._exact(g, g.recipe)
         return replace(exact, parts=(*map(self._completed, g.parts), *exact.parts))
 
     def _drawn(self, g: SolvedGeometry) -> SolvedGeometry:
-        """As it is drawn: of a shape that the library made by an operation, what exact geometry gives, where
-        that differs (the source has fillets, or less is left than the formula says).
+        """Returns a geometry as it is drawn: a shape that the library made by an operation, by exact geometry
+        if that differs (the source has fillets, or less is left than the formula says).
         """
         if g.recipe is None or not any(True for _ in _leaves(_shown(g))):
             return replace(g, parts=tuple(map(self._drawn, g.parts)))
@@ -154,7 +154,7 @@ class _Outliner:
         return _pieces(region)
 
     def _operand(self, group: Iterable[SolvedGeometry]) -> list[SolvedGeometry]:
-        """What an outline is made of, as it is drawn."""
+        """Returns the geometry that an outline is made of, as it is drawn."""
         shown = [_shown(self._drawn(self._completed(g))) for g in group]
         return self._finished(shown, self.finishes)
 
@@ -274,7 +274,9 @@ class _Outliner:
             sources = [(self._source(g) if g else None, c) for g, c in sources]
 
     def _source(self, g: SolvedGeometry) -> SolvedGeometry | None:
-        """What a geometry is a copy of; what has no name of its own goes by that of its copy."""
+        """Returns the geometry that a copy was made from; None for what is no copy or goes by the name of its
+        copy.
+        """
         return self.index.get(g.source) if g.source is not None and g.source != g.path else None
 
 
@@ -333,7 +335,7 @@ def _rebuilt(geometry: Sequence[SolvedGeometry], leaves: Leaves, result: Result)
 
 
 def _region(geometry: Sequence[SolvedGeometry]) -> Region:
-    """What some geometry encloses together."""
+    """Returns the region that some geometry encloses together."""
     curves: list[Piece] = []
     shapes = []
     for g in geometry:
@@ -357,7 +359,9 @@ def _extent(curves: Sequence[Piece]) -> float:
 
 
 def _deepest(region: Region, too_deep: float) -> float:
-    """How far an outline can be moved inwards before nothing is left, to about seven digits."""
+    """Returns the distance by which an outline can be moved inwards before nothing is left, to about seven
+    digits.
+    """
     low, high = 0.0, too_deep
     for _ in range(_HALVINGS):
         middle = (low + high) / 2

@@ -56,7 +56,7 @@ def _completed(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
 
 
 def _sizes(built: Model, evaluator: Evaluator) -> Callable[[SolvedModel], tuple[Dimension, ...]]:
-    """What tells the sizes of a solved model, loaded when they are asked for."""
+    """Returns a function that finds the sizes of a solved model; its code is loaded when it is called."""
 
     def sizes(solved: SolvedModel) -> tuple[Dimension, ...]:
         from aidl_lang.geometry.dimensions import sizes

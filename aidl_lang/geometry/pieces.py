@@ -39,7 +39,7 @@ from aidl_lang.geometry.trace import trace_all
 _RING = 3
 """Outlines that a solid has at least where a piece of it lies in an opening of another."""
 _PATTERN = 4
-"""So many pieces of one area, or of one definition, are a pattern."""
+"""Least number of pieces of one area, or of one definition, that are a pattern."""
 _MOST = 3
 """Loose pieces of a solid that are told."""
 LETTERING = "text"
@@ -84,7 +84,9 @@ def loose_piece_notes(
 
 
 def _pieces(walk: Bodies, mass: Mass) -> list[_Piece]:
-    """What the geometry of a solid, and of those in it, covers before anything is cut out."""
+    """Returns the pieces that a solid, and those in it, cover before anything is cut out; none if they are
+    all alike.
+    """
     faces = [f for s in _material(mass.structure) for f in walk.faces.get(s.path, ())]
     if len(faces) < 2:
         return []
@@ -113,7 +115,7 @@ def _material(structure: SolvedStructure) -> Iterator[SolvedStructure]:
 
 
 def _area(section: Section) -> str:
-    """To six digits, so that pieces of one size compare equal."""
+    """Returns an area with six digits, so that pieces of one size compare equal."""
     return f"{section.area():.6g}"
 
 
@@ -145,7 +147,7 @@ def _groups(
 
 
 class _Joined:
-    """Which of any things hang together."""
+    """Groups of things that hang together (union-find)."""
 
     def __init__(self) -> None:
         self._parent: dict[object, object] = {}
@@ -167,7 +169,9 @@ def _notes(solid: SolvedStructure, groups: Sequence[Sequence[_Piece]]) -> Iterat
 
 
 def _traits(piece: _Piece) -> Iterator[object]:
-    """By what pieces are alike: their area, and the place where they are written, in a loop."""
+    """Yields the traits that make pieces alike: their area, and the place where they are written, in a
+    loop.
+    """
     yield _area(piece.section)
     yield from {g.span for f in piece.faces for g in f.geometries if g.span}
 
@@ -242,7 +246,7 @@ def _islands(structure: SolvedStructure) -> Iterator[SolvedStructure]:
 
 
 def _holes(root: SolvedStructure, masses: Sequence[Mass]) -> dict[str, list[SolvedStructure]]:
-    """For each body the holes that may cut it: its own, and those of the structures around it."""
+    """Returns for each body the holes that may cut it: its own, and those of the structures around it."""
     found: dict[str, list[SolvedStructure]] = {mass.structure.path: [] for mass in masses}
 
     def visit(structure: SolvedStructure, around: Sequence[SolvedStructure]) -> None:
@@ -258,7 +262,7 @@ def _holes(root: SolvedStructure, masses: Sequence[Mass]) -> dict[str, list[Solv
 
 
 def _held_by_others(solids: Sequence[Solid], pairs: Sequence[Contact]) -> dict[str, list[Solid]]:
-    """For each body those that touch or overlap it."""
+    """Returns for each body those that touch or overlap it."""
     known = {solid.path: solid for solid in solids}
     held: dict[str, list[Solid]] = {}
     for pair in pairs:

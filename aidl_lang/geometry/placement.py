@@ -25,7 +25,7 @@ _UP: Matrix = np.array((0.0, 0.0, 1.0))
 _RIGHT: Matrix = np.array((1.0, 0.0, 0.0))
 _BACK: Matrix = np.array((0.0, 1.0, 0.0))
 _AXES = {"top": (_RIGHT, _BACK, _UP), "front": (_RIGHT, _UP, _BACK), "side": (_BACK, _UP, _RIGHT)}
-"""By orientation: where the x and the y of the sketch point, and where its material grows."""
+"""Directions, by orientation, of the x and the y of the sketch and of the growth of its material."""
 
 
 @record()
@@ -104,7 +104,7 @@ def thickness_of(body: Body, default: float | None) -> float | None:
 
 
 def placement_notes(root: SolvedStructure, drawing: Drawing) -> list[Diagnostic]:
-    """What was written about a third dimension and counts for nothing, or not as one may think."""
+    """Returns notes on attributes of the third dimension that have no effect, or not the one expected."""
     return ordered([*_in_turned(root, np.eye(2)), *_united(root, drawing)])
 
 

@@ -26,7 +26,7 @@ class Loop:
 
     @property
     def is_whole(self) -> bool:
-        """Whether the loop is a single closed curve without ends."""
+        """True if the loop is a single closed curve without ends."""
         return len(self.pieces) == 1 and isinstance(self.pieces[0], Circle | Ellipse)
 
 

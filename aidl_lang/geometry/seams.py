@@ -17,7 +17,7 @@ from aidl_lang.geometry.trace import Traced
 def visible_seams(
     network: Network, mass: Mass, traced: Mapping[str, Traced]
 ) -> Iterator[tuple[str, tuple[Piece, ...]]]:
-    """By path of the united structure, its edges inside the body, each drawn once."""
+    """Yields the edges of each united structure inside the body, by its path, each drawn once."""
     outline = traced[mass.structure.path].edges
     candidates = sorted({edge for path in mass.inner for edge in traced[path].edges} - outline)
     mask = inside_mask(mass.section, network.midpoints(candidates))

@@ -20,7 +20,7 @@ NEGLIGIBLE = 16 * RELATIVE_TOLERANCE
 
 
 class Section(Protocol):
-    """What is used of Manifold's `CrossSection`: an area of the plane bounded by polygons."""
+    """The part of Manifold's `CrossSection` used here: an area of the plane bounded by polygons."""
 
     def area(self) -> float: ...
     def bounds(self) -> tuple[float, float, float, float]: ...
@@ -47,7 +47,7 @@ def fill(polygons: Sequence[Polygon], rule: Literal["EvenOdd", "NonZero"]) -> Se
 
 
 def union(sections: Sequence[Section]) -> Section:
-    """Of any number of sections."""
+    """Returns the union of any number of sections."""
     m = _manifold()
     full = [s for s in sections if not s.is_empty()]
     if len(full) == 1:
@@ -104,7 +104,7 @@ def covers(cover: Section, section: Section) -> bool:
 
 
 def holes_of(section: Section) -> list[Section]:
-    """What its inner outlines enclose."""
+    """Returns the areas that the inner outlines of a section enclose."""
     whole = fill([p for p in section.to_polygons() if _turns_left(p)], "NonZero")
     return difference(whole, section).decompose()
 
@@ -115,7 +115,7 @@ def _turns_left(polygon: Polygon) -> bool:
 
 
 def inside_mask(section: Section, spots: Polygon) -> NDArray[np.bool_]:
-    """Which points in grid units lie inside."""
+    """Returns the mask of points, in grid units, inside a section."""
     within = np.zeros(len(spots), dtype=np.bool_)
     if not section.is_empty():
         left, bottom, right, top = section.bounds()
@@ -126,5 +126,5 @@ def inside_mask(section: Section, spots: Polygon) -> NDArray[np.bool_]:
 
 
 def in_polygon(polygon: Polygon, spots: Polygon) -> NDArray[np.bool_]:
-    """Which points lie inside a polygon (even-odd)."""
+    """Returns the mask of points inside a polygon (even-odd)."""
     return inside([polygon], spots)

@@ -23,11 +23,11 @@ PARTS = 8
 _ANGLE = 0.2
 """Radians that must be free beyond a straight angle, for curves to be apart on both sides of an end."""
 _MARGIN = 4
-"""How many tolerances apart boxes must be: a crossing may be that far from where both curves are."""
+"""Distance in tolerances that boxes must have: a crossing may be that far from where both curves are."""
 _AT_ONCE = 1 << 14
 """Pairs that are compared in one step, which bounds the memory."""
 _REACHES = (PARTS, PARTS // 2, 1)
-"""How many parts beside a shared end are told apart by a line through it."""
+"""Numbers of parts beside a shared end that a line through it separates."""
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -35,7 +35,9 @@ Mask = NDArray[np.bool_]
 
 
 def _cutting() -> Floats:
-    """What makes the control points of the parts, four each, of those of a whole cubic."""
+    """Returns the matrix that makes the control points of the parts, four each, from those of a whole
+    cubic.
+    """
     rows = []
     for k in range(PARTS):
         a, b = k / PARTS, (k + 1) / PARTS
@@ -119,7 +121,7 @@ def _beside(end: int, reach: int) -> slice:
 
 
 def _hulls(curves: Sequence[Piece]) -> Floats:
-    """By curve and part the four points around it."""
+    """Returns the four points around each part of each curve."""
     hulls = np.empty((len(curves), PARTS, 4, 2))
     cubic = [k for k, curve in enumerate(curves) if isinstance(curve, Line | Bezier)]
     if cubic:
@@ -144,7 +146,7 @@ def _control(curve: Piece) -> tuple[tuple[float, float], ...]:
 
 
 def _round_hulls(curves: Sequence[Piece]) -> Floats:
-    """Of each part the ends and, twice, where the tangents in them meet."""
+    """Returns the ends of each part of a round curve with, twice, the meeting of the tangents in them."""
     rows = []
     for curve in curves:
         assert not isinstance(curve, Line | Bezier)

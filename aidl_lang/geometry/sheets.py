@@ -64,7 +64,7 @@ class _Part:
         return self.box[2] - self.box[0], self.box[3] - self.box[1]
 
     def cell(self, gap: int) -> Cell:
-        """What it takes of a sheet, with the gap on one side of it each way."""
+        """Returns the size of the part's place on a sheet, with the gap on one side of it each way."""
         return max(1, _ceil(self.size[0])) + gap, max(1, _ceil(self.size[1])) + gap
 
 

@@ -178,7 +178,9 @@ def _turned(piece: Piece) -> Piece:
 
 
 def _error(piece: Piece) -> float:
-    """How far a chord of a chopped curve may be from it: twice what it is in the middle of one."""
+    """Returns a bound on the distance of a chord of a chopped curve from it: twice that in the middle of
+    one.
+    """
     if isinstance(piece, Line | Arc | Circle):
         return 0.0
     spots = points(piece, np.linspace(0.0, 1.0, 2 * _CHORDS[type(piece).__name__] + 1))

@@ -47,7 +47,7 @@ class Frame:
 
 @record()
 class Recipe:
-    """How the curves of an outline come from others (see `model.Recipe`); `outlines` works them out."""
+    """The derivation of an outline from other curves (see `model.Recipe`); `outlines` works it out."""
 
     kind: str
     operands: tuple[tuple[SolvedGeometry, ...], ...]
@@ -163,7 +163,7 @@ class SolvedStructure:
 
 
 class Relating(Protocol):
-    """What relates some geometry and structures."""
+    """Something that relates some geometry and structures."""
 
     @property
     def mentions(self) -> tuple[str, ...]: ...
@@ -226,7 +226,7 @@ class Motion:
 
 @record()
 class Reading:
-    """Which of its meanings an ambiguous call was taken in, by what was written."""
+    """The meaning in which an ambiguous call was read, judged by its first guesses."""
 
     span: Span
     text: str
@@ -315,7 +315,9 @@ class SolvedModel:
 
     @property
     def is_unfinished(self) -> bool:
-        """Whether outlines are to be made of others, or corners to be finished (see `geometry.outlines`)."""
+        """True if outlines are to be derived from others, or corners to be finished (see
+        `geometry.outlines`).
+        """
         return any(s.finishes for s in self.root.walk()) or any(g.recipe for g in self.root.walk_geometry())
 
     @cached_property
@@ -332,5 +334,5 @@ class SolvedModel:
 
     @cached_property
     def sizes(self) -> tuple[Dimension, ...]:
-        """What the program states the size of, the more important first (see `dimensions`)."""
+        """The sizes that the program states, the more important first (see `dimensions`)."""
         return self.size_up(self)

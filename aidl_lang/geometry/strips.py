@@ -30,7 +30,7 @@ _SHARPEST = math.radians(168.5)
 
 
 def beside(curve: Piece, left: float) -> Iterator[Strip]:
-    """What lies within a distance to the left of a curve (to its right for a negative one)."""
+    """Yields the strips within a distance to the left of a curve (to its right for a negative one)."""
     if isinstance(curve, Line):
         yield (_between(curve, _shifted(curve, left)),)
     elif isinstance(curve, Circle):
@@ -43,7 +43,7 @@ def beside(curve: Piece, left: float) -> Iterator[Strip]:
 
 
 def _between(curve: Piece, other: Piece) -> Outline:
-    """From a curve to one beside it and back."""
+    """Returns the outline from a curve to one beside it and back."""
     (a, b), (c, d) = ends(curve), ends(other)
     return tuple(
         p
@@ -75,7 +75,9 @@ def _scaled(arc: Arc, p: Vec, radius: float) -> Vec:
 
 
 def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
-    """In parts short enough to fit; where the curve bends closer than the distance, straight on top."""
+    """Yields strips in parts short enough to fit; their far side is straight where the curve bends closer
+    than the distance.
+    """
     middle = point(curve, 0.5)
     scale = abs(left) + sum(math.dist(p, middle) for p in ends(curve))
     count = 1 if isinstance(curve, Bezier) else 4
@@ -111,7 +113,9 @@ def _turn(curve: Piece, t0: float, t1: float) -> float:
 
 
 def _stretch(curve: Piece, t: float, left: float) -> float:
-    """How much longer a step on the parallel curve is than on the curve itself: 1 - left · curvature."""
+    """Returns the length of a step on the parallel curve relative to that on the curve: 1 - left ·
+    curvature.
+    """
     (dx, dy), (ax, ay) = derivative(curve, t), second_derivative(curve, t)
     speed = math.hypot(dx, dy)
     return 1 - left * (dx * ay - dy * ax) / speed**3 if speed else 1.0
@@ -131,7 +135,7 @@ def _parallel(curve: Piece, t: float, left: float) -> Vec:
 
 
 def _error(curve: Piece, t0: float, t1: float, left: float, fitted: Bezier) -> float:
-    """How far the fitted curve strays, measured along the normals of the parallel one."""
+    """Returns the greatest distance of the fitted curve from the parallel one, along the normals of that."""
     worst = 0.0
     for s in (0.2, 0.35, 0.5, 0.65, 0.8):
         t = t0 + s * (t1 - t0)
@@ -144,8 +148,7 @@ def _error(curve: Piece, t0: float, t1: float, left: float, fitted: Bezier) -> f
 
 
 def wedge(at: Vec, arriving: Vec, leaving: Vec, left: float, sharp: bool) -> Strip | None:
-    """What a corner adds to the strips on its outer side: nothing if that is not the side asked for.
-
+    """Returns the strip that a corner adds on its outer side; None if that is not the side asked for.
     `arriving` and `leaving` are unit directions.
     """
     across = arriving[0] * leaving[1] - arriving[1] * leaving[0]
@@ -164,7 +167,9 @@ def wedge(at: Vec, arriving: Vec, leaving: Vec, left: float, sharp: bool) -> Str
 
 
 def cap(at: Vec, outward: Vec, half: float, form: str) -> Strip | None:
-    """What an end adds to the strips on both sides of its curve: `round`, `square`, or nothing for `butt`."""
+    """Returns the strip that an end adds on both sides of its curve: `round`, `square`, or None for
+    `butt`.
+    """
     p = at[0] + half * outward[1], at[1] - half * outward[0]
     q = at[0] - half * outward[1], at[1] + half * outward[0]
     if form == "butt":

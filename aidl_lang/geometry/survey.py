@@ -1,5 +1,5 @@
-"""What a solved drawing measures: areas, inertia, thin places and masses of the whole and of its parts, and
-how the bodies lie to each other. Lengths in mm, volumes in mm³, masses in g, coordinates in the root's frame.
+"""The measures of a solved drawing: areas, inertia, thin places and masses of the whole and of its parts, and
+the contacts between bodies. Lengths in mm, volumes in mm³, masses in g, coordinates in the root's frame.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Width:
 
 @record()
 class Part:
-    """What one thing measures.
+    """The measures of one thing.
 
     kind       `body`; `bodies` for what holds several; `solid` for one that is united with what is around it;
                `hole`; `geometry` for an outline as a solid of its own
@@ -211,7 +211,7 @@ class _Surveyor:
         self._unknown: dict[str, str] = {}
 
     def part(self, written: str) -> Part:
-        """What a path means, with or without the name of the root."""
+        """Returns the part at a path, written with or without the name of the root."""
         path, kind = self._find(written)
         if kind == "geometry":
             region = region_alone(self.model, path)
@@ -263,7 +263,7 @@ class _Surveyor:
         )
 
     def notes(self) -> Iterator[Diagnostic]:
-        """One for each material whose density is not known."""
+        """Yields a note on each material whose density is not known."""
         for material, path in self._unknown.items():
             near = similar(material)
             structure = self.model.root.find(path)

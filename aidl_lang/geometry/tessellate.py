@@ -26,12 +26,12 @@ Polygon = NDArray[np.float64]
 COARSEST = TAU / 16
 """Largest angle of a chord, so that a hole much smaller than the tolerance is still round."""
 SLACK = 1e-9
-"""Of a count of chords, so that rounding does not choose how many there are."""
+"""Slack in a count of chords, so that rounding does not choose how many there are."""
 _FINER, _ROUNDS = 16, 4
 
 
 def region_polygons(region: Region, tolerance: float) -> list[Polygon]:
-    """One polygon for each loop of `region.loops`: outer ones counter-clockwise, holes clockwise."""
+    """Returns one polygon for each loop of `region.loops`: outer ones counter-clockwise, holes clockwise."""
     return [polygon for face in region.faces for polygon in face_polygons(face, tolerance)]
 
 
@@ -82,7 +82,9 @@ def _from_start(piece: Piece, tolerance: float) -> Polygon:
 
 
 def _chords(piece: Piece, tolerance: float) -> int:
-    """How many chords keep the tolerance; at least two for a curve, so that it does not fall on its chord."""
+    """Returns the number of chords that keeps the tolerance; at least two for a curve, so that it does not
+    fall on its chord.
+    """
     if isinstance(piece, Line):
         return 1
     if isinstance(piece, Bezier):

@@ -1,4 +1,4 @@
-"""From the polygons of a boolean back to outlines of exact curves.
+"""Turns the polygons of a boolean back into outlines of exact curves.
 
 Each vertex of a result is a vertex of the network (see there), so the edge it belongs to is looked up, not
 guessed. Runs of vertices along one edge become one part of its curve, and parts that continue each other are
@@ -107,7 +107,7 @@ def _faces(loops: list[tuple[float, Loop]]) -> list[Face]:
 
 
 def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
-    """For each hole the first outer loop that it lies in."""
+    """Returns for each hole the first outer loop that it lies in."""
     if len(outers) == 1 or not holes:
         return [0] * len(holes)
     holder = np.full(len(holes), -1)
@@ -177,7 +177,9 @@ def _touched_node(network: Network, a: int, b: int, p: Vec) -> int | None:
 
 
 def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[tuple[float, Loop]]:
-    """One polygon as loops of exact pieces with their areas, without those no wider than the tolerance."""
+    """Returns the loops of exact pieces of one polygon with their areas, without those no wider than the
+    tolerance.
+    """
     low, high = sides.bounds[number], sides.bounds[number + 1]
     starts = sides.starts[number] or [low]
     runs: list[Run] = []
@@ -242,7 +244,7 @@ def _spot(network: Network, sides: Sides, vertex: int) -> tuple[int | None, Vec]
 
 
 def _parameter(network: Network, sides: Sides, edge: Edge, vertex: int, beside: int) -> float:
-    """Where a vertex lies on a part of a curve."""
+    """Returns the parameter of a vertex on a part of a curve."""
     node, p = _spot(network, sides, vertex)
     if node in (edge.start, edge.end):
         if edge.start != edge.end:
@@ -254,7 +256,7 @@ def _parameter(network: Network, sides: Sides, edge: Edge, vertex: int, beside: 
 
 
 def _snapped(runs: list[Run], tolerance: float) -> list[Run]:
-    """Without runs that go nowhere; their neighbours meet in one point."""
+    """Returns the runs without those that go nowhere; their neighbours meet in one point."""
     kept = [
         r for r in runs if r.t0 != r.t1 and (r.curve is not None or math.dist(r.start, r.end) > tolerance)
     ]
@@ -265,7 +267,7 @@ def _snapped(runs: list[Run], tolerance: float) -> list[Run]:
 
 
 def _continue(network: Network, a: Run, b: Run) -> Run | None:
-    """One run for two that follow each other on one curve."""
+    """Returns one run for two that follow each other on one curve; None for others."""
     if a.curve is None or a.curve != b.curve or (a.t1 > a.t0) != (b.t1 > b.t0):
         return None
     if a.t1 == b.t0:
@@ -297,7 +299,7 @@ def _piece(network: Network, run: Run) -> Piece:
 
 
 def _fuse(a: Piece, b: Piece, tolerance: float) -> Piece | None:
-    """One piece for two that lie on the same line or circle and follow each other."""
+    """Returns one piece for two that follow each other on the same line or circle; None for others."""
     if isinstance(a, Line) and isinstance(b, Line):
         return _fuse_lines(a, b, tolerance)
     if isinstance(a, Arc) and isinstance(b, Arc):

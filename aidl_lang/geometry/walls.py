@@ -36,9 +36,9 @@ from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.skeleton import Floats, Skeleton, direction, within
 
 _LEAN = math.radians(15)
-"""How far each side of a narrowing end may lean towards the other."""
+"""Greatest lean of each side of a narrowing end towards the other."""
 _ASIDE = 1e-6
-"""How far beside a chord it is looked for what it crosses, relative to its length."""
+"""Distance beside a chord within which crossings are sought, relative to its length."""
 _EQUAL = 1e-9
 """Part of their length by which chords may differ that are the same."""
 _NEAR_END = 1e-4
@@ -89,7 +89,9 @@ def widths(region: Region) -> Widths:
 
 
 class _Search:
-    """For the shortest chord of a kind. `tip` is the least end of a taper, where nothing is shorter."""
+    """A search for the shortest chord of a kind. `tip` is the least end of a taper, where nothing is
+    shorter.
+    """
 
     def __init__(self, outline: Skeleton, kind: int, tips: list[Chord]) -> None:
         self.outline = outline
@@ -100,13 +102,13 @@ class _Search:
 
     @property
     def bound(self) -> float:
-        """What a chord must not exceed, or must be less than if one was found."""
+        """The length that a chord must not exceed, or must stay below if one was found."""
         if self.best:
             return self.best.length * (1 - _EQUAL)
         return self.tip.length * (1 + _EQUAL) if self.tip else math.inf
 
     def run(self, found: Chords, limit: float) -> None:
-        """Look through chords, of which there are all up to the limit."""
+        """Looks through chords, of which there are all up to the limit."""
         o = self.outline
         mine = found.where(found.kind == self.kind)
         # Of equal ones that is shown which ends on edges, not on corners.

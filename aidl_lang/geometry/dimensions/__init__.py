@@ -1,4 +1,4 @@
-"""What a drawing of a solved model should state: sizes of geometry, what constraints measure, the whole.
+"""The dimensions that a drawing of a solved model should state: of geometry, of constraints, of the whole.
 
 A dimension measures what is drawn: a size that nothing drawn has is not stated.
 """
@@ -26,7 +26,7 @@ RANKS = ("param", "overall", "constraint", "size", "pattern")
 
 
 def sizes(model: Model, solved: SolvedModel, evaluate: Evaluator) -> tuple[Dimension, ...]:
-    """What the program states: exact sizes, what constraints measure, sizes that are kept."""
+    """Returns the dimensions that the program states: exact sizes, what constraints measure, kept sizes."""
     names = _param_names(model.root)
     found = [*field_sizes(model, solved, evaluate, names), *stated_lengths(model, solved, evaluate, names)]
     found = [d for d in found if abs(d.value) <= LARGEST]  # of what has a place
@@ -100,7 +100,7 @@ def _is_overall(dimension: Dimension, drawing: Drawing) -> bool:
 
 
 def _place(dimension: Dimension, tolerance: float) -> object:
-    """What is the same of two dimensions that state the same."""
+    """Returns a key that dimensions of the same place share."""
 
     def rounded(numbers: Iterable[float]) -> tuple[int, ...]:
         return tuple(round(n / tolerance) for n in numbers)

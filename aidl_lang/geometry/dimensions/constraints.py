@@ -56,7 +56,7 @@ _SLACK = 1e-6
 def stated_lengths(
     model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
 ) -> Iterator[Dimension]:
-    """What the constraints of the author measure, in order of writing."""
+    """Yields the dimensions that the constraints of the author measure, in order of writing."""
     scene = Scene(model, solved, evaluate, names)
     for constraint in model.constraints:
         checkpoint()
@@ -77,7 +77,7 @@ class Scene:
         }
 
     def curves(self, value: object) -> list[Piece | Vec]:
-        """What the box of a value is around, in coordinates of the root."""
+        """Returns the curves and points inside the box of a value, in coordinates of the root."""
         match value:
             case Geometry(type="point") if value.path in self.geometry:
                 return [at for at in [self.geometry[value.path].values["at"]] if isinstance(at, tuple)]  # type: ignore[misc]
@@ -94,7 +94,7 @@ class Scene:
 
 
 def _outlines(structure: SolvedStructure) -> Iterator[Piece]:
-    """What the box of a structure is around: holes in it do not count."""
+    """Yields the curves inside the box of a structure, without those of its holes."""
     for geometry in structure.geometry:
         yield from geometry.curves()
     for child in structure.structures:
@@ -136,7 +136,7 @@ class _Statement:
     # --- Measures ----------------------------------------------------------------------------------
 
     def _measured(self, node: ast.Expression, value: Num) -> Iterator[Dimension]:
-        """What `node == value` measures."""
+        """Yields the dimension that `node == value` measures."""
         match node:
             case ast.Call() if (name := self._callee(node)) in _MEASURES:
                 given = self._positional(node)

@@ -1,4 +1,4 @@
-"""What can be measured of curves: how far they reach, how long and how round they are."""
+"""Measures of curves: their extent, length and roundness."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _spots(curve: Piece | Vec, u: Vec) -> Sequence[Vec]:
 
 
 def length_along(curves: Sequence[Piece | Vec], u: Vec) -> Length:
-    """How far curves reach along a direction."""
+    """Returns the extent of curves along a direction."""
     return length_between(extreme(curves, (-u[0], -u[1])), extreme(curves, u), u)
 
 
@@ -108,7 +108,7 @@ def angle_of(a: Line, b: Line, degrees: float) -> Opening | None:
 
 
 def meeting(a: Line, b: Line) -> Vec | None:
-    """Where two endless lines cross."""
+    """Returns the crossing of two endless lines; None if they are parallel."""
     ux, uy = a.end[0] - a.start[0], a.end[1] - a.start[1]
     vx, vy = b.end[0] - b.start[0], b.end[1] - b.start[1]
     cross = ux * vy - uy * vx

@@ -60,7 +60,7 @@ def field_sizes(
 
 
 def original(geometry: Geometry) -> Geometry:
-    """What a copy is a copy of in the end."""
+    """Returns the geometry that a copy, or a copy of a copy, was made from."""
     while geometry.source is not None:
         geometry = geometry.source
     return geometry
@@ -135,7 +135,7 @@ class Sized:
         )
 
     def field(self, name: str, value: float, written: Num) -> Iterator[Dimension]:
-        """What measures a field: nothing if nothing that is drawn has this size."""
+        """Yields the dimension of a field; none if nothing that is drawn has this size."""
         if self.built.type == "glyphs" or not math.isfinite(value):
             return
         if written.dimension == ANGLE:
@@ -184,7 +184,9 @@ class Sized:
         return length_of_line(fitting[0][1].start, fitting[0][1].end) if fitting else None
 
     def _angle(self, name: str, value: float, written: Num) -> Iterator[Dimension]:
-        """How far an edge is turned from the x axis of its structure; right angles are seen as they are."""
+        """Yields the angle of an edge to the x axis of its structure; none for right angles, which can be
+        seen.
+        """
         if name != "angle" or abs((value + 45) % 90 - 45) < _TURNED:
             return
         line = self.solved.curve

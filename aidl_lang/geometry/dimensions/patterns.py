@@ -1,4 +1,4 @@
-"""How equal holes stand to each other: the steps of a row or grid, or the circle through their centres."""
+"""The arrangement of equal holes: the steps of a row or grid, or the circle through their centres."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from aidl_lang.geometry.solved import Dimension, Length, Roundness
 
 
 def pattern_pitches(group: Sequence[Dimension], tolerance: float) -> Iterator[Dimension]:
-    """What places the members of a group of equal circles to each other, if they are in order."""
+    """Yields the dimensions that place the members of a group of equal circles, if these are in order."""
     centers = [d.curve.center for d in group if isinstance(d, Roundness) and isinstance(d.curve, Circle)]
     if len(centers) < 2:
         return

@@ -1,4 +1,4 @@
-"""What can still move, in words: the motions of the solver, taken apart into simple ones.
+"""The motions that are left, in words: those of the solver, taken apart into simple ones.
 
 The solver tells for each part of the model which velocities are possible for what is drawn. Here simple
 velocities are tried in turn (`telling`): of points, geometry, structures and of all that keeps together in

@@ -17,10 +17,10 @@ from aidl_lang.solver.valuation import Valuation
 Floats = NDArray[np.float64]
 
 STEP = 1e-3
-"""How far a motion is followed to either side, in units of the unknowns."""
+"""Distance to either side over which a motion is followed, in units of the unknowns."""
 KINK = 0.1
-"""What a row may bend on the way, as a share of what its terms change: beyond that it has a corner there,
-where what is possible on one side was told.
+"""Greatest bend of a row on the way, as a share of the change of its terms: beyond that the row has a corner
+there, and the motion is possible to one side.
 """
 STRAIGHT = 1e-5
 """The bend that counts as none, in units of the unknowns."""
@@ -31,7 +31,7 @@ WORK = 2_000_000
 
 
 class Bending:
-    """How the equations that hold and the observables of a problem bend along a motion."""
+    """The bends of the equations that hold, and of the observables of a problem, along a motion."""
 
     def __init__(self, problem: Problem, solution: Solution) -> None:
         self.problem, self.at = problem, np.asarray(solution.values, dtype=np.float64)
@@ -44,7 +44,7 @@ class Bending:
 
     @cached_property
     def slopes(self) -> Sparse:
-        """Of the equations and observables, in units of the unknowns."""
+        """The slopes of the equations and observables, in units of the unknowns."""
         return self._slopes(self.at)
 
     @cached_property

@@ -79,7 +79,7 @@ class Reach:
     # --- What is possible --------------------------------------------------------------------------
 
     def _missing(self, velocity: Floats) -> Floats:
-        """What of a velocity is out of reach."""
+        """Returns the part of a velocity that is out of reach."""
         missing: Floats = velocity - self.reach @ (self.reach.T @ velocity)
         return missing
 
@@ -92,7 +92,9 @@ class Reach:
             self.taken.append(way)
 
     def _news(self, velocity: Floats) -> Floats | None:
-        """What of a motion is no combination of those that are known, in the space of all."""
+        """Returns the unit part of a motion that is no combination of those known, in the space of all; None
+        if there is none.
+        """
         size = float(np.linalg.norm(velocity))
         if not size:
             return None
@@ -123,7 +125,7 @@ class Reach:
         return found
 
     def rates(self, velocity: Floats) -> dict[str, float]:
-        """How fast the parameters change that take part in a possible motion."""
+        """Returns the rates of the parameters that take part in a possible motion, by path."""
         rates = self._rates(velocity)
         least = POSSIBLE * float(np.abs(rates).max())
         return {

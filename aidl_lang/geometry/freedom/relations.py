@@ -15,7 +15,7 @@ _INDEX = re.compile(r"\[\d+\]")
 
 
 class Relations:
-    """What is related in a model, as `scene` shows it."""
+    """The relations between the things of a model, as `scene` shows it."""
 
     def __init__(self, model: Model, scene: Scene) -> None:
         self.scene = scene
@@ -82,7 +82,7 @@ def _is_in(path: str, around: str) -> bool:
 
 
 def _beside(path: str, other: str) -> str:
-    """What holds a path and stands beside what holds the other: both lie in the same."""
+    """Returns the holder of a path that stands beside the holder of the other: both lie in the same."""
     ends, others = path.split("."), other.split(".")
     common = next((i for i, (a, b) in enumerate(zip(ends, others, strict=False)) if a != b), len(ends))
     return ".".join(ends[: common + 1])

@@ -37,10 +37,10 @@ MOST = 200
 """Parts of the model that are put into words."""
 
 _KINDS = ("slide", "turn", "grow", "change", "together")
-"""Of the ways of one thing, the more telling first."""
+"""Kinds of motion of one thing, the more telling first."""
 _FOLLOWED = frozenset(_KINDS) - {"together"}
 _LEAVING = {"slide": "slide along a curve that begins along {}", "turn": "{} at first"}
-"""What is told where a motion does not go on as it begins."""
+"""Words for a motion that does not go on as it begins."""
 
 
 def motions(model: Model, lowered: Lowered, solution: Solution, freedom: Freedom) -> tuple[Motion, ...]:
@@ -141,8 +141,8 @@ class _Telling(Reach):
     # --- What may move as a whole ------------------------------------------------------------------
 
     def _things(self) -> list[_Masked]:
-        """What may move as a whole: things, the smallest first; then what keeps together along an axis in
-        every motion, by how many names it takes to tell; then all.
+        """Returns what may move as a whole: things, the smallest first; then what keeps together along an
+        axis in every motion, by the number of names it takes to tell; then everything.
         """
         tried: dict[bytes, _Masked] = {}
         for thing in self._near():
@@ -224,7 +224,7 @@ class _Telling(Reach):
         yield from self._told(velocity, "turn", things, words, spin=DEGREE)
 
     def _turns_about_a_place(self, thing: Thing) -> Iterator[_Told]:
-        """Of a thing with places that stay, all of them the same."""
+        """Yields the turn of a thing whose resting places are all the same."""
         own = self.scene.own(thing)
         at_x = own[self.scene.axis[own] == X]
         places = np.stack((self.scene.places[at_x], self.scene.places[at_x + 1]))
@@ -268,7 +268,7 @@ class _Telling(Reach):
                 yield from self._told(velocity + shift[0] * xs + shift[1] * ys, "grow", things, words)
 
     def _growth_from_a_place(self, thing: Thing) -> Iterator[_Told]:
-        """Of a thing with places that stay, all at one x or y."""
+        """Yields the growth of a thing whose resting places all lie at one x or y."""
         own = self.scene.own(thing)
         for axis, words in ((X, "grow wider"), (Y, "grow taller")):
             along = self.scene.axis[own] == axis

@@ -19,7 +19,7 @@ _RUN = 3
 
 @record()
 class _Line:
-    """What things can do, each of them (`groups` of one thing or more) by itself."""
+    """The motions of things, each of them (`groups` of one thing or more) by itself."""
 
     groups: tuple[tuple[str, ...], ...]
     words: str
@@ -28,9 +28,9 @@ class _Line:
 
 
 def report(model: SolvedModel, most: int | None = None) -> list[str]:
-    """What can still move against the rest, the most interesting first: "`receiver` can slide along x against
-    `base`". Of more than `most` lines those are left out that say nothing new: lines before them tell of the
-    same kind of motion. How many they are is counted, and so is what a large model has beside its ways.
+    """Returns sentences on what can still move against the rest, the most interesting first: "`receiver` can
+    slide along x against `base`". Of more than `most` lines, those are left out whose kind of motion is among
+    the lines before them. Counts the lines left out, and degrees of freedom beyond the motions listed.
     """
     lines = list(_lines(model.motions))
     shown = lines if most is None or len(lines) <= most else list(_chosen(lines, most))
@@ -57,7 +57,9 @@ def _chosen(lines: Sequence[_Line], most: int) -> Iterator[_Line]:
 
 
 def _lines(motions: Iterable[Motion]) -> Iterator[_Line]:
-    """One for all that the same things can do; members of an array that can do the same share one."""
+    """Yields one line for all motions of the same things; members of an array with the same motions share
+    one.
+    """
     told: dict[tuple[str, ...], list[Motion]] = {}
     for motion in motions:
         told.setdefault(motion.things, []).append(motion)
@@ -92,7 +94,7 @@ def _sentence(line: _Line, root: str) -> str:
 
 
 _ALONE = frozenset({"grow", "change", "together"})
-"""What is told without a word on what is around."""
+"""Motions that are told without a word on what is around."""
 
 
 def _named(paths: Sequence[str], root: str) -> str:
