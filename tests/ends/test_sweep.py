@@ -14,7 +14,7 @@ from aidl_lang.common.cancelling import Cancelled, cancelled_when
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.tools.ends import Job, Sweep, searching, sentence, sweep
-from aidl_lang.tools.ends.told import Tried
+from aidl_lang.tools.ends.results import Tried
 
 PLATE = """\
 solid plate {

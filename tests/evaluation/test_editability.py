@@ -6,7 +6,7 @@ import pytest
 
 from aidl_lang.building.model import Knob
 from aidl_lang.common.source import SourceFile
-from aidl_lang.tools.evaluation.editability import Outcome, of_aidl, of_openscad, turned
+from aidl_lang.tools.evaluation.editability import EditOutcome, of_aidl, of_openscad, turned
 from aidl_lang.tools.evaluation.openscad import OpenScad
 
 
@@ -37,7 +37,7 @@ def test_values(tried: Knob, values: list[object], cut: int) -> None:
     assert turned(tried) == (values, cut)
 
 
-def outcomes(program: str) -> dict[tuple[str, object], Outcome]:
+def outcomes(program: str) -> dict[tuple[str, object], EditOutcome]:
     edits = of_aidl(SourceFile("part.aidl", program))
     return {(edit.knob, edit.value): edit.outcome for edit in edits.edits}
 
@@ -50,7 +50,7 @@ def test_what_holds_is_kept_and_what_an_assert_forbids_is_told_apart() -> None:
             assert edge.width < 120, "it fits the box"
         }
     """)
-    kept, assertion = Outcome.KEPT, Outcome.ASSERTION
+    kept, assertion = EditOutcome.KEPT, EditOutcome.ASSERTION
     assert found == {
         ("width", 70): kept,
         ("width", 90): kept,
@@ -67,7 +67,7 @@ def test_a_size_that_gives_way_is_no_kept_edit() -> None:
             constrain edge.width == width
         }
     """)
-    assert set(found.values()) == {Outcome.CHANGED}
+    assert set(found.values()) == {EditOutcome.CHANGED}
 
 
 def test_a_size_that_gave_way_before_may_do_so_again() -> None:
@@ -78,7 +78,7 @@ def test_a_size_that_gave_way_before_may_do_so_again() -> None:
             constrain edge.width == width
         }
     """)
-    assert set(found.values()) == {Outcome.KEPT}
+    assert set(found.values()) == {EditOutcome.KEPT}
 
 
 def test_constraints_that_cannot_hold_and_wrong_values_are_broken() -> None:
@@ -92,7 +92,7 @@ def test_constraints_that_cannot_hold_and_wrong_values_are_broken() -> None:
         }
     """)
     # circle in circle adds nothing, but is drawn; 70 and 80, 100 and 104 cannot be in order
-    assert {key for key, outcome in found.items() if outcome is Outcome.BROKEN} == {
+    assert {key for key, outcome in found.items() if outcome is EditOutcome.BROKEN} == {
         ("width", 70),
         ("inner", 104),
     }
@@ -106,7 +106,7 @@ def test_a_knob_without_a_value_to_try_is_counted() -> None:
         )
     )
     assert (edits.knobs, edits.skipped, edits.narrowed) == (2, 1, 3)
-    assert [(edit.knob, edit.value, edit.outcome) for edit in edits.edits] == [("w", 9.0, Outcome.KEPT)]
+    assert [(edit.knob, edit.value, edit.outcome) for edit in edits.edits] == [("w", 9.0, EditOutcome.KEPT)]
 
 
 @pytest.mark.skipif(not OpenScad().is_installed, reason="openscad is not installed")

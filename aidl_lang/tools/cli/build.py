@@ -32,7 +32,7 @@ class Target:
 
 
 @record()
-class Outcome:
+class BuildResult:
     """What came of one run."""
 
     compiled: Compiled
@@ -75,7 +75,7 @@ def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
     return found
 
 
-def build(arguments: argparse.Namespace, memory: Memory | None = None) -> Outcome:
+def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildResult:
     """Compile and write. Nothing is written unless every output could be made.
 
     With a `memory` of the last run, only what has changed since then is solved again.
@@ -93,7 +93,7 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> Outcom
     notes: tuple[Diagnostic, ...] = ()
     if compiled.ok or (arguments.best_effort and compiled.drawing is not None):
         written, notes = _write(compiled, outputs, _options(arguments, compiled))
-    return Outcome(compiled, written, notes, time.perf_counter() - start)
+    return BuildResult(compiled, written, notes, time.perf_counter() - start)
 
 
 def _options(arguments: argparse.Namespace, compiled: Compiled) -> Options:

@@ -1,7 +1,7 @@
 """What becomes of a program at the ends of its params: each is turned alone, as far as its range goes."""
 
+from aidl_lang.tools.ends.results import Sweep, Turned
 from aidl_lang.tools.ends.searching import sweep
-from aidl_lang.tools.ends.told import Sweep, Turned
 from aidl_lang.tools.ends.trying import Job
 from aidl_lang.tools.ends.values import has_range
 from aidl_lang.tools.ends.wording import described, sentence

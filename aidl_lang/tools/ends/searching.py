@@ -12,7 +12,7 @@ from aidl_lang.building.model import Knob
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.processes import Guarded, Limit, count, limit_met
-from aidl_lang.tools.ends.told import Fault, Sweep, Tried, Turned
+from aidl_lang.tools.ends.results import Fault, Sweep, Tried, Turned
 from aidl_lang.tools.ends.trying import Job, fault, tried
 from aidl_lang.tools.ends.values import Value, ends, limit
 

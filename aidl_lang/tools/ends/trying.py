@@ -11,7 +11,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.pipeline import Front, Settings
-from aidl_lang.tools.ends.told import Fault, Tried
+from aidl_lang.tools.ends.results import Fault, Tried
 from aidl_lang.tools.ends.values import Value
 
 _SPARE = 10.0

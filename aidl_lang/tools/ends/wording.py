@@ -8,7 +8,7 @@ from typing import Any
 from aidl_lang.building.model import Knob
 from aidl_lang.common.numbers import literal
 from aidl_lang.common.prose import first_few
-from aidl_lang.tools.ends.told import Fault, Sweep, Tried, Turned
+from aidl_lang.tools.ends.results import Fault, Sweep, Tried, Turned
 from aidl_lang.tools.ends.values import Value
 
 _ASSERT, _CORNER = "E0604", "E0518"

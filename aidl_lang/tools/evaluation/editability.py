@@ -20,7 +20,7 @@ _KNOBS = 25
 _ASSERTION = "E0604"
 
 
-class Outcome(StrEnum):
+class EditOutcome(StrEnum):
     """What came of an edit."""
 
     KEPT = "kept"
@@ -34,7 +34,7 @@ class Outcome(StrEnum):
 class Edit:
     knob: str
     value: Value
-    outcome: Outcome
+    outcome: EditOutcome
 
 
 @record()
@@ -66,7 +66,9 @@ def of_openscad(program: str) -> Edits:
     """Turn the variables of the top level that are numbers."""
     knobs = openscad.knobs(program)
     edits = [
-        Edit(name, value, Outcome.KEPT if openscad.render(program, {name: value}).ok else Outcome.EMPTY)
+        Edit(
+            name, value, EditOutcome.KEPT if openscad.render(program, {name: value}).ok else EditOutcome.EMPTY
+        )
         for name, written in list(knobs.items())[:_KNOBS]
         for value in dict.fromkeys(_whole(aim, written) for aim in _numbers(written))
         if value != written
@@ -103,17 +105,17 @@ def _whole(aim: float, written: float) -> float:
     return float(round(aim)) if written.is_integer() else aim
 
 
-def _outcome(after: Compiled, before: Sequence[str]) -> Outcome:
+def _outcome(after: Compiled, before: Sequence[str]) -> EditOutcome:
     errors = {d.code for d in after.diagnostics if d.is_error}
     if after.status != "solved" or errors - {_ASSERTION} or after.model is None or after.drawing is None:
-        return Outcome.BROKEN
+        return EditOutcome.BROKEN
     if not all(report.satisfied or report.soft for report in after.model.constraints):
-        return Outcome.BROKEN
+        return EditOutcome.BROKEN
     if set(_changed(after)) - set(before):
-        return Outcome.CHANGED
+        return EditOutcome.CHANGED
     if not (after.drawing.bodies or after.drawing.strokes):
-        return Outcome.EMPTY
-    return Outcome.ASSERTION if errors else Outcome.KEPT
+        return EditOutcome.EMPTY
+    return EditOutcome.ASSERTION if errors else EditOutcome.KEPT
 
 
 def _changed(compiled: Compiled) -> tuple[str, ...]:

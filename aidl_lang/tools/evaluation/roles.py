@@ -22,7 +22,7 @@ from aidl_lang.tools.evaluation.things import Group, Origins, Part, Thing, drawn
 from aidl_lang.tools.evaluation.whole import NEAR
 
 Words: TypeAlias = tuple[str, ...]
-Found: TypeAlias = tuple[int, Thing]
+RankedThing: TypeAlias = tuple[int, Thing]
 """A thing, and which of the words it is called by."""
 
 _PLACES = frozenset(
@@ -186,7 +186,7 @@ class _Search:
     def _rank(self, part: Part) -> int | None:
         return self.role.rank(names(part, self.program.made))
 
-    def _structures(self, around: SolvedStructure) -> Iterator[Found]:
+    def _structures(self, around: SolvedStructure) -> Iterator[RankedThing]:
         for child in around.structures:
             if (rank := self._rank(child)) is None:
                 yield from self._structures(child)
@@ -207,7 +207,7 @@ class _Search:
         else:
             yield _thing(found)
 
-    def _geometry(self, root: SolvedStructure) -> Iterator[Found]:
+    def _geometry(self, root: SolvedStructure) -> Iterator[RankedThing]:
         """What is to be seen, if anything is."""
         found: list[tuple[int, Thing, SolvedStructure]] = []
         for structure in root.walk():
@@ -241,7 +241,7 @@ class _Search:
                 yield from (Thing((group,)) for group in groups.values())
                 return
 
-    def _shape_parts(self, root: SolvedStructure) -> Iterator[Found]:
+    def _shape_parts(self, root: SolvedStructure) -> Iterator[RankedThing]:
         """Edges and outlines that shapes have names for, but for those of any shape."""
         shapes = (outline.shown for s in root.walk() for outline in self.program.outlines(s.path))
         for part in (part for shape in shapes for part in shape.walk() if part is not shape):

@@ -33,7 +33,7 @@ class Done:
 
 
 @record()
-class Outcome:
+class RunSummary:
     """`left` jobs were not begun, or failed to reach the model."""
 
     done: int
@@ -69,7 +69,7 @@ def run(
     threads: int = 4,
     seconds: float = SECONDS,
     listen: Callable[[Done], None] = lambda done: None,
-) -> Outcome:
+) -> RunSummary:
     """Do what is left to do of a plan. Without a provider only measures are taken again where they must.
 
     An interrupt leaves everything that was finished.
@@ -87,7 +87,7 @@ def run(
         crew.is_over.set()
         for worker in workers:
             worker.stop()
-    return Outcome(done, sum(1 for _ in plan.jobs()) - len(todo), len(todo) - done, failure)
+    return RunSummary(done, sum(1 for _ in plan.jobs()) - len(todo), len(todo) - done, failure)
 
 
 def _to_do(plan: Plan, kept: Store, may_ask: bool) -> Iterator[tuple[Job, Record | None]]:

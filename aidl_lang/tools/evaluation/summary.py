@@ -9,7 +9,7 @@ from typing import Any
 
 from aidl_lang.common.records import record
 from aidl_lang.tools.evaluation.clip import Scores
-from aidl_lang.tools.evaluation.editability import Outcome
+from aidl_lang.tools.evaluation.editability import EditOutcome
 from aidl_lang.tools.evaluation.plan import VARIANTS
 from aidl_lang.tools.evaluation.requirements import Status
 
@@ -125,7 +125,7 @@ def _figures(held: Sequence[Record], scores: Scores) -> dict[str, Figure]:
         "constraints": _mean(valid, "constraints"),
         "degrees": _mean(valid, "degrees"),
         "requirements": Share(sum(result["status"] == Status.MET for result in asked), len(asked)),
-        "editability": Share(sum(edit["outcome"] == Outcome.KEPT for edit in edits), len(edits)),
+        "editability": Share(sum(edit["outcome"] == EditOutcome.KEPT for edit in edits), len(edits)),
         "knobs": Mean.of(r["edits"]["knobs"] for r in valid if "edits" in r),
         "detached": _mean(valid, "detached"),
         "tokens in": Mean.of(r["usage"]["input"] for r in held),

@@ -118,7 +118,7 @@ def _number(token: Token, before: Token | None, offset: int) -> Spot:
 
 
 @record(eq=False)
-class Site:
+class EditSite:
     """
     original   the text as it is
     spot       the place in it
@@ -181,9 +181,9 @@ class Site:
         return self.path[-1 - above] if len(self.path) > above else None
 
 
-def site_at(view: View, spot: Spot) -> Site:
+def site_at(view: View, spot: Spot) -> EditSite:
     automaton = standing_before(view.source, spot.start)
-    site = Site(view, spot, automaton, None, ())
+    site = EditSite(view, spot, automaton, None, ())
     if not (automaton.accepts(["NAME"]) or automaton.accepts(["CALL"]) or site.may_end):
         return site
     text = _filled(site)
@@ -191,10 +191,10 @@ def site_at(view: View, spot: Spot) -> Site:
         return site
     filled = look(view.path, text, view.world)
     path = around(filled.module, spot.start + 1)
-    return Site(view, spot, automaton, filled, tuple(path))
+    return EditSite(view, spot, automaton, filled, tuple(path))
 
 
-def _filled(site: Site) -> str | None:
+def _filled(site: EditSite) -> str | None:
     """Returns the text with the placeholder, in the way that leaves the fewest mistakes; None if it is lost
     from the program in all.
     """
@@ -214,7 +214,7 @@ def _filled(site: Site) -> str | None:
     return best[1] if best is not None else None
 
 
-def _endings(site: Site) -> Iterator[str]:
+def _endings(site: EditSite) -> Iterator[str]:
     """Yields texts that may complete the placeholder to a part of a program, the likelier first."""
     following = site.following
     if following.startswith("("):

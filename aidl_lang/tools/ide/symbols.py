@@ -29,7 +29,7 @@ class Entry:
 
 
 @record()
-class Found:
+class SymbolMatch:
     """An entry of the file `path`; `container` is the dotted path of the one around it."""
 
     path: Path
@@ -42,7 +42,7 @@ def outline(view: View) -> list[Entry]:
     return list(_entries(view, view.module.statements))
 
 
-def search(project: Project, query: str) -> list[Found]:
+def search(project: Project, query: str) -> list[SymbolMatch]:
     """Returns entries whose names have the letters of the query, in this order; whole names and beginnings
     first.
     """
@@ -61,9 +61,9 @@ def _rank(name: str, wanted: str) -> tuple[bool, bool, bool, int]:
     return name != wanted, not name.startswith(wanted), wanted not in name, len(name)
 
 
-def _flat(path: Path, entries: Iterable[Entry], container: str) -> Iterator[Found]:
+def _flat(path: Path, entries: Iterable[Entry], container: str) -> Iterator[SymbolMatch]:
     for entry in entries:
-        yield Found(path, entry, container)
+        yield SymbolMatch(path, entry, container)
         inner = f"{container}.{entry.name}" if container else entry.name
         yield from _flat(path, entry.children, inner)
 

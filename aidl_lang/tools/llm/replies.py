@@ -12,14 +12,14 @@ _FENCE = re.compile(r"^[ \t]*(`{3,}|~{3,})[ \t]*([^\s`]*)[^\n`]*$", re.M)
 
 
 @record()
-class Found:
+class FoundProgram:
     """The program in a reply, None if there is none, and whether the reply ends inside a block."""
 
     program: str | None
     is_open: bool
 
 
-def find_program(text: str, fences: Sequence[str], reads: Callable[[str], bool]) -> Found:
+def find_program(text: str, fences: Sequence[str], reads: Callable[[str], bool]) -> FoundProgram:
     """The last fenced block: of those with one of the names `fences` if there is one, else of all.
 
     A reply without a fence may be a program itself, which `reads` tells. Thoughts between tags are no part of
@@ -37,6 +37,6 @@ def find_program(text: str, fences: Sequence[str], reads: Callable[[str], bool])
     if not blocks:
         bare = spoken.strip()
         is_program = opened is None and bool(bare) and reads(bare)
-        return Found(f"{bare}\n" if is_program else None, opened is not None)
+        return FoundProgram(f"{bare}\n" if is_program else None, opened is not None)
     named = [program for name, program in blocks if name in fences]
-    return Found(named[-1] if named else blocks[-1][1], opened is not None)
+    return FoundProgram(named[-1] if named else blocks[-1][1], opened is not None)

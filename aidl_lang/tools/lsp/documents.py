@@ -29,7 +29,7 @@ class _Waiting:
 
 
 @record(eq=False)
-class Known:
+class VersionedView:
     """A view with the version and the serial of the text that it is of."""
 
     view: View
@@ -56,8 +56,8 @@ class Document:
     version: int
     text: str
     serial: int = 0
-    newest: Known | None = None
-    ran: Known | None = None
+    newest: VersionedView | None = None
+    ran: VersionedView | None = None
     seen: int = -1
     solved: int = -1
     was_given_up: bool = False

@@ -53,7 +53,7 @@ class OfVersion(OfDocument):
 
 
 @frozen(kw_only=True)
-class Dragged:
+class DraggedPoint:
     id: str
     to: Point
 
@@ -61,7 +61,7 @@ class Dragged:
 @frozen(kw_only=True)
 class Try(OfVersion):
     knobs: Values = field(factory=dict)
-    drag: Dragged | None = None
+    drag: DraggedPoint | None = None
 
 
 @frozen(kw_only=True)
@@ -94,7 +94,7 @@ class Export(OfDocument):
 
 
 @frozen(kw_only=True)
-class Entry:
+class EntryRequest:
     """What was said of an entry of a list of completions."""
 
     uri: str
@@ -103,7 +103,7 @@ class Entry:
 
 
 @frozen(kw_only=True)
-class Action:
+class ActionRequest:
     """What was said of a code action, to be worked out."""
 
     uri: str

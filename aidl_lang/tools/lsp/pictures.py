@@ -14,7 +14,7 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.ide.dragging import Handle
 from aidl_lang.tools.ide.preview import Preview, Writer, preview, with_handles
 from aidl_lang.tools.ide.view import View
-from aidl_lang.tools.lsp.documents import Document, Known
+from aidl_lang.tools.lsp.documents import Document, VersionedView
 from aidl_lang.tools.lsp.params import Show
 from aidl_lang.tools.lsp.server import Asked, Server
 
@@ -39,7 +39,7 @@ class _Shown:
 
     viewers: dict[str, Look] = field(default_factory=dict)
     handles: tuple[Handle, ...] = ()
-    made: dict[Look, tuple[Known, Preview]] = field(default_factory=dict)
+    made: dict[Look, tuple[VersionedView, Preview]] = field(default_factory=dict)
     text: tuple[SourceFile, Json] | None = None
 
     def looks(self) -> dict[Look, list[str]]:

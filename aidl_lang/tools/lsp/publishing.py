@@ -9,7 +9,7 @@ from lsprotocol import types
 from aidl_lang.common.diagnostics import Diagnostic, Label, Severity
 from aidl_lang.common.resources import resource
 from aidl_lang.tools.lsp.convert import START, Converter
-from aidl_lang.tools.lsp.documents import Document, Known
+from aidl_lang.tools.lsp.documents import Document, VersionedView
 
 SOURCE = "aidl"
 _SEVERITY = {
@@ -74,7 +74,9 @@ class Publisher:
         self._told: dict[Document, dict[str, list[types.Diagnostic]]] = {}
         self._serials: dict[Document, int] = {}
 
-    def publish(self, document: Document, known: Known, found: list[tuple[str, types.Diagnostic]]) -> None:
+    def publish(
+        self, document: Document, known: VersionedView, found: list[tuple[str, types.Diagnostic]]
+    ) -> None:
         """What there is to say of a program, in place of what was said before; nothing where that was of a
         newer text.
         """

@@ -25,7 +25,7 @@ from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.preview import preview
 from aidl_lang.tools.ide.view import SETTINGS, View, look, run
 from aidl_lang.tools.ide.workspace import Workspace
-from aidl_lang.tools.lsp.documents import Document, Documents, Known
+from aidl_lang.tools.lsp.documents import Document, Documents, VersionedView
 from aidl_lang.tools.lsp.lane import Job, Lane, gave_up
 from aidl_lang.tools.lsp.tidying import Tidier
 
@@ -163,7 +163,7 @@ class Runner:
         else:
             drawn = document.ran.view.drawn if document.ran is not None else None
             view = replace(future.result(), drawn=drawn)
-            document.newest = Known(view, version, serial)
+            document.newest = VersionedView(view, version, serial)
             if is_library(document.path):
                 document.solved = serial  # it is no program
             elif self.delay:
@@ -172,11 +172,11 @@ class Runner:
                 self._solve(document, document.newest)
         document.tell()
 
-    def _solve_if_newest(self, document: Document, known: Known) -> None:
+    def _solve_if_newest(self, document: Document, known: VersionedView) -> None:
         if document.is_open and document.serial == known.serial and not self._is_closing:
             self._solve(document, known)
 
-    def _solve(self, document: Document, known: Known) -> None:
+    def _solve(self, document: Document, known: VersionedView) -> None:
         began = self._loop.time()
         self.solving.put(
             Job(
@@ -188,11 +188,11 @@ class Runner:
         )
         self._loop.call_at(began + PATIENCE, self._tell_what_is_known, document, known)
 
-    def _tell_what_is_known(self, document: Document, known: Known) -> None:
+    def _tell_what_is_known(self, document: Document, known: VersionedView) -> None:
         if document.is_open and document.seen == known.serial > document.solved:
             self.listener.took_long(document)
 
-    def _run(self, document: Document, known: Known, is_patient: bool) -> View:
+    def _run(self, document: Document, known: VersionedView, is_patient: bool) -> View:
         """In the solving thread."""
         began = time.monotonic()
 
@@ -207,7 +207,7 @@ class Runner:
             last = document.ran.view if document.ran is not None else None
             return run(known.view, last, document.memory, settings=self.limits)
 
-    def _ran(self, document: Document, known: Known, future: Future[View]) -> None:
+    def _ran(self, document: Document, known: VersionedView, future: Future[View]) -> None:
         if not document.is_open or self._is_closing:
             return
         if gave_up(future):

@@ -21,7 +21,7 @@ from aidl_lang.tools.ide.project import Project
 from aidl_lang.tools.ide.view import View
 from aidl_lang.tools.ide.workspace import Workspace
 from aidl_lang.tools.lsp.convert import Converter
-from aidl_lang.tools.lsp.documents import Document, Documents, Known
+from aidl_lang.tools.lsp.documents import Document, Documents, VersionedView
 from aidl_lang.tools.lsp.lane import Answers
 from aidl_lang.tools.lsp.protocol import Protocol, converter
 from aidl_lang.tools.lsp.publishing import Publisher, converted
@@ -43,7 +43,7 @@ class Asked:
     """What a question is answered from, away from the loop: nothing here changes any more."""
 
     uri: str
-    known: Known
+    known: VersionedView
     convert: Converter
     settings: Settings
     project: Project
@@ -172,7 +172,7 @@ class Server(LanguageServer):
         if source is not exceptions.FeatureRequestError:  # of which the client hears anyway
             self.crashed(error)
 
-    def _publish(self, document: Document, known: Known) -> None:
+    def _publish(self, document: Document, known: VersionedView) -> None:
         convert = self.converter(known.view, document.uri)
         found = converted(known.view.diagnostics, convert, document.uri)
         self.publisher.publish(document, known, list(found))
@@ -194,7 +194,7 @@ class Server(LanguageServer):
             return None
         return self.asked_now(document, document.newest)
 
-    def asked_now(self, document: Document, known: Known) -> Asked:
+    def asked_now(self, document: Document, known: VersionedView) -> Asked:
         convert = self.converter(known.view, document.uri)
         return Asked(document.uri, known, convert, self.settings, self.project, self.client_capabilities)
 

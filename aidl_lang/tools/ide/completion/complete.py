@@ -20,7 +20,7 @@ from aidl_lang.tools.ide.completion.statements import clauses, kinds, statements
 from aidl_lang.tools.ide.completion.wanted import CONDITION
 from aidl_lang.tools.ide.completion.words import Files
 from aidl_lang.tools.ide.nodes import around
-from aidl_lang.tools.ide.site import Site, Spot, Where, site_at, spot_at
+from aidl_lang.tools.ide.site import EditSite, Spot, Where, site_at, spot_at
 from aidl_lang.tools.ide.view import View, look
 
 
@@ -82,7 +82,9 @@ def _of_literal(view: View, spot: Spot) -> Context | None:
     if not isinstance(path[-1], ast.Number | ast.String):
         return None
     automaton = standing_before(view.source, start)
-    return context_of(Site(view, Spot(Where.CODE, start, start, start, spot.before), automaton, shown, path))
+    return context_of(
+        EditSite(view, Spot(Where.CODE, start, start, start, spot.before), automaton, shown, path)
+    )
 
 
 # --- Code ------------------------------------------------------------------------------------------
@@ -93,7 +95,7 @@ def _in_code(view: View, spot: Spot, files: Files | None) -> list[Completion]:
     return ranked(_drafts(site, files), site.replaced, site.prefix)
 
 
-def _drafts(site: Site, files: Files | None) -> Iterator[Draft]:
+def _drafts(site: EditSite, files: Files | None) -> Iterator[Draft]:
     before = site.spot.before
     kind = before.kind if before is not None else ""
     if kind == "@":
@@ -110,14 +112,14 @@ def _drafts(site: Site, files: Files | None) -> Iterator[Draft]:
             yield from clauses(site, is_condition=context is not None and context.wanted == CONDITION)
 
 
-def _of_import(site: Site, files: Files | None) -> Iterator[Draft]:
+def _of_import(site: EditSite, files: Files | None) -> Iterator[Draft]:
     node = next((n for n in reversed(site.path) if isinstance(n, ast.Import)), None)
     if node is not None:
         yield from words.imported_names(site, node)
     yield from words.files(site.original.path, files, quoted=True)
 
 
-def _is_free(site: Site) -> bool:
+def _is_free(site: EditSite) -> bool:
     """Tells whether anything can be proposed: not where a new name is given."""
     before = site.spot.before
     if before is None:

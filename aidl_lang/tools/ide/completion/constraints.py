@@ -20,7 +20,7 @@ from aidl_lang.checking.types import (
 )
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion import names
-from aidl_lang.tools.ide.completion.context import Context, Known
+from aidl_lang.tools.ide.completion.context import Context, KnownName
 from aidl_lang.tools.ide.completion.draft import Draft, choice, stop
 from aidl_lang.tools.ide.completion.fitting import Form, forms, kind_of
 from aidl_lang.tools.vocabulary import vocabulary
@@ -47,7 +47,7 @@ def constraints(context: Context, behind: float = 0.0) -> Iterator[Draft]:
             yield _standard(context, name, found[1], table.get(name, ()), things, behind)
 
 
-def _latest(things: Sequence[Known]) -> list[Known]:
+def _latest(things: Sequence[KnownName]) -> list[KnownName]:
     """Returns the last few things of each kind, in order of declaration."""
     counts: Counter[str] = Counter()
     found = []
@@ -59,7 +59,7 @@ def _latest(things: Sequence[Known]) -> list[Known]:
     return found[::-1]
 
 
-def _is_self(known: Known) -> bool:
+def _is_self(known: KnownName) -> bool:
     return known.symbol.kind is SymbolKind.BUILTIN or known.symbol.scope is None
 
 
@@ -68,7 +68,7 @@ def _standard(
     name: str,
     signatures: Sequence[Signature],
     listed: Sequence[Form],
-    things: Sequence[Known],
+    things: Sequence[KnownName],
     behind: float,
 ) -> Draft:
     best = min(((_tier(form, things), n, form) for n, form in enumerate(listed)), default=None)
@@ -87,7 +87,7 @@ def _standard(
     )
 
 
-def _tier(form: Form, things: Sequence[Known]) -> float:
+def _tier(form: Form, things: Sequence[KnownName]) -> float:
     """Returns the tier of a form: a specific one whose things exist before one that takes anything."""
     found = [pair for a, b in _chosen(form, things) if (pair := (kind_of(a.fact), b and kind_of(b.fact)))]
     if not found:
@@ -97,7 +97,7 @@ def _tier(form: Form, things: Sequence[Known]) -> float:
     return (_FITS if len(form.pairs) < _FEW_PAIRS else _FITS_ANY) + len(form.pairs) / 1000
 
 
-def _chosen(form: Form, things: Sequence[Known]) -> Iterator[tuple[Known, Known | None]]:
+def _chosen(form: Form, things: Sequence[KnownName]) -> Iterator[tuple[KnownName, KnownName | None]]:
     """Yields things that a form takes, in order of declaration."""
     for number, a in enumerate(things):
         first = kind_of(a.fact)
@@ -108,7 +108,7 @@ def _chosen(form: Form, things: Sequence[Known]) -> Iterator[tuple[Known, Known 
                 yield a, b
 
 
-def _filled(form: Form, things: Sequence[Known]) -> str:
+def _filled(form: Form, things: Sequence[KnownName]) -> str:
     """Returns the form as a snippet, with names of things for its operands."""
     pairs = list(_chosen(form, things))
     firsts = list(dict.fromkeys(a.name for a, _ in pairs))[:_MOST_NAMES]
@@ -132,7 +132,7 @@ def _filled(form: Form, things: Sequence[Known]) -> str:
 
 
 def _own(
-    context: Context, name: str, signatures: Sequence[Signature], things: Sequence[Known], behind: float
+    context: Context, name: str, signatures: Sequence[Signature], things: Sequence[KnownName], behind: float
 ) -> Draft:
     made = [_stated(name, signature, things) for signature in signatures]
     text, fits = max(made, key=lambda m: m[1])
@@ -149,7 +149,7 @@ def _own(
     )
 
 
-def _stated(name: str, signature: Signature, things: Sequence[Known]) -> tuple[str, bool]:
+def _stated(name: str, signature: Signature, things: Sequence[KnownName]) -> tuple[str, bool]:
     """Returns a call with the names of fitting things, and True if there are enough of them."""
     items: list[str] = []
     used: list[str] = []
@@ -169,7 +169,7 @@ def _stated(name: str, signature: Signature, things: Sequence[Known]) -> tuple[s
     return f"{name}({', '.join(items)})", fits
 
 
-def _takes(kind: Type, thing: Known) -> bool:
+def _takes(kind: Type, thing: KnownName) -> bool:
     if isinstance(kind, AnyType | ListType):
         return True
     distance = accepts(kind, thing.fact.type)

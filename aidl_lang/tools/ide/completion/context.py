@@ -16,7 +16,7 @@ from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion.wanted import Around, Wanted
 from aidl_lang.tools.ide.overloads import Reading, readings
-from aidl_lang.tools.ide.site import PLACEHOLDER, Site
+from aidl_lang.tools.ide.site import PLACEHOLDER, EditSite
 from aidl_lang.tools.ide.view import View
 from aidl_lang.tools.vocabulary import vocabulary
 
@@ -34,7 +34,7 @@ class Use(Enum):
 
 
 @record(eq=False)
-class Known:
+class KnownName:
     """A visible name with its symbol and its facts."""
 
     name: str
@@ -50,7 +50,7 @@ class Known:
 class Context:
     """`call` is the call around the place with the number of the argument, the receiver counted."""
 
-    site: Site
+    site: EditSite
     view: View
     scope: Scope
     path: tuple[ast.Node, ...]
@@ -130,7 +130,7 @@ class Context:
         return Wanted((_ATTRIBUTES.get(attribute.name.text, TextType()),), f"@{attribute.name.text}")
 
     @cached_property
-    def values(self) -> list[Known]:
+    def values(self) -> list[KnownName]:
         """Returns the names of values visible here, the nearest scope first."""
         check = self.view.program.inference
         check.homes = self.scope.homes
@@ -142,7 +142,7 @@ class Context:
                 continue
             if self._is_ahead(symbol):
                 continue
-            known = Known(name, symbol, of_symbol(check, symbol))
+            known = KnownName(name, symbol, of_symbol(check, symbol))
             if self.may_read(known):
                 found.append(known)
         return found
@@ -168,7 +168,7 @@ class Context:
             return start < nodes[0].span.end
         return self.use is Use.DERIVING and start < nodes[0].span.start
 
-    def may_read(self, known: Known) -> bool:
+    def may_read(self, known: KnownName) -> bool:
         """Tells whether the value of a name may be read here."""
         reads = known.fact.reads
         match self.use:
@@ -199,7 +199,7 @@ class Context:
                     yield name, scope.aliases.get(name)
 
 
-def context_of(site: Site) -> Context | None:
+def context_of(site: EditSite) -> Context | None:
     """Returns the context of a site; None if the place is in no program."""
     if site.view is None or site.scope is None:
         return None

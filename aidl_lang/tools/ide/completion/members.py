@@ -28,7 +28,7 @@ from aidl_lang.checking.types import (
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion import names
-from aidl_lang.tools.ide.completion.context import Context, Known, Use
+from aidl_lang.tools.ide.completion.context import Context, KnownName, Use
 from aidl_lang.tools.ide.completion.draft import Draft
 from aidl_lang.tools.ide.completion.fitting import forms, kind_of
 from aidl_lang.tools.ide.completion.wanted import CONDITION
@@ -70,7 +70,7 @@ def _of_file(context: Context, scope: Scope | None) -> Iterator[Draft]:
     check = context.view.program.inference
     for name, symbol in scope.values.items():
         if symbol.kind in (SymbolKind.PARAM, SymbolKind.LET):
-            known = Known(name, symbol, of_symbol(check, symbol))
+            known = KnownName(name, symbol, of_symbol(check, symbol))
             yield Draft(
                 name,
                 str(symbol.kind),
@@ -149,7 +149,7 @@ def _member(context: Context, base: Fact, name: str, tier: float, symbol: Symbol
     if symbol is None:
         return Draft(name, "field", tier, detail=str(fact.type), describe=partial(_field, name, fact))
     kind = "field" if symbol.kind is SymbolKind.ARGUMENT else str(symbol.kind)
-    known = Known(name, symbol, fact)
+    known = KnownName(name, symbol, fact)
     text = names.detail(known) if not is_array else str(fact.type)
     return Draft(name, kind, tier, detail=text, describe=partial(names.about, symbol))
 

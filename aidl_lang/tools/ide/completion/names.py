@@ -20,7 +20,7 @@ from aidl_lang.checking.types import (
     Type,
 )
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ide.completion.context import Context, Known, Use
+from aidl_lang.tools.ide.completion.context import Context, KnownName, Use
 from aidl_lang.tools.ide.completion.draft import Draft
 from aidl_lang.tools.ide.describing import joined, of_callable, of_definition, of_entry
 from aidl_lang.tools.reference.collect import reference
@@ -47,7 +47,7 @@ def values(context: Context) -> Iterator[Draft]:
         )
 
 
-def _tier(context: Context, known: Known) -> float:
+def _tier(context: Context, known: KnownName) -> float:
     kind = known.fact.type
     distance = context.wanted.distance(kind)
     general = 0.5 * (known.symbol.kind is SymbolKind.BUILTIN)
@@ -60,7 +60,7 @@ def _tier(context: Context, known: Known) -> float:
     return (PARTS if isinstance(kind, _HAVING_PARTS) else OTHERS) + general
 
 
-def detail(known: Known) -> str:
+def detail(known: KnownName) -> str:
     node = known.symbol.node
     if isinstance(known.fact.of, ast.Structure) and isinstance(known.fact.type, StructureType):
         return known.fact.of.kind

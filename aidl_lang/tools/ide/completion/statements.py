@@ -13,7 +13,7 @@ from aidl_lang.tools.ide.completion.constraints import constraints
 from aidl_lang.tools.ide.completion.context import Context
 from aidl_lang.tools.ide.completion.draft import Draft, written_out
 from aidl_lang.tools.ide.describing import of_public
-from aidl_lang.tools.ide.site import Site
+from aidl_lang.tools.ide.site import EditSite
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.snippets import OF_WORD
 from aidl_lang.tools.vocabulary import vocabulary
@@ -61,7 +61,7 @@ def _later(draft: Draft, tier: float) -> Draft:
     return replace(draft, tier=tier + draft.tier / 100)
 
 
-def kinds(site: Site, tier: float) -> Iterator[Draft]:
+def kinds(site: EditSite, tier: float) -> Iterator[Draft]:
     """Yields the kinds of structures; the word alone before an existing name."""
     if not site.takes("NAME", "NAME", "{"):
         return
@@ -79,7 +79,7 @@ def kinds(site: Site, tier: float) -> Iterator[Draft]:
         )
 
 
-def _keywords(site: Site, tier: float) -> Iterator[Draft]:
+def _keywords(site: EditSite, tier: float) -> Iterator[Draft]:
     words = vocabulary()
     is_top = site.automaton.open_blocks() == 0
     among = _IN_ITEMS if not site.takes("todo") else words.statements
@@ -88,7 +88,7 @@ def _keywords(site: Site, tier: float) -> Iterator[Draft]:
             yield _statement(site, word, tier + number / 100)
 
 
-def _statement(site: Site, word: str, tier: float) -> Draft:
+def _statement(site: EditSite, word: str, tier: float) -> Draft:
     """Returns a statement with placeholders; the word alone if the statement goes on already."""
     rest = site.following.partition("\n")[0].strip()
     is_alone = not rest or rest.startswith("}")
@@ -142,7 +142,7 @@ def _shapes(context: Context) -> Iterator[Draft]:
 # --- Words that go on ------------------------------------------------------------------------------
 
 
-def clauses(site: Site, *, is_condition: bool = True) -> Iterator[Draft]:
+def clauses(site: EditSite, *, is_condition: bool = True) -> Iterator[Draft]:
     """Yields words that continue the present statement: `at`, `in`, `step`, `and`, …"""
     words = vocabulary()
     operand = not site.may_end and site.takes("NUMBER")
@@ -161,11 +161,11 @@ def clauses(site: Site, *, is_condition: bool = True) -> Iterator[Draft]:
             )
 
 
-def _ends_block(site: Site) -> bool:
+def _ends_block(site: EditSite) -> bool:
     return site.spot.before is not None and site.spot.before.kind == "}"
 
 
-def _goes_on(site: Site, word: str, *, operand: bool, is_condition: bool) -> bool:
+def _goes_on(site: EditSite, word: str, *, operand: bool, is_condition: bool) -> bool:
     if word in ("as", "from", "then"):
         return _soft(site, word)
     if word == "not":
@@ -177,7 +177,7 @@ def _goes_on(site: Site, word: str, *, operand: bool, is_condition: bool) -> boo
     return site.takes(word)
 
 
-def _soft(site: Site, word: str) -> bool:
+def _soft(site: EditSite, word: str) -> bool:
     """Tells whether a contextual keyword, elsewhere a name, is a keyword here."""
     match word:
         case "as":
@@ -188,7 +188,7 @@ def _soft(site: Site, word: str) -> bool:
             return site.takes(word) and not site.takes("NAME")
 
 
-def truths(site: Site) -> Iterator[Draft]:
+def truths(site: EditSite) -> Iterator[Draft]:
     for word in ("true", "false"):
         if site.takes(word) and not site.following.startswith("("):
             yield Draft(word, "keyword", 5.0, describe=partial(of_public, word))

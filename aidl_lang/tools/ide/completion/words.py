@@ -21,7 +21,7 @@ from aidl_lang.tools.ide.completion.context import Context
 from aidl_lang.tools.ide.completion.draft import Draft, written_out
 from aidl_lang.tools.ide.describing import of_callable, of_public
 from aidl_lang.tools.ide.overloads import Reading
-from aidl_lang.tools.ide.site import Site
+from aidl_lang.tools.ide.site import EditSite
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.snippets import SNIPPETS
 from aidl_lang.tools.vocabulary import vocabulary
@@ -181,7 +181,7 @@ def importable(path: Path, listed: Files | None) -> list[str]:
     return sorted(found)
 
 
-def imported_names(site: Site, node: ast.Import) -> Iterator[Draft]:
+def imported_names(site: EditSite, node: ast.Import) -> Iterator[Draft]:
     """Yields the names that `import … from "file"` may bring."""
     view = site.view
     target = view.resolution.imports.get(node) if view is not None else None

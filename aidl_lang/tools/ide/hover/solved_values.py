@@ -38,7 +38,7 @@ _UNMOVED = 1e-3
 
 
 @record(eq=False)
-class Found:
+class BuiltValue:
     """A value where it was built: `label` names the instance or turn, "" for a single one."""
 
     label: str
@@ -63,17 +63,17 @@ class Solved:
     def free(self) -> frozenset[str]:
         return frozenset(self.outcome.model.free) if self.outcome.model is not None else frozenset()
 
-    def values(self, node: ast.Expression, path: Sequence[ast.Node]) -> list[Found]:
+    def values(self, node: ast.Expression, path: Sequence[ast.Node]) -> list[BuiltValue]:
         """Returns the values of an expression, the first of many; `path` are the nodes around it, outermost
         first. Returns none for one that has an error in it, or makes something.
         """
         if _depth(node) > _DEEPEST:
             return []
-        found: list[Found] = []
+        found: list[BuiltValue] = []
         for label, env in islice(self._places(path), _LOOKED_AT):
             value = self.read(node, env)
             if value is not None:
-                found.append(Found(label, value, env))
+                found.append(BuiltValue(label, value, env))
             if len(found) == MOST:
                 break
         return found

@@ -18,7 +18,7 @@ from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension
 from aidl_lang.common.numbers import fixed
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ide.hover.solved_values import Found, Solved, items_of, spelled
+from aidl_lang.tools.ide.hover.solved_values import BuiltValue, Solved, items_of, spelled
 
 DECIMALS = 4
 _MOST_ITEMS = 4
@@ -41,7 +41,7 @@ def number_text(value: float, dimension: MaybeDimension) -> str:
     return fixed(value, DECIMALS) + _UNITS.get(dimension, f" {dimension}")
 
 
-def lines(solved: Solved, name: str, found: list[Found]) -> list[str]:
+def lines(solved: Solved, name: str, found: list[BuiltValue]) -> list[str]:
     """Returns a line with the value for each instance or turn."""
     told: list[str] = []
     for each in found:
@@ -50,7 +50,7 @@ def lines(solved: Solved, name: str, found: list[Found]) -> list[str]:
     return told
 
 
-def compared(solved: Solved, sides: list[tuple[str, list[Found]]]) -> list[str]:
+def compared(solved: Solved, sides: list[tuple[str, list[BuiltValue]]]) -> list[str]:
     """Returns lines for the sides of a comparison, which read the boxes in it together."""
     told: list[str] = []
     for row in zip(*(found for _, found in sides), strict=False):

@@ -31,7 +31,7 @@ def register(server: Server) -> None:
     async def resolve(action: types.CodeAction) -> types.CodeAction:
         if action.data is None:
             return action
-        given = asking.read(action.data, asking.Action)
+        given = asking.read(action.data, asking.ActionRequest)
         document = server.documents.get(given.uri)
         asked = await server.asked(document) if document is not None else None
         if asked is None or asked.known.version != given.version:
@@ -112,7 +112,7 @@ def _is_mended(shown: types.Diagnostic, action: Action, asked: Asked) -> bool:
     return shown.range == asked.convert.range(mends.span)
 
 
-def _worked_out(asked: Asked, given: asking.Action, title: str) -> types.WorkspaceEdit:
+def _worked_out(asked: Asked, given: asking.ActionRequest, title: str) -> types.WorkspaceEdit:
     for action in actions(asked.view, given.start, given.end):
         if (action.title, action.kind) == (title, given.kind):
             return _made(asked, action)

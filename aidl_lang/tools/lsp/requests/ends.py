@@ -15,7 +15,7 @@ from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcIn
 from aidl_lang.common.cancelling import Cancelled
 from aidl_lang.tools.ends import Sweep, described
 from aidl_lang.tools.ide.ends import can_be_tried, tried
-from aidl_lang.tools.lsp.documents import Document, Known
+from aidl_lang.tools.lsp.documents import Document, VersionedView
 from aidl_lang.tools.lsp.running import LIMITS
 from aidl_lang.tools.lsp.server import FAILED, Asked, Server
 
@@ -59,7 +59,7 @@ class Ends:
         self._server.refresh_hints()
         return {"ok": found.ok, "tried": described(found), "left": found.left, "seconds": found.seconds}
 
-    async def _swept(self, document: Document, known: Known) -> Sweep:
+    async def _swept(self, document: Document, known: VersionedView) -> Sweep:
         """Raises JsonRpcContentModified where the text changes before it is done."""
         loop = asyncio.get_running_loop()
         told = await self._progress()

@@ -9,7 +9,7 @@ from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.positions import Positions
 from aidl_lang.tools.ide.signatures import OverloadHelp, signature_help
 from aidl_lang.tools.lsp.documents import Document
-from aidl_lang.tools.lsp.params import Entry, read
+from aidl_lang.tools.lsp.params import EntryRequest, read
 from aidl_lang.tools.lsp.server import Asked, Server
 
 _KIND = {
@@ -55,7 +55,7 @@ def register(server: Server) -> None:
     @server.feature(types.COMPLETION_ITEM_RESOLVE)
     async def resolve(item: types.CompletionItem) -> types.CompletionItem:
         if item.data is not None:
-            given = read(item.data, Entry)
+            given = read(item.data, EntryRequest)
             chosen = lists.find(given.uri, given.list, given.entry)
             if chosen is not None:
                 said = await server.answers.ask(lambda: chosen.documentation)
