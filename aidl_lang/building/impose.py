@@ -1,4 +1,4 @@
-"""From a condition that an author states to a constraint of the model."""
+"""The step from a condition that an author states to a constraint of the model."""
 
 from __future__ import annotations
 
@@ -44,7 +44,9 @@ from aidl_lang.syntax import ast
 
 
 def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None = None) -> None:
-    """`constrain EXPR` or, with a weight, `prefer EXPR`: constant conditions are checked on the spot."""
+    """Adds `constrain EXPR` or, with a weight, `prefer EXPR` to the model; checks constant conditions on the
+    spot.
+    """
     handed = _handed_over(it, node)
     if any(_holds_place(it, inner) for inner in handed):
         for inner in handed:
@@ -82,7 +84,7 @@ def _holds_place(it: Interpreter, node: ast.Expression) -> bool:
 
 
 def _handed_over(it: Interpreter, node: ast.Expression) -> list[ast.Expression]:
-    """What `AddConstraint(…)` is given, of which `fixed(p)` is no condition by itself."""
+    """Returns the items of `AddConstraint(…)`, of which `fixed(p)` is no condition by itself."""
     if not isinstance(node, ast.Call) or node.receiver is not None or _named(it, node) != "add_constraint":
         return []
     values = [a.value for a in node.arguments]
@@ -90,7 +92,7 @@ def _handed_over(it: Interpreter, node: ast.Expression) -> list[ast.Expression]:
 
 
 def _as_relation(node: ast.Expression) -> ast.Expression:
-    """`angle(a, b) == v` states what `angle(a, b, v)` does, in the same reading; so do `<=` and `>=`."""
+    """Returns `angle(a, b) == v` as `angle(a, b, v)`, in the same reading; likewise `<=` and `>=`."""
     match node:
         case ast.Comparison(operands=(ast.Call() as call, value), operators=(relation,)):
             named = any(a.name is not None for a in call.arguments)
@@ -115,7 +117,7 @@ def _turn(env: Env) -> str:
 
 def _never(it: Interpreter, node: ast.Expression, env: Env) -> None:
     if any(part in it.watched for part in ast.walk(node)):
-        return  # it breaks a rule of validity, and was read with values as written
+        return  # reported as a breach of validity, and read with values as written
     shape = _library_shape(it, node, env)
     wording = Wording(node, it, env, _read)
     false, both = differences(wording, ex.Evaluator({}), EXACT), sides(wording, ex.Evaluator({}))
@@ -136,8 +138,8 @@ def _never(it: Interpreter, node: ast.Expression, env: Env) -> None:
 
 
 def _state_constants(it: Interpreter, node: ast.Expression, env: Env, read: Read) -> None:
-    """A condition that is decided already, as a constraint: so it can be asked what would decide it
-    otherwise.
+    """Adds a condition that is decided already as a constraint, so that other constants for it can be
+    sought.
     """
     wording = Wording(node, it, env, read)
     found = compared(wording) if _library_shape(it, node, env) is None else ()
@@ -149,7 +151,7 @@ def _state_constants(it: Interpreter, node: ast.Expression, env: Env, read: Read
 
 
 def _library_shape(it: Interpreter, node: ast.Expression, env: Env) -> Geometry | None:
-    """Returns the shape of the library that holds a condition for itself."""
+    """Returns the shape of the library that holds a condition for itself; None for others."""
     shape = env.scope.declaring().container
     return shape if isinstance(shape, Geometry) and node.span.source in it.library_sources else None
 
@@ -219,7 +221,9 @@ def _is_angle(node: ast.Node) -> bool:
 
 
 def _following(it: Interpreter, comparisons: list[Comparison], here: Structure) -> Geometry | None:
-    """What in the boxes of which comparisons speak is derived of geometry outside of their structure."""
+    """Returns a geometry in the boxes of some comparisons that is derived of geometry outside of their
+    structure.
+    """
     spoken_of = {s for c in comparisons for s in c.boxes}
     return next(
         (g for g in it.following if not g.bound_to.is_within(here) and spoken_of & _boxes_of(g)), None
@@ -237,7 +241,9 @@ def _boxes_of(g: Geometry) -> set[Structure]:
 
 
 def _box_follows(it: Interpreter, follower: Geometry, node: ast.Expression, env: Env) -> None:
-    """A box in which something follows what lies outside of the structure that holds the constraint."""
+    """Reports a constraint on a box with geometry in it that follows something outside of the holder of the
+    constraint.
+    """
     span = it.place(node) or node.span
     it.report(
         "E0402",
@@ -249,7 +255,7 @@ def _box_follows(it: Interpreter, follower: Geometry, node: ast.Expression, env:
 
 
 def _box_unknown(it: Interpreter, box: Measurement, node: ast.Expression, env: Env) -> None:
-    """A side of the box of an outline that is worked out after solving."""
+    """Reports a side of the box of an outline that is worked out after solving."""
     (outline,) = box.of
     assert isinstance(outline, Geometry)
     assert outline.recipe is not None
@@ -270,7 +276,9 @@ def _box_unknown(it: Interpreter, box: Measurement, node: ast.Expression, env: E
 def _impose_within(
     it: Interpreter, shape: Geometry, comparisons: tuple[Comparison, ...], node: ast.Expression, env: Env
 ) -> None:
-    """What a shape of the library holds for itself is a constraint named after it, at its author's line."""
+    """Adds a constraint that a shape of the library holds for itself, named after the shape, at its author's
+    line.
+    """
     if shape.name is not None and shape.span is not None:
         text = f"{shape.path.removeprefix(env.here.path + '.')}: {node.span.one_line}"
         turn = ", ".join(env.scope.labels)
@@ -284,7 +292,7 @@ def _read(it: Interpreter, node: ast.Expression, env: Env) -> Value:
 def _placed_in_call(
     it: Interpreter, node: ast.Expression, comparisons: list[Comparison], env: Env
 ) -> list[Comparison]:
-    """In `distance(a, b) == 18` the call's last argument is held, as in every call."""
+    """Holds the last argument of the call in `distance(a, b) == 18`, as in every call."""
     if not isinstance(node, ast.Comparison) or not isinstance(call := node.operands[0], ast.Call):
         return comparisons
     positional = [call.receiver] if call.receiver is not None else []
@@ -297,8 +305,8 @@ def _placed_in_call(
 
 
 def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "") -> None:
-    """`assert`: kept to be checked on the solved model. What a shape asks of arguments that are constants is
-    checked now.
+    """Keeps an `assert` to be checked on the solved model. Those of a shape on constant arguments are checked
+    now.
     """
     value = evaluate(it, node.test, env)
     if isinstance(value, Nothing):
@@ -331,7 +339,7 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
 
 
 def _named(it: Interpreter, node: ast.Call) -> str:
-    """Returns the name that is called, an alias being none of its own."""
+    """Returns the name that is called, with aliases resolved."""
     return it.program.resolution.canonical.get(node.callee, node.callee.text)
 
 
@@ -339,7 +347,9 @@ def _named(it: Interpreter, node: ast.Call) -> str:
 
 
 def _held(it: Interpreter, node: ast.Call, env: Env) -> Value:
-    """`constrain fixed(x)`: x stays where it was written, in the frame of the holder."""
+    """Returns the condition of `constrain fixed(x)`: x stays where it was written, in the frame of the
+    holder.
+    """
     arguments = [node.receiver] if node.receiver is not None else []
     arguments += [a.value for a in node.arguments]
     found: list[Value] = []

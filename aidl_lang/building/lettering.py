@@ -1,4 +1,4 @@
-"""Lettering in a program: `glyphs(…)` makes one geometry of a whole text, `ink(…)` tells how large it is.
+"""Lettering in a program: `glyphs(…)` makes one geometry of a whole text, `ink(…)` measures it.
 
 A text is a single primitive: its place, height and angle are solved for, its curves follow when the solution
 is read out. Dozens of letters then cost the solver no more than one circle.
@@ -20,7 +20,7 @@ Arguments = Mapping[str, Value]
 
 
 def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
-    """Returns the characters of a text in units of its height; none after an error, reported here."""
+    """Returns the characters of a text in units of its height; empty after an error, reported here."""
     node = it.call_sites[-1]
     text, align, spacing = a["text"], a["align"], a["line_spacing"]
     assert isinstance(text, Text)
@@ -52,7 +52,7 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
 
 
 def _report(it: Interpreter, code: str, message: str, node: ast.Node, hints: list[str]) -> None:
-    """Once for a text, in the words of its author and not of the library."""
+    """Reports once for a text, at its author's call rather than in the library."""
     span = it.place(node)
     if not any(d.code == code and d.span == span for d in it.diagnostics):
         it.report(code, message, span, hints=hints)

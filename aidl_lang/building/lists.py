@@ -53,7 +53,7 @@ def items_of(it: Interpreter, value: Value, node: ast.Node) -> Sequence[Value] |
 
 
 def entry(it: Interpreter, value: RecordVal, name: str, node: ast.Node) -> Value:
-    """Returns a field of a record by its name, spelled as generously as any name."""
+    """Returns a field of a record by its name, in any spelling that `find` accepts."""
     key = find(name, value.fields)
     if key is None:
         like = nearest(name, value.fields)
@@ -65,7 +65,7 @@ def entry(it: Interpreter, value: RecordVal, name: str, node: ast.Node) -> Value
 
 
 def joined(left: Value, right: Value) -> Value | None:
-    """`left + right` of two texts or two lists; None if they are neither."""
+    """Returns `left + right` of two texts or two lists; None if they are neither."""
     if isinstance(left, Text) and isinstance(right, Text):
         return Text(left.value + right.value)
     a, b = members(left), members(right)
@@ -103,7 +103,7 @@ def _str(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _range(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """As in Python: the end is left out, and one number alone is the end."""
+    """Returns the numbers of a range as in Python: without the end, and one number alone is the end."""
     start, end, step = a.get("start", number(0.0)), a["end"], a.get("step")
     assert isinstance(start, Num)
     assert isinstance(end, Num)
@@ -118,7 +118,9 @@ def _enumerate(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value
 
 
 def _zip(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Pairs of members with the same place; lists of different lengths are a mistake, not to be cut off."""
+    """Returns pairs of members with the same place; reports lists of different lengths, rather than cut them
+    off.
+    """
     lists = [members(value) or () for value in a.values()]
     lengths = [len(items) for items in lists]
     if len(set(lengths)) > 1:

@@ -1,7 +1,7 @@
-"""Model → Problem: the structure tree as the solver sees it, unknowns and constraints by number.
+"""The step from Model to Problem: the structure tree for the solver, unknowns and constraints by number.
 
-The solver's groups are the structures, parents first. Unknowns that nothing can move are constants there:
-a frame that no constraint mentions, an argument that was read while building, an angle that nothing turns.
+The solver's groups are the structures, parents first. Unknowns that nothing can move are constants there: a
+frame that no constraint mentions, an argument that was read while building, an angle that nothing turns.
 """
 
 from __future__ import annotations
@@ -39,12 +39,13 @@ _LONGEST_TURN = 60.0
 """Degrees that an angle may turn in one step of the solver."""
 
 LEAST_SHARE = 1e-3
-"""A kept size may give way, but not vanish: what is left is at least this share of what was written."""
+"""The least part of a kept size that remains when it gives way: it may shrink, but not vanish."""
 
 
 @record()
 class Lowered:
-    """
+    """A problem for the solver with what its numbers stand for.
+
     unknowns  by their number in the problem
     stated    for each constraint of the problem, the one of the model; None for those that come with the
               nature of a size or a box (never negative)
@@ -62,7 +63,7 @@ def lower(model: Model) -> Lowered:
 
 
 def preference(lowered: Lowered) -> list[int]:
-    """Returns the constraints in the order in which they are taken for granted: unwritten ones, then as
+    """Returns the constraints in the order in which conflicts take them for granted: unwritten ones, then as
     written.
     """
 
@@ -89,7 +90,7 @@ class _Lowering:
         self.holders = {c.holder for c in model.constraints}
         self.standing: dict[Structure, bool] = {}
         self.named: dict[Constraint, tuple[set[Structure], set[Structure]]] = {}
-        # Every number that defines what is drawn, by the structure that draws it.
+        # Every number that defines the drawing, by structure.
         self.seen = {s: [at for _, _, at in seen(s)] for s in self.structures}
         self.size = _extent(self.seen)
         self.place = Placing(self._node, self.tape)
@@ -135,8 +136,8 @@ class _Lowering:
     # --- Unknowns ------------------------------------------------------------------------------
 
     def _number_unknowns(self) -> None:
-        """Unknowns that can move: those of what is drawn, and both coordinates of frames that a constraint
-        names, or that it mentions.
+        """Numbers the unknowns that can move: those of the drawing, and both coordinates of frames that a
+        constraint names, or mentions.
         """
         mentioned = self.mentioned = set(
             ex.unknowns(
@@ -162,8 +163,8 @@ class _Lowering:
                     self.variables.setdefault(unknown.owner, []).append(unknown)
 
     def _placer(self, unknown: Unknown) -> Structure:
-        """Returns the structure at whose turn an unknown is placed: for the box of an empty structure that
-        says nothing of itself, the parent, as if the box were its frame.
+        """Returns the structure at whose turn an unknown is placed; for the box of an empty structure the
+        parent, as if the box were its frame.
         """
         parent = unknown.owner.parent
         return parent if parent is not None and self._is_outline(unknown) else unknown.owner
@@ -176,13 +177,12 @@ class _Lowering:
         return self.groups[moved] if moved is not None else -1
 
     def _scale(self, unknown: Unknown) -> float:
-        """One millimetre, or the turn that moves a point at the size of the model by as much."""
+        """Returns one millimetre, or the turn that moves a point at the size of the model by as much."""
         return _RADIAN / self.size if unknown.angular else 1.0
 
     def _stands(self, unknown: Unknown) -> bool:
-        """Tells whether it shifts a frame that lies on its parent's, with something in it at an exact place:
-        that is exact in the parent, too, as long as the frame stays. A frame turns only where that is asked
-        for.
+        """Tells whether an unknown shifts a frame that lies on its parent's, with something in it at an exact
+        place: that is exact in the parent, too, as long as the frame stays. A frame turns only on request.
         """
         s = unknown.frame_of
         if s is None or unknown.angular:
@@ -224,7 +224,7 @@ class _Lowering:
         return self.tape.constant(node.payload.guess) if number is None else self.tape.unknown(number)
 
     def _observed(self) -> Iterator[Expression]:
-        """What the numbers that define the drawing are made of."""
+        """Yields the expressions of the numbers that define the drawing."""
         for s, found in self.seen.items():
             for at in found:
                 yield from at
@@ -233,7 +233,9 @@ class _Lowering:
                     yield from (frame.x, frame.y, frame.rotation)
 
     def _observables(self, s: Structure) -> Iterator[int]:
-        """What a reader of the drawing could see move of a structure, and its variables."""
+        """Yields the numbers of a structure that a reader of the drawing could see move, and its
+        variables.
+        """
         node = self._node
         for at in self.seen[s]:
             if len(at) == 2:
@@ -256,8 +258,8 @@ class _Lowering:
         )
 
     def _named(self, constraint: Constraint) -> tuple[set[Structure], set[Structure]]:
-        """Returns the structures that a constraint names as a whole, and those in which it names something.
-        What a shape asks of itself names nothing.
+        """Returns the structures that a constraint names as a whole, and those in which it names something. A
+        constraint of a shape on itself names nothing.
         """
         whole: set[Structure] = set()
         inside: set[Structure] = set()
@@ -265,7 +267,7 @@ class _Lowering:
             mentioned = set(comparison.spoken_of)
             for structure in comparison.boxes:
                 whole.add(structure)
-                if structure.plan:  # its box is what there is in it
+                if structure.plan:  # its box is that of its contents
                     inside.add(structure)
                 mentioned.update(ex.unknowns(_places(structure, constraint.holder)))
             for unknown in mentioned:
@@ -296,8 +298,8 @@ class _Lowering:
         return float(self.size**length * _RADIAN**angle)
 
     def _bounds(self) -> Iterator[Constraint]:
-        """What shapes ask of their sizes and what holds as written, as constraints: no size becomes one that
-        its shape would refuse.
+        """Yields the bounds that shapes demand of their numbers and that hold as written, as constraints: no
+        size becomes one that its shape would refuse.
         """
         for asked in self.model.assertions:
             parts = list(_comparisons(asked.condition)) if asked.shape else []
@@ -319,12 +321,12 @@ class _Lowering:
 
 
 def _is_exact(at: _Seen) -> bool:
-    """Tells whether it is a place that only sizes and angles could move."""
+    """Tells whether a place is one that only sizes and angles could move."""
     return len(at) == 2 and all(u.kept or u.angular for u in ex.unknowns(at))
 
 
 def _comparisons(condition: Condition | bool) -> Iterator[Comparison]:
-    """Yields the comparisons that all have to hold for a condition; none where there is more to it."""
+    """Yields the comparisons that all have to hold for a condition; none if there is more to it."""
     if not isinstance(condition, Condition) or condition.operator != "and":
         return
     for part in condition.parts:
@@ -335,7 +337,7 @@ def _comparisons(condition: Condition | bool) -> Iterator[Comparison]:
 
 
 def _is_bound(part: Comparison) -> bool:
-    """Tells whether it is an inequality that holds at the first guesses."""
+    """Tells whether a comparison is an inequality that holds at the first guesses."""
     if part.relation in ("==", "!=") or part.left.is_open or part.right.is_open:
         return False
     low, high = (part.left, part.right) if part.relation in ("<=", "<") else (part.right, part.left)
@@ -343,8 +345,8 @@ def _is_bound(part: Comparison) -> bool:
 
 
 def _clinging(parent: Structure) -> Sequence[Structure]:
-    """Returns the children that belong to what is drawn around them: all that lie in a part, and holes and
-    drawings beside parts; but none that stands still, for its place was said in the frame of the root.
+    """Returns the children that belong to the drawing around them: all that lie in a part, and holes and
+    drawings beside parts; but none that stands still, as its place was given in the frame of the root.
     """
     children = [c for c in parent.children if parent.parent is not None or not _is_placed(c)]
     if parent.plan or any(not geometry.construction for geometry in parent.own()):
@@ -362,19 +364,19 @@ def _is_placed(structure: Structure) -> bool:
 
 
 def _is_variable(unknown: Unknown) -> bool:
-    """Tells whether it is a number of a structure, and no part of its frame or outline."""
+    """Tells whether an unknown is a number of a structure, and no part of its frame or outline."""
     return isinstance(unknown.holder, Structure) and unknown.frame_of is None and not unknown.outline
 
 
 def _axis(unknown: Unknown) -> int:
-    """Along which axis a coordinate lies; -1 for what is no place."""
+    """Returns the axis along which a coordinate lies; -1 for an unknown that is no place."""
     if unknown.kept or unknown.angular or _is_variable(unknown):
         return -1
     return {"x": 0, "y": 1, "left": 0, "bottom": 1}.get(unknown.field.rpartition(".")[2], -1)
 
 
 def _places(structure: Structure, holder: Structure) -> Iterator[Expression]:
-    """Yields the frames by which a structure is placed in that which holds it."""
+    """Yields the frames that place a structure in the one that holds it."""
     for s in chain(structure):
         if s is holder:
             return
@@ -386,8 +388,8 @@ _Seen = tuple[Expression, Expression] | tuple[Expression]
 
 
 def seen(s: Structure) -> Iterator[tuple[Geometry | Structure, str, _Seen]]:
-    """What defines the geometry of a structure itself, in its own frame: of what, the path, and the numbers.
-    The observables of the problem are these, structure by structure, and after each its variables.
+    """Yields the numbers that define the geometry of a structure itself, in its own frame, with the thing and
+    its path. The observables of the problem are these, structure by structure, and after each its variables.
     """
     for geometry in s.own():
         for path, at in _seen_geometry(geometry):
@@ -409,8 +411,8 @@ def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:
 
 
 def _is_spanned(unknown: Unknown) -> bool:
-    """Tells whether it is the way from one literal point of a shape to the next, for which no number was
-    written. The steps of a path do say where they lead.
+    """Tells whether an unknown is the way from one literal point of a shape to the next, for which no number
+    was written. The steps of a path have numbers.
     """
     return unknown.implied and isinstance(unknown.holder, Geometry) and unknown.holder.type != "path"
 
@@ -422,9 +424,10 @@ def _numbered(keys: Iterable[Hashable]) -> NDArray[np.int64]:
 
 
 def _extent(drawn: Mapping[Structure, Iterable[_Seen]]) -> float:
-    """About the extent of the places at the first guesses in mm: the power of two above it, at least 1.
+    """Returns about the extent of the places at the first guesses in mm: the power of two above it, at least
+    1.
 
-    A small change of a model changes no tolerance, and so nothing in parts that it does not concern.
+    So a small change of a model changes no tolerance, and nothing in parts that it does not concern.
     """
     place = Placing(lambda e: e.value, FLOATS)
     low, high = 0.0, 0.0

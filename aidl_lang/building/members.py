@@ -1,4 +1,4 @@
-"""Names and members: reading a binding from where it is asked for, and what stands behind a dot."""
+"""Names and members: bindings read from the place of use, and the fields behind a dot."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ _READERS: Mapping[type, Callable[..., Value]] = {
     PassedBinding: lambda it, binding, node, env: read_passed(it, binding, env),
     CopiedBinding: _read_copied,
 }
-"""How each sort of binding is read; what is none of them is a value."""
+"""Readers of bindings by their class; any other class is a value."""
 
 
 def is_same_everywhere(value: Value) -> bool:
@@ -127,7 +127,7 @@ def is_same_everywhere(value: Value) -> bool:
 
 
 def member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Value:
-    """`value.name`, as written or in another word for it."""
+    """Returns `value.name`, as written or by a synonym."""
     for word in (name, *MEMBERS.get(fold(name), ())):
         if (found := _member(it, value, word, node, env)) is not None:
             return found
@@ -136,7 +136,7 @@ def member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env)
 
 
 def _member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Value | None:
-    """None when there is none of that name."""
+    """Returns a member; None if there is none of that name."""
     found: Value | None = None
     match value:
         case Nothing():
@@ -167,7 +167,7 @@ def _member(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env
 
 def _no_member(it: Interpreter, value: Value, name: str, node: ast.Member) -> None:
     if it.place(node) is not node.span:
-        # The library's expression would tell an author nothing.
+        # The library's expression would mean nothing to an author.
         it.refuse(node, f"{kind_of(value)} has no `{name}`")
         return
     known = member_names(value)
@@ -185,7 +185,7 @@ def _no_member(it: Interpreter, value: Value, name: str, node: ast.Member) -> No
 
 
 def member_names(value: Value) -> list[str]:
-    """What may stand behind a dot, for messages."""
+    """Returns the names that may stand behind a dot, for messages."""
     match value:
         case PointVal():
             return ["x", "y"]
@@ -216,7 +216,7 @@ def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, 
 
 
 def _rotation(it: Interpreter, s: Structure, around: Structure, node: ast.Node, env: Env) -> Value:
-    """How a structure is turned; a constraint that asks for it lets it turn."""
+    """Returns the turn of a structure; a constraint on it lets the structure turn."""
     turn = primitives.translate("angle", Num(s.frame.rotation, ANGLE, Status.REFERENCE), around, env.here)
     if not may_read(it, s, node, env):
         return as_written(turn)
@@ -266,7 +266,7 @@ def _box_field(it: Interpreter, box: Box, name: str, node: ast.Node, env: Env) -
         return None
     value = box.field(key)
     if env.reach is Reach.ABOVE and any(isinstance(s, Structure) for s in box.sources):
-        env = Env(env.scope, env.here, Reach.OWN)  # the box of a structure is no geometry
+        env = Env(env.scope, env.here, Reach.OWN)  # a structure's box is no geometry
     if value is not None and env.reach is Reach.OWN and env.here in box.sources:
         return as_written(value) if it.watched else _refuse_own_box(it, node, env)
     owners = (s if isinstance(s, Structure) else getattr(s, "bound_to", None) for s in box.sources)

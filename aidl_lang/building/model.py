@@ -55,12 +55,12 @@ class Frame:
         return self.rotation.is_constant and self.rotation.value == 0.0
 
     def outward(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
-        """Coordinates of this frame → of the parent's."""
+        """Converts coordinates of this frame to those of the parent's."""
         u, v = self.turn(x, y)
         return ex.add(self.x, u), ex.add(self.y, v)
 
     def inward(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
-        """Coordinates of the parent's frame → of this one."""
+        """Converts coordinates of the parent's frame to those of this one."""
         a, b = ex.sub(x, self.x), ex.sub(y, self.y)
         if not self.is_level:
             c, s = self.cos_sin()
@@ -124,7 +124,7 @@ class Geometry:
 
     @cached_property
     def silhouette(self) -> tuple[Curve, ...]:
-        """Of a text, in units of its height (see `lettering.silhouette`)."""
+        """The silhouette of a text, in units of its height (see `lettering.silhouette`)."""
         return silhouette(self.glyphs)
 
     @property
@@ -149,12 +149,12 @@ class Geometry:
 
     @property
     def is_drawn_later(self) -> bool:
-        """True if its curves are worked out after solving; what the library makes has its own."""
+        """True if its curves are worked out after solving; geometry that the library makes has its own."""
         return self.recipe is not None and self.recipe.kind == self.type
 
     def primitives(self, *, even_construction: bool = False) -> Iterator[Geometry]:
-        """Yields the primitives that are drawn, in order of writing; of construction geometry only if asked
-        for.
+        """Yields the primitives that are drawn, in order of writing; of construction geometry only on
+        request.
         """
         if self.construction and not even_construction:
             return
@@ -166,12 +166,12 @@ class Geometry:
 
 @record(eq=False)
 class Recipe:
-    """How the curves of an outline come from others, by exact geometry after solving.
+    """The way in which the curves of an outline come from others, by exact geometry after solving.
 
     kind      one of `builtins.OUTLINES`
     operands  each some geometry that is one outline together
     numbers   its distance, thickness or width
-    words     how it makes corners, joints and ends
+    words     the styles of its corners, joints and ends
     """
 
     kind: str
@@ -181,11 +181,11 @@ class Recipe:
 
     @property
     def sources(self) -> tuple[Geometry, ...]:
-        """What it is made of, each once."""
+        """The geometry that it is made of, each once."""
         return tuple(dict.fromkeys(g for group in self.operands for g in group))
 
     def made_of(self, copy: Callable[[Geometry], Geometry], measure: Callable[[Num], Num]) -> Recipe:
-        """Returns the same of copies."""
+        """Returns the same recipe for copies of its operands."""
         operands = tuple(tuple(map(copy, group)) for group in self.operands)
         return replace(self, operands=operands, numbers={n: measure(v) for n, v in self.numbers.items()})
 
@@ -270,7 +270,7 @@ class Structure:
             stack.extend(reversed(top.children))
 
     def own(self) -> Iterable[Geometry]:
-        """Named geometry of this structure itself, in order of writing."""
+        """Returns the named geometry of this structure itself, in order of writing."""
         return self._own if self.is_complete else own_geometry(self.geometry, self)
 
     @cached_property
@@ -294,8 +294,8 @@ class Structure:
 
 
 def own_geometry(named: dict[str, Value], container: Geometry | Structure) -> Iterator[Geometry]:
-    """Geometry among named values that belongs to the container, members of arrays and lists included; each
-    once, however many names it has.
+    """Yields the geometry among named values that belongs to the container, members of arrays and lists
+    included; each once, however many names it has.
     """
     seen: set[Geometry] = set()
     for value in named.values():
@@ -330,8 +330,8 @@ def common_ancestor(a: Structure, b: Structure) -> Structure:
 
 
 def reach_of(owners: Iterable[Structure], here: Structure) -> Structure | None:
-    """Returns the nearest structure around `here` and all the owners of what something in it is made of; None
-    where that is `here` itself.
+    """Returns the nearest structure around `here` and all the owners of the sources of something in it; None
+    if that is `here` itself.
     """
     reach = reduce(common_ancestor, owners, here)
     return reach if reach is not here else None
@@ -340,7 +340,9 @@ def reach_of(owners: Iterable[Structure], here: Structure) -> Structure | None:
 def convert(
     x: Expression, y: Expression, source: Structure, target: Structure
 ) -> tuple[Expression, Expression]:
-    """Coordinates in the frame of `source` → in that of `target`; the same for the same."""
+    """Converts coordinates in the frame of `source` to that of `target`; equal ones give the same
+    expressions.
+    """
     if source is target:
         return x, y
     if (known := source.converted.get((x, y, target))) is None:
@@ -372,7 +374,7 @@ def convert_point(point: PointVal, source: Structure, target: Structure) -> Poin
 
 
 def convert_angle(angle: Expression, source: Structure, target: Structure) -> Expression:
-    """Returns a direction in degrees in the frame of `source` → in that of `target`."""
+    """Converts a direction in degrees in the frame of `source` to that of `target`."""
     meeting = common_ancestor(source, target)
     for start, outward in ((source, True), (target, False)):
         path: list[Structure] = chain(start)
@@ -395,12 +397,12 @@ def convert_angle(angle: Expression, source: Structure, target: Structure) -> Ex
 class Comparison:
     """`left REL right`, REL one of `== != <= >= < >`, with boxes spelled out.
 
-    moved    the unknowns that may move first where a call decides that; else the left side does
+    moved    the unknowns that may move first if a call decides that; else those of the left side
     parties  of a call over equals (`row`, `symmetric`, `same_width`, a list that is aligned) the unknowns
              that place each of them, in the order of the arguments: none is held by its place. Once the whole
              program is known, `moved` is what they have but for the anchor (see `building.anchors`)
-    boxes    the structures of whose boxes it speaks
-    beside   the unknowns it mentions beside these; None where it speaks of no structure's box
+    boxes    the structures whose boxes it mentions
+    beside   the unknowns it mentions beside these; None if it mentions no structure's box
     """
 
     relation: str
@@ -414,14 +416,14 @@ class Comparison:
 
     @property
     def placed(self) -> frozenset[Unknown]:
-        """What may move first to satisfy it; the rest is held until that is not enough."""
+        """The unknowns that may move first to satisfy it; the rest is held until that is not enough."""
         if self.moved is not None:
             return self.moved
         return frozenset(ex.unknowns([self.left])) or frozenset(ex.unknowns([self.right]))
 
     @property
     def spoken_of(self) -> Iterable[Unknown]:
-        """The unknowns that it mentions by themselves, and not only as what is in a structure's box."""
+        """The unknowns that it mentions by themselves, and not only as contents of a structure's box."""
         return ex.unknowns([self.left, self.right]) if self.beside is None else self.beside
 
 
@@ -454,11 +456,11 @@ class Constraint:
     wording: object = field(default=None, repr=False)
     """the statement, to be read in other words (see building.wording); None for what was not stated"""
     is_inherent: bool = False
-    """what a shape asks of itself: nobody said it of the structure that the shape is in"""
+    """a demand of a shape on itself: nobody stated it for the structure that the shape is in"""
 
     @cached_property
     def mentions(self) -> tuple[str, ...]:
-        """Paths of the geometry and structures whose unknowns it relates."""
+        """The paths of the geometry and structures whose unknowns it relates."""
         both = (e for c in self.comparisons for e in (c.left, c.right))
         return tuple(sorted({u.holder.path for u in ex.unknowns(both)}))
 
@@ -472,19 +474,19 @@ class Assertion:
     span: Span
     label: str = ""
     shape: str = ""
-    """the shape that asks this of its arguments"""
+    """the shape that demands this of its arguments"""
     wording: object = field(default=None, repr=False)
     """the condition, to be read again in parts (see building.wording)"""
 
 
 @record(eq=False)
 class Literal:
-    """A number that stands in the text, and what the solver is to find in its place.
+    """A number that stands in the text, and the expression that the solver finds in its place.
 
     node    the number, with its sign if there is one
-    became  of which the solved value is read, in the frame that the number is written in
-    holder  what it is a number of, `field` its name there (`end.x`)
-    dimension is what it has there, also where the number is bare; None where nothing says
+    became  the expression whose solved value is read, in the frame that the number is written in
+    holder  the thing that it is a number of, `field` its name there (`end.x`)
+    dimension of that field, also if the number is bare; None if nothing gives one
     """
 
     node: ast.Number | ast.Unary
@@ -500,7 +502,7 @@ class Literal:
 
 @record()
 class Knob:
-    """A `param` as seen from outside: what may be set with `-D path=value` or a slider."""
+    """A `param` as seen from outside: a value that `-D path=value` or a slider sets."""
 
     path: str
     value: float | str | bool

@@ -19,7 +19,9 @@ from aidl_lang.syntax import ast
 
 
 def run_module(it: Interpreter, library: Scope) -> Structure:
-    """Runs the main module; its root structure, or an implicit assembly around what stands at file level."""
+    """Runs the main module. Returns its root structure, or an implicit assembly around the statements at file
+    level.
+    """
     module = it.program.main
     statements = module.statements
     scope = _file_scope(it, module, library, {})

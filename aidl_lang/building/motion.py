@@ -43,7 +43,7 @@ class Motion:
 
     @staticmethod
     def _from(a: Expression, b: Expression) -> Expression:
-        """Returns the difference of two coordinates; exactly nothing for one and the same."""
+        """Returns the difference of two coordinates; exactly 0 for a coordinate and itself."""
         return ex.ZERO if a is b else ex.sub(a, b)
 
     def point(self, p: PointVal) -> PointVal:
@@ -57,20 +57,20 @@ class Motion:
         return _in_turn(ex.add(angle, self.turn))
 
     def measure(self, value: Expression, dimension: MaybeDimension) -> Expression:
-        """Returns a length, an area, …: it grows with the scale, and nothing else changes it."""
+        """Returns a length, an area and the like after the motion: only the scale changes it."""
         for _ in range(dimension.length if dimension else 0):
             value = ex.mul(self.scale, value)
         return value
 
     def frame(self, frame: Frame) -> Frame:
-        """Returns the frame that a moved structure has; the scale is its contents' affair."""
+        """Returns the frame of a moved structure; the scale applies to its contents."""
         x, y = self.place(frame.x, frame.y)
         turned = ex.sub if self.mirrored else ex.add
         return Frame(x, y, _in_turn(turned(self.turn, frame.rotation)), frame.mirrored != self.mirrored)
 
     @property
     def parts(self) -> tuple[Expression, ...]:
-        """The numbers that it follows from."""
+        """The numbers that define it."""
         return (*self.about, *self.to, self.turn, self.cos, self.sin, self.scale)
 
     @property
@@ -86,11 +86,11 @@ class Motion:
 
 
 STILL = Motion()
-"""What leaves everything where it is."""
+"""The motion that leaves everything where it is."""
 
 
 def _in_turn(angle: Expression) -> Expression:
-    """Returns the angle that is between -180 (left out) and 180 as written."""
+    """Returns an angle as one between -180 (left out) and 180 as written."""
     turns = ex.constant(360.0 * ((180.0 - angle.value) // 360.0))
     return ex.add(angle, turns)
 
@@ -131,7 +131,7 @@ def mirrored_at_line(start: PointVal, end: PointVal) -> Motion:
 
 
 def after(first: Motion, second: Motion) -> Motion:
-    """One motion, then another."""
+    """Returns one motion followed by another."""
     way = ex.sub if second.mirrored else ex.add
     turn = _in_turn(way(second.turn, first.turn))
     return Motion(
@@ -146,6 +146,6 @@ def after(first: Motion, second: Motion) -> Motion:
 
 
 def of_frame(frame: Frame) -> Motion:
-    """From the coordinates of a frame to those of the frame around it."""
+    """Returns the motion from the coordinates of a frame to those of the frame around it."""
     turn = frame.rotation
     return Motion(NOWHERE, (frame.x, frame.y), turn, ex.cos(turn), ex.sin(turn), mirrored=frame.mirrored)

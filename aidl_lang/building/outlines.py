@@ -38,7 +38,7 @@ CORNER_WORDS: Mapping[str, tuple[str, ...]] = {
     "joins": ("round", "sharp"),
     "caps": ("round", "butt", "square"),
 }
-"""What the words of an outline may be; the first is meant if none is said."""
+"""The words that choose the corners of an outline; the first is the default."""
 _SYNONYMS = {"miter": "sharp", "mitre": "sharp", "mitred": "sharp", "rounded": "round", "flat": "butt"}
 
 
@@ -75,7 +75,7 @@ def _outline(kind: str, *words: str) -> Function:
 
 
 def _negative(it: Interpreter, a: Arguments, node: ast.Call) -> bool:
-    """Reports a size that is less than nothing; only an offset has a direction."""
+    """Reports a negative size; only an offset has a direction. Returns whether there is one."""
     for name, v in a.items():
         is_size = name in SIZES or fold(node.callee.text) == "chamfer"
         if is_size and isinstance(v, Num) and v.expression.is_constant and v.value < 0:
@@ -142,7 +142,7 @@ def _flat(value: Value) -> Iterator[Value]:
 
 
 def _take_over(geometry: Geometry, env: Env) -> None:
-    """The sources guide what is made of them and are not drawn themselves; that of an offset is."""
+    """Turns the sources into guides, which are not drawn themselves; except that of an offset."""
     assert geometry.recipe is not None
     keep_unnamed(geometry)
     here = env.scope.declaring().container or env.here
@@ -152,7 +152,7 @@ def _take_over(geometry: Geometry, env: Env) -> None:
 
 
 def keep_unnamed(geometry: Geometry) -> None:
-    """Sources without a name become parts of the outline."""
+    """Makes sources without a name parts of the outline."""
     assert geometry.recipe is not None
     unnamed = [s for s in geometry.recipe.sources if s.name is None]
     for number, source in enumerate(unnamed):
@@ -162,8 +162,8 @@ def keep_unnamed(geometry: Geometry) -> None:
 
 
 def usable(candidates: list[Candidate], values: Sequence[Value], env: Env) -> list[Candidate]:
-    """Returns the overloads of an outline, without those of the library where a source or a size is not of
-    this structure: they would read its unknowns.
+    """Returns the overloads of an outline; without those of the library if a source or a size belongs to
+    another structure, as they would read its unknowns.
     """
     owners = (o for v in values for o in ((v.owner,) if isinstance(v, Geometry) else owners_of(v, env.here)))
     far = any(owner is not env.here for owner in owners)
@@ -171,7 +171,9 @@ def usable(candidates: list[Candidate], values: Sequence[Value], env: Env) -> li
 
 
 def remember(result: Value, name: str, arguments: Arguments) -> None:
-    """What the library made by an operation knows its source: it is drawn by the same exact geometry."""
+    """Notes the source of an outline that the library makes by an operation: the same exact geometry draws
+    it.
+    """
     if name not in OUTLINES or not isinstance(result, Geometry) or result.recipe or result.name:
         return
     sources = tuple(v for v in arguments.values() if isinstance(v, Geometry))
@@ -229,7 +231,7 @@ def _sizes(it: Interpreter, kind: str, a: Arguments, target: _Target) -> tuple[N
     if target.of:
         names = (_named(target.key, kind), _named(target.key, f"{kind}_second"))
         return tuple(size(it, v, target.of[0], n) for v, n in zip(numbers, names, strict=False))
-    # A bare point belongs to no geometry: its structure keeps the size.
+    # A bare point belongs to no geometry, so its structure keeps the size.
     index = len(target.owner.finishes)
     return tuple(
         length(
@@ -284,8 +286,8 @@ def _target(it: Interpreter, value: Value, node: ast.Node, env: Env, text: str) 
 
 
 def _base(it: Interpreter, node: ast.Node, env: Env) -> tuple[Geometry | None, str]:
-    """Returns the geometry that a point was named as a field of, and the field, if it has a name of its
-    own.
+    """Returns the geometry that a point was named as a field of, and the field, if the geometry has a
+    name.
     """
     key = node.name.text if isinstance(node, ast.Member) else ""
     while isinstance(node, ast.Index):
@@ -301,7 +303,9 @@ def _outermost(geometry: Geometry) -> Geometry:
 
 
 def finish_size(it: Interpreter, value: Value, name: str, node: ast.Member, env: Env) -> Num | None:
-    """`plate.top_left.fillet`: the size of a finish, by its corner or by the outline that it is part of."""
+    """Returns the size of a finish, `plate.top_left.fillet`, by its corner or by the outline that it is part
+    of.
+    """
     key, kind = "", find(name, dict.fromkeys(FINISHES))
     if isinstance(value, PointVal):
         value, key = _base(it, node.value, env)  # type: ignore[assignment]

@@ -1,4 +1,4 @@
-"""Which definition a call means: the overloads of its name, and the one that its arguments fit."""
+"""The choice of a definition for a call, among the overloads of its name."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ _DRAWING = PATTERNS.union(PUBLIC)
 
 
 class Site:
-    """A call as it stands in the text, with what follows from the overloads of its name.
+    """A call in the text, with what follows from the overloads of its name.
 
     nodes          its arguments
     written        each of them with the text it is if it is a bare word
     doubtful       the arguments, by index, that are such words and names in reach as well
     instantiates   whether an overload is a template
     makes_outline  whether the overloads are those of an outline made of others
-    derives        whether they are those of what is derived for good, an outline of others or a copy
+    derives        whether they derive for good: an outline of others, or a copy
     draws          whether one of them makes geometry that the solver may move
     """
 
@@ -52,10 +52,10 @@ class Site:
         self._last: tuple[tuple[Type, ...] | None, Binding | list[Mismatch]] = (None, [])
 
     def meaning(self, values: Sequence[Value]) -> Binding | list[Mismatch]:
-        """Which overload is meant. Types decide, so what was chosen once holds whenever they come again."""
+        """Returns the overload that is meant. Types decide, so a choice holds whenever they come again."""
         kinds = tuple(map(type_of, values))
         before, found = self._last
-        if kinds == before:  # mostly, and types are slow to hash
+        if kinds == before:  # usually so, and types are slow to hash
             return found
         known = self._meanings.get(kinds)
         if known is None:
@@ -68,8 +68,8 @@ class Site:
         return known
 
     def reading(self, values: list[Value]) -> tuple[Binding | list[Mismatch], list[Value]]:
-        """Which overload is meant, and the arguments: a name in reach is the word for an option only where it
-        does not fit.
+        """Returns the overload that is meant, and the arguments: a name in reach is read as a word for an
+        option only if it does not fit otherwise.
         """
         chosen = self.meaning(values)
         if isinstance(chosen, list) and self.doubtful:
@@ -87,7 +87,9 @@ def _is_declared(symbol: Symbol | None) -> bool:
 
 
 def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) -> Site:
-    """What is known of a call whose name has these overloads; a body that runs again defines them anew."""
+    """Returns the site of a call for these overloads of its name; a body that runs again defines them
+    anew.
+    """
     before, known = it.sites.get(node, (None, None))
     if known is not None and before is candidates:
         return known
@@ -105,7 +107,7 @@ def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) ->
 
 @lru_cache(maxsize=4096)
 def _standard_site(node: ast.Call, signatures: tuple[Signature, ...]) -> Site:
-    """Returns a call that the library makes of its own, which is the same for all programs."""
+    """Returns the site of a call within the library, which is the same for all programs."""
     return Site(node, list(signatures))
 
 
@@ -135,7 +137,7 @@ def no_overload(
 ) -> None:
     name = node.callee.text
     if it.place(node) is not node.span:
-        # What the library asks of a pair of things is told of the author's call, in the author's words.
+        # An error in the library on a pair of things is reported at the author's call, in the author's words.
         things = [v for v in values if not isinstance(v, Text | bool)]
         pairs = [[kind for _, kind, _ in m.signature.parameters] for m in misses]
         known = dict.fromkeys(

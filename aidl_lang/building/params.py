@@ -42,7 +42,7 @@ def knob_path(structure: Structure, name: str) -> str:
 
 
 def read_param(it: Interpreter, binding: ParamBinding, node: ast.Node) -> Value:
-    """Returns the value of a knob; evaluated, checked against its range and registered on first use."""
+    """Returns the value of a knob: evaluated, checked against its range and registered on first use."""
     if binding.known is None:
         if binding.running:
             it.report("E0207", f"param `{binding.node.name.text}` is defined by way of itself", node)
@@ -111,7 +111,9 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
 
 
 def _unit_of_range(node: ast.Param) -> Fix | None:
-    """`8m in 6..14` meant `8m in 6m..14m`: the unit goes to the ends, where it makes the range hold."""
+    """Returns the fix that writes `8m in 6..14` as `8m in 6m..14m`; None if that would not make the range
+    hold.
+    """
     match node.value, node.domain:
         case ast.Number(unit=str() as unit), ast.Range(
             ast.Number(unit=None) as low, ast.Number(unit=None) as high
@@ -214,7 +216,7 @@ def _parse(given: str | float | bool, written: Value) -> Value | None:
 
 
 def report_unused(it: Interpreter) -> None:
-    """Values set from outside that no param takes."""
+    """Reports values set from outside that no param takes."""
     paths = [knob.path for knob in it.knobs]
     for key in it.overrides:
         if key not in it.used_overrides:

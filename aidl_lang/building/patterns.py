@@ -43,7 +43,7 @@ _ORIGIN = PointVal(number(0.0, LENGTH), number(0.0, LENGTH))
 
 @record()
 class _Call:
-    """One call of a pattern; `settings` holds what the pattern is made with, and is known by its name."""
+    """One call of a pattern; `settings` holds the numbers of the pattern, and is known by its name."""
 
     it: Interpreter
     a: Arguments
@@ -96,8 +96,8 @@ class _Call:
         return not isinstance(self.thing, Instantiation)
 
     def centre(self) -> Place:
-        """What comes to lie on the places of a pattern: the middle of a thing with a name, else the origin
-        it is written about, whose distance to it is exact then.
+        """Returns the point that comes to lie on the places of a pattern: the middle of a thing with a name,
+        else the origin it is written about, whose distance to it is exact then.
         """
         thing = self.thing
         if isinstance(thing, Structure) or (isinstance(thing, Geometry) and thing.name is not None):
@@ -109,7 +109,7 @@ class _Call:
         return NOWHERE
 
     def laid_out(self, motions: Iterable[tuple[Index, Motion | None]]) -> Value:
-        """Returns the members; without a motion it is the thing itself."""
+        """Returns the members; one without a motion is the thing itself."""
         made = Pattern(self.node.callee.text, self.settings)
         for index, motion in motions:
             member = self.thing
@@ -168,7 +168,7 @@ def _grid(call: _Call) -> Value:
 
 
 def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
-    """Members at whole numbers of steps from the first, in one direction or in two."""
+    """Lays out members at whole numbers of steps from the first, in one direction or in two."""
     if "center" in call.a and "start" in call.a:
         return call.wrong(
             "a pattern is placed by its `center` or by the `start` of its first member, not by both",
@@ -235,7 +235,9 @@ def _polar_array(call: _Call) -> Value:
 
 
 def _step(call: _Call, n: int) -> Expression:
-    """From one member to the next: a full turn has no last member on its first, a part of one has ends."""
+    """Returns the angle from one member to the next: a full turn has no last member on its first, a part of
+    one has ends.
+    """
     sweep = call.a.get("sweep", number(360.0, ANGLE))
     assert isinstance(sweep, Num)
     is_full = abs(abs(sweep.value) - 360.0) < 1e-9

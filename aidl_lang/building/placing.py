@@ -1,8 +1,8 @@
-"""What a call places and what it holds.
+"""The roles of a call's arguments: those it places and those it holds.
 
 A relation that puts one thing where another is (`above(a, b)`, `centered_in(a, b)`) holds the other. One over
-equals holds nobody by its place: that is what a parameter of the type `peer` says of one thing, and `peers`
-of a list, in the library as in a program. So it is of a list that is given as one: `align_left(slits)`.
+equals holds nobody by its place: the parameter type `peer` says so of one thing, and `peers` of a list, in
+the library as in a program. A list that is given as one counts as equals, too: `align_left(slits)`.
 """
 
 from __future__ import annotations
@@ -25,9 +25,10 @@ def placing(
     values: Sequence[Value],
     env: Env,
 ) -> Value:
-    """Returns the condition of a call with what it places. The last positional argument is held on the first
-    try and those before it are placed; equals are parties of one rank. A definition that only calls another
-    leaves the choice to that one (`contains` holds its first), unless it gathered what it hands on.
+    """Returns the condition of a call with the unknowns it places. The last positional argument is held on
+    the first try and those before it are placed; equals are parties of one rank. A definition that only calls
+    another leaves the choice to that one (`contains` holds its first), unless it gathered the arguments that
+    it passes on.
     """
     if not isinstance(condition, Condition):
         return condition
@@ -48,7 +49,7 @@ def placing(
 
 
 def _equals(definition: ast.ConstraintDefinition, binding: Binding, values: Sequence[Value]) -> list[Value]:
-    """Returns the things of one rank in a call, in the order of its arguments; none where it holds one of
+    """Returns the things of one rank in a call, in the order of its arguments; none if it holds one of
     them.
     """
     given = binding.arguments
@@ -65,8 +66,8 @@ def _equals(definition: ast.ConstraintDefinition, binding: Binding, values: Sequ
 
 
 def _is_given_a_place(definition: ast.ConstraintDefinition, binding: Binding) -> bool:
-    """Tells whether what is done to a list is told by another thing, as in `spread(list, inside: box)`: then
-    all are placed and there is no anchor among them.
+    """Tells whether another thing decides the place of a list, as in `spread(list, inside: box)`: then all
+    are placed and there is no anchor among them.
     """
     related = {name for name, kind, _ in binding.taken if isinstance(kind, _PLACES)}
     word = definition.parameters[0].type
@@ -77,7 +78,7 @@ _PLACES = BoxType | PointType | GeometryType | StructureType
 
 
 def _delegates(definition: ast.ConstraintDefinition) -> bool:
-    """Tells whether it consists of one call, which then decides."""
+    """Tells whether a definition consists of one call, which then decides."""
     match definition.body.statements:
         case (ast.ExpressionStatement(value=ast.Call()),):
             return True
@@ -86,6 +87,6 @@ def _delegates(definition: ast.ConstraintDefinition) -> bool:
 
 
 def spliced(value: Value) -> Sequence[Value]:
-    """Returns the members of a list, or the one thing."""
+    """Returns the members of a list, or the thing alone."""
     items = members(value)
     return items if items is not None else [value]

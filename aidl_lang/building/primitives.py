@@ -58,7 +58,7 @@ def is_reflected(owner: Structure, here: Structure) -> bool:
 
 
 def view(geometry: Geometry, here: Structure) -> dict[str, Value]:
-    """What defines a primitive, in the frame of `here`."""
+    """Returns the numbers and points that define a primitive, in the frame of `here`."""
     if geometry.owner is here:
         return geometry.fields
     if (known := geometry.views.get(here)) is None:
@@ -94,7 +94,7 @@ def distance(a: Value, b: Value) -> Expression:
 
 
 def sweep(core: Mapping[str, Value], is_clockwise: bool) -> Expression:
-    """Degrees from the start of an arc to its end, in its own sense; 0 to 360."""
+    """Returns the degrees from the start of an arc to its end, in its own sense; 0 to 360."""
     start, end = direction(core["center"], core["start"]), direction(core["center"], core["end"])
     turn = ex.sub(start, end) if is_clockwise else ex.sub(end, start)
     return ex.apply("mod", turn, ex.constant(360.0))
@@ -106,7 +106,7 @@ def polar(center: Value, radius: Expression, angle: Expression) -> PointVal:
 
 
 def on_text(geometry: Geometry, here: Structure) -> Callable[[Vec], tuple[Expression, Expression]]:
-    """From units of the height of a text to the frame of `here`."""
+    """Returns a function from units of the height of a text to the frame of `here`."""
     core = view(geometry, here)
     (x, y), height, angle = xy(core["start"]), number(core["height"]), number(core["angle"])
     along = ex.mul(height, ex.cos(angle)), ex.mul(height, ex.sin(angle))

@@ -1,7 +1,7 @@
 """Places of structures in the frame of the root, in numbers of any kind.
 
-`model.convert` does the same with expressions, from any frame to any other. What is wanted in the frame of
-the root is all that is drawn: the numbers that are read off a solution, and what the solver observes.
+`model.convert` does the same with expressions, from any frame to any other. The drawing is wanted in the
+frame of the root: the numbers that are read off a solution, and those that the solver observes.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ N = TypeVar("N")
 
 
 class Arithmetic(Protocol[N]):
-    """How numbers of a kind are computed with."""
+    """The arithmetic of numbers of one kind."""
 
     def add(self, a: N, b: N, /) -> N: ...
 
@@ -31,7 +31,7 @@ class Arithmetic(Protocol[N]):
 
 
 class _Floats:
-    """Plain numbers."""
+    """The arithmetic of plain numbers."""
 
     add = staticmethod(operator.add)
     sub = staticmethod(operator.sub)
@@ -43,7 +43,7 @@ FLOATS: Arithmetic[float] = _Floats()
 
 
 class _Step(NamedTuple, Generic[N]):
-    """The frame of a structure in that of its parent; `turn` is its cosine and sine, None where it is exactly
+    """The frame of a structure in that of its parent; `turn` is its cosine and sine, None if it is exactly
     level.
     """
 
@@ -55,8 +55,8 @@ class _Step(NamedTuple, Generic[N]):
 
 @record(frozen=False)
 class Placing(Generic[N]):
-    """Converts points to the frame of the root. `number` is what an expression comes to, `arithmetic` how to
-    go on from there.
+    """A converter of points to the frame of the root. `number` evaluates an expression, `arithmetic` computes
+    with the results.
     """
 
     number: Callable[[Expression], N]

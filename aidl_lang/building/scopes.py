@@ -1,7 +1,8 @@
-"""Where names are found while a program is built: a chain of scopes, each with values and callables apart.
+"""The scopes in which names are found while a program is built: a chain, each with values and callables
+apart.
 
 A value that other code may read in its own frame, or before its line was reached, is kept as a binding and
-evaluated when it is asked for.
+evaluated when it is read.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def indexed(name: str, indices: Sequence[int]) -> str:
-    """`dot[3]`: the name of a member of an array."""
+    """Returns the name of a member of an array: `dot[3]`."""
     return name + "".join([f"[{i}]" for i in indices]) if indices else name
 
 
@@ -29,8 +30,8 @@ def indexed(name: str, indices: Sequence[int]) -> str:
 class LetBinding:
     """A name for an expression, evaluated where it is used.
 
-    known  what is the same everywhere
-    seen   what it is for one frame and reach
+    known  the value, if it is the same everywhere
+    seen   the values for one frame and reach each
     """
 
     node: ast.Expression
@@ -42,7 +43,7 @@ class LetBinding:
 
 @record(frozen=False, eq=False)
 class ParamBinding:
-    """A knob, evaluated once with what was set from outside."""
+    """A knob, evaluated once with the value set from outside."""
 
     node: ast.Param
     scope: Scope
@@ -75,7 +76,7 @@ class PassedBinding:
 
 @record(frozen=False, eq=False)
 class CopiedBinding:
-    """A name in a copied shape: what it stands for in the source, as `carry` moves it."""
+    """A name in a copied shape: its value in the source, as `carry` moves it."""
 
     name: str
     binding: Binding
@@ -88,7 +89,7 @@ Binding: TypeAlias = "Value | LetBinding | ParamBinding | VarBinding | PassedBin
 
 @record(eq=False)
 class Candidate:
-    """A callable and the scope its body sees; `scope` is None for what is built in."""
+    """A callable and the scope its body sees; `scope` is None for a built-in one."""
 
     signature: Signature
     scope: Scope | None
@@ -96,9 +97,10 @@ class Candidate:
 
 @record(frozen=False, eq=False)
 class Scope:
-    """
-    container  what declarations in it become members of: a structure, a compound shape, or None
-    turn       one turn of a `for`: its lets are its own, what it declares goes to the container
+    """The names of one body while it is run.
+
+    container  the structure or compound shape whose members its declarations become, or None
+    turn       one turn of a `for`: its lets are its own, its other declarations go to the container
     labels     loop variables of the turns around, for messages
     unbuilt    names that an `if` did not build, and that `if`
     """
@@ -129,14 +131,14 @@ class Scope:
         return scope
 
     def declaring(self) -> Scope:
-        """Returns the scope whose container gets what is declared here."""
+        """Returns the scope whose container gets the declarations made here."""
         scope = self
         while scope.turn and scope.parent is not None:
             scope = scope.parent
         return scope
 
     def define(self, candidate: Candidate) -> None:
-        """Makes a callable known to what is in this scope; scopes inside have not been asked for any yet."""
+        """Makes a callable known in this scope, before any scope inside has been searched."""
         of_name = self.callables.setdefault(candidate.signature.name, [])
         if all(candidate.signature is not known.signature for known in of_name):
             of_name.append(candidate)

@@ -30,7 +30,7 @@ _WAITING = Instantiation | StructureCopy | Pattern | ListVal
 
 @record(frozen=False)
 class Settling:
-    """The making of what one assignment names.
+    """The making of the structures that one assignment names.
 
     first  instances of templates that other members of a pattern are copies of, with the frame each had of
            its own
@@ -43,7 +43,9 @@ class Settling:
     first: dict[Instantiation, tuple[Structure, Frame]] = field(default_factory=dict)
 
     def whole(self, value: Value, indices: tuple[int, ...]) -> Value:
-        """What is assigned, with every structure in it made, and every geometry of a pattern named."""
+        """Returns the value of the assignment, with every structure in it made, and every geometry of a
+        pattern named.
+        """
         if self.node.placement is not None and isinstance(value, StructureCopy | Pattern):
             self._stands(value)
         return self.value(value, indices)
@@ -62,7 +64,7 @@ class Settling:
                 return value
 
     def _stands(self, value: StructureCopy | Pattern) -> None:
-        """Reports an `at` of what has its place from elsewhere."""
+        """Reports an `at` of a thing whose place follows from something else."""
         name = self.node.name.text
         if isinstance(value, Pattern):
             message, hint = f"the place of `{name}` is that of its members", "give it a `center` or a `start`"
@@ -89,7 +91,7 @@ class Settling:
         return pattern
 
     def _moves_as_frame(self, pattern: Pattern) -> None:
-        """The position of a pattern of structures is a frame: it counts only where something mentions it."""
+        """Makes the position of a pattern of structures a frame: it counts only if something mentions it."""
         for structure, _ in self.first.values():
             for unknown in ex.unknowns([structure.frame.x, structure.frame.y]):
                 if unknown.holder is pattern.settings and not unknown.kept:
@@ -107,7 +109,7 @@ class Settling:
     def _instance(
         self, template: Instantiation, motion: Motion, indices: tuple[int, ...], copy: StructureCopy
     ) -> Structure | Nothing:
-        """Returns a template that is instantiated in order to be moved."""
+        """Instantiates a template in order to move the instance."""
         if not (motion.scale.is_constant and motion.scale.value == 1.0):
             self.it.report(
                 "E0334",

@@ -1,4 +1,6 @@
-"""What the library asks of shapes and cannot find out itself: their sizes, their corners, a way to say no."""
+"""Questions about shapes that the library cannot answer in AIDL: their sizes, their corners, a way to
+refuse.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ _NONE = ListVal(())
 
 
 def _sizes(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns the lengths among the parameters of a compound shape, in their order; none of anything else."""
+    """Returns the lengths among the parameters of a compound shape, in their order; none for anything
+    else.
+    """
     shape = a["of"]
     if not isinstance(shape, Geometry) or not isinstance(shape.scope, Scope):
         return _NONE
@@ -49,7 +53,7 @@ def _convex_corners(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> 
 
 
 def _at(point: Value) -> tuple[float, float]:
-    """Where a point was written."""
+    """Returns the place where a point was written."""
     assert isinstance(point, PointVal)
     return point.x.value, point.y.value
 
@@ -69,7 +73,7 @@ def _next(items: Sequence[tuple[float, float]]) -> Sequence[tuple[float, float]]
 
 
 def _refuse(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Returns a definition of the library says that it makes no sense of its arguments."""
+    """Reports that a definition of the library makes no sense of its arguments."""
     why = a["why"]
     assert isinstance(why, Text)
     it.refuse(node, why.value)

@@ -1,4 +1,4 @@
-"""The state of one run of a program, and what an expression may read."""
+"""The state of one run of a program, and the reach of its expressions."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _LARGEST_GUESS = 1e12
 
 
 class Reach(Enum):
-    """What an expression may read (language reference: validity)."""
+    """The unknowns that an expression may read (language reference: validity)."""
 
     OWN = "geometry: unknowns of its own structure"
     ABOVE = "what geometry is derived of: anything further up, since the solver does not move it"
@@ -44,7 +44,7 @@ class Reach(Enum):
 
 @record(slots=True)
 class Env:
-    """Where an expression stands: the names it sees, and the structure in whose frame it is read."""
+    """The environment of an expression: the names it sees, and the structure in whose frame it is read."""
 
     scope: Scope
     here: Structure
@@ -67,11 +67,11 @@ DEFAULT_LIMITS = Limits()
 
 
 class Stop(Exception):  # noqa: N818 (not an error of ours: the program went over a limit, which is reported)
-    """Building ends here; what there is so far is the result."""
+    """Raised to end building; the model so far is the result."""
 
 
 Executor = Callable[..., None]
-"""Does what a statement says: (interpreter, statement, scope, structure)."""
+"""A function that carries out a statement: (interpreter, statement, scope, structure)."""
 
 
 @record(frozen=False)
@@ -97,27 +97,27 @@ class Interpreter:
     diagnostics: list[Diagnostic] = field(default_factory=list)
     unknowns: list[Unknown] = field(default_factory=list)
     following: list[Geometry] = field(default_factory=list)
-    """geometry that is derived of what lies outside of its structure"""
+    """geometry derived of geometry outside of its structure"""
     constraints: list[Constraint] = field(default_factory=list)
     assertions: list[Assertion] = field(default_factory=list)
     knobs: list[Knob] = field(default_factory=list)
     readings: list[tuple[Span, str]] = field(default_factory=list)
     turned: Mapping[int, int] = field(default_factory=dict)
-    """readings, by number, that are not the nearest to what is written, but so many places further off"""
+    """for readings, by number, how many places from the nearest to what is written they are to be taken"""
     states_constants: bool = False
-    """whether conditions over constants are constraints of the model like others, and those of asserts too"""
+    """conditions over constants become constraints of the model like others, and those of asserts too"""
     literals: list[Literal] = field(default_factory=list)
     pending: dict[Structure, list[tuple[ast.Statement, Scope]]] = field(default_factory=dict)
     written: dict[ast.Node, tuple[float, float] | float] = field(default_factory=dict)
     watched: frozenset[ast.Node] = frozenset()
     rejected: frozenset[ast.Node] = frozenset()
-    """what the checker found wrong, and said so"""
+    """nodes with errors that the checker has reported"""
     used_overrides: set[str] = field(default_factory=set)
     call_sites: list[ast.Node] = field(default_factory=list)
     hidden: list[tuple[Geometry, tuple[Comparison, ...]]] = field(default_factory=list)
     runaway: set[ast.Node] = field(default_factory=set)
     copiers: list[Copier] = field(default_factory=list)
-    """what made the copies, in order"""
+    """the makers of the copies, in order"""
     ahead: list[Ahead] = field(default_factory=list)
     edits: dict[ast.Call, Callable[[Binding, dict[str, Value]], dict[str, Value]]] = field(
         default_factory=dict
@@ -127,15 +127,14 @@ class Interpreter:
     """edits that were applied, and in which turns of the loops around"""
     edited_names: dict[int, frozenset[str]] = field(default_factory=dict)
     signatures: dict[ast.Callable, Signature] = field(default_factory=dict)
-    """of the definitions of bodies"""
+    """signatures of definitions in bodies"""
     sites: dict[ast.Call, tuple[Sequence[Candidate], Site]] = field(default_factory=dict)
-    """the overloads of the names of calls, when they were last met, and what is known of the calls from these
-    and their text
-    """
+    """the overloads of a call's name when it was last met, and the site that follows from these and its
+    text"""
     numbers: dict[ast.Number, Num] = field(default_factory=dict)
-    """of the text, which are the same each time they are met"""
+    """numbers of the text, which are the same each time they are met"""
     frames_turn: bool = False
-    """whether the program speaks of the rotation of structures, which a constraint on it frees"""
+    """the program mentions the rotation of structures, which a constraint on it frees"""
     root: Structure | None = None
     errors: int = 0
     entities: int = 0
@@ -166,29 +165,29 @@ class Interpreter:
             inner = message if code == "E0604" else f"in the library, {message}"
             message = f"`{span.one_line}` does not work out: {inner}"
             if any(d.code == code and d.span == span for d in self.diagnostics):
-                return  # one cause, met again further on
+                return  # the same cause, met again
         self._add(Diagnostic(code, message, span, label, tuple(secondary), tuple(hints), fix))
 
     def _add(self, found: Diagnostic) -> None:
-        """Building ends when there are more errors than are told."""
+        """Adds a diagnostic; ends building if there are more errors than are reported."""
         self.diagnostics.append(found)
         self.errors += found.is_error
         if self.errors > MOST_ERRORS:
             raise Stop
 
     def misfit(self, found: Misfit, node: ast.Node, fix: Fix | None = None) -> None:
-        """Says why a value does not go where it stands."""
+        """Reports a value that does not fit its place."""
         self.report(found.code, found.message, node, found.label, found.hints, fix)
 
     def refuse(self, node: ast.Node, why: str, hints: Sequence[str] = ()) -> None:
-        """A call makes no sense of its arguments; said of the call that the author wrote."""
+        """Reports that a call makes no sense of its arguments, at the call that the author wrote."""
         span = self.place(node)
         text = f"`{span.one_line}`" if span is not None else "this"
         if not any(d.code == "E0342" and d.span == span for d in self.diagnostics):
             self._add(Diagnostic("E0342", f"{text} says nothing: {why}", span, hints=tuple(hints)))
 
     def spelled(self, node: ast.Name | ast.Identifier) -> str:
-        """Returns the name that is meant, as it is defined."""
+        """Returns the name as it is defined."""
         return self.program.resolution.canonical.get(node, node.text)
 
     @property
@@ -196,7 +195,7 @@ class Interpreter:
         return self.program.library.sources
 
     def evaluate(self, node: ast.Expression, env: Env) -> Value:
-        """Returns the value of an expression, for code that `evaluate` itself stands on."""
+        """Returns the value of an expression, for modules that `evaluate` imports."""
         return self.evaluator(self, node, env)
 
     # --- Limits --------------------------------------------------------------------------------
@@ -209,7 +208,7 @@ class Interpreter:
             )
 
     def check_time(self, node: ast.Node) -> None:
-        """Called wherever a program may go on for long."""
+        """Ends building if it takes too long; called wherever a program may go on for long."""
         try:
             checkpoint()
         except OutOfTime:
@@ -240,8 +239,8 @@ class Interpreter:
             self._stop(None, f"this program states more than {self.limits.constraints} constraints")
 
     def enter(self, node: ast.Node, definition: ast.Node | None) -> bool:
-        """Tells whether a call may be entered; `leave` ends it. A definition that ran too deep is not
-        again.
+        """Tells whether a call may be entered; `leave` ends it. A definition that ran too deep is refused
+        from then on.
         """
         self.check_time(node)
         if definition in self.runaway:
@@ -264,7 +263,9 @@ class Interpreter:
         raise Stop
 
     def too_deep(self, node: ast.Node) -> NoReturn:
-        """Building ends at a statement whose value hangs on so many others that there is no room to tell."""
+        """Reports a statement whose value depends on so many others that the stack is full, and ends
+        building.
+        """
         hint = "values that are worked out from each other one by one are made by a loop, or by `sum`"
         self.report(
             "E0806",
@@ -289,7 +290,7 @@ class Interpreter:
         cell: bool = False,
         since: str = "",
     ) -> ex.Expression:
-        """Returns a new unknown, as an expression."""
+        """Makes an unknown. Returns it as an expression."""
         if not abs(guess) <= _LARGEST_GUESS:
             guess = self._tamed(guess, holder, name)
         angular, implied = dimension == ANGLE, since != ""
@@ -300,7 +301,7 @@ class Interpreter:
         return ex.unknown(made)
 
     def _tamed(self, guess: float, holder: Geometry | Structure, name: str) -> float:
-        """Returns a first guess for what was written without one that the solver could begin at."""
+        """Reports a first guess at which the solver could not begin. Returns another."""
         if math.isnan(guess):
             return guess
         self.report(
@@ -319,7 +320,7 @@ class Interpreter:
         name: str,
         dimension: MaybeDimension = LENGTH,
     ) -> ex.Expression:
-        """`made`, after keeping that it stands for a number of the text, if `written` is one."""
+        """Notes that `made` stands for a number of the text, if `written` is one. Returns `made`."""
         if written.expression.op == "constant" and made.op != "constant":
             node = written.expression.payload
             if isinstance(node, (ast.Number, ast.Unary)):
@@ -329,7 +330,7 @@ class Interpreter:
     def became_point(
         self, written: PointVal, made: PointVal, holder: Geometry | Structure, name: str
     ) -> None:
-        """The same for both coordinates of a point."""
+        """Notes the same for both coordinates of a point."""
         if written.x.expression.op == "constant":
             self.became(written.x, made.x.expression, holder, f"{name}.x")
         if written.y.expression.op == "constant":

@@ -1,4 +1,4 @@
-"""What each statement of a body does when its line is reached."""
+"""The effect of each statement of a body when its line is reached."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _assign(it: Interpreter, node: ast.Assign, scope: Scope, here: Structure) ->
     container = scope.declaring().container or here
     if not is_new:
         value = _named(it, node, value, scope, here, indices)
-    if was_there or not holds(value, Structure):  # else they are those of the structures made here
+    if was_there or not holds(value, Structure):  # otherwise the structures made here have their own
         read_own_attributes(it, node, value, container, scope)
     if not indices and not isinstance(value, Array | Structure | Geometry | ListVal | PointVal):
         scope.values[node.name.text] = LetBinding(node.value, scope)
@@ -64,7 +64,7 @@ def _assign(it: Interpreter, node: ast.Assign, scope: Scope, here: Structure) ->
 def _made(
     it: Interpreter, node: ast.Assign, scope: Scope, here: Structure, indices: tuple[int, ...]
 ) -> Value:
-    """What an assignment makes: placed, and edited by the statements below it."""
+    """Returns the value of an assignment: placed, and edited by the statements below it."""
     env = Env(scope, here, Reach.OWN)
     value = evaluate(it, node.value, env)
     if isinstance(value, Nothing | Instantiation):
@@ -91,7 +91,7 @@ def _named(
     here: Structure,
     indices: tuple[int, ...],
 ) -> Value:
-    """What is there under the name from now on: a literal point is geometry then."""
+    """Returns the value under its new name: a literal point becomes geometry."""
     container = scope.declaring().container or here
     if isinstance(value, PointVal) or (
         isinstance(value, ListVal) and not indices and _is_literal_point(node.value)
@@ -159,7 +159,7 @@ def _var(it: Interpreter, node: ast.Var, scope: Scope, here: Structure) -> None:
 
 def _for(it: Interpreter, node: ast.For, scope: Scope, here: Structure) -> None:
     for name in declared_names(node.body, indexed=True):
-        scope.declaring().values.setdefault(name, Array(name))  # also when there is no turn
+        scope.declaring().values.setdefault(name, Array(name))  # even if the loop has no turn
     for item in iterate(it, node.iterable, Env(scope, here, Reach.OWN)) or ():
         it.count_turn(node)
         run_block(it, node.body.statements, turn_scope(it, scope, node.variables, item, node), here)
@@ -179,7 +179,7 @@ def _if(it: Interpreter, node: ast.If, scope: Scope, here: Structure) -> None:
 
 
 def _expression(it: Interpreter, node: ast.ExpressionStatement, scope: Scope, here: Structure) -> None:
-    """An edit was applied where the thing was made; everything else is a constraint."""
+    """Checks an edit, which was applied where the thing was made; defers everything else as a constraint."""
     if isinstance(node.value, ast.Call) and is_edit(it, node.value, scope):
         check_edit(it, node.value, Env(scope, here, Reach.OWN))
     else:
@@ -191,7 +191,9 @@ def _defer(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) 
 
 
 def _assert(it: Interpreter, node: ast.Assert, scope: Scope, here: Structure) -> None:
-    """In a shape an assertion is about its arguments, hence it is checked where the shape is made."""
+    """Checks an assertion in a shape, which is about its arguments, where the shape is made; defers any
+    other.
+    """
     if isinstance(container := scope.declaring().container, Geometry):
         record_assertion(it, node, Env(scope, here, Reach.READ), container.type)
     else:
@@ -210,4 +212,4 @@ EXECUTORS: Mapping[type, Executor] = {
     ast.Prefer: _defer,
     ast.Assert: _assert,
 }
-"""Statements that do something when their line is reached; definitions were hoisted."""
+"""Executors of the statements that take effect when their line is reached; definitions were hoisted."""

@@ -1,4 +1,4 @@
-"""Structures: in place and from templates, with their frames and, when they are empty, their boxes."""
+"""Structures, in place and from templates, with their frames and, if they are empty, their boxes."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _PLAN = 10.0
 def build_structure(
     it: Interpreter, node: ast.Structure, scope: Scope, parent: Structure | None, indices: tuple[int, ...]
 ) -> Structure:
-    """Returns a structure from its definition in place."""
+    """Builds a structure from its definition in place."""
     name = indexed(node.name.text, indices)
     structure = _new(it, node.kind, name, parent, node)
     structure.doc = node.doc
@@ -66,7 +66,7 @@ def instantiate(
     indices: tuple[int, ...],
     framed: Callable[[Frame], Frame] | None = None,
 ) -> Structure | Nothing:
-    """Returns an instance of a template under the name it is assigned to; `framed` moves its frame
+    """Builds an instance of a template under the name it is assigned to; `framed` moves its frame
     elsewhere.
     """
     definition = template.definition
@@ -82,7 +82,7 @@ def instantiate(
         body = Scope(around, structure, labels=scope.labels)
         structure.scope = body
         read_attributes(it, structure, definition.attributes, body)
-        read_attributes(it, structure, node.attributes, scope)  # which stand outside the template
+        read_attributes(it, structure, node.attributes, scope)  # in the scope outside the template
         own_names(body, structure)
         for parameter, (key, kind, _) in zip(
             definition.parameters or (), template.signature.parameters, strict=True
@@ -118,14 +118,14 @@ def _new(it: Interpreter, kind: str, name: str, parent: Structure | None, node: 
 
 
 def _around(scope: Scope, name: str, structure: Structure) -> Scope:
-    """What a body sees around it: its structure by name, which is no member of it."""
+    """Returns the scope around a body, with its structure by name, which is no member of it."""
     around = Scope(scope)
     around.values[name] = structure
     return around
 
 
 def own_names(scope: Scope, structure: Structure) -> None:
-    """`self`, `origin` and the axes, which every structure has."""
+    """Adds `self`, `origin` and the axes, which every structure has."""
     exact = [point(ex.constant(x), ex.constant(y), Status.FIXED) for x, y in ((0, 0), (1, 0), (0, 1))]
     scope.values["self"] = structure
     scope.values["origin"] = exact[0]
@@ -142,7 +142,7 @@ def _place(
     scope: Scope,
     edits: Sequence[Edit] = (),
 ) -> None:
-    """The frame: `at` is a position, `rotated` is exact unless it is a guess or an unknown."""
+    """Sets the frame: `at` is a position, `rotated` is exact unless it is a guess or an unknown."""
     if s.parent is None:
         if placement is not None:
             it.report(
@@ -170,7 +170,7 @@ def _place(
 
 
 def place_of(it: Interpreter, placement: ast.Placement | None, env: Env) -> tuple[PointVal, Num | None]:
-    """What `at` and `rotated` say, the origin where they do not."""
+    """Returns the values of `at` and `rotated`; the origin, and None, without them."""
     at = None
     if placement is not None and placement.at is not None:
         value = evaluate(it, placement.at, env)
@@ -196,12 +196,12 @@ def _rotation(it: Interpreter, placement: ast.Placement | None, env: Env) -> Num
 
 
 def finish(it: Interpreter, structure: Structure) -> None:
-    """The body has been run: an empty structure gets its box, then constraints are read."""
+    """Ends a structure whose body has been run: an empty one gets its box, then constraints are read."""
     if structure.is_empty and structure.parent is not None:
         _plan(it, structure)
     structure.is_complete = True
     pending = it.pending.pop(structure, [])
-    # Finished corners first: constraints may speak of their sizes, wherever they are written.
+    # Finished corners first, as constraints may mention their sizes, wherever they are written.
     for node, scope in sorted(pending, key=lambda item: not _finishes(it, item[0])):
         read_constraint(it, node, scope, structure)
 

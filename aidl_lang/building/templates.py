@@ -1,8 +1,8 @@
-"""Templates: what a call of one yields, and what its arguments are inside it.
+"""Templates: the results of their calls, and their arguments inside.
 
-A number argument keeps its status; one that is literal is a single unknown inside the instance. A
-reference becomes an unknown of every structure that uses it, tied by an equality that the instantiating
-structure holds.
+A number argument keeps its status; one that is literal is a single unknown inside the instance. A reference
+becomes an unknown of every structure that uses it, tied by an equality that the instantiating structure
+holds.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from aidl_lang.syntax import ast
 def passed(
     it: Interpreter, name: str, value: Value, instance: Structure, holder: Structure, node: ast.Node
 ) -> Value | PassedBinding:
-    """What the parameter of an instance is bound to."""
+    """Returns the binding of an instance's parameter."""
     if (thing := _drawn(value)) is not None:
         it.report(
             "E0313",
@@ -34,7 +34,7 @@ def passed(
 
 
 def _drawn(value: Value) -> Geometry | Structure | None:
-    """Returns a geometry or a structure that a value is, or holds."""
+    """Returns a geometry or a structure that a value is, or holds; None if there is none."""
     if isinstance(value, Geometry | Structure):
         return value
     held = value.fields.values() if isinstance(value, RecordVal) else members(value) or ()
@@ -81,7 +81,7 @@ def _refers(point: PointVal) -> bool:
 
 
 def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: Structure) -> PointVal:
-    """Returns a point of the instance at the place, in its frame, that the argument has at the first
+    """Makes a point of the instance at the place, in its frame, that the argument has at the first
     guesses.
     """
     if _refers(point):

@@ -1,4 +1,4 @@
-"""What turns because a constraint asks it to: shapes that are level, and structures, until then."""
+"""Shapes and structures that are level until a constraint asks them to turn."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SMALL = 1e-9
 
 
 def unlock(*of: Expression) -> None:
-    """What was exact only because nothing asked it to turn is an unknown from now on."""
+    """Frees unknowns that were exact only because nothing asked them to turn."""
     for unknown in ex.unknowns(of):
         unknown.exact &= not unknown.locked
 
@@ -27,8 +27,8 @@ def is_of_directions(definition: Signature) -> bool:
 
 
 def ask_to_turn(comparisons: Iterable[Comparison]) -> None:
-    """Let shapes turn whose edges a constraint gives a direction: those that it places, and one that it holds
-    only if nothing else could give way. Two that are level both stay so.
+    """Lets shapes turn whose edges a constraint gives a direction: those that it places, and one that it
+    holds only if nothing else could give way. Two that are level both stay so.
     """
     for comparison in comparisons:
         found = list(ex.unknowns([comparison.left, comparison.right]))

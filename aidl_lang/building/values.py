@@ -36,7 +36,9 @@ if TYPE_CHECKING:
 
 
 class Status(IntEnum):
-    """How exact a number is meant, weakest first; it travels with the value (the exactness table)."""
+    """The exactness that a number is meant to have, weakest first; it travels with the value (the exactness
+    table).
+    """
 
     GUESS = 0
     NUMBER = 1
@@ -55,7 +57,7 @@ class Num:
 
     @property
     def value(self) -> float:
-        """At the first guesses."""
+        """The value at the first guesses."""
         return self.expression.value
 
     @property
@@ -68,7 +70,7 @@ class Num:
 
 @record(slots=True)
 class PointVal:
-    """Coordinates in the frame of the structure that asks."""
+    """A point: coordinates in the frame of the structure that asks."""
 
     x: Num
     y: Num
@@ -89,8 +91,8 @@ class RangeVal:
 
 
 class _Holding:
-    """A value that holds others: `weight` of them, counted with those inside and as often as they are met,
-    on `depth` levels. `kind` is its type, once that was asked for.
+    """A value that holds others: `weight` of them, counted with those inside and as often as they are met, on
+    `depth` levels. `kind` is its type, once that has been worked out.
     """
 
     __slots__ = ("depth", "kind", "weight")
@@ -135,7 +137,7 @@ class RecordVal(_Holding):
 
 @record(eq=False)
 class Instantiation:
-    """A call of a template, waiting for the name it is assigned to. `scope` is what its body sees."""
+    """A call of a template, waiting for the name it is assigned to. `scope` is the one that its body sees."""
 
     signature: Signature
     scope: object
@@ -146,7 +148,7 @@ class Instantiation:
 
 @record(slots=True)
 class Nothing:
-    """What an expression with a reported error yields; whatever it touches yields nothing too."""
+    """The value of an expression with a reported error; whatever it touches is nothing too."""
 
 
 class Array:
@@ -185,10 +187,10 @@ class Pattern(Array):
 class StructureCopy:
     """A structure yet to be made as a copy of another, waiting for the name it is assigned to.
 
-    source  what is copied: a structure, or a template that is instantiated for the purpose
-    motion  what places it, in the frame of the structure that holds it (see building.motion)
+    source  a structure, or a template to instantiate
+    motion  its placement, in the frame of the structure that holds it (see building.motion)
     node    the call that asks for it
-    is_laid the motion alone says where the instance of a template stands
+    is_laid the motion alone places the instance of a template
     """
 
     source: Structure | Instantiation
@@ -198,7 +200,7 @@ class StructureCopy:
 
 
 class Namespace:
-    """What `import "p" as name` gives."""
+    """The names that `import "p" as name` brings."""
 
     def __init__(self, values: Mapping[str, object]) -> None:
         self.values = values
@@ -242,7 +244,7 @@ def point(x: Expression, y: Expression, status: Status = Status.REFERENCE) -> Po
 
 
 def members(value: Value) -> Sequence[Value] | None:
-    """Returns the items of something that can be run through; None for anything else."""
+    """Returns the items of a list or an array; None for anything else."""
     match value:
         case ListVal(items):
             return items
@@ -268,7 +270,7 @@ def type_of(value: Value) -> Type:
 
 @cache
 def _types() -> Mapping[type, Callable[[Any], Type]]:
-    """What makes the type of a value, by its class."""
+    """Returns functions that make the type of a value, by its class."""
     from aidl_lang.building.boxes import Box
     from aidl_lang.building.model import Condition, Geometry, Structure
 
@@ -303,5 +305,5 @@ def _list_type(items: Sequence[Value]) -> Type:
 
 
 def kind_of(value: Value) -> str:
-    """What a value is, for messages: `a length`, `an angle`, `a structure`."""
+    """Returns the kind of a value for messages: `a length`, `an angle`, `a structure`."""
     return with_article(type_of(value))

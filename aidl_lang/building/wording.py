@@ -1,7 +1,7 @@
-"""A statement that constrains, kept so that it may be read again in other words where it stands.
+"""A statement that constrains, kept so that it can be read again in other words at its place.
 
-Messages about conflicts try other numbers in it: what a number does to the equations is told by no table but
-by the definitions themselves, those of a user as well as those of the library.
+Messages about conflicts try other numbers in it: only the definitions themselves, a user's as well as the
+library's, decide what a number does to the equations.
 """
 
 from __future__ import annotations
@@ -25,7 +25,9 @@ Read = Callable[[Interpreter, ast.Expression, Env], Value]
 
 @record(eq=False)
 class Wording:
-    """`node` is the statement as written; `read` evaluates one in its stead."""
+    """A statement that can be read again: `node` is the statement as written; `read` evaluates one in its
+    stead.
+    """
 
     node: ast.Expression
     it: Interpreter
@@ -33,13 +35,15 @@ class Wording:
     read: Read
 
     def comparisons(self, node: ast.Expression) -> tuple[Comparison, ...]:
-        """What `node` would state here; nothing if it makes no sense or is decided already."""
+        """Returns the comparisons that `node` would state here; none if it makes no sense or is decided
+        already.
+        """
         value = self.value(node)
         return tuple(value.comparisons()) if isinstance(value, Condition) else ()
 
     def dials(self) -> Iterator[tuple[ast.Expression, float]]:
         """Yields the literals and the names of constants in the statement with their values, in mm or
-        degrees; a literal with its sign. Indices are none: they say which thing is meant.
+        degrees; a literal with its sign. Indices are left out: they choose a thing.
         """
         stack: list[ast.Node] = [self.node]
         while stack:
@@ -54,7 +58,7 @@ class Wording:
                     stack.extend(reversed(list(ast.children(other))))
 
     def held(self) -> Iterator[str]:
-        """What the statement mentions and no solving moves."""
+        """Yields the texts of parts of the statement that no solving moves."""
         stack: list[ast.Node] = [self.node]
         while stack:
             node = stack.pop()
@@ -64,9 +68,7 @@ class Wording:
                 stack.extend(reversed(list(ast.children(node))))
 
     def named(self) -> Iterator[Geometry | Structure]:
-        """Yields the geometry and structures of which the statement speaks, as far as each name in it
-        leads.
-        """
+        """Yields the geometry and structures that the statement mentions, as far as each name in it leads."""
         stack: list[ast.Node] = [self.node]
         while stack:
             node = stack.pop()
@@ -80,14 +82,14 @@ class Wording:
             stack.extend(reversed(list(ast.children(node))))
 
     def param(self, name: ast.Expression) -> ast.Param | None:
-        """Returns the declaration of a `param` that nothing but this name reads."""
+        """Returns the declaration of a `param` that nothing but this name reads; None for other names."""
         uses = self.it.program.resolution.uses
         symbol = uses.get(name)
         readers = [node for node, other in uses.items() if other is symbol and isinstance(node, ast.Name)]
         return symbol.node if symbol and len(readers) == 1 and isinstance(symbol.node, ast.Param) else None
 
     def value(self, node: ast.Expression) -> Value | None:
-        """What a part of the statement is where it stands; None if that takes too long."""
+        """Returns the value of a part of the statement at its place; None if that takes too long."""
         it = self.it
         try:
             with limited_to(it.limits.seconds):

@@ -90,7 +90,7 @@ overlaps(a, b)
 
 
 def _signature(declaration: str) -> Signature:
-    """`name(parameter: type, optional: type?)`; `name(**)` takes arguments of any name."""
+    """Reads `name(parameter: type, optional: type?)`; `name(**)` takes arguments of any name."""
     name, _, inside = declaration.rstrip(")").partition("(")
     if inside == "**":
         return Signature(name, (), takes_any=True, standard=True)
@@ -129,7 +129,7 @@ CUTS = frozenset(
 """Ready-made cuts of the library: holes in a solid or an assembly, outlines elsewhere."""
 
 COPYING = frozenset({"mirror", "copy"}) | EDITS
-"""Operations that give what they are given, elsewhere."""
+"""Operations whose results are their operands, elsewhere."""
 
 DERIVING = COPYING | OUTLINES
 """Operations that make new geometry, or a new structure, of one that is there, an ancestor's included."""
@@ -150,7 +150,7 @@ EVERYWHERE = ("self", "origin", "x_axis", "y_axis")
 """Names that every structure has."""
 
 ROTATION = "rotation"
-"""What a structure is asked for its turn against the one around it."""
+"""The field of a structure that is its turn against the one around it."""
 
 MATH = ("math", "np", "numpy")
 """Modules of other languages whose functions are known here by the same names: `math.sqrt(2)`, `np.pi`."""
@@ -158,14 +158,14 @@ MATH = ("math", "np", "numpy")
 ATTRIBUTES = (
     *("orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note"),
 )
-"""What may stand behind `@` before a definition; `colour` is another spelling of `color`."""
+"""Names that may stand behind `@` before a definition; `colour` is another spelling of `color`."""
 
 WORDED = frozenset({"orientation", "color", "colour", "layer", "material", "note"})
 """Attributes whose argument may be a bare word, as in `@orientation(front)` and `@color(red)`."""
 
 
 def is_word(argument: ast.Argument, candidates: Iterable[Signature]) -> bool:
-    """Tells whether a bare name is the word itself: given by name to a parameter that takes a text."""
+    """Tells whether a bare name is a word itself: given by name to a parameter that takes a text."""
     if argument.name is None or not isinstance(argument.value, ast.Name) or argument.value.text not in WORDS:
         return False
     word = fold(argument.name.text)

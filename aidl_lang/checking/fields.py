@@ -1,4 +1,4 @@
-"""What may stand behind a dot in every program: the fields of primitives and boxes, and their types."""
+"""The fields that every program can name behind a dot, of primitives and boxes, and their types."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ PATTERN: Mapping[str, Mapping[str, Type]] = {
     "grid": _fields("center start", "pitch pitch_x pitch_y"),
     "polar_array": _fields("center", "radius", "start sweep"),
 }
-"""What a pattern can be asked for, beside its members."""
+"""Fields of a pattern, beside its members."""
 
 OUTLINE = frozenset(
     [
@@ -84,7 +84,7 @@ OUTLINE = frozenset(
         "members",
     ]
 )
-"""Names that operations give to shapes beside what their definitions declare; the builder knows better."""
+"""Names that operations give to shapes beside those of their definitions; only the builder knows which."""
 
 
 FINISH: Mapping[str, Type] = dict.fromkeys(sorted(FINISHES), _LENGTH)
@@ -110,4 +110,4 @@ RESULTS: Mapping[str, Type] = {
     "clearance": _LENGTH,
     "bb": BoxType(),
 }
-"""Types of what the built-in functions give, where it does not depend on their arguments."""
+"""Types of the results of built-in functions that do not depend on their arguments."""

@@ -1,4 +1,4 @@
-"""Types, what a parameter accepts, and the choice among overloads.
+"""Types, the rules by which a parameter accepts them, and the choice among overloads.
 
 One choice serves the checker, which knows types only, and the interpreter, which takes the types of values.
 """
@@ -19,7 +19,9 @@ from aidl_lang.syntax import ast
 
 @record()
 class AnyType:
-    """Not known before the program is built: accepted everywhere, checked again when values are there."""
+    """The type of a value unknown before the program is built: accepted everywhere, checked again when values
+    are there.
+    """
 
     def __str__(self) -> str:
         return "anything"
@@ -27,7 +29,7 @@ class AnyType:
 
 @record()
 class NumberType:
-    """`dimension` is None for a bare number."""
+    """The type of a number; `dimension` is None for a bare one."""
 
     dimension: MaybeDimension
     whole: bool = False
@@ -44,7 +46,7 @@ class TextType:
 
 @record()
 class TruthType:
-    """true and false, and conditions over unknowns."""
+    """The type of true and false, and of conditions over unknowns."""
 
     def __str__(self) -> str:
         return "condition"
@@ -70,7 +72,7 @@ class RecordType:
 
 @record()
 class ListType:
-    """A list or an array; `length` where it is known."""
+    """The type of a list or an array; `length` if it is known."""
 
     element: Type
     length: int | None = None
@@ -81,7 +83,9 @@ class ListType:
 
 @record()
 class GeometryType:
-    """`kind` is a primitive (`line`, `arc`, `circle`, …), the name of a shape, or "" for any geometry."""
+    """The type of geometry: `kind` is a primitive (`line`, `arc`, `circle`, …), the name of a shape, or ""
+    for any.
+    """
 
     kind: str
 
@@ -97,7 +101,7 @@ class StructureType:
 
 @record()
 class BoxType:
-    """The box of a structure, a geometry or a list of them."""
+    """The type of the box of a structure, a geometry or a list of them."""
 
     def __str__(self) -> str:
         return "box"
@@ -105,7 +109,7 @@ class BoxType:
 
 @record()
 class ModuleType:
-    """The names of a file: no value, so no parameter asks for it."""
+    """The type of a file's names: no value, so no parameter asks for it."""
 
     def __str__(self) -> str:
         return "module"
@@ -154,16 +158,16 @@ PARAMETER_TYPES: Mapping[str, Type] = {
 """The words that may stand behind `:` in a parameter; the name of a shape may stand there too."""
 
 PEERS = ("peer", "peers")
-"""Those that say of things, or of members of a list, that a constraint holds none of them by its place."""
+"""Types of parameters whose things, or members of a list, a constraint does not hold by their place."""
 
 
 def parameter_type(parameter: ast.Parameter, shapes: Iterable[str] = ()) -> Type | None:
-    """Returns the type a parameter asks for; None when the word is unknown."""
+    """Returns the type a parameter asks for; None if the word is unknown."""
     return type_named(parameter.type.text, shapes) if parameter.type is not None else ANY
 
 
 def type_named(word: str, shapes: Iterable[str] = ()) -> Type | None:
-    """Returns the type of a word, the name of a shape being one; None when it is unknown."""
+    """Returns the type that a word or the name of a shape stands for; None if it is unknown."""
     word = fold(word)
     if (known := PARAMETER_TYPES.get(word)) is not None:
         return known
@@ -171,7 +175,9 @@ def type_named(word: str, shapes: Iterable[str] = ()) -> Type | None:
 
 
 def accepts(wanted: Type, given: Type) -> int | None:
-    """How far `given` is from what a place wants: 0 exact, more for a conversion, None if it does not fit."""
+    """Returns how far `given` is from the wanted type: 0 exact, more for a conversion, None if it does not
+    fit.
+    """
     if isinstance(wanted, AnyType):
         return 4
     if isinstance(given, AnyType):
@@ -231,7 +237,7 @@ def _accepts_box(given: Type) -> int | None:
 
 @record()
 class Given:
-    """An argument of a call as the choice sees it; `name` is None for a positional one."""
+    """An argument of a call for the choice of an overload; `name` is None for a positional one."""
 
     name: str | None
     type: Type
@@ -239,8 +245,8 @@ class Given:
 
 @record(eq=False)
 class Signature:
-    """A callable: `node` is its definition and `kind` what sort of one, both None for what is built in;
-    `standard` is what every program has. One that `takes_any` takes every named argument.
+    """A callable: `node` is its definition and `kind` the class of that, both None for a built-in one;
+    `standard` ones belong to every program. One that `takes_any` takes every named argument.
     """
 
     name: str
@@ -263,12 +269,12 @@ class Signature:
 
     @cached_property
     def needed(self) -> int:
-        """How many parameters have to be given something."""
+        """The number of parameters without a default."""
         return sum(not optional for _, _, optional in self.parameters)
 
     def may_take(self, positional: int, words: Set[str]) -> bool:
         """Tells whether so many arguments without a name and these (folded) names could fit, whatever their
-        types: a look that spares most overloads of a name the matching.
+        types: a quick look that saves matching most overloads.
         """
         if self.takes_any or self.gathers:
             return self.takes_any or words <= self.by_fold.keys()
@@ -286,8 +292,8 @@ class Signature:
 
 @record()
 class Source:
-    """Where an argument comes from: the one at `index` of the call, one of its two parts, or the point of it
-    as x and of `other` as y.
+    """The origin of an argument: the one at `index` of the call, one of its two parts, or the point of it as
+    x and of `other` as y.
     """
 
     index: int
@@ -297,10 +303,10 @@ class Source:
 
 @record()
 class Binding:
-    """Which argument goes to which parameter: parameter name → indices into the arguments.
+    """The arguments of each parameter: parameter name → indices into the arguments.
 
-    Several indices (or `gathered`) make a list. `positional` are the indices given without a name. Where
-    `sources` are told, they are the arguments, made of those of the call.
+    Several indices (or `gathered`) make a list. `positional` are the indices given without a name. `sources`,
+    if there are any, are the arguments, made of those of the call.
     """
 
     signature: Signature
@@ -312,12 +318,12 @@ class Binding:
 
     @cached_property
     def taken(self) -> tuple[tuple[str, Type, tuple[int, ...]], ...]:
-        """The parameters that are given something: name, type, and the indices of what."""
+        """The parameters that get arguments: name, type, and the indices of these."""
         given = self.arguments
         return tuple((n, kind, given[n]) for n, kind, _ in self.signature.parameters if n in given)
 
     def parameter_of(self, index: int) -> str | None:
-        """Returns the parameter that gets an argument of the call, whole."""
+        """Returns the parameter that gets an argument of the call as a whole."""
         return self._meant.get(index)
 
     @cached_property
@@ -333,9 +339,9 @@ class Binding:
 
 @record()
 class Mismatch:
-    """Why a candidate does not fit; `argument` is the index of the argument to blame, if one is; `meanings`
-    are the parameters between which its name does not choose; `kinds` are what is wanted and what is given,
-    where these differ.
+    """The reason why a candidate does not fit; `argument` is the index of the argument to blame, if one is;
+    `meanings` are the parameters between which its name does not choose; `kinds` are the wanted and the given
+    type, if these differ.
     """
 
     signature: Signature
@@ -346,7 +352,7 @@ class Mismatch:
 
     @property
     def reason(self) -> str:
-        """What is said of it: most candidates that do not fit are never spoken of."""
+        """The reason in words, made when it is read: most mismatches are never reported."""
         if self.kinds is None:
             return self.problem
         wanted, given = map(with_article, self.kinds)
@@ -354,14 +360,14 @@ class Mismatch:
 
 
 _GATHERED = 20
-"""Collecting arguments into a list is the last reading: an overload that names them is meant before."""
+"""The cost of collecting arguments into a list: an overload that names them comes before."""
 
 
 def bind(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch:
-    """Match arguments to the parameters of one callable.
+    """Matches arguments to the parameters of one callable.
 
-    Where the first parameter is a list and the arguments do not fit as they stand, all positional ones are
-    its members: `align_left(a, b, c)`, `row(windows, door, gap: 3)`.
+    If the first parameter is a list and the arguments do not fit as they stand, all positional ones are its
+    members: `align_left(a, b, c)`, `row(windows, door, gap: 3)`.
     """
     plain = _bind(signature, given, gather=False)
     if isinstance(plain, Binding) or not signature.gathers or not any(g.name is None for g in given):
@@ -404,13 +410,15 @@ def _fitted(
     gathered: str | None,
     positional: tuple[int, ...],
 ) -> Binding | Mismatch:
-    """Tells whether every parameter is given something that fits, and how far it is from what it wants."""
+    """Returns the binding with its distance from the wanted types, or the parameter that gets nothing that
+    fits.
+    """
     distance, defaulted = (_GATHERED if gathered is not None else 0), 0
     for name, kind, optional in signature.parameters:
         if name not in arguments:
             if not optional:
                 return Mismatch(signature, f"needs `{name}`")
-            defaulted += not isinstance(kind, TruthType)  # a flag that nobody raised assumes nothing
+            defaulted += not isinstance(kind, TruthType)  # a flag left out assumes nothing
         elif name != gathered:
             index = arguments[name][0]
             step = accepts(kind, given[index].type)
@@ -421,7 +429,7 @@ def _fitted(
 
 
 def with_article(kind: object) -> str:
-    """Returns `a length`, `an angle`; what has no number of its own as it is."""
+    """Returns `a length`, `an angle`; a word that takes no article as it is."""
     return prose.with_article(kind, ("anything", "geometry", "text"))
 
 
