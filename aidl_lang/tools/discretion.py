@@ -1,4 +1,4 @@
-"""What a language model sees of files that it did not write.
+"""Hides from a language model the texts of files that it did not write.
 
 A program that nobody has read may import the AIDL programs below a folder, and use what they define; the
 text of these is not for the one who wrote it. So nothing is imported that is no whole program (`Programs`),
@@ -29,8 +29,8 @@ _QUOTED = re.compile(r"`[^`]*`")
 
 @record()
 class Programs:
-    """The files of a world that are AIDL programs without slips in their syntax. What else has the suffix of
-    one is refused as a whole, as whatever could be said of it would quote it.
+    """The files of a world that are AIDL programs without syntax errors. Any other file with their suffix is
+    refused as a whole, since any message on it would quote it.
     """
 
     world: World
@@ -44,13 +44,13 @@ class Programs:
 
 @record()
 class Reader:
-    """One who wrote these files (text by name). The standard library is everybody's to read."""
+    """The author of these files (text by name). The standard library is readable for all."""
 
     files: Mapping[str, str]
 
     @staticmethod
     def of(source: SourceFile) -> Reader:
-        """The author of one file."""
+        """Returns the author of one file."""
         return Reader({source.name: source.text})
 
     @cached_property
@@ -58,16 +58,16 @@ class Reader:
         return _squeezed("\n".join(self.files.values()))
 
     def knows(self, span: Span) -> bool:
-        """Whether the text at a place is the reader's own, or the library's."""
+        """True for a text of the reader's own, or the library's."""
         source = span.source
         return source.name in self.files or any(source is known for known in library.load().sources)
 
     def diagnostics(self, found: Iterable[Diagnostic]) -> list[Diagnostic]:
-        """Diagnostics as the reader may see them; remarks on files of others are left out."""
+        """Returns diagnostics as the reader may see them, without remarks on others' files."""
         return [told for d in found if (told := self._told(d)) is not None]
 
     def compiled(self, compiled: Compiled) -> Compiled:
-        """What came of a program, as its author may see it."""
+        """Returns the outcome of a program, as its author may see it."""
         return replace(
             compiled,
             diagnostics=self.diagnostics(compiled.diagnostics),
@@ -104,7 +104,7 @@ class Reader:
         return fix if fix is not None and all(self.knows(edit.span) for edit in fix.edits) else None
 
     def _redacted(self, text: str) -> str:
-        """A sentence in which only what the reader wrote is quoted."""
+        """Removes all quotations from a sentence except those of the reader's own text."""
         return _QUOTED.sub(lambda found: self._quote(found[0]), text)
 
     def _quote(self, quoted: str) -> str:

@@ -1,4 +1,4 @@
-"""Applying the fixes that are sure until there is nothing left to mend, and keeping what is better for it."""
+"""Applies sure fixes until none is left, and keeps those that improve the program."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
 
 _STEPS = 100
-"""Times that a program is made better, and no more."""
+"""Most times that a program is improved."""
 _AHEAD = 6
 """Times that fixes may bring more errors to light before they are taken back."""
 _SHARE = 0.5
-"""Of the time that building a program may take: all looks at it together, but for the first."""
+"""Time for all checks but the first, as a share of that for building a program."""
 _LEAST_SECONDS = 0.05
-"""That a program is given to be looked at again."""
+"""Least seconds for checking a program again."""
 _CUT_OFF = "E08"
-"""The family of findings that tell of limits: there may be more to say of the program."""
+"""The family of findings about limits: the program may have more errors."""
 
 
 @record()
@@ -42,7 +42,7 @@ class Mended:
 def mend(
     source: SourceFile, world: World | None = None, settings: pipeline.Settings = pipeline.Settings()
 ) -> Mended:
-    """Apply the fixes that are sure, and look again until nothing changes.
+    """Applies sure fixes, and checks again until nothing changes.
 
     What was done is kept where the program has no more errors for it, states all that it stated, and does not
     return to an earlier text. Where all fixes together make it worse, parts of them are tried. No look after
@@ -52,7 +52,7 @@ def mend(
 
 
 class _OutOfTimeError(Exception):
-    """There is no time to look at the program again."""
+    """Raised if there is no time to check the program again."""
 
 
 class _Mender:
@@ -78,14 +78,16 @@ class _Mender:
         return now
 
     def _better(self, now: Mended) -> Mended | None:
-        """The program after the largest part of its fixes that does it good."""
+        """Returns the program after the largest part of its fixes that improves it."""
         for part in _parts([d for d in now.diagnostics if d.fix is not None and d.fix.is_sure]):
             if (after := self._after(now, part)) is not None:
                 return after
         return None
 
     def _after(self, now: Mended, part: Sequence[Diagnostic]) -> Mended | None:
-        """The program after some of its fixes and those that they bring to light; None if it is worse."""
+        """Returns the program after some of its fixes and those that they bring to light; None if it is
+        worse.
+        """
         stated, errors, after = constraining(now.source), _errors(now.diagnostics), now
         for _ in range(_AHEAD):
             text, applied = apply_fixes(after.source, part)
@@ -110,7 +112,7 @@ class _Mender:
 
 
 def _parts(found: Sequence[Diagnostic]) -> Iterator[Sequence[Diagnostic]]:
-    """All findings, the halves of them, the quarters, and so on down to each by itself."""
+    """Yields all findings, the halves of them, the quarters, and so on down to each by itself."""
     size = len(found)
     while size:
         yield from (found[start : start + size] for start in range(0, len(found), size))
@@ -122,8 +124,8 @@ def _errors(found: Sequence[Diagnostic]) -> int:
 
 
 def constraining(source: SourceFile) -> int:
-    """How many statements of a program constrain, wish or assert, as far as it can be read. A call by itself
-    does where it calls a constraint, or stands where nothing else can.
+    """Counts the statements that constrain, wish or assert, as far as the program can be read. A call by
+    itself counts if it calls a constraint, or stands where nothing else can.
     """
     module = parse(source).module
     nodes = list(ast.walk(module))
@@ -148,7 +150,7 @@ def constraining(source: SourceFile) -> int:
 
 @cache
 def _known_constraints() -> frozenset[str]:
-    """The names of the constraints of the library, and the other names for them, folded."""
+    """Returns the names of the library's constraints, with their synonyms, folded."""
     known = library.load()
     names = {
         name
@@ -160,5 +162,5 @@ def _known_constraints() -> frozenset[str]:
 
 
 def _outlook(state: Mended) -> object:
-    """By what a state is known again: the text, blanks aside, and what there is to say of it."""
+    """Returns a key of a state: the text without blanks, and its messages."""
     return "".join(state.source.text.split()), tuple(d.message for d in state.diagnostics)

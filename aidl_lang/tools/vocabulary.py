@@ -129,22 +129,22 @@ class Vocabulary:
 
     @property
     def keywords(self) -> tuple[str, ...]:
-        """All words that the grammar itself has."""
+        """The keywords of the grammar."""
         return tuple(word for name in _KEYWORDS for word in getattr(self, name))
 
     @property
     def signs(self) -> tuple[str, ...]:
-        """All signs that the grammar has."""
+        """The signs of the grammar."""
         return tuple(sign for name in _SIGNS for sign in getattr(self, name))
 
     def to_dict(self) -> dict[str, object]:
-        """The form in JSON: every class by its name."""
+        """Returns the form in JSON: every class by its name."""
         lists = {f.name: list(getattr(self, f.name)) for f in fields(self)}
         return {**lists, "synonyms": dict(self.synonyms)}
 
     def named(self) -> dict[str, str]:
-        """Every name of the library and of what is built in, with the name of its class; a synonym has that
-        of what it stands for.
+        """Returns every public and built-in name, with the name of its class; a synonym has that of its
+        meaning.
         """
         found = {word: name for name in NAMES for word in getattr(self, name)}
         return {**found, **{word: found[target] for word, target in self.synonyms}}
@@ -159,7 +159,7 @@ NAMES = (
 
 @cache
 def vocabulary() -> Vocabulary:
-    """The words of this installation."""
+    """Returns the words of this installation."""
     tables = load_tables()
     words = tables.reserved | tables.soft_words
     starts = {word for state in tables.statement_states for word in tables.actions[state] if word in words}
@@ -190,7 +190,9 @@ def vocabulary() -> Vocabulary:
 
 
 def unclaimed() -> frozenset[str]:
-    """Words and signs of the grammar that no class has: empty unless somebody is changing the grammar."""
+    """Returns words and signs of the grammar without a class: empty unless somebody is changing the
+    grammar.
+    """
     claimed = {
         word for classes in (_KEYWORDS, _SIGNS) for listed in classes.values() for word in listed.split()
     }
@@ -198,19 +200,19 @@ def unclaimed() -> frozenset[str]:
 
 
 def _present(listed: str, words: Iterable[str]) -> tuple[str, ...]:
-    """The words of a list that the grammar has; it may have lost one."""
+    """Returns the words of a list that the grammar has; it may have lost one."""
     there = frozenset(words)
     return tuple(word for word in listed.split() if word in there)
 
 
 def _unit_signs() -> tuple[str, ...]:
-    """Units that are no words, as the number of the grammar has them."""
+    """Returns the units that are no words, as the number of the grammar has them."""
     alternatives = load_tables().patterns["NUMBER"].rpartition("(")[2].rstrip("?").rstrip(")").split("|")
     return tuple(unit for unit in alternatives if not unit.isidentifier())
 
 
 def _named() -> dict[str, tuple[str, ...]]:
-    """The public names by class, in the order of the reference."""
+    """Returns the public names by class, in the order of the reference."""
     found: dict[str, list[str]] = {name: [] for name in NAMES}
     for entry in reference().entries.values():
         if entry.sort != "word":

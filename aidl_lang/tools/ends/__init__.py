@@ -1,4 +1,4 @@
-"""What becomes of a program at the ends of its params: each is turned alone, as far as its range goes."""
+"""Tries a program at the ends of its params: each is set alone, to both ends of its range."""
 
 from aidl_lang.tools.ends.results import Sweep, Turned
 from aidl_lang.tools.ends.searching import sweep

@@ -1,4 +1,4 @@
-"""What was found at the ends of params."""
+"""The results of trying the ends of params."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ class Fault:
 
     @property
     def place(self) -> tuple[str, str | None, int | None]:
-        """By what it is known again at another value."""
+        """Returns the key by which it is recognised at another value."""
         return self.code, self.file, self.line
 
 
 @record()
 class Tried:
-    """What came of one value. `faults` has errors, or else the warnings that there are."""
+    """The result of one value. `faults` has its errors, or else its warnings."""
 
     ok: bool
     faults: tuple[Fault, ...] = ()

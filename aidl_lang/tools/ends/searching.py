@@ -1,4 +1,4 @@
-"""Both ends of each param, and how far it may be turned where one of them fails: many compiles at a time."""
+"""Tries both ends of each param, and searches the limit if an end fails: many compiles at a time."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from aidl_lang.tools.ends.trying import Job, fault, tried
 from aidl_lang.tools.ends.values import Value, ends, limit
 
 LONGEST = 300.0
-"""Seconds for all of it; what is not done by then is left, and counted."""
+"""Seconds for all of it; ends left then are counted."""
 _MOST = 200
-"""Ends that are tried."""
+"""Most ends that are tried."""
 _PATIENCE = 15.0
-"""Seconds for one compile, beyond which it is not looked for where the failing begins."""
+"""Seconds for one compile, beyond which the limit is not searched."""
 _PAUSE = 0.1
 
 Asking: TypeAlias = tuple[Value, bool]
-"""A value to be tried, and whether what is wrong with it is wanted in words."""
+"""A value to try, and whether its faults are to be explained."""
 Course: TypeAlias = Generator[Asking, Tried, Turned]
 
 
@@ -36,8 +36,8 @@ def sweep(
     progress: Callable[[int, int], None] = lambda done, count: None,
     seconds: float = LONGEST,
 ) -> Sweep:
-    """What becomes of a program that works at the ends of its params. `known` is what is said of it as it is
-    written; `progress` is told how many ends are done, of how many.
+    """Tries a working program at the ends of its params. `known` are its diagnostics as written; `progress`
+    is told how many ends are done, of how many.
 
     Raises Cancelled where nobody waits for it any more (see `cancelling`).
     """
@@ -58,7 +58,7 @@ def _rangeless(knobs: Sequence[Knob]) -> tuple[Knob, ...]:
 
 
 def _course(knob: Knob, end: Value, known: frozenset[tuple[str, str | None, int | None]]) -> Course:
-    """The value at an end; where it fails, the way to the last value that does not."""
+    """Tries the value at an end; if it fails, searches the last value that does not."""
     last = yield end, True
     if last.ok:
         return Turned(knob, end, replace(last, faults=_new(last.faults, known)))
@@ -83,7 +83,7 @@ def _new(faults: Sequence[Fault], known: frozenset[tuple[str, str | None, int | 
 
 
 class _Run:
-    """Courses that are followed side by side, each a compile after the other."""
+    """Searches side by side, each one compile after the other."""
 
     def __init__(
         self,
@@ -100,7 +100,7 @@ class _Run:
         self._waiting: dict[Future[Tried], int] = {}
 
     def turned(self) -> tuple[Turned, ...]:
-        """What the courses found, in their order, as far as there was time."""
+        """Returns the results of the searches, in their order, as far as there was time."""
         workers = Guarded(min(count(), len(self.courses)), "aidl_lang.tools.ends.trying")
         try:
             self.progress(0, len(self.courses))
@@ -130,7 +130,7 @@ class _Run:
 
 
 def _came(future: Future[Tried]) -> Tried:
-    """What a process found, or how it ended."""
+    """Returns the result of a process, or the way it ended."""
     error = future.exception()
     if error is None or (limit := limit_met(error)) is None:
         return future.result()

@@ -1,4 +1,4 @@
-"""A program with one param set, compiled in a process of its own."""
+"""Compiles a program with one param set, in a process of its own."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from aidl_lang.tools.ends.results import Fault, Tried
 from aidl_lang.tools.ends.values import Value
 
 _SPARE = 10.0
-"""Seconds that a process gets beyond what the limits allow: starting, checking, reasons."""
+"""Seconds that a process gets beyond the limits: for starting, checking, reasons."""
 
 
 @record()
 class Job:
-    """A program as it can be handed to another process."""
+    """A program as passed to another process."""
 
     name: str
     text: str
@@ -29,17 +29,17 @@ class Job:
 
     @property
     def seconds(self) -> float:
-        """How long one compile may take."""
+        """Returns the time that one compile may take."""
         limits = self.settings
         return limits.building.seconds + limits.solving.seconds + limits.drawing + _SPARE
 
 
 _known: dict[Job, Front] = {}
-"""What this process has checked already: the same program, over and over."""
+"""The program that this process has checked already: it is the same over and over."""
 
 
 def tried(job: Job, path: str, value: Value, explained: bool) -> Tried:
-    """What comes of a value. Where it need not be `explained`, conflicts are not looked into."""
+    """Returns the result of a value. Conflicts are looked into only if `explained`."""
     start = time.perf_counter()
     settings = replace(job.settings, solving=replace(job.settings.solving, explain=explained))
     source = SourceFile(job.name, job.text)

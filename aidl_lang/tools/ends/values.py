@@ -1,6 +1,4 @@
-"""The values of a param that are tried: those at the ends of its range, and on the way there from the written
-one.
-"""
+"""The values of a param to try: the ends of its range, and values between them and the written one."""
 
 from __future__ import annotations
 
@@ -14,12 +12,12 @@ Value: TypeAlias = float | str | bool
 
 _SLACK = 1e-9
 _FINEST = 1e-3
-"""Part of the way to an end to which a limit is told."""
+"""Accuracy of a limit, as a part of the way to the end."""
 _COARSEST = 0.125
 
 
 def ends(knob: Knob) -> list[Value]:
-    """The ends of the range, or all choices, but for the value as written; nothing for a number or text
+    """Returns the ends of the range, or all choices, except the value as written; none for a number or text
     without a range.
     """
     if knob.choices:
@@ -33,12 +31,12 @@ def ends(knob: Knob) -> list[Value]:
 
 
 def has_range(knob: Knob) -> bool:
-    """Whether there is anything to try of a param."""
+    """True for a param with values to try."""
     return bool(ends(knob))
 
 
 def allowed(knob: Knob, aim: float) -> float:
-    """The value nearest to `aim` that the range and the step of a knob allow."""
+    """Returns the value nearest to `aim` that the range and the step of a knob allow."""
     low, high = knob.low, knob.high
     if low is not None and high is not None:
         aim = min(max(aim, low), high)
@@ -69,7 +67,7 @@ def limit(knob: Knob, end: float) -> Generator[float, bool, tuple[float, float]]
 
 
 def _steps(knob: Knob, end: float) -> Iterator[float]:
-    """From coarse to fine, so that a limit is a short number where it may be one."""
+    """Yields steps from coarse to fine, so that a limit is a short number if it may be one."""
     way = abs(end - float(knob.value))
     if knob.step:
         yield knob.step
@@ -86,13 +84,13 @@ def _steps(knob: Knob, end: float) -> Iterator[float]:
 
 
 def is_whole(knob: Knob) -> bool:
-    """Whether a number is written so that it may be a count."""
+    """True for a number written so that it may be a count."""
     numbers = (knob.value, knob.low, knob.high)
     return knob.unit == "" and all(isinstance(n, float | int) and float(n).is_integer() for n in numbers)
 
 
 def _between(works: float, fails: float, step: float, knob: Knob) -> float | None:
-    """The multiple of a step nearest to the middle; None where there is none in between."""
+    """Returns the multiple of a step nearest to the middle; None without one in between."""
     start = knob.low if knob.step and knob.low is not None else 0.0
     middle = ((works + fails) / 2 - start) / step
     near = (rounded(start + k * step) for k in (round(middle), math.floor(middle), math.ceil(middle)))

@@ -1,4 +1,4 @@
-"""What was found at the ends of params, in sentences and as data."""
+"""The results at the ends of params, as sentences and as data."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from aidl_lang.tools.ends.values import Value
 
 _ASSERT, _CORNER = "E0604", "E0518"
 _TOLD = 3
-"""Faults of one value that a sentence names."""
+"""Most faults of one value that a sentence names."""
 
 
 def valued(knob: Knob, value: Value) -> str:
-    """A value as the language writes it."""
+    """Returns a value as the language writes it."""
     return literal(value, 12, knob.unit)
 
 
 def sentence(turned: Turned, name: str) -> str:
-    """What there is to say of an end, in a program of that name; empty where all is well."""
+    """Describes the faults at an end, in a program of that name; "" if there are none."""
     if not turned.tried.faults:
         return ""
     where = f"at `{turned.knob.path} = {valued(turned.knob, turned.value)}` "
@@ -32,7 +32,7 @@ def sentence(turned: Turned, name: str) -> str:
 
 
 def _places(tried: Tried) -> list[Fault]:
-    """One fault of each place: a line in a loop may have one in every turn."""
+    """Returns one fault of each place: a line in a loop may have one in every turn."""
     return list({fault.place: fault for fault in reversed(tried.faults)}.values())[::-1]
 
 
@@ -51,7 +51,7 @@ def _place(fault: Fault, name: str) -> str:
 
 
 def _limit(turned: Turned, name: str) -> str:
-    """How far the param may be turned, and what comes first then, if that is something else."""
+    """Describes how far the param may go, and the first fault beyond, if that is another one."""
     if turned.works is None or turned.beyond is None:
         return ""
     knob, (beyond, tried) = turned.knob, turned.beyond
@@ -73,7 +73,7 @@ def _subject(faults: Sequence[Fault]) -> str:
 
 
 def described(sweep: Sweep) -> list[dict[str, Any]]:
-    """Everything that was tried, as JSON has it."""
+    """Returns everything that was tried, as JSON has it."""
     return [_end(each) for each in sweep.turned]
 
 

@@ -1,4 +1,4 @@
-"""Between what the editor library says and what the protocol says."""
+"""Converts between the editor library and the protocol."""
 
 from __future__ import annotations
 
@@ -42,21 +42,21 @@ class Converter:
         return types.Range(types.Position(*of.position(span.start)), types.Position(*of.position(span.end)))
 
     def offset(self, position: types.Position) -> int:
-        """The offset in the text of the view."""
+        """Returns the offset of a position in the text of the view."""
         return self._of(self.view.source).offset(position.line, position.character)
 
     def span(self, wanted: types.Range) -> Span:
-        """The span in the text of the view."""
+        """Returns the span of a range in the text of the view."""
         start, end = sorted((self.offset(wanted.start), self.offset(wanted.end)))
         return self.view.span(start, end)
 
     def uri(self, source: SourceFile) -> str | None:
-        """The URI of a file; None for what is in none."""
+        """Returns the URI of a source; None for one without a file."""
         path = self.view.file(source)
         return None if path is None else self.uri_of(path)
 
     def uri_of(self, path: Path) -> str:
-        """The URI of a file; of two that mean the file of the document, its own."""
+        """Returns the URI of a file; of two that mean the file of the document, its own."""
         return self.own if path == self.view.path else self.documents.uri_of(path)
 
     def location(self, span: Span) -> types.Location | None:
@@ -70,7 +70,7 @@ class Converter:
         return [self.edit(edit) for edit in edits]
 
     def by_file(self, edits: Iterable[Edit]) -> dict[Path, list[Edit]]:
-        """Edits by the file that each belongs to; what is in no file is left out."""
+        """Groups edits by file; drops those without a file."""
         found: dict[Path, list[Edit]] = {}
         for edit in edits:
             if (path := self.view.file(edit.span.source)) is not None:
@@ -78,7 +78,9 @@ class Converter:
         return found
 
     def changes(self, edits: Mapping[Path, Sequence[Edit]], with_versions: bool) -> types.WorkspaceEdit:
-        """Edits by file; for a client that knows of versions, each to the version that it was made for."""
+        """Returns edits by file; for a client that knows of versions, each with the version it was made
+        for.
+        """
         made = {path: self.edits(each) for path, each in edits.items()}
         if not with_versions:
             return types.WorkspaceEdit(changes={self.uri_of(path): each for path, each in made.items()})

@@ -1,4 +1,4 @@
-"""The texts that are open in the editor, each with what is known of it so far."""
+"""The open texts of the editor, each with its newest views."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from aidl_lang.tools.ide.positions import Positions, Unit
 from aidl_lang.tools.ide.view import View
 
 _HALVES = re.compile("[\ud800-\udfff]")
-"""Halves of characters, which JSON can hold and no text may."""
+"""Surrogate halves of characters, which JSON can hold and no text may."""
 
 
 @record(eq=False)
@@ -30,7 +30,7 @@ class _Waiting:
 
 @record(eq=False)
 class VersionedView:
-    """A view with the version and the serial of the text that it is of."""
+    """A view with the version and the serial of its text."""
 
     view: View
     version: int
@@ -81,14 +81,14 @@ class Document:
             await asyncio.wait([waiting.ready], timeout=seconds)
 
     def tell(self) -> None:
-        """Lets those go on who wait for what is there now."""
+        """Wakes those who wait for the present state."""
         for waiting in list(self._waiting):
             if waiting.is_there() or not self.is_open:
                 self._waiting.remove(waiting)
                 waiting.ready.set_result(None)
 
     def apply(self, changes: Sequence[types.TextDocumentContentChangeEvent], unit: Unit) -> None:
-        """Change the text. Ranges that do not exist mean the nearest that do."""
+        """Changes the text. Ranges that do not exist mean the nearest that do."""
         for change in changes:
             text = _HALVES.sub("\ufffd", change.text)
             if isinstance(change, types.TextDocumentContentChangePartial):
@@ -130,16 +130,16 @@ class Documents:
         return document
 
     def at(self, path: Path) -> list[Document]:
-        """The documents of a file."""
+        """Returns the documents of a file."""
         return [document for document in self._by_uri.values() if document.path == path]
 
     def uri_of(self, path: Path) -> str:
-        """The URI of a file, as the client writes it where it has it open."""
+        """Returns the URI of a file, as the client writes it for an open one."""
         return next((document.uri for document in self.at(path)), "") or path.as_uri()
 
 
 def path_of(uri: str) -> Path:
-    """The file of a URI, links resolved. What lies on no disk gets a path where nothing lies."""
+    """Returns the file of a URI, links resolved. A URI outside any disk gets a path without a file."""
     try:
         file = uris.to_fs_path(uri)
         parts = urlsplit(uri)

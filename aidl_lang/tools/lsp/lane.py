@@ -1,4 +1,4 @@
-"""Work off the message thread: a thread each, and what waits for it."""
+"""Work off the message thread: single threads with queues."""
 
 from __future__ import annotations
 
@@ -16,33 +16,33 @@ from aidl_lang.common.records import record
 T = TypeVar("T")
 
 _STACK = 64 * 1024 * 1024
-"""Bytes for a thread: programs may be nested, and the interpreter follows them."""
+"""Stack of a thread, bytes: programs may be nested, and the interpreter follows them."""
 
 
 def _executor(name: str) -> ThreadPoolExecutor:
-    """One thread, which starts with the first piece of work."""
+    """Returns an executor of one thread, which starts with the first piece of work."""
     return ThreadPoolExecutor(max_workers=1, thread_name_prefix=name)
 
 
 def give_room() -> None:
-    """Threads that start from now on have room for nested programs."""
+    """Gives threads started from now on room for nested programs."""
     threading.stack_size(_STACK)
 
 
 @record(frozen=False, eq=False)
 class Job(Generic[T]):
-    """A piece of work: `work` runs in the lane's thread, `done` then on the loop with what came of it."""
+    """A piece of work: `work` runs in the lane's thread, `done` then on the loop with the result."""
 
     key: Hashable
     work: Callable[[], T]
     done: Callable[[Future[T]], None]
     dropped: Callable[[], None] = lambda: None
-    """Called instead of `done` where newer work of the same key takes its place before it has begun."""
+    """Called instead of `done` if newer work of the same key replaces it before it has begun."""
 
 
 class Lane:
-    """Does one piece of work at a time; of what waits under one key, only the newest. All methods belong to
-    the loop's thread; `finished` is called there after each piece.
+    """Does one piece of work at a time; of those waiting under one key, only the newest. All methods belong
+    to the loop's thread; `finished` is called there after each piece.
     """
 
     def __init__(self, name: str, loop: asyncio.AbstractEventLoop, finished: Callable[[], None]) -> None:
@@ -60,7 +60,7 @@ class Lane:
         return key in self._waiting
 
     def put(self, job: Job[Any], first: bool = False) -> None:
-        """Have work done in its turn, or as the next."""
+        """Queues work, last or as the next."""
         self.drop(job.key)
         if self._is_closed:
             job.dropped()
@@ -69,12 +69,12 @@ class Lane:
         self._start()
 
     def drop(self, key: Hashable) -> None:
-        """Forget what waits under a key; what runs already goes on."""
+        """Drops the work waiting under a key; running work goes on."""
         if (older := self._waiting.pop(key, None)) is not None:
             older.dropped()
 
     def close(self) -> None:
-        """Drop what waits and begin nothing more."""
+        """Drops waiting work and begins nothing more."""
         self._is_closed = True
         for key in list(self._waiting):
             self.drop(key)
@@ -87,7 +87,7 @@ class Lane:
             self._executor.submit(job.work).add_done_callback(partial(self._hand_over, job))
 
     def _hand_over(self, job: Job[Any], future: Future[Any]) -> None:
-        """In the lane's thread, or in whichever cancels."""
+        """Passes a result to the loop, from the lane's thread or whichever cancels."""
         with suppress(RuntimeError):  # the loop has ended: nobody waits for this any more
             self._loop.call_soon_threadsafe(self._finish, job, future)
 
@@ -102,16 +102,14 @@ class Lane:
 
 
 class Answers:
-    """Answers questions one after the other, off the loop. A question that is taken back is not worked on
-    any further.
-    """
+    """Answers questions one after the other, off the loop. Work on a cancelled question stops."""
 
     def __init__(self, name: str) -> None:
         self._executor = _executor(name)
         self._is_closing = False
 
     async def ask(self, answer: Callable[[], T]) -> T:
-        """Raises what `answer` raises."""
+        """Returns the answer. Raises what `answer` raises."""
         unwanted = threading.Event()
 
         def work() -> T:
@@ -127,11 +125,11 @@ class Answers:
             raise
 
     def close(self) -> None:
-        """Give up what is being answered, and begin nothing more."""
+        """Cancels the present answer, and begins nothing more."""
         self._is_closing = True
         self._executor.shutdown(wait=False, cancel_futures=True)
 
 
 def gave_up(future: Future[Any]) -> bool:
-    """Whether a run was cancelled by what it asked in passing."""
+    """True for a run that was cancelled, by its future or while running."""
     return future.cancelled() or isinstance(future.exception(), Cancelled)

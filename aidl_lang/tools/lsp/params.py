@@ -1,6 +1,4 @@
-"""What requests of our own are asked with. Nothing is certain of what a client sends: what is of other types
-is refused.
-"""
+"""Parameters of our own requests. Clients may send anything: values of other types are refused."""
 
 from __future__ import annotations
 
@@ -20,7 +18,7 @@ Point: TypeAlias = tuple[float, float]
 T = TypeVar("T")
 
 _LONGEST = 8_000
-"""Characters of a name or a URI."""
+"""Most characters of a name or a URI."""
 
 
 @frozen(kw_only=True)
@@ -47,7 +45,7 @@ class Show(OfDocument):
 
 @frozen(kw_only=True)
 class OfVersion(OfDocument):
-    """`version` is that of the text that is meant; None: the text as it is."""
+    """`version` is that of the meant text; None: the text as it is."""
 
     version: int | None = None
 
@@ -72,7 +70,7 @@ class SetKnob(OfVersion):
 
 @frozen(kw_only=True)
 class Drag(OfVersion):
-    """To leave a point where it was dragged."""
+    """The parameters for leaving a point where it was dragged."""
 
     id: str
     to: Point
@@ -95,7 +93,7 @@ class Export(OfDocument):
 
 @frozen(kw_only=True)
 class EntryRequest:
-    """What was said of an entry of a list of completions."""
+    """The entry of a list of completions that is to be described."""
 
     uri: str
     list: int
@@ -104,7 +102,7 @@ class EntryRequest:
 
 @frozen(kw_only=True)
 class ActionRequest:
-    """What was said of a code action, to be worked out."""
+    """The code action that is to be carried out."""
 
     uri: str
     version: int
@@ -114,7 +112,7 @@ class ActionRequest:
 
 
 def read(params: object, kind: type[T]) -> T:
-    """Returns the parameters that plain data says; what is null is unsaid. Raises JsonRpcInvalidParams."""
+    """Returns the parameters in plain data; null values count as absent. Raises JsonRpcInvalidParams."""
     if not isinstance(params, Mapping):
         raise JsonRpcInvalidParams("the parameters are no object")
     try:
@@ -129,7 +127,7 @@ _IS: dict[type, Callable[[Any], bool]] = {
     int: lambda value: type(value) is int,
     float: lambda value: type(value) in (int, float) and abs(value) <= 1e300,
 }
-"""Whether plain data is of a type as it is: the library itself takes `"3"` for a number."""
+"""Checks that plain data has a type without conversion: the library itself takes `"3"` for a number."""
 
 
 def _plain(value: Any, kind: Any) -> Any:

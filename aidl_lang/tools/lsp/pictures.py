@@ -1,4 +1,4 @@
-"""The pictures of the documents that are shown: made after each run, and sent."""
+"""Pictures of the shown documents: made after each run, and sent."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from aidl_lang.tools.lsp.params import Show
 from aidl_lang.tools.lsp.server import Asked, Server
 
 _PAUSE = 0.25
-"""Seconds without a change after which it is looked into what can be dragged: that takes as long as a run."""
+"""Seconds without a change before handles are searched, which takes as long as a run."""
 
 Json: TypeAlias = dict[str, Any]
 Look: TypeAlias = tuple[frozenset[str], bool]
@@ -43,7 +43,7 @@ class _Shown:
     text: tuple[SourceFile, Json] | None = None
 
     def looks(self) -> dict[Look, list[str]]:
-        """The viewers that see the same picture."""
+        """Returns the viewers grouped by the picture they see."""
         return {
             look: [viewer for viewer, wanted in self.viewers.items() if wanted == look]
             for look in self.viewers.values()
@@ -51,9 +51,7 @@ class _Shown:
 
 
 class Pictures:
-    """Who sees what. A document that is shown is told of after each of its runs; what of it can be dragged
-    takes longer to find out, and follows.
-    """
+    """The viewers of documents. They are told after each run; handles take longer to find, and follow."""
 
     def __init__(self, server: Server) -> None:
         self.server = server
@@ -66,7 +64,7 @@ class Pictures:
         shown.viewers[wanted.viewer] = frozenset(wanted.show), wanted.source
 
     def close(self, document: Document, viewer: str) -> None:
-        """A viewer is told no more of a document."""
+        """Stops telling a viewer of a document."""
         shown = self._shown.get(document)
         if shown is not None and shown.viewers.pop(viewer, None) is not None and not shown.viewers:
             self._forget(document)
@@ -75,14 +73,14 @@ class Pictures:
         self._shown.pop(document, None)
 
     def tried(self, asked: Asked, document: Document, view: View, viewer: str) -> Json:
-        """The message for a view that is not that of the text. To be called in the solving thread."""
+        """Returns the message for a view of another text. To be called in the solving thread."""
         shown = self._shown.get(document, _Shown())
         layers, source = shown.viewers.get(viewer, _PLAIN)
         made = preview(view, layers, tried=True, known=shown.handles)
         return self._written(asked, made, view, shown, source)
 
     async def picture(self, document: Document, viewer: str, key: Hashable) -> Json | None:
-        """The message for the newest run; None where there was none. What can be dragged follows."""
+        """Returns the message for the newest run; None without one. Handles follow."""
         known = document.ran
         if known is None or not document.is_open:
             return None
@@ -127,7 +125,7 @@ class Pictures:
             self.server.protocol.tell("aidl/previewChanged", {"viewer": viewer, **message})
 
     async def _complete(self, document: Document, asked: Asked, made: Preview) -> None:
-        """Find out what can be dragged, and tell of the picture again if that is news."""
+        """Finds the handles, and sends the picture again if they are new."""
         await asyncio.sleep(_PAUSE)
         if document.ran is not asked.known or document not in self._shown:
             return
@@ -148,8 +146,8 @@ class Pictures:
     async def _work(
         self, key: Hashable, document: Document, function: Callable[[], T], *, first: bool = True
     ) -> T | None:
-        """In the solving thread; None where the document is closed, something newer asked, or, unless it goes
-        first, the text changed.
+        """Returns the result of a function run in the solving thread; None if the document is closed, a newer
+        request came, or, unless it goes first, the text changed.
         """
         serial = document.serial
 

@@ -1,4 +1,4 @@
-"""The protocol's own part: what pygls does, kept up where clients are hostile or hasty.
+"""The protocol's own part: pygls, made robust against hostile or hasty clients.
 
 pygls splits lines where the protocol does not, ends the process by itself, and leaves requests that it cannot
 read without an answer; this does otherwise.
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def converter() -> Converter:
-    """Reads messages. What methods of our own are asked with stays a plain dictionary."""
+    """Returns a reader of messages. Parameters of our own methods stay plain dictionaries."""
     made = get_converter()
     made.register_structure_hook(
         JsonRPCRequestMessage,
@@ -47,7 +47,7 @@ log = logging.getLogger(__name__)
 
 
 class Protocol(LanguageServerProtocol):
-    """`exit_code` is what the process ends with, once the client has asked for it."""
+    """`exit_code` is that of the process, once the client has asked it to end."""
 
     _server: Server
 
@@ -57,7 +57,7 @@ class Protocol(LanguageServerProtocol):
         self._is_initialized = False
 
     def receive(self, body: bytes) -> None:
-        """Deal with a message. A request that cannot be read is refused."""
+        """Handles a message. A request that cannot be read is refused."""
         try:
             data = json.loads(body)
         except (ValueError, RecursionError):
@@ -93,7 +93,7 @@ class Protocol(LanguageServerProtocol):
         self._send_data({"jsonrpc": self.VERSION, "id": asked, "error": error})
 
     def tell(self, method: str, params: dict[str, Any]) -> None:
-        """A notification of our own, which is plain data already."""
+        """Sends a notification of our own, which is plain data already."""
         self._send_data({"jsonrpc": self.VERSION, "method": method, "params": params})
 
     @lsp_method(types.EXIT)

@@ -1,4 +1,4 @@
-"""What is wrong, told to the client for each file that it concerns."""
+"""Publishes diagnostics to the client, for each file."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _SEVERITY = {
     Severity.NOTE: types.DiagnosticSeverity.Information,
 }
 _UNNECESSARY = frozenset({"W0201", "W0202", "W0502", "W0701", "W0703"})
-"""What could as well be left out: editors show it faint."""
+"""Codes of unnecessary text, which editors show faint."""
 
 
 def converted(
     found: Iterable[Diagnostic], convert: Converter, own: str
 ) -> Iterator[tuple[str, types.Diagnostic]]:
-    """Diagnostics with the URI of the file where each is shown. What has no place in a file of the user's is
-    shown at the beginning of the program, whose URI is `own`.
+    """Yields diagnostics with the URI of the file that shows each. Those without a place in a file of the
+    user's appear at the beginning of the program, whose URI is `own`.
     """
     for diagnostic in found:
         span = diagnostic.span
@@ -50,7 +50,7 @@ def _converted(diagnostic: Diagnostic, convert: Converter, place: types.Range) -
 
 
 def worded(diagnostic: Diagnostic) -> str:
-    """What is wrong and what to do about it, line by line."""
+    """Returns the message and the hints, line by line."""
     said = [diagnostic.message, *(f"hint: {hint}" for hint in diagnostic.hints)]
     return "\n".join(said)
 
@@ -67,7 +67,7 @@ def _page(code: str) -> str:
 
 
 class Publisher:
-    """Tells for each file what all programs that stand on it have to say of it."""
+    """Publishes for each file the diagnostics of all programs that use it."""
 
     def __init__(self, send: Callable[[types.PublishDiagnosticsParams], None]) -> None:
         self._send = send
@@ -77,9 +77,7 @@ class Publisher:
     def publish(
         self, document: Document, known: VersionedView, found: list[tuple[str, types.Diagnostic]]
     ) -> None:
-        """What there is to say of a program, in place of what was said before; nothing where that was of a
-        newer text.
-        """
+        """Replaces the diagnostics of a program; does nothing if those before were of a newer text."""
         if known.serial < self._serials.get(document, known.serial):
             return
         self._serials[document] = known.serial
@@ -94,7 +92,7 @@ class Publisher:
                 self._tell(uri)
 
     def forget(self, document: Document) -> None:
-        """Nothing is to be said of a program any more."""
+        """Removes the diagnostics of a program."""
         self._serials.pop(document, None)
         for uri in self._told.pop(document, {}):
             self._tell(uri)

@@ -1,4 +1,4 @@
-"""From texts to views and outcomes: every change is looked at, and the newest look is run.
+"""Turns texts into views and outcomes: every change is checked, and the newest view is run.
 
 One thread looks, another runs. A run whose text has changed is given up, unless the run before was given up
 as well: under quick typing at least every second run comes to its end, if it is a short one.
@@ -37,28 +37,28 @@ LIMITS = replace(
     solving=replace(SETTINGS.solving, seconds=10.0),
     drawing=10.0,
 )
-"""Nobody looks at a text for longer without changing it."""
+"""Limits of a run: nobody looks at a text for longer without changing it."""
 GRACE = 0.25
 """Seconds that a run may still take when its text has changed, if the run before it was given up."""
 PATIENCE = 0.2
-"""Seconds of solving after which what is known without it is told."""
+"""Seconds of solving after which the results of checking are published."""
 
 
 class Listener(Protocol):
-    """Who hears what comes of texts, on the loop's thread."""
+    """Receives results, on the loop's thread."""
 
     def took_long(self, document: Document) -> None:
-        """What looking found is all that is known for now."""
+        """Called when the results of checking are all that is known for now."""
 
     def solved(self, document: Document) -> None:
-        """There is a new outcome."""
+        """Called when there is a new outcome."""
 
     def crashed(self, error: BaseException) -> None:
-        """Work ended in a way that it should not."""
+        """Called when work ended with an unexpected error."""
 
 
 class Runner:
-    """All methods belong to the loop's thread."""
+    """Checks and runs documents. All methods belong to the loop's thread."""
 
     def __init__(
         self,
@@ -80,12 +80,12 @@ class Runner:
         self._is_closing = False
 
     def warm_up(self) -> None:
-        """Load what the first run and the first questions need while nobody waits for it."""
+        """Loads what the first run and the first questions need while nobody waits for it."""
         self.solving.put(Job("first run", lambda: run(_example()), lambda future: None))
         self.solving.put(Job("first questions", _ask_something, lambda future: None))
 
     def renew(self, document: Document, *, active: bool = False) -> None:
-        """The text of a document has changed, or one that it stands on."""
+        """Checks and runs a document after a change of its text, or of one that it imports."""
         if active:
             self.active = document
         document.serial += 1
@@ -101,7 +101,7 @@ class Runner:
         )
 
     def renew_dependents(self, path: Path) -> None:
-        """A file has changed, or its text in the editor."""
+        """Renews the documents that use a file, after a change of it on disk or in the editor."""
         for document in self.documents:
             known = document.newest
             if known is not None and document.path != path and _stands_on(known.view, path):
@@ -115,8 +115,8 @@ class Runner:
         *,
         first: bool = True,
     ) -> T:
-        """Have something done in the solving thread, before what waits there or behind it. Of what is asked
-        under one key only the newest is done: the others raise Cancelled, as does what is unwanted any more.
+        """Returns the result of a function run in the solving thread, before waiting work or behind it. Only
+        the newest request under a key is done: the others raise Cancelled, as does an unwanted one.
         """
         found: asyncio.Future[T] = self._loop.create_future()
 
@@ -141,7 +141,7 @@ class Runner:
         return await found
 
     def forget(self, document: Document) -> None:
-        """A document was closed."""
+        """Drops the work of a closed document."""
         self.looking.drop(document)
         self.solving.drop(document)
         if self.active is document:
@@ -193,7 +193,7 @@ class Runner:
             self.listener.took_long(document)
 
     def _run(self, document: Document, known: VersionedView, is_patient: bool) -> View:
-        """In the solving thread."""
+        """Runs a view, in the solving thread."""
         began = time.monotonic()
 
         def is_unwanted() -> bool:
@@ -243,12 +243,12 @@ def _ask_something() -> None:
 
 
 def is_library(path: Path) -> bool:
-    """Whether a file belongs to the standard library."""
+    """True for a file of the standard library."""
     return path.is_relative_to(resources.resource("stdlib"))
 
 
 def _stands_on(view: View, path: Path) -> bool:
-    """Whether a program imports a file, directly or not; or what was missing, and may be there now."""
+    """True if a program imports a file, directly or not; or has a missing import, which may be there now."""
     modules = view.resolution.modules
     return any(view.file(module.source) == path for module in modules) or any(
         isinstance(statement, ast.Import) and statement not in view.resolution.imports

@@ -1,4 +1,4 @@
-"""Running the server: on the standard streams, or for one client on a socket."""
+"""Runs the server: on the standard streams, or for one client on a socket."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from aidl_lang.tools.lsp.server import Server
 
 _RECURSION = 20_000
 _SWITCH = 0.0005
-"""Seconds that a thread may keep the others waiting: the message thread must not wait for one that works."""
+"""Seconds that a thread may run before others: the message thread must not wait for a working one."""
 _LAST_SECONDS = 1.0
 _LOST = 1
-"""Exit code when the client has gone without a word."""
+"""Exit code when the client disconnects without ending the session."""
 
 
 def make(limits: Limits = LIMITS) -> Server:
-    """A server that knows all requests."""
+    """Returns a server with all requests."""
     server = Server(limits)
     for theme in (lifecycle, navigation, appearance, actions, hints, preview, writing):
         theme.register(server)
@@ -102,7 +102,7 @@ def _run(session: Coroutine[None, None, int]) -> int:
 
 
 def _end_threads(code: int) -> None:
-    """Wait a little for work that was given up; some steps cannot be broken off, and end with us."""
+    """Waits a little for cancelled work; some steps cannot be interrupted, and end with the process."""
     deadline = time.monotonic() + _LAST_SECONDS
     working = [t for t in threading.enumerate() if t is not threading.current_thread() and not t.daemon]
     for thread in working:
@@ -113,6 +113,6 @@ def _end_threads(code: int) -> None:
 
 
 def _is_news(record: logging.LogRecord) -> bool:
-    """Whether something is worth a line in the log: what the client is told as an answer is not."""
+    """True for a log record worth a line: not for what the client is told as an answer."""
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, JsonRpcException) and not str(record.msg).startswith("Unable to deserialize")

@@ -1,4 +1,4 @@
-"""The server: keeps what is open, has it looked at and run, and hands questions on to those who answer."""
+"""The server: keeps open documents, has them checked and run, and passes questions on."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ T = TypeVar("T")
 Answer = Callable[["Asked", Any], T]
 
 FAILED = -32803
-"""What the protocol says of a request that was understood and cannot be done."""
+"""The protocol's code for a request that was understood and cannot be done."""
 
 log = logging.getLogger(__name__)
 
 
 @record()
 class Asked:
-    """What a question is answered from, away from the loop: nothing here changes any more."""
+    """The immutable data from which a question is answered, away from the loop."""
 
     uri: str
     known: VersionedView
@@ -54,7 +54,7 @@ class Asked:
         return self.known.view
 
     def can(self, capability: str) -> bool:
-        """Whether the client has a capability, as `workspace.workspace_edit.document_changes`."""
+        """Tells whether the client has a capability, as `workspace.workspace_edit.document_changes`."""
         return bool(get_capability(self.client, capability, False))
 
 
@@ -84,7 +84,7 @@ class Server(LanguageServer):
         self.runner = Runner(self.documents, self.open_files, self, asyncio.get_running_loop(), self.limits)
 
     def close(self) -> None:
-        """Give up what is being worked on."""
+        """Cancels the work under way."""
         self.runner.close()
         self.answers.close()
         self.searches.close()
@@ -95,14 +95,14 @@ class Server(LanguageServer):
         return Unit(self.workspace.position_encoding or Unit.UTF_16)
 
     def refresh_hints(self) -> None:
-        """Have the client ask anew for what stands beside the text."""
+        """Makes the client ask again for hints and lenses."""
         if get_capability(self.client_capabilities, "workspace.inlay_hint.refresh_support", False):
             self.workspace_inlay_hint_refresh(None)
         if get_capability(self.client_capabilities, "workspace.code_lens.refresh_support", False):
             self.workspace_code_lens_refresh(None)
 
     def in_background(self, work: Coroutine[Any, Any, None]) -> None:
-        """Go on with something on the loop. A crash is told as one of the threads' is."""
+        """Runs a coroutine on the loop. A crash is reported as one of the threads' is."""
         task = asyncio.get_running_loop().create_task(work)
         self._background.add(task)
         task.add_done_callback(self._ended)
@@ -143,7 +143,7 @@ class Server(LanguageServer):
             listener(document)
 
     def _keep_text(self, path: Path, text: str | None) -> None:
-        """What a file says from now on; None for what it says on disk. Others may be reading the table."""
+        """Sets the text of a file; None for the one on disk. Others may be reading the table."""
         texts = {file: each for file, each in self.open_files.open.items() if file != path}
         self.open_files.open = texts if text is None else {**texts, path: text}
         self.runner.renew_dependents(path)
@@ -180,12 +180,12 @@ class Server(LanguageServer):
     # --- Questions ------------------------------------------------------------------------------
 
     def converter(self, view: View, own: str = "") -> Converter:
-        """For the view of a document, or of another file."""
+        """Returns the converter for the view of a document, or of another file."""
         versions = {document.path: document.version for document in self.documents}
         return Converter(view, own or self.documents.uri_of(view.path), self.documents, self.unit, versions)
 
     async def asked(self, document: Document, patience: float = 0.0) -> Asked | None:
-        """What is known of the text as it is now, or newer; with its outcome if that is there in time."""
+        """Returns the data of the present text, or a newer one; with its outcome if that is there in time."""
         serial = document.serial
         await document.until_seen(serial)
         if patience:
@@ -207,7 +207,7 @@ class Server(LanguageServer):
         edits: bool = False,
         searches: bool = False,
     ) -> Callable[[Answer[T]], Answer[T]]:
-        """Has a function answer a request about a document, away from the loop.
+        """Registers a function as the answer to a request about a document, away from the loop.
 
         patience   seconds to wait for the outcome of the text
         edits      whether the answer changes the text, and is of no use to a text that has changed

@@ -1,4 +1,4 @@
-"""What the user can choose, as the client has it under `aidl`."""
+"""The user's settings, as the client has them under `aidl`."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Settings:
 
     @classmethod
     def read(cls, said: object) -> Settings:
-        """From nested objects as `{"inlayHints": {"readings": false}}`; what does not fit is as if unsaid."""
+        """Reads nested objects as `{"inlayHints": {"readings": false}}`; invalid values count as absent."""
         delay = _value(said, "run.delay")
         is_number = isinstance(delay, int | float) and not isinstance(delay, bool)
         return cls(

@@ -1,4 +1,4 @@
-"""Collecting what is left over while nobody waits.
+"""Collects garbage while nobody waits.
 
 A run leaves tens of thousands of objects that hold each other. Python's collector would look for them in the
 middle of the next run, and go through the library and everything else each time; here it does so in the
@@ -15,11 +15,11 @@ from collections.abc import Callable
 _PAUSE = 0.05
 """Seconds without work after which nobody seems to wait."""
 _MOST = 100
-"""Pieces of work after which it is done without a pause."""
+"""Pieces of work after which it collects without a pause."""
 _LONG = 0.03
-"""Seconds of a collection that has gone through much that stays."""
+"""Seconds of a collection that has gone through many permanent objects."""
 _ROUNDS = 500
-"""Collections after which what seemed to stay is looked through again."""
+"""Collections after which seemingly permanent objects are looked through again."""
 
 
 class Tidier:
@@ -33,7 +33,7 @@ class Tidier:
         gc.disable()
 
     def note(self) -> None:
-        """A piece of work was done."""
+        """Notes that a piece of work was done."""
         self._left += 1
         if self._planned is not None:
             self._planned.cancel()

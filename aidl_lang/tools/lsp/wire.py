@@ -15,13 +15,13 @@ from collections.abc import AsyncIterator, Callable
 from queue import SimpleQueue
 
 MOST_BYTES = 64_000_000
-"""Of one message; a longer one is passed over."""
+"""Most bytes of one message; a longer one is skipped."""
 _CHUNK = 1 << 16
 _LENGTH = re.compile(rb"content-length:[ \t]*(\d{1,18})\s*$", re.IGNORECASE)
 
 
 async def bodies(reader: asyncio.StreamReader) -> AsyncIterator[bytes]:
-    """The contents of the messages, until the stream ends. What is no message is passed over."""
+    """Yields the contents of the messages, until the stream ends. Skips what is no message."""
     while (length := await _header(reader)) is not None:
         if length > MOST_BYTES:
             await _pass_over(reader, length)
@@ -33,7 +33,7 @@ async def bodies(reader: asyncio.StreamReader) -> AsyncIterator[bytes]:
 
 
 async def _header(reader: asyncio.StreamReader) -> int | None:
-    """The length of the next message; None where the stream ends."""
+    """Returns the length of the next message; None at the end of the stream."""
     length = None
     while True:
         try:
@@ -55,7 +55,7 @@ async def _pass_over(reader: asyncio.StreamReader, length: int) -> None:
 
 
 class Output:
-    """What the server writes to a pipe, in a thread of its own. `lost` is called there when nobody reads."""
+    """Writes to a pipe, in a thread of its own. `lost` is called there when nobody reads."""
 
     def __init__(self, descriptor: int, lost: Callable[[], object]) -> None:
         self._waiting: SimpleQueue[bytes | None] = SimpleQueue()
@@ -86,7 +86,7 @@ def _write(descriptor: int, data: bytes) -> None:
 
 
 def read_into(reader: asyncio.StreamReader, descriptor: int, loop: asyncio.AbstractEventLoop) -> None:
-    """Starts a thread that hands on what comes through a pipe, and its end."""
+    """Starts a thread that passes on the data of a pipe, and its end."""
 
     def run() -> None:
         try:
@@ -100,8 +100,8 @@ def read_into(reader: asyncio.StreamReader, descriptor: int, loop: asyncio.Abstr
 
 
 def claim_standard_streams() -> tuple[int, int]:
-    """Descriptors for what were standard input and output. A stray `print` then goes to standard error, and
-    nobody else reads what the client writes.
+    """Returns descriptors of the former standard input and output. A stray `print` then goes to standard
+    error, and nobody else reads what the client writes.
     """
     sys.stdout.flush()
     incoming, outgoing = os.dup(0), os.dup(1)

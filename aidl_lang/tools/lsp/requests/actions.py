@@ -1,4 +1,4 @@
-"""What can be done to a program: offered at a place, and worked out when it is chosen."""
+"""Code actions: offered at a place, and worked out when chosen."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _all_fixes(asked: Asked) -> types.WorkspaceEdit:
 
 
 def _made(asked: Asked, action: Action) -> types.WorkspaceEdit:
-    """Raises JsonRpcException where an action cannot be carried out."""
+    """Returns the edits of an action. Raises JsonRpcException if it cannot be carried out."""
     try:
         return _edit(asked, action.make())
     except CannotError as reason:
@@ -68,7 +68,7 @@ def _made(asked: Asked, action: Action) -> types.WorkspaceEdit:
 
 
 def _offer(asked: Asked, params: types.CodeActionParams) -> list[types.CodeAction]:
-    """A client that can ask again for the edits of an action gets them then; others get all of them now."""
+    """Returns the actions at a range, without edits for a client that can ask for these later."""
     span = asked.convert.span(params.range)
     resolves = asked.can("text_document.code_action.resolve_support")
     made = []
@@ -99,13 +99,13 @@ def _offer(asked: Asked, params: types.CodeActionParams) -> list[types.CodeActio
 
 
 def _is_wanted(kind: str, only: Sequence[Any] | None) -> bool:
-    """Whether a kind is one of those asked for, or below one; everything is where none is named."""
+    """True for a kind asked for, or below one; for all kinds if none is named."""
     wanted = [str(getattr(each, "value", each)) for each in only or ()]
     return not wanted or any(kind == each or kind.startswith(f"{each}.") or not each for each in wanted)
 
 
 def _is_mended(shown: types.Diagnostic, action: Action, asked: Asked) -> bool:
-    """Whether a diagnostic of the client's is the one that an action mends."""
+    """True if a diagnostic of the client's is the one that an action mends."""
     mends = action.mends
     if mends is None or mends.span is None or shown.code != mends.code:
         return False

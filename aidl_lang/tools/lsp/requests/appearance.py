@@ -1,4 +1,4 @@
-"""How a text looks: colours of its words, what can be folded and selected, its canonical form."""
+"""The appearance of a text: colours of its words, folding, selection, its canonical form."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def register(server: Server) -> None:
 
 
 class _Tokens:
-    """Remembers what was answered last for each document, to tell the difference from it."""
+    """The last answer for each document, from which differences are told."""
 
     def __init__(self) -> None:
         self._answered: dict[str, types.SemanticTokens] = {}
@@ -67,7 +67,7 @@ class _Tokens:
 
 
 def _alike(a: list[int], b: list[int]) -> int:
-    """How many numbers at the beginning are the same."""
+    """Counts the equal numbers at the beginning."""
     return next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
 
 
@@ -80,7 +80,7 @@ def _tokens_in_range(asked: Asked, params: types.SemanticTokensRangeParams) -> t
 
 
 def _encoded(found: list[Colored], convert: Converter) -> list[int]:
-    """Five numbers for each token, its place relative to the one before."""
+    """Returns five numbers for each token, its place relative to the one before."""
     data: list[int] = []
     line = character = 0
     for colored in found:

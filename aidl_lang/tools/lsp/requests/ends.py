@@ -1,4 +1,4 @@
-"""The command that tries the ends of params, and what came of it for the lenses above them."""
+"""The command that tries the ends of params, and its results for the lenses above them."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from aidl_lang.tools.lsp.server import FAILED, Asked, Server
 
 CHECK_ENDS = "aidl.checkEnds"
 _LONGEST = 120.0
-"""Seconds for all ends."""
+"""Most seconds for all ends."""
 _PAUSE = 0.2
-"""Seconds between looks at whether the text has changed meanwhile."""
+"""Seconds between checks whether the text has changed."""
 _NOTHING = "there is nothing to try: the program must work as written, and have a param with a range"
 _TITLE = "Trying the ends of the params"
 
 
 class Ends:
-    """What was found, by document: of the version that is asked about, or nothing."""
+    """The results by document, for the version asked about only."""
 
     def __init__(self, server: Server) -> None:
         self._server = server
@@ -44,7 +44,7 @@ class Ends:
         self._found.pop(uri, None)
 
     async def check(self, uri: object) -> dict[str, Any]:
-        """Turns each param of a document to its ends; it may not change meanwhile."""
+        """Tries each param of a document at its ends; the document may not change meanwhile."""
         document = self._server.documents.get(uri) if isinstance(uri, str) else None
         if document is None:
             raise JsonRpcInvalidParams("this document is not open")
@@ -60,7 +60,7 @@ class Ends:
         return {"ok": found.ok, "tried": described(found), "left": found.left, "seconds": found.seconds}
 
     async def _swept(self, document: Document, known: VersionedView) -> Sweep:
-        """Raises JsonRpcContentModified where the text changes before it is done."""
+        """Returns the results. Raises JsonRpcContentModified if the text changes before."""
         loop = asyncio.get_running_loop()
         told = await self._progress()
 
@@ -82,7 +82,7 @@ class Ends:
             told(0, 0)
 
     async def _progress(self) -> Callable[[int, int], None]:
-        """What tells a client that shows progress how many ends are done; `told(0, 0)` ends it."""
+        """Returns a function that shows a client how many ends are done; `told(0, 0)` ends it."""
         server = self._server
         if not get_capability(server.client_capabilities, "window.work_done_progress", False):
             return lambda done, count: None

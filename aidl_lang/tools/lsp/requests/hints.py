@@ -1,4 +1,4 @@
-"""What stands beside the text and comes of solving it: inlay hints and code lenses."""
+"""Inlay hints and code lenses, which depend on the solution."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from aidl_lang.tools.lsp.requests.ends import CHECK_ENDS, Ends
 from aidl_lang.tools.lsp.server import Asked, Server
 
 _PATIENCE = 0.5
-"""Seconds to wait for the outcome; where it comes later, the client is told to ask again."""
+"""Seconds to wait for the outcome; the client is told to ask again for a later one."""
 _OPEN_PREVIEW = "aidl.openPreview"
-"""A command of the client's; one that has none shows the title all the same."""
+"""A command of the client's; one without it shows the title all the same."""
 
 
 def register(server: Server) -> None:
@@ -49,7 +49,7 @@ def register(server: Server) -> None:
 
 
 class _Answered:
-    """Notes what the client was told, and has it ask again when there is more to tell of the same text."""
+    """The answers given to the client, which asks again when there are more for the same text."""
 
     def __init__(self, server: Server) -> None:
         self._server = server

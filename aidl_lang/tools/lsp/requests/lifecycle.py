@@ -1,4 +1,4 @@
-"""What the client tells of itself: folders, settings, files that have changed."""
+"""Notifications of the client: folders, settings, files that have changed."""
 
 from __future__ import annotations
 

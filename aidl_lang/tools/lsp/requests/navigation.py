@@ -1,4 +1,4 @@
-"""Where things are: definitions, references, outlines, links; and giving them other names."""
+"""Navigation: definitions, references, outlines, links; and renaming."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ from aidl_lang.tools.lsp.pictures import Json, Pictures
 from aidl_lang.tools.lsp.server import FAILED, Asked, Server
 
 _LONGEST_WAIT = 30.0
-"""Seconds for an outcome: longer than a run may take."""
+"""Most seconds to wait for an outcome: longer than a run may take."""
 _DIMENSIONS = "dimensions"
 
 T = TypeVar("T")
@@ -78,7 +78,7 @@ class _Requests:
             self.pictures.close(document, given.viewer)
 
     async def attempt(self, given: Try) -> Json:
-        """The picture with other values of params, or with a point dragged; nothing is written."""
+        """Returns the picture with other values of params, or with a point dragged; writes nothing."""
         viewer = given.uri, given.viewer
         asked_before = self._asked[viewer]
         asked, document = await self._solved(given, given.version)
@@ -145,11 +145,11 @@ class _Requests:
         return document
 
     def _outdate_tries(self, given: OfDocument) -> None:
-        """What the viewer tried before is of no use to it any more."""
+        """Cancels the viewer's earlier tries."""
         self._asked[given.uri, given.viewer] += 1
 
     async def _solved(self, given: OfDocument, version: int | None) -> tuple[Asked, Document]:
-        """The outcome of the version that is spoken of. Raises JsonRpcContentModified where that is gone."""
+        """Returns the outcome of a version. Raises JsonRpcContentModified if that is gone."""
         document = self._document(given)
         await document.until_solved(document.serial, _LONGEST_WAIT)
         known = document.ran
@@ -165,7 +165,9 @@ class _Requests:
         function: Callable[[], T],
         is_outdated: Callable[[], bool] = lambda: False,
     ) -> T:
-        """In the solving thread, unless the text changes meanwhile, or more is asked under the key."""
+        """Runs a function in the solving thread, unless the text changes meanwhile, or a newer request comes
+        under the key.
+        """
 
         def is_unwanted() -> bool:
             return document.version != asked.known.version or not document.is_open or is_outdated()
@@ -178,7 +180,7 @@ class _Requests:
     async def _edit(
         self, given: OfVersion, edits: Callable[[View], Sequence[Edit] | Refusal], label: str
     ) -> Json:
-        """One edit of a document after the other: each is of the text that the one before made."""
+        """Makes one edit of a document after the other: each on the text that the one before made."""
         self._outdate_tries(given)
         async with self._document(given).editing:
             asked, document = await self._solved(given, given.version)
@@ -189,7 +191,7 @@ class _Requests:
             return await self._apply(asked, made, label)
 
     async def _apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> Json:
-        """Have the client change the text."""
+        """Asks the client to change the text."""
         convert = asked.convert
         versioned = asked.can("workspace.workspace_edit.document_changes")
         changes = convert.changes(convert.by_file(edits), versioned)

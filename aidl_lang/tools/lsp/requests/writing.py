@@ -1,4 +1,4 @@
-"""Help while writing: what may stand here, how a call is made, and what a word means."""
+"""Help while writing: completion, signature help and hover."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def register(server: Server) -> None:
 
 
 class _Lists:
-    """Remembers the last list of each document: the documentation of an entry is made when it is wanted."""
+    """The last list of each document: the documentation of an entry is made on demand."""
 
     def __init__(self) -> None:
         self._last: dict[str, tuple[int, list[Completion]]] = {}
@@ -138,7 +138,7 @@ def _overload(overload: OverloadHelp) -> types.SignatureInformation:
 
 
 def _active(overload: OverloadHelp) -> int:
-    """The parameter that is being given; where there is none, the one behind the last."""
+    """Returns the current parameter; one past the last if there is none."""
     return len(overload.parameters) if overload.active is None else overload.active
 
 
