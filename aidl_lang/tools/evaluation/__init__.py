@@ -1,1 +1,1 @@
-"""How well programs answer what was asked for: prompts, what their drawings must have, and runs over both."""
+"""Evaluation of models: prompts, requirements on their drawings, and runs over both."""

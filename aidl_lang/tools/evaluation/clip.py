@@ -26,29 +26,29 @@ PRETRAINED = "openai"
 VARIABLE = "AIDL_CLIP_WEIGHTS"
 
 Scorer = Callable[[bytes, str], float]
-"""From a PNG and a text to a score."""
+"""A function from a PNG and a text to a score."""
 
 
 @record()
 class Scores:
-    """By the key of the job; `reason` says why there are none."""
+    """Scores by the key of the job; `reason` tells why there are none."""
 
     of: Mapping[str, float]
     reason: str | None = None
 
 
 class Unavailable(Exception):  # noqa: N818 (that nothing is measured is no error)
-    """There is no model to score with; the message says why."""
+    """Raised if there is no model to score with; the message gives the reason."""
 
 
 def words(prompt: str) -> str:
-    """The text that goes with a picture: “a 2D drawing of an old-school telephone”."""
+    """Returns the text compared with a picture: “a 2D drawing of an old-school telephone”."""
     thing = re.sub(r"^(an?|the)\s+", "", prompt.strip().rstrip("."), flags=re.I)
     return f"a 2D drawing of {'an' if thing[:1].lower() in 'aeiou' else 'a'} {thing}"
 
 
 def load(weights: str | None, model: str = MODEL) -> Scorer:
-    """A model with the weights of a file, or with those of the cache. Raises Unavailable."""
+    """Returns a model with the weights of a file, or with those of the cache. Raises Unavailable."""
     if find_spec("open_clip") is None:
         raise Unavailable("open_clip is not installed (pip install 'aidl-lang[clip]')")
     if weights is not None and not Path(weights).is_file():
@@ -77,7 +77,7 @@ def load(weights: str | None, model: str = MODEL) -> Scorer:
 
 @contextmanager
 def _offline() -> Iterator[None]:
-    """Weights that are not there are an answer, and no reason to fetch half a gigabyte."""
+    """Keeps huggingface_hub from fetching half a gigabyte of missing weights."""
     before = os.environ.get("HF_HUB_OFFLINE")
     os.environ["HF_HUB_OFFLINE"] = "1"
     try:
@@ -92,7 +92,7 @@ def _offline() -> Iterator[None]:
 def score_all(
     store: Store, records: Sequence[Mapping[str, Any]], weights: str | None = None, model: str = MODEL
 ) -> Scores:
-    """The scores of all valid programs that were drawn, kept in `clip.json` by picture and text."""
+    """Returns the scores of all valid programs that were drawn, kept in `clip.json` by picture and text."""
     weights = weights or os.environ.get(VARIABLE)
     try:
         score = load(weights, model)
@@ -114,9 +114,9 @@ def score_all(
 
 
 def _kept(path: Path, name: str) -> dict[str, float]:
-    """Scores of an earlier call, if the same model gave them."""
+    """Returns scores of an earlier call, if the same model gave them."""
     try:
         found = json.loads(path.read_bytes())
         return dict(found["scores"]) if found["model"] == name else {}
     except (OSError, ValueError, KeyError, TypeError):
-        return {}  # they are worked out again
+        return {}  # they are computed again

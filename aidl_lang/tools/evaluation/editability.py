@@ -1,4 +1,4 @@
-"""Whether a program can be changed where it says so: knobs are turned, and what comes of it is counted."""
+"""Editability: sets the knobs of a program to other values, and counts the results."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from aidl_lang.tools.ends.values import Value, allowed, rounded
 from aidl_lang.tools.evaluation import openscad
 
 SHARES = (-0.3, -0.1, 0.1, 0.3)
-"""How far a number is turned, of its value."""
+"""Changes of a number, as shares of its value."""
 _KNOBS = 25
-"""Of a program that are turned at most."""
+"""Most knobs of a program that are tried."""
 _ASSERTION = "E0604"
 
 
 class EditOutcome(StrEnum):
-    """What came of an edit."""
+    """The result of an edit."""
 
     KEPT = "kept"
     ASSERTION = "assertion"  # all solves, but an assert of the program speaks against the value
@@ -48,7 +48,7 @@ class Edits:
 
 
 def of_aidl(source: SourceFile) -> Edits:
-    """Turn the `param`s of a program that is valid."""
+    """Edits the `param`s of a valid program."""
     before = pipeline.compile(source)
     changed = _changed(before)
     edits, narrowed, skipped = list[Edit](), 0, max(0, len(before.knobs) - _KNOBS)
@@ -63,7 +63,7 @@ def of_aidl(source: SourceFile) -> Edits:
 
 
 def of_openscad(program: str) -> Edits:
-    """Turn the variables of the top level that are numbers."""
+    """Edits the top-level variables that are numbers."""
     knobs = openscad.knobs(program)
     edits = [
         Edit(
@@ -77,7 +77,8 @@ def of_openscad(program: str) -> Edits:
 
 
 def turned(knob: Knob) -> tuple[list[Value], int]:
-    """The values to try, and how many of those aimed at the range, the step or the choices cut short.
+    """Returns the values to try, and how many of the intended ones the range, the step or the choices cut
+    short. A text without choices has none.
 
     Of a text without choices there is nothing to try.
     """
@@ -95,13 +96,13 @@ def turned(knob: Knob) -> tuple[list[Value], int]:
 
 
 def _numbers(value: float) -> Iterator[float]:
-    """Values around one; a zero has no share of itself and is left alone."""
+    """Yields values around one; a zero has no share of itself and is left alone."""
     if value:
         yield from (rounded(value * (1 + share)) for share in SHARES)
 
 
 def _whole(aim: float, written: float) -> float:
-    """What was written as a whole number, and may be a count, stays whole."""
+    """Keeps a value whole if the written number, maybe a count, is whole."""
     return float(round(aim)) if written.is_integer() else aim
 
 

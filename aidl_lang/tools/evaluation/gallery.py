@@ -1,4 +1,4 @@
-"""All runs on one page: pictures, programs, losses, requirements. It needs nothing but the pictures beside.
+"""All runs on one page: pictures, programs, losses, requirements. It needs only the pictures beside it.
 
 Programs and replies are strangers' text: everything is escaped, and the page allows no script but its own.
 """
@@ -27,11 +27,11 @@ _MARKS = {Status.MET: "✓", Status.FAILED: "✗", Status.UNMEASURABLE: "?"}
 _NAMES = {"degrees": "degrees of freedom", "detached": "detached pieces"}
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 _LONGEST = 20_000
-"""Characters of a program or a reply that are shown."""
+"""Most characters of a program or a reply that are shown."""
 
 
 def page(folder: Path, records: Sequence[Record], rows: Sequence[Row], scores: Scores) -> str:
-    """The page that lies in `folder`, where the pictures are."""
+    """Returns the page to be written to `folder`, beside the pictures."""
     prompts = dict.fromkeys(r["prompt"] for r in records)
     variants = dict.fromkeys(row.variant for row in rows)
     return "\n".join(
@@ -67,7 +67,7 @@ def _policy() -> str:
 
 
 def _text(value: object) -> str:
-    """Text to be shown: escaped, without characters that steer the reader's screen, and not without end."""
+    """Returns text to show: escaped, of limited length, without characters that steer the reader's screen."""
     text = str(value)
     cut = f"{text[:_LONGEST]}\n… {len(text) - _LONGEST} more characters" if len(text) > _LONGEST else text
     return escape(_CONTROL.sub("\ufffd", cut))
@@ -113,7 +113,7 @@ def _cell(record: Record, folder: Path, scores: Scores) -> str:
 
 
 def _tags(record: Record) -> Iterator[str]:
-    """What a record can be chosen by, as words without blanks."""
+    """Yields the words, without blanks, by which a record can be selected."""
     yield "valid" if record.get("ok") else "not-valid"
     if any(result["status"] != Status.MET for result in record.get("requirements", ())):
         yield "requirement-failed"
@@ -142,7 +142,7 @@ def _facts(record: Record, score: float | None) -> str:
 
 
 def _folded(record: Record) -> Iterator[str]:
-    """What unfolds: requirements, losses, the program, and the attempts."""
+    """Yields the unfolding parts: requirements, losses, the program, and the attempts."""
     results = record.get("requirements", ())
     if results:
         met = sum(result["status"] == Status.MET for result in results)

@@ -1,4 +1,4 @@
-"""What is measured of a valid program, in a worker: its drawing, what it has, and how it takes to changes."""
+"""Measures a valid program, in a worker: its drawing, its requirements, its editability."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ OPENSCAD = "openscad"
 
 @record()
 class Drawn:
-    """`numbers` holds only what the language has; `requirements` is empty where nothing is examined."""
+    """`numbers` holds measures of the language's programs only; `requirements` is empty if none are
+    examined.
+    """
 
     png: bytes
     numbers: Mapping[str, float] = field(default_factory=dict)
@@ -30,7 +32,7 @@ class Drawn:
 
 
 def draw(variant: str, program: str, prompt: Prompt) -> Drawn:
-    """A valid program drawn and measured."""
+    """Draws and measures a valid program."""
     return _draw_openscad(program) if variant == OPENSCAD else _draw_aidl(program, prompt)
 
 
@@ -52,12 +54,12 @@ def _draw_openscad(program: str) -> Drawn:
 
 
 def _detached(drawn: Region) -> float:
-    """How many pieces there are beyond the first."""
+    """Counts the pieces beyond the first."""
     return max(0.0, pieces(drawn) - 1)
 
 
 def edit(variant: str, program: str) -> Edits:
-    """A valid program changed at its knobs."""
+    """Tries edits of a valid program's knobs."""
     if variant == OPENSCAD:
         return editability.of_openscad(program)
     return editability.of_aidl(SourceFile("part.aidl", program))

@@ -1,4 +1,4 @@
-"""OpenSCAD as the language of a conversation, for comparison: programs are run by an installed one."""
+"""OpenSCAD as the language of a conversation, for comparison: an installed one runs the programs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ COMMAND = "openscad"
 _SECONDS = 30
 _MEMORY, _OUTPUT = 2 << 30, 32 << 20
 _SHOWN = 8
-"""Messages that the model is told at most."""
+"""Most messages that the model is shown."""
 
 _GUIDE = """\
 You write OpenSCAD programs that draw flat parts. Lengths are millimetres, x runs to the right, y upwards.
@@ -53,7 +53,7 @@ _KNOB = re.compile(r"^\s*([A-Za-z_]\w*)\s*=\s*(-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)
 
 @record()
 class Rendered:
-    """What came of a program: closed outlines, holes among them, and what was said, errors first."""
+    """The result of a program: closed outlines, holes among them, and messages, errors first."""
 
     outlines: tuple[Polygon, ...] = ()
     errors: tuple[str, ...] = ()
@@ -113,12 +113,12 @@ class OpenScadConversation:
 
 
 def structures(program: str) -> int:
-    """How many modules a program defines."""
+    """Counts the modules that a program defines."""
     return len(_MODULE.findall(_bare(program)))
 
 
 def knobs(program: str) -> dict[str, float]:
-    """The variables at the top level that are plain numbers; the last definition of a name counts."""
+    """Returns the top-level variables that are plain numbers; the last definition of a name counts."""
     depth, start, found, bare = 0, 0, dict[str, float](), _bare(program)
     for index, character in enumerate(bare):
         depth += (character in "({[") - (character in ")}]")
@@ -172,12 +172,12 @@ def _limit() -> None:
 
 
 def _bare(program: str) -> str:
-    """A program without comments and texts."""
+    """Returns a program without comments and texts."""
     return _PLAIN.sub(" ", program)
 
 
 def _messages(text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Errors and warnings, each once, with its line."""
+    """Returns errors and warnings, each once, with its line."""
     errors, warnings = dict[str, None](), dict[str, None]()
     for kind, message in _MESSAGE.findall(text):
         place = _PLACE.search(message)
@@ -189,7 +189,7 @@ def _messages(text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 
 def _failure(code: int, text: str) -> str:
-    """Why nothing was drawn where no message says so."""
+    """Returns the reason for a missing drawing if no message gives one."""
     if code < 0:
         return f"error: OpenSCAD was stopped (signal {-code}): it took too much time, memory or room"
     if "3D object" in text:

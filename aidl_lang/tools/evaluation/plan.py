@@ -1,4 +1,4 @@
-"""What is to be run: every prompt in every language variant, several times."""
+"""The plan of an evaluation: every prompt in every language variant, several times."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Plan:
     settings: Settings
 
     def jobs(self) -> Iterator[Job]:
-        """All of them, the first run of everything first."""
+        """Yields all jobs, the first run of everything first."""
         for run in range(1, self.runs + 1):
             for prompt in self.prompts:
                 for variant in self.variants:
@@ -52,7 +52,7 @@ class Plan:
         return next(prompt for prompt in self.prompts if prompt.name == job.prompt)
 
     def sampled(self, job: Job) -> Settings:
-        """The settings of a job, with its own seed."""
+        """Returns the settings of a job, with its own seed."""
         first = self.settings.sampling.seed
         seed = None if first is None else first + job.run - 1
         return replace(self.settings, sampling=replace(self.settings.sampling, seed=seed))

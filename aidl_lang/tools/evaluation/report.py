@@ -1,4 +1,4 @@
-"""What comes out of the records of a folder: tables for readers and programs, and the gallery."""
+"""Reports on the records of a folder: tables for readers and programs, and the gallery."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from aidl_lang.tools.evaluation.summary import rows
 
 
 def report(store: Store, weights: str | None = None, model: str = MODEL) -> str:
-    """Write `evaluation.md`, `.csv`, `.json` and `index.html`, and return the Markdown. Raises StoreError."""
+    """Writes `evaluation.md`, `.csv`, `.json` and `index.html`, and returns the Markdown. Raises
+    StoreError.
+    """
     records = store.records()
     scores = score_all(store, records, weights, model)
     variants, prompts = rows(records, scores), rows(records, scores, per_prompt=True)

@@ -37,10 +37,12 @@ from aidl_lang.tools.evaluation.things import Thing, origins
 from aidl_lang.tools.evaluation.whole import MEASURES
 
 WHOLE = "whole"
-"""The role that is all that is drawn."""
+"""The role of the whole drawing."""
 
 _COUNT = "_count"
-"""A role of many has a param `NAME_count`: how many there are; its range says how few and many may be."""
+"""Suffix of the param of a role of many: `NAME_count` is their number; its range gives the least and the
+most.
+"""
 
 
 class Status(StrEnum):
@@ -51,25 +53,25 @@ class Status(StrEnum):
 
 @record()
 class Requirement:
-    """`text` says it in words, `condition` as it is checked; `roles` are those it speaks of."""
+    """`text` describes it, `condition` is checked; `roles` are those in it."""
 
     text: str
     condition: str
     roles: tuple[str, ...]
     start: int
-    """where the condition stands in the prompt"""
+    """offset of the condition in the prompt"""
 
 
 @record()
 class Prompt:
-    """`text` is what the model is asked."""
+    """`text` is the request to the model."""
 
     name: str
     text: str
     requirements: tuple[Requirement, ...]
     roles: tuple[Role, ...]
     ranges: Mapping[str, tuple[int, int]]
-    """How many there may be, of the roles of many."""
+    """The allowed numbers of things, for the roles of many."""
     source: SourceFile
 
 
@@ -81,11 +83,11 @@ class Result:
 
 
 class PromptError(Exception):
-    """A file in a folder of prompts is none."""
+    """Raised if a file in a folder of prompts is not a prompt."""
 
 
 def load(folder: Path | None = None) -> tuple[Prompt, ...]:
-    """The prompts of a folder in the order of their file names; those of the project without one.
+    """Returns the prompts of a folder in the order of their file names; those of the project without one.
 
     Raises PromptError for a file that is no prompt, OSError for a folder that cannot be read.
     """
@@ -95,7 +97,7 @@ def load(folder: Path | None = None) -> tuple[Prompt, ...]:
 
 
 def read(source: SourceFile) -> Prompt:
-    """A prompt from its program. Raises PromptError."""
+    """Reads a prompt from its program. Raises PromptError."""
     built, module = _built(source, {})
     if not built.root.doc:
         raise PromptError(f"{source.name}: the comment before the root is to say what is asked for")
@@ -119,7 +121,7 @@ def read(source: SourceFile) -> Prompt:
 
 
 def _built(source: SourceFile, counts: Mapping[str, float]) -> tuple[Model, ast.Module]:
-    """The model of a prompt with so many of each role, and its statements."""
+    """Returns the model of a prompt with so many of each role, and its statements."""
     program, found = front(source)
     if not has_errors(found):
         built = interpret(program, counts)
@@ -162,7 +164,7 @@ def _requirements(
 
 
 def examine(prompt: Prompt, source: SourceFile, compiled: Compiled) -> tuple[Result, ...]:
-    """Whether what a program draws has what the prompt requires, one result for each requirement."""
+    """Examines a program's drawing, and returns one result for each requirement."""
     model, drawing = compiled.model, compiled.drawing
     if model is None or drawing is None:
         return _all(prompt, "the program is wrong, so nothing is drawn")
@@ -178,13 +180,13 @@ def _all(prompt: Prompt, why: str) -> tuple[Result, ...]:
 
 @record()
 class _MissingError(Exception):
-    """Something asked of a part that it does not have."""
+    """Raised if a part lacks something that a requirement measures."""
 
     why: str
 
 
 class _Examination:
-    """One program before one prompt."""
+    """The examination of one program for one prompt."""
 
     def __init__(self, prompt: Prompt, model: SolvedModel, drawing: Drawing, program: ast.Module) -> None:
         self.prompt, self.model, self.drawing = prompt, model, drawing
@@ -214,8 +216,8 @@ class _Examination:
         return found[k] if k < len(found) else None
 
     def _values(self, asked: Model) -> Iterator[tuple[Unknown, float]]:
-        """The boxes of what roles are bound to, and measures of the whole drawing; not a number where there
-        is none.
+        """Yields the boxes of the things bound to roles, and measures of the whole drawing; NaN without a
+        value.
         """
         for placeholder, thing in self.things.items():
             assert placeholder.plan is not None
@@ -257,7 +259,7 @@ class _Examination:
         return Result(requirement.text, Status.MET)
 
     def _unusable(self, role: str) -> str | None:
-        """Why what was found for a role cannot be measured."""
+        """Returns the reason why the things of a role cannot be measured."""
         found, (low, high) = len(self.bound[role]), self.prompt.ranges.get(role, (1, 1))
         if not found and low:
             return f"no {role.replace('_', ' ')} was found"
@@ -279,7 +281,7 @@ class _Examination:
         return None if note is None else note.label
 
     def _bindings(self, requirement: Requirement) -> str:
-        """What the roles of a requirement are in the program."""
+        """Describes the things bound to the roles of a requirement."""
         told = []
         for name in requirement.roles:
             paths = [thing.path for thing in self.bound[name]]

@@ -1,4 +1,4 @@
-"""What a word means in a program that chose its own names: roles bound to structures, else to geometry.
+"""Binds roles to structures, else to geometry, of a program that chose its own names.
 
 A name is taken apart at underscores, capitals and digits; indices and plurals count for nothing. What it is
 called after is its last word: `front_wheel` is a wheel and `wheel_hub` a hub; `leg_left` and `lid_assembly`
@@ -23,7 +23,7 @@ from aidl_lang.tools.evaluation.whole import NEAR
 
 Words: TypeAlias = tuple[str, ...]
 RankedThing: TypeAlias = tuple[int, Thing]
-"""A thing, and which of the words it is called by."""
+"""A thing with the rank of the word in its name."""
 
 _PLACES = frozenset(
     re.findall(
@@ -41,20 +41,20 @@ _GENERIC = frozenset(
 _LOCAL = frozenset(
     re.findall(r"\w+", "edge side corner rim tip start end glyph letter segment chord flat floor")
 )
-"""What shapes call their edges and points."""
+"""Names of shapes for their edges and points."""
 
 _BETWEEN = frozenset(("of", "for", "in", "on", "at", "to"))
 """A ring of an eye is a ring."""
 
 _MANY = 200
-"""How many of a name are looked at."""
+"""Most parts of a name that are looked at."""
 
 
 @record()
 class Role:
-    """`words` are what it may be called, in the singular: groups of words that count alike, the best first;
-    `others` what is called so and is not meant (`steering wheel`); `of` what it is made of where nothing is
-    called by its words. `many` when all that are found are meant.
+    """`words` are its possible names, in the singular: groups of equal rank, the best first; `others` are
+    names to exclude (`steering wheel`); `of` are the names of its parts, if nothing has its own. `many` if
+    all found things are meant.
     """
 
     name: str
@@ -65,7 +65,7 @@ class Role:
 
     @staticmethod
     def read(name: str, note: str, *, many: bool) -> Role:
-        """From `wheel, tyre / tire, rim; not steering wheel; of spoke, hub`. Raises ValueError."""
+        """Parses `wheel, tyre / tire, rim; not steering wheel; of spoke, hub`. Raises ValueError."""
         meant, *more = note.split(";")
         groups = tuple(tuple(map(_phrase, group.split("/"))) for group in meant.split(","))
         role = Role(name, groups, many=many)
@@ -78,7 +78,7 @@ class Role:
         return role
 
     def rank(self, names: Iterable[str]) -> int | None:
-        """Which of its words one of the names ends in; None when none does."""
+        """Returns the rank of the word that one of the names ends in; None for no such word."""
         tails = [tail for name in names for tail in _tails(_words(name))]
         if any(_ends(tail, other) for tail in tails for other in self.others):
             return None
@@ -86,7 +86,7 @@ class Role:
         return next(found, None)
 
     def key(self, name: str) -> Words | None:
-        """A name up to the role in it and, for one of many, where that is: `front_wheel` of
+        """Returns a name up to the role in it and, for one of many, its place: `front_wheel` of
         `front_wheel_rim`.
         """
         words = _words(name)
@@ -104,8 +104,8 @@ class Role:
 def bind(
     roles: Iterable[Role], model: SolvedModel, drawing: Drawing, made: Origins
 ) -> dict[str, list[Thing]]:
-    """What each role means. A part does not include what other roles mean: a mug's body is drawn with its
-    handle inside it, and is measured without.
+    """Returns the things of each role. A part does not include those of other roles: a mug's body is drawn
+    with its handle inside it, and is measured without.
     """
     program = _Program(model.root, drawing, made)
     bound = {role.name: _bound(role, program) for role in roles}
@@ -122,7 +122,7 @@ def bind(
 
 
 def _bound(role: Role, program: _Program) -> list[Thing]:
-    """What is called by the words of a role, else what it is made of, else the root itself."""
+    """Returns the things named by the words of a role, else its parts, else the root itself."""
     if things := _Search(role, program).things():
         return things if role.many else [program.joined(things)]
     if role.of and (things := _Search(replace(role, words=(role.of,), many=True), program).things()):
@@ -137,7 +137,7 @@ def _together(things: Iterable[Thing]) -> Thing:
 
 
 class _Program:
-    """What all searches look at."""
+    """The data that all searches use."""
 
     def __init__(self, root: SolvedStructure, drawing: Drawing, made: Origins) -> None:
         self.root, self.drawing, self.made = root, drawing, made
@@ -145,7 +145,7 @@ class _Program:
         self.structures = {s.path: s for s in root.walk()}
 
     def joined(self, things: list[Thing]) -> Thing:
-        """The first, with those of the same name that it holds together with, one by one: the upper and the
+        """Joins the first thing with those of the same name that it touches, one by one: the upper and the
         lower arm of a lamp, the bands of a tower.
         """
         like = [t for t in things[:_MANY] if _alike(t.path) == _alike(things[0].path)]
@@ -160,20 +160,20 @@ class _Program:
         return _together(boxes[k][0] for k in sorted(near))
 
     def seen(self, thing: Thing, structure: SolvedStructure) -> Thing:
-        """Geometry of a structure, with whether it is to be seen."""
+        """Returns the geometry of a structure, marked if it is hidden."""
         return thing.buried(self.drawing.regions.get(structure.path), self.drawing)
 
 
 @record()
 class _Search:
-    """The parts that are called by the words of a role."""
+    """Searches the parts named by the words of a role."""
 
     role: Role
     program: _Program
 
     def things(self) -> list[Thing]:
-        """By the end of the name, outermost first: structures below the root, else geometry; else what has
-        the word within its name; else parts of shapes.
+        """Returns things by the end of the name, outermost first: structures below the root, else geometry;
+        else those with the word within their name; else parts of shapes.
         """
         root = self.program.root
         found = list(self._structures(root)) or list(self._geometry(root))
@@ -194,7 +194,7 @@ class _Search:
                 yield from ((rank, thing) for thing in self._members(child))
 
     def _members(self, found: SolvedStructure) -> Iterator[Thing]:
-        """What is named in the plural, or as a group, stands for what is in it."""
+        """Yields the members of a structure named in the plural, or as a group."""
         last = re.split(r"[_\d\W]+", found.name.casefold().strip("_]0123456789["))[-1]
         is_group = self.role.many and (_singular(last) != last or last in _GENERIC)
         inner = [thing for _, thing in self._structures(found)] if is_group else []
@@ -208,7 +208,7 @@ class _Search:
             yield _thing(found)
 
     def _geometry(self, root: SolvedStructure) -> Iterator[RankedThing]:
-        """What is to be seen, if anything is."""
+        """Yields visible geometry, or hidden if there is none."""
         found: list[tuple[int, Thing, SolvedStructure]] = []
         for structure in root.walk():
             known: set[str] = set()
@@ -224,7 +224,7 @@ class _Search:
         yield from [(rank, thing) for rank, thing in things if not thing.is_buried] or things
 
     def _fragments(self, root: SolvedStructure) -> Iterator[Thing]:
-        """Parts of parts that are not drawn as one: `wheel_rim` and `wheel_hub` are a wheel."""
+        """Yields parts of parts that are not drawn as one: `wheel_rim` and `wheel_hub` are a wheel."""
         children = ((s, child.name, child, None) for s in root.walk() for child in s.structures)
         shapes = (
             (s, outline.known.name, outline.shown, outline.copy_in)
@@ -242,7 +242,7 @@ class _Search:
                 return
 
     def _shape_parts(self, root: SolvedStructure) -> Iterator[RankedThing]:
-        """Edges and outlines that shapes have names for, but for those of any shape."""
+        """Yields named edges and outlines of shapes, except those that any shape has."""
         shapes = (outline.shown for s in root.walk() for outline in self.program.outlines(s.path))
         for part in (part for shape in shapes for part in shape.walk() if part is not shape):
             is_named = not set(_words(part.name)) <= _PLACES | _GENERIC | _LOCAL
@@ -275,9 +275,7 @@ def _singular(word: str) -> str:
 
 
 def _tails(words: Words) -> Iterator[Words]:
-    """The name up to an `of` in it, and what is left of that without the words that say where or that it is
-    a part.
-    """
+    """Yields the name up to an `of` in it, and the rest without words for places or for being a part."""
     words = words[: next((k for k, word in enumerate(words) if k and word in _BETWEEN), len(words))]
     yield words
     while len(words) > 1 and words[-1] in _PLACES | _GENERIC:
@@ -289,5 +287,5 @@ def _ends(words: Words, tail: Words) -> bool:
 
 
 def _alike(path: str) -> tuple[Words, ...]:
-    """A path without indices and places."""
+    """Returns a path without indices and places."""
     return tuple(tuple(w for w in _words(name) if w not in _PLACES) for name in path.split("."))

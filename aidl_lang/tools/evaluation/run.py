@@ -18,12 +18,12 @@ from aidl_lang.tools.llm.generation import Task, generate
 from aidl_lang.tools.llm.messages import Provider
 
 PATIENCE = 5
-"""Failures to reach the model, one after another, after which nothing more is asked."""
+"""Consecutive failures to reach the model after which no more requests are made."""
 
 
 @record()
 class Done:
-    """A job that came to an end, and how many of how many that makes."""
+    """A finished job, with its number of how many."""
 
     job: Job
     record: Record
@@ -34,7 +34,7 @@ class Done:
 
 @record()
 class RunSummary:
-    """`left` jobs were not begun, or failed to reach the model."""
+    """Counts of a run. `left` jobs were not begun, or failed to reach the model."""
 
     done: int
     kept: int
@@ -53,7 +53,7 @@ class _Result:
 
 @record(frozen=False)
 class _Crew:
-    """What the threads share."""
+    """The data that threads share."""
 
     plan: Plan
     provider: Provider | None
@@ -70,7 +70,7 @@ def run(
     seconds: float = SECONDS,
     listen: Callable[[Done], None] = lambda done: None,
 ) -> RunSummary:
-    """Do what is left to do of a plan. Without a provider only measures are taken again where they must.
+    """Does the open jobs of a plan. Without a provider only outdated measures are taken again.
 
     An interrupt leaves everything that was finished.
     """
@@ -91,7 +91,7 @@ def run(
 
 
 def _to_do(plan: Plan, kept: Store, may_ask: bool) -> Iterator[tuple[Job, Record | None]]:
-    """Jobs without a whole record, with the conversation if only measures are to be taken."""
+    """Yields jobs without a complete record, with the conversation if only measures are missing."""
     for job in plan.jobs():
         record = kept.record(job)
         if record is None or "failure" in record:
@@ -121,7 +121,7 @@ def _gather(
 
 
 def _serve(crew: _Crew, worker: Worker) -> None:
-    """Take jobs until there are none left."""
+    """Takes jobs until there are none left."""
     while not crew.is_over.is_set():
         try:
             job, record = crew.waiting.get_nowait()

@@ -1,4 +1,4 @@
-"""Outlines of other languages as regions, and their pictures in the looks of AIDL's drawings."""
+"""Outlines of other languages as regions, and their pictures in the style of AIDL's drawings."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ PIXELS = 512
 
 
 def region(outlines: Sequence[Polygon]) -> Region:
-    """What lies within an odd number of the outlines."""
+    """Returns the region inside an odd number of the outlines."""
     return Region(tuple(_face(part.to_polygons()) for part in fill(outlines, "EvenOdd").decompose()))
 
 
 def _face(polygons: Sequence[Polygon]) -> Face:
-    """One connected area from its outlines; only the outer one runs counter-clockwise."""
+    """Returns one connected area from its outlines; only the outer one runs counter-clockwise."""
     outer, *holes = sorted(polygons, key=polygon_area, reverse=True)
     return Face(_loop(outer), tuple(map(_loop, holes)))
 
@@ -35,7 +35,7 @@ def _loop(polygon: Polygon) -> Loop:
 
 
 def png(drawn: Region) -> bytes:
-    """A picture of a region that is not empty."""
+    """Draws a region that is not empty."""
     left, bottom, right, top = region_bounds(drawn)
     size = max(right - left, top - bottom)
     ink = Ink(palette.OUTLINE, OUTLINE_WIDTH * size, is_round=True)

@@ -1,4 +1,4 @@
-"""Finished work on disk: a JSON record and a picture for each job, and the settings that all have in common.
+"""Finished work on disk: a JSON record and a picture for each job, and the common settings.
 
 Everything is written in one step, so that an interrupted run leaves whole records or none.
 """
@@ -30,7 +30,7 @@ _SHOWN = 60
 
 
 class StoreError(Exception):
-    """The folder cannot be used; the diagnostic says why and what to do."""
+    """Raised if the folder cannot be used; the diagnostic gives the reason and a remedy."""
 
     def __init__(self, code: str, message: str, *hints: str) -> None:
         super().__init__(message)
@@ -46,7 +46,7 @@ class Store:
     # --- settings ---------------------------------------------------------------------------------
 
     def begin(self, plan: Plan, provider: str) -> None:
-        """Note the settings of a plan. Raises StoreError where the records come from others."""
+        """Writes the settings of a plan. Raises StoreError if the records come from others."""
         known, now = self._read(self.folder / SETTINGS) or {}, _settings(plan, provider)
         differing = [
             f"{name}: `{_short(known[name])}` then, `{_short(now[name])}` now"
@@ -65,14 +65,14 @@ class Store:
     # --- records ----------------------------------------------------------------------------------
 
     def record(self, job: Job) -> Record | None:
-        """What is known of a job. Raises StoreError for a file that is no record."""
+        """Returns the record of a job, if any. Raises StoreError for a file that is no record."""
         found = self._read(self.folder / _record_path(job))
         if found is not None and not _is_record(found, job):
             raise _damaged(self.folder / _record_path(job))
         return found
 
     def records(self) -> list[Record]:
-        """All of them, by prompt, variant and run."""
+        """Returns all records, by prompt, variant and run."""
         found = []
         for path in (self.folder / "records").glob("*/*/*.json"):
             if path.stem.isdecimal():
@@ -83,7 +83,7 @@ class Store:
         return [record for *_, record in found if record is not None]
 
     def keep(self, job: Job, record: Record, png: bytes | None) -> None:
-        """Write the picture, then the record that speaks of it."""
+        """Writes the picture, then the record that refers to it."""
         if png is not None:
             self.write(picture_path(job.key), png)
         self.write(_record_path(job), _json(record))
@@ -91,7 +91,7 @@ class Store:
     # --- files ------------------------------------------------------------------------------------
 
     def write(self, name: str, data: bytes) -> None:
-        """Write a file below the folder in one step. Raises StoreError."""
+        """Writes a file below the folder in one step. Raises StoreError."""
         path = self.folder / name
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -133,7 +133,7 @@ def _damaged(path: Path) -> StoreError:
 
 
 def _is_record(found: Record, job: Job) -> bool:
-    """Whether a record is about its job and has what is read of it."""
+    """Tells whether a record belongs to its job and is complete."""
     names = {"attempts", "ok", "program", "missing", "fixes", "usage", "request"}
     is_about = (found.get("prompt"), found.get("variant"), found.get("run")) == (
         job.prompt,
@@ -151,12 +151,12 @@ def digest(text: str) -> str:
 
 
 def measured_with(prompt: Prompt) -> str:
-    """What measures depend on beside the program: with another value they are taken again."""
+    """Returns a digest of what measures depend on beside the program: a new one makes them outdated."""
     return digest(f"{__version__}\n{prompt.source.text}")
 
 
 def recorded(job: Job, prompt: Prompt, generation: Generation) -> Record:
-    """The record of a conversation, not yet measured."""
+    """Returns the record of a conversation, not yet measured."""
     verdict = generation.verdict
     asked = [message.text for message in generation.messages if message.role == "user"]
     return {
@@ -173,7 +173,7 @@ def recorded(job: Job, prompt: Prompt, generation: Generation) -> Record:
 
 
 def failed(job: Job, failure: Diagnostic) -> Record:
-    """The record of a conversation that broke off, to be had again."""
+    """Returns the record of a conversation that broke off, to be repeated."""
     return {**asdict(job), "failure": {"code": failure.code, "message": failure.message}}
 
 
@@ -205,7 +205,7 @@ def _usage(usage: Usage) -> Record:
 
 
 def _settings(plan: Plan, provider: str) -> Record:
-    """What must be the same for records to stand in one table; prompts and variants may come to it."""
+    """Returns the settings that records in one table share; prompts and variants may be added."""
     sampling = plan.settings.sampling
     return {
         "provider": provider,

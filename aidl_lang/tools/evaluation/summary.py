@@ -1,4 +1,4 @@
-"""From records to numbers: shares with their intervals and means, each with how many things are behind it."""
+"""Figures from records: shares with their intervals and means, each with the number of its cases."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from aidl_lang.tools.evaluation.requirements import Status
 
 Record = Mapping[str, Any]
 _Z = 1.959963984540054
-"""Of the normal distribution: 95 % lie within."""
+"""Quantile of the normal distribution: 95 % lie within."""
 
 
 @record()
 class Share:
-    """So many of so many."""
+    """A proportion: `part` of `count`."""
 
     part: int
     count: int
@@ -31,7 +31,9 @@ class Share:
 
     @property
     def interval(self) -> tuple[float, float] | None:
-        """Wilson's score interval at 95 % (Journal of the American Statistical Association 22, 1927, 209)."""
+        """Returns Wilson's score interval at 95 % (Journal of the American Statistical Association 22, 1927,
+        209).
+        """
         if not self.count:
             return None
         n, p, z2 = self.count, self.part / self.count, _Z * _Z
@@ -42,7 +44,7 @@ class Share:
 
 @record()
 class Mean:
-    """Of numbers; without any, it is not measured, for a reason if one is known."""
+    """A mean of numbers; without any, the reason, if known, why nothing was measured."""
 
     count: int
     value: float | None = None
@@ -57,7 +59,7 @@ class Mean:
 
 @record()
 class Total:
-    """A sum over so many, of which it is known for `count`."""
+    """A sum; `count` is the number of cases with a known value."""
 
     count: int
     value: float | None
@@ -98,7 +100,9 @@ MEANINGS: Mapping[str, str] = {
 
 
 def rows(records: Sequence[Record], scores: Scores, per_prompt: bool = False) -> list[Row]:
-    """One for each variant, or for each prompt in each variant, in the order of the records and variants."""
+    """Returns one row for each variant, or for each prompt in each variant, in the order of the records and
+    variants.
+    """
     found = []
     for prompt in dict.fromkeys(r["prompt"] for r in records) if per_prompt else (None,):
         for variant in VARIANTS:
@@ -148,6 +152,6 @@ def _was_valid(attempts: Sequence[Record]) -> bool:
 
 
 def _attempts(record: Record) -> int:
-    """The number of the first valid attempt; the last word may have made valid what was not."""
+    """Returns the number of the first valid attempt; the last word may have made an earlier one valid."""
     attempts = record["attempts"]
     return next((n for n in range(1, len(attempts) + 1) if _was_valid(attempts[:n])), len(attempts))

@@ -14,7 +14,7 @@ _BY_PROMPT = ("valid", "requirements", "editability")
 
 
 def markdown(rows: Sequence[Row], prompts: Sequence[Row]) -> str:
-    """One column for each variant, then the prompts one by one, then what the lines mean."""
+    """Returns one column for each variant, then the prompts one by one, then a key to the lines."""
     head = ["", *(row.variant for row in rows)]
     lines = [["conversations", *(_conversations(row) for row in rows)]]
     lines += [[name, *(shown(row.figures[name]) for row in rows)] for name in MEANINGS]
@@ -33,7 +33,7 @@ def markdown(rows: Sequence[Row], prompts: Sequence[Row]) -> str:
 
 
 def shown(figure: Figure) -> str:
-    """A figure in a cell."""
+    """Returns the text of a figure in a cell."""
     match figure:
         case Share(part, count) if figure.interval is not None:
             low, high = figure.interval
@@ -52,7 +52,7 @@ def _conversations(row: Row) -> str:
 
 
 def _reasons(rows: Sequence[Row]) -> list[str]:
-    """Why something was not measured, each reason once."""
+    """Returns the reasons for missing measures, each once."""
     found = {
         f"{name} was not measured: {figure.reason}.": None
         for row in rows
@@ -81,7 +81,7 @@ def _table(lines: Sequence[Sequence[str]]) -> str:
 
 
 def data(row: Row) -> list[dict[str, object]]:
-    """The figures of a row, one by one, with all that is known of each."""
+    """Returns the figures of a row, one by one, with all their data."""
     return [
         {"prompt": row.prompt, "variant": row.variant, "figure": name, **_fields(figure)}
         for name, figure in row.figures.items()
@@ -105,7 +105,7 @@ def _fields(figure: Figure) -> dict[str, object]:
 
 
 def to_csv(rows: Sequence[Row]) -> str:
-    """One line for each figure of each row."""
+    """Returns one line for each figure of each row."""
     out = io.StringIO()
     writer = csv.DictWriter(out, ("prompt", "variant", "figure", *_FIELDS), lineterminator="\n")
     writer.writeheader()

@@ -1,4 +1,4 @@
-"""What a name in a program stands for: structures or geometry that together are one part, as it is drawn."""
+"""Things: structures or geometry that together are one named part of a drawing."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ Part: TypeAlias = SolvedStructure | SolvedGeometry
 Group: TypeAlias = tuple[Part, ...]
 Place: TypeAlias = tuple[str, int, int]
 Origins: TypeAlias = Mapping[Place, tuple[str, ...]]
-"""The names that a value was made by, by its place in the program."""
+"""The names of a value's makers, by its place in the program."""
 
 _SAME = 1e-6
-"""Relative difference up to which lengths are one."""
+"""Relative difference up to which lengths are equal."""
 
 
 @record()
@@ -46,7 +46,7 @@ class Thing:
 
     @property
     def path(self) -> str:
-        """Of the first part, and how many more there are that lie together."""
+        """The path of the first part, and the number of those beside it."""
         return first_few([group[0].path for group in self.groups], 1)
 
     @property
@@ -54,7 +54,7 @@ class Thing:
         return (part.path for group in self.groups for part in group)
 
     def region(self, drawing: Drawing) -> Region:
-        """What it covers in the drawing; empty for what is only strokes."""
+        """Returns its region in the drawing; empty for strokes only."""
         covered = united(*(_region(group, drawing) for group in self.groups))
         if self.spans and not covered:
             parts = (part for group in self.groups for part in group if isinstance(part, SolvedGeometry))
@@ -62,20 +62,20 @@ class Thing:
         return covered
 
     def bounds(self) -> Bounds | None:
-        """The box of its curves."""
+        """Returns the box of its curves."""
         boxes = [box for group in self.groups for part in group for box in _boxes(part)]
         return union_bounds(boxes) if boxes else None
 
     def box(self, region: Callable[[], Region]) -> Box | None:
-        """Of its curves; of its region where it has none before that is worked out."""
+        """Returns the box of its curves; of its region if it has no curves yet."""
         box = self.bounds()
         if box is None and (found := region()):
             box = region_bounds(found)
         return Box(*box) if box is not None else None
 
     def buried(self, material: Region | None, drawing: Drawing) -> Thing:
-        """Itself, and whether it is buried in a material: whether to take it away would leave its whole
-        outline as a new edge.
+        """Returns it, marked as buried if its removal from a material would leave its whole outline as a new
+        edge.
         """
         if not material or not (own := self.region(drawing)):
             return self
@@ -84,7 +84,7 @@ class Thing:
         return replace(self, is_buried=math.isclose(left, edges, rel_tol=_SAME))
 
     def without(self, others: Set[str]) -> Thing:
-        """Itself less the parts at these paths inside it, where something else is left."""
+        """Returns it without the parts at these paths inside it, if anything is left."""
         left = (tuple(chain.from_iterable(_less(part, others) for part in group)) for group in self.groups)
         kept = tuple(group for group in left if group)
         return replace(self, groups=kept) if kept else self
@@ -98,7 +98,7 @@ def _region(group: Group, drawing: Drawing) -> Region:
 
 
 def _alone(group: Group) -> SolvedModel:
-    """A model of nothing but these parts."""
+    """Returns a model of only these parts."""
     geometry = tuple(part for part in group if isinstance(part, SolvedGeometry))
     solids = tuple(part for part in group if isinstance(part, SolvedStructure))
     nowhere = Frame(0.0, 0.0, 0.0)
@@ -123,7 +123,7 @@ def _less(part: Part, others: Set[str]) -> Iterator[Part]:
 
 
 def _within(part: Part) -> set[str]:
-    """The paths of all that is in a part."""
+    """Returns the paths of everything in a part."""
     found: set[str] = set()
     left = [part]
     while left:
@@ -135,7 +135,7 @@ def _within(part: Part) -> set[str]:
 
 
 def _inside(part: Part) -> Iterator[Part]:
-    """What a structure holds; what an outline is put together from, before anything is cut out of it."""
+    """Yields the contents of a structure, or the operands of an outline before any cuts."""
     if isinstance(part, SolvedStructure):
         yield from drawn(part)
         yield from part.structures
@@ -146,7 +146,7 @@ def _inside(part: Part) -> Iterator[Part]:
 
 
 def _shown(outline: SolvedGeometry) -> SolvedGeometry:
-    """As it is drawn where nothing is made of it."""
+    """Returns a geometry as it is drawn if nothing is made of it."""
     shown = replace(outline, construction=False)
     if shown.recipe is None or any(True for _ in shown.curves()):
         return shown
@@ -157,7 +157,7 @@ def _shown(outline: SolvedGeometry) -> SolvedGeometry:
 
 
 def origins(module: ast.Module) -> Origins:
-    """The template or shape that each value was made by, and what it was copied from."""
+    """Returns the template or shape that made each value, and the source of copies."""
     return {
         _place(node.span): tuple(_makers(node.value))
         for node in ast.walk(module)
@@ -180,7 +180,7 @@ def _makers(value: ast.Node | None) -> Iterator[str]:
 
 
 def names(part: Part, made: Origins) -> tuple[str, ...]:
-    """What a part is called, and what it was made by."""
+    """Returns the name of a part, and those of its makers."""
     return (part.name, *(made.get(_place(part.span), ()) if part.span is not None else ()))
 
 
@@ -204,7 +204,7 @@ class Outline:
 
 
 def outlines(structure: SolvedStructure) -> Iterator[Outline]:
-    """What is drawn in a structure, each followed by what it is made of."""
+    """Yields the drawn geometry of a structure, each followed by its operands."""
     named = {g.path: g for g in structure.drawn}
     seen: set[str] = set()
 

@@ -1,4 +1,4 @@
-"""Measures of a whole drawing that the language has no words for, by the names that prompts know them by."""
+"""Measures of a whole drawing that the language has no words for, by their names in prompts."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.region import Face, Loop, Region
 
 NEAR = 0.02
-"""Parts no further from each other than this share of the drawing hold together."""
+"""Distance, as a share of the drawing, up to which parts hold together."""
 
 _BELOW_TOP = 0.03
-"""How far below its top a drawing is cut to count battlements, as a share of its height."""
+"""Distance from its top at which a drawing is cut to count battlements, as a share of its height."""
 
 _SAMPLES = 48
-"""Points on a curve where the distance from the centre is looked at."""
+"""Points on a curve at which the distance from the centre is measured."""
 
 
 def pieces(whole: Region) -> float:
-    """How many groups of material lie apart from each other by more than a fiftieth of the drawing's size."""
+    """Counts the groups of material further apart than a fiftieth of the drawing's size."""
     group = list(range(len(whole.faces)))
 
     def head(k: int) -> int:
@@ -45,7 +45,7 @@ def pieces(whole: Region) -> float:
 
 
 def symmetry(whole: Region) -> float:
-    """The share of the area that its mirror image about the upright through the centroid covers too."""
+    """Returns the share of the area covered by its mirror image about the upright through the centroid."""
     if not whole:
         return math.nan
     x = measure(whole).centroid[0]
@@ -60,13 +60,13 @@ def _seen(region: Region, x: float, *, mirrored: bool) -> Region:
 
 
 def openings(whole: Region) -> float:
-    """Holes that material surrounds."""
+    """Counts the holes that material surrounds."""
     return float(sum(len(face.holes) for face in whole.faces))
 
 
 def teeth(whole: Region) -> float:
-    """How often the outermost outline goes beyond the circle halfway between its least and greatest distance
-    from its centre, and back.
+    """Counts how often the outermost outline crosses the circle halfway between its least and greatest
+    distance from its centre, out and back.
     """
     if not whole:
         return math.nan
@@ -79,7 +79,7 @@ def teeth(whole: Region) -> float:
 
 
 def battlements(whole: Region) -> float:
-    """Pieces of material at the top."""
+    """Counts the pieces of material at the top."""
     if not whole:
         return math.nan
     left, bottom, right, top = region_bounds(whole)

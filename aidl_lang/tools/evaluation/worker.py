@@ -1,4 +1,4 @@
-"""Programs are compiled in processes of their own: one that hangs, or eats all memory, is a result."""
+"""Compiles programs in processes of their own: one that hangs, or eats all memory, is a result."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from aidl_lang.tools.llm.language import Conversation, Language, Verdict
 T = TypeVar("T")
 
 SECONDS = 60.0
-"""For one task of a worker."""
+"""Seconds for one task of a worker."""
 _MEMORY = 4 << 30
-"""Bytes of address space of a worker."""
+"""Address space of a worker, bytes."""
 _LAST = 1_000_000
-"""Weight of a program that could not be judged: no other is further from right."""
+"""Weight of a program that could not be judged: the worst of all."""
 
 
 class Broken(Exception):  # noqa: N818 (what came of a program, no error of ours)
-    """A task did not end well; the message says how."""
+    """Raised if a task did not end well; the message tells how."""
 
 
 class Worker:
-    """A process for tasks, started anew when one breaks it. To be used by one thread."""
+    """A process for tasks, restarted after one breaks it. To be used by one thread."""
 
     def __init__(self, seconds: float = SECONDS) -> None:
         self._seconds = seconds
         self._pool = Guarded(1, "aidl_lang.tools.evaluation.measures", _MEMORY)
 
     def call(self, task: Callable[..., T], *arguments: object) -> T:
-        """What the task returns; it and its arguments can be pickled. Raises Broken."""
+        """Returns the result of a task; it and its arguments can be pickled. Raises Broken."""
         future = self._pool.submit(self._seconds, task, *arguments)
         error = future.exception()
         if error is None:
@@ -90,7 +90,7 @@ _numbers = count()
 
 @record(frozen=False)
 class RemoteConversation:
-    """A conversation that lives in a worker; when that breaks, a new one judges again what went well."""
+    """A conversation in a worker; after a crash, a new worker judges its earlier programs again."""
 
     worker: Worker
     language: Language
@@ -137,7 +137,7 @@ class _Open:
 
 
 _open: list[_Open] = []
-"""In a worker: the conversation under way."""
+"""In a worker: the present conversation."""
 
 
 def _resumed(number: int, language: Language, before: str | None, programs: tuple[str, ...]) -> _Open:
@@ -154,7 +154,7 @@ def _judge(
     try:
         verdict = state.conversation.judge(program)
     except BaseException:
-        _open.clear()  # it may have kept half of the program in mind
+        _open.clear()  # it may hold half of the program
         raise
     state.verdicts.append(verdict)
     return replace(verdict, compiled=None)
