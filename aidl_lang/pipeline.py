@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from aidl_lang.building.lower import Lowered
     from aidl_lang.explaining.failures import Conflict, Explanation
     from aidl_lang.explaining.giving import GaveWay
-    from aidl_lang.explaining.otherwise import Otherwise
+    from aidl_lang.explaining.rereading import Rereading
     from aidl_lang.explaining.trials import Trials
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.geometry.solved import SolvedModel
@@ -97,7 +97,7 @@ class _Tries:
         if not (solving.explain and has_errors(found)):
             return found
         from aidl_lang.building.lower import lower
-        from aidl_lang.explaining.decided import NEVER, with_failing_constants, with_remedies
+        from aidl_lang.explaining.constants import NEVER, with_failing_constants, with_remedies
         from aidl_lang.solver import solve
 
         is_decided = any(d.code == NEVER for d in found) or any(
@@ -264,14 +264,14 @@ def _explained(
     built: Interpretation,
     lowered: Lowered,
     solution: Solution,
-    other: Otherwise | None,
+    other: Rereading | None,
     settings: Settings,
     tried: Trials,
     watch: Stopwatch,
 ) -> _Troubles:
     from aidl_lang.explaining.failures import explained
     from aidl_lang.explaining.giving import gave_way
-    from aidl_lang.explaining.otherwise import elsewhere_notes
+    from aidl_lang.explaining.rereading import elsewhere_notes
 
     with watch("reasons"):
         given = gave_way(lowered, solution, settings.solving)
@@ -307,15 +307,15 @@ def _finish(
     from aidl_lang.solver import Status, solve
     from aidl_lang.solver.analysis import analyse
 
-    other: Otherwise | None = None
+    other: Rereading | None = None
     with watch("lower"):
         lowered = lower(built.model)
     with watch("solve"):
         solution = solve(lowered.problem, settings.solving, memory)
         if _is_troubled(solution):
-            from aidl_lang.explaining.otherwise import otherwise
+            from aidl_lang.explaining.rereading import reread
 
-            other, solution = otherwise(built, lowered, solution, tries.built, settings.solving)
+            other, solution = reread(built, lowered, solution, tries.built, settings.solving)
     if other is not None:
         built, lowered, solution = other.built, other.lowered, other.solution
     with watch("freedom"):

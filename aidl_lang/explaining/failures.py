@@ -21,7 +21,7 @@ from aidl_lang.common.prose import listed
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.givens import Dial, exact_numbers, written_numbers
-from aidl_lang.explaining.remedies import Remedy, Search, dear, left_out, remedies, wished
+from aidl_lang.explaining.remedies import Remedy, RemedySearch, dear, left_out, remedies, wished
 from aidl_lang.explaining.trials import Trials
 from aidl_lang.solver.solution import Failure, GroupFailure, Member, Solution
 from aidl_lang.syntax import ast
@@ -53,8 +53,8 @@ def explained(lowered: Lowered, solution: Solution, trials: Trials) -> list[Expl
 
 @record()
 class Party:
-    """A constraint in a conflict: the structure that holds it, how far it is off where the search came
-    nearest, what would fit in it in words ("" if that is not known), and the edit that writes it.
+    """A constraint in a conflict: the path of the structure that holds it, its violation where the search
+    came nearest, what would fit in it in words ("" if unknown), and the edit that writes it.
     """
 
     path: str
@@ -97,7 +97,7 @@ def _follows(failure: GroupFailure, failures: Sequence[GroupFailure], paths: Seq
 
 
 @record()
-class _Party:
+class _StatedMember:
     """A constraint in a conflict, as its author knows it."""
 
     member: Member
@@ -141,9 +141,9 @@ class Explanation:
         self.is_proven = failure.reason in _PROVEN
         self.times = Counter(c.span for c in lowered.stated if c is not None)
         self.sizes = [self._size(i) for i in failure.conflict if lowered.stated[i] is None]
-        parties = [_Party(m, stated) for m in failure.members if (stated := lowered.stated[m.index])]
+        parties = [_StatedMember(m, stated) for m in failure.members if (stated := lowered.stated[m.index])]
         self.parties = sorted(parties, key=lambda party: party.stated.span.start)
-        self.turns: dict[Span, list[_Party]] = {}
+        self.turns: dict[Span, list[_StatedMember]] = {}
         """The parties by the place at which they are stated; a loop states several at one place."""
         for party in self.parties:
             self.turns.setdefault(party.stated.span, []).append(party)
@@ -175,7 +175,7 @@ class Explanation:
         )
         return Conflict(self._headline()[1], self.failure.minimal, parties, givens)
 
-    def _told(self, party: _Party) -> Party:
+    def _told(self, party: _StatedMember) -> Party:
         stated, found = party.stated, self._remedy_of(party)
         fix = found.fix if found else None
         would_fit = found.would_fit() if found else ""
@@ -213,7 +213,7 @@ class Explanation:
         fresh = remedies(search for search in searches if search.dial.place not in done)
         return sorted([*both, *fresh], key=lambda found: order[found.dial.place])
 
-    def _searches(self) -> Iterator[Search]:
+    def _searches(self) -> Iterator[RemedySearch]:
         stated = {span: self._dials(parties[0]) for span, parties in self.turns.items()}
 
         def order(span: Span) -> tuple[int, bool, float]:
@@ -226,21 +226,21 @@ class Explanation:
             parties = self.turns[span]
             member = parties[0].member.index if len(parties) == 1 else None
             for dial in stated[span]:
-                yield Search(dial, self.failure, self.trials, span, member)
+                yield RemedySearch(dial, self.failure, self.trials, span, member)
         if not self.sizes:
             wordings = [party.stated.wording for party in self.parties]
             uses = next((w.it.program.resolution.uses for w in wordings if isinstance(w, Wording)), {})
             for dial in exact_numbers([p.node for p in self.parties if p.node is not None], uses):
-                yield Search(dial, self.failure, self.trials, dial.place)
+                yield RemedySearch(dial, self.failure, self.trials, dial.place)
 
     @staticmethod
-    def _dials(party: _Party) -> list[Dial]:
+    def _dials(party: _StatedMember) -> list[Dial]:
         """Returns the numbers of a statement that may be changed: factors are no measures."""
         return (
             [] if party.node is None else [dial for dial in written_numbers(party.node) if not dial.is_factor]
         )
 
-    def _remedy_of(self, party: _Party) -> Remedy | None:
+    def _remedy_of(self, party: _StatedMember) -> Remedy | None:
         span = party.stated.span
         inside = (r for r in self._remedies if not r.dial.is_exact)
         return next((r for r in inside if span.overlaps(r.dial.place)), None)
@@ -304,7 +304,7 @@ class Explanation:
         return [{c.span for i in f.conflict if (c := self.lowered.stated[i]) is not None} for f in others]
 
     @cached_property
-    def _chief(self) -> _Party:
+    def _chief(self) -> _StatedMember:
         """The party that the message is about: the one that the fix changes, else the last that has a
         remedy.
         """
@@ -339,7 +339,7 @@ class Explanation:
             case Failure.TIMED_OUT:
                 return "E0603", f"the time for solving ran out before {names} held"
 
-    def _claim(self, chief: _Party) -> str:
+    def _claim(self, chief: _StatedMember) -> str:
         """Returns the label of the party that the message is about: what would fit, or what is wrong with
         it.
         """
@@ -352,7 +352,7 @@ class Explanation:
             return f"off by {measured_in(off, chief.stated)} at best" if off > _TOLERANCE else ""
         return ("", "", "conflicts with the other", "conflicts with the others")[min(len(self.parties), 3)]
 
-    def _would_fit(self, party: _Party) -> str:
+    def _would_fit(self, party: _StatedMember) -> str:
         found = self._remedy_of(party)
         if found is None:
             return ""
@@ -362,7 +362,7 @@ class Explanation:
             f", all {times} times" if times > 1 else ""
         )
 
-    def _labels(self, chief: _Party) -> Iterator[Label]:
+    def _labels(self, chief: _StatedMember) -> Iterator[Label]:
         """Yields labels at the other places, each once; if there are too many, first those at which something
         would fit.
         """
@@ -399,7 +399,7 @@ class Explanation:
                 yield "what concerns one part only is solved faster if that part states it"
 
 
-def _apart(party: _Party, gap: float) -> str:
+def _apart(party: _StatedMember, gap: float) -> str:
     """Returns a sentence on the difference of the sides of `a == b` where the other parties hold; "" for any
     other statement.
     """
@@ -416,7 +416,7 @@ def _apart(party: _Party, gap: float) -> str:
     return f"given the others, `{left}` is {short(abs(gap))} {more} than `{right}`"
 
 
-def _name(parties: Sequence[_Party]) -> str:
+def _name(parties: Sequence[_StatedMember]) -> str:
     """Returns the name of the parties stated at one place: a loop states several."""
     first, label = parties[0].name, parties[0].stated.label
     if len(parties) > 1:

@@ -102,7 +102,7 @@ def dear(dial: Dial, share: float, plain: bool) -> float:
     return share * (_FIXED if dial.is_exact and not dial.name else 1.0) * (1.0 if plain else _LONG)
 
 
-def remedies(searches: Iterable[Search]) -> Iterator[Remedy]:
+def remedies(searches: Iterable[RemedySearch]) -> Iterator[Remedy]:
     """Yields remedies, at most one for each place; none for searches that find no number, or for which there
     is no time. A first remedy of few digits ends what is sought late. Of each few searches, those start first
     that would change least.
@@ -131,7 +131,7 @@ class _Written:
     shown: str
 
 
-class Search:
+class RemedySearch:
     """A search for a number that would fit in place of another. `member` is the one member of the failure
     that contains it, if only one does. One remedy is enough for all numbers at a `place`.
     """

@@ -13,7 +13,7 @@ from aidl_lang.geometry.evaluate import is_closed
 from aidl_lang.geometry.intersect import meet
 from aidl_lang.geometry.measures import area
 from aidl_lang.geometry.nearness import near_rows
-from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Network, exactly
+from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Network, with_finer_chords
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import Section, difference, fill, intersection, union
 from aidl_lang.geometry.separation import meeting
@@ -85,7 +85,7 @@ def _combined(regions: Sequence[Region], operation: Callable[..., Section]) -> R
     def traced(placed: Sequence[tuple[Region, int]] = tuple(zip(regions, firsts, strict=True))) -> Region:
         return trace(network, operation(*(section_of(network, r, first) for r, first in placed))).region
 
-    return exactly(network, traced)
+    return with_finer_chords(network, traced)
 
 
 def section_of(network: Network, region: Region, number: int) -> Section:

@@ -66,8 +66,8 @@ def _only(i: Ints, j: Ints, keep: NDArray[np.bool_]) -> tuple[Ints, Ints]:
 
 
 def _pairs(o: Skeleton, reach: float) -> Iterator[tuple[Ints, Ints]]:
-    """Pairs of elements (each with itself too) that come near enough and look at each other, or away from
-    each other; by place or by direction, whichever leaves fewer to try.
+    """Yields pairs of elements (each with itself too) that come near enough and look at each other, or away
+    from each other; by place or by direction, whichever leaves fewer to try.
     """
     order, begin, count = min(_by_place(o.boxes, reach), _by_direction(o), key=lambda way: way[2].sum())
     for i, rank in _listed(begin, count):
@@ -91,8 +91,8 @@ def _by_place(boxes: Floats, reach: float) -> tuple[Ints, Ints, Ints]:
 
 
 def _by_direction(o: Skeleton) -> tuple[Ints, Ints, Ints]:
-    """Returns the same by where the opposite of the other's range begins: in one's own range, for one of the
-    two.
+    """Returns an order of all elements by direction, and for each where in it its partners begin and how many
+    there are: those the opposite of whose range begins within its own.
     """
     turn = 2 * math.pi
     opposite = (o.normal + math.pi - o.spread) % turn

@@ -32,7 +32,9 @@ Relation = Literal["touching", "apart", "overlapping"]
 
 @record(slots=True)
 class Contact:
-    """Two bodies by their paths; `gap` (mm) where they are apart, `area` (mm²) where they overlap."""
+    """The contact of two bodies, by their paths; `gap` (mm) if they are apart, `area` (mm²) if they
+    overlap.
+    """
 
     a: str
     b: str

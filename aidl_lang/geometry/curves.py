@@ -87,7 +87,7 @@ class EllipseArc:
 
 Curve: TypeAlias = Line | Arc | Circle | Ellipse | Bezier
 Piece: TypeAlias = Line | Arc | Circle | Ellipse | EllipseArc | Bezier
-"""What the outline of a region is made of: a curve or an exact part of one."""
+"""A curve of an outline of a region, or an exact part of one."""
 
 FIELDS = {kind: tuple(field.name for field in fields(kind)) for kind in get_args(Piece)}
 """The numbers and points of each curve by their names: what `angle` is a direction, `first` and `sweep` run
@@ -104,7 +104,7 @@ def image(
     turned: Callable[[float], float] = lambda direction: direction,
     sense: float = 1.0,
 ) -> Piece:
-    """The curve after a similarity, by what that does to points, lengths, directions and turns."""
+    """Returns the curve after a similarity, given as maps of points, lengths, directions and turns."""
 
     def moved(name: str, value: Any) -> Any:
         if isinstance(value, tuple):

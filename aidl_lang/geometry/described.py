@@ -9,14 +9,14 @@ from aidl_lang.geometry.solved import SolvedGeometry, Values
 
 
 def as_geometry(name: str, of: SolvedGeometry, curve: Piece, around: str = "") -> SolvedGeometry:
-    """A curve as a geometry: a part of another, or beside it in a structure."""
+    """Returns a curve as a geometry: a part of another, or beside it in a structure."""
     kind, values = described(curve)
     path = f"{around or of.path}.{name}"
     return SolvedGeometry(name, path, kind, values, curve, (), False, of.span)
 
 
 def described(curve: Piece) -> tuple[str, Values]:
-    """The type and the fields of a curve."""
+    """Returns the type and the fields of a curve."""
     if isinstance(curve, Bezier):
         return curve.kind, {"points": (curve.p0, curve.p1, curve.p2, curve.p3)}
     values: Values = {}

@@ -20,7 +20,7 @@ from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
 from aidl_lang.geometry.legibility import COVERED, Ground, Lying, covered_note, lettering_note, unseen_note
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
-from aidl_lang.geometry.network import Network, exactly, union_bounds
+from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.notes import color_note, detached_notes, finding_note, gap_note, unusable_note
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Region
@@ -165,11 +165,11 @@ def _closed(
     """Returns the network after small gaps between curves are closed, what the curves enclose, and these
     gaps.
     """
-    found = exactly(network, lambda: _arranged(root, network, shapes))
+    found = with_finer_chords(network, lambda: _arranged(root, network, shapes))
     gaps = open_gaps(network, found[0].findings, shapes)
     while gaps:
         joined = Network(without_gaps(network.curves, gaps))
-        then = exactly(joined, partial(_arranged, root, joined, shapes))
+        then = with_finer_chords(joined, partial(_arranged, root, joined, shapes))
         kept = effective(gaps, then[0].findings)
         if len(kept) == len(gaps):
             network, found = joined, then

@@ -41,14 +41,14 @@ _VALUES = {kind: attrgetter(*names) for kind, names in FIELDS.items()}
 
 
 def is_finite(curve: Piece) -> bool:
-    """Whether every number of the curve is one that can be drawn."""
+    """Tells whether every number of the curve is finite."""
     return all(
         math.isfinite(n) for v in _VALUES[type(curve)](curve) for n in (v if isinstance(v, tuple) else (v,))
     )
 
 
 def is_closed(curve: Piece) -> bool:
-    """Whether the curve is a loop by itself."""
+    """Tells whether the curve is a loop by itself."""
     return isinstance(curve, Circle | Ellipse)
 
 
@@ -68,7 +68,7 @@ def _on_ellipse(curve: Ellipse | EllipseArc, u: float) -> Vec:
 
 
 def point(curve: Piece, t: float) -> Vec:
-    """The point at parameter t; the stored ends at 0 and 1."""
+    """Returns the point at parameter t; the stored ends at 0 and 1."""
     if isinstance(curve, Line):
         (x0, y0), (x1, y1) = curve.start, curve.end
         return (x0 + t * (x1 - x0), y0 + t * (y1 - y0)) if t != 1 else curve.end
@@ -98,7 +98,7 @@ def _bezier_point(curve: Bezier, t: float) -> Vec:
 
 
 def _weights(t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The shares of the control points of a cubic in its points at these parameters."""
+    """Returns the shares of the control points of a cubic in its points at these parameters."""
     s = 1 - t
     return np.stack((s**3, 3 * s * s * t, 3 * s * t * t, t**3), axis=1)
 
@@ -128,20 +128,22 @@ def points(curve: Piece, t: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def round_points(rows: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """A point on each of some circles and arcs; a row has the centre, radius, first angle and sweep."""
+    """Returns a point on each of some circles and arcs; a row has the centre, radius, first angle and
+    sweep.
+    """
     x, y, radius, first, sweep = rows.T
     u = first + sweep * t
     return np.stack((x + radius * np.cos(u), y + radius * np.sin(u)), axis=1)
 
 
 def cubic_points(rows: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """A point on each of some cubics; a row has the control points."""
+    """Returns a point on each of some cubics; a row has the control points."""
     spots: NDArray[np.float64] = (_weights(t)[:, :, None] * rows.reshape(-1, 4, 2)).sum(axis=1)
     return spots
 
 
 def derivative(curve: Piece, t: float) -> Vec:
-    """The derivative of the point by t."""
+    """Returns the derivative of the point by t."""
     if isinstance(curve, Line):
         return curve.end[0] - curve.start[0], curve.end[1] - curve.start[1]
     if isinstance(curve, Bezier):
@@ -176,7 +178,7 @@ def ends(curve: Piece) -> tuple[Vec, Vec]:
 
 
 def reverse(curve: Piece) -> Piece:
-    """The same points the other way round; closed curves keep their form."""
+    """Returns the curve run through the other way round; closed curves keep their form."""
     if isinstance(curve, Line):
         return Line(curve.end, curve.start)
     if isinstance(curve, Arc):
@@ -190,7 +192,9 @@ def reverse(curve: Piece) -> Piece:
 
 
 def inward(curve: Piece, origin: Vec, rotation: float, mirrored: bool) -> Piece:
-    """A curve as seen in a frame: at an origin, reflected in x if it is mirrored, then turned by degrees."""
+    """Returns a curve in the coordinates of a frame: at an origin, reflected in x if it is mirrored, then
+    turned by degrees.
+    """
     angle = math.radians(rotation)
     c, s = math.cos(angle), math.sin(angle)
     flip = -1.0 if mirrored else 1.0
@@ -206,7 +210,8 @@ def inward(curve: Piece, origin: Vec, rotation: float, mirrored: bool) -> Piece:
 
 
 def part(curve: Piece, t0: float, t1: float, start: Vec, end: Vec) -> Piece:
-    """The piece from t0 to t1 (backwards if t1 < t0) with the given ends, which lie on it within tolerance.
+    """Returns the piece from t0 to t1 (backwards if t1 < t0) with the given ends, which lie on it within
+    tolerance.
 
     Parameters of closed curves may run past 1.
     """
@@ -224,7 +229,9 @@ def part(curve: Piece, t0: float, t1: float, start: Vec, end: Vec) -> Piece:
 
 
 def _bezier_part(curve: Bezier, t0: float, t1: float, start: Vec, end: Vec) -> Bezier:
-    """The control points of a part are p0 + p'(t)·Δt/3 at both ends (Farin, Curves and Surfaces, ch. 5)."""
+    """Returns the part of a cubic; its inner control points are p0 + p'(t)·Δt/3 at both ends (Farin, Curves
+    and Surfaces, ch. 5).
+    """
     step = (t1 - t0) / 3
     d0, d1 = _bezier_derivative(curve, t0), _bezier_derivative(curve, t1)
     return Bezier(
@@ -236,7 +243,7 @@ def _bezier_part(curve: Bezier, t0: float, t1: float, start: Vec, end: Vec) -> B
 
 
 def bounds(curve: Piece) -> Bounds:
-    """The tight box: left, bottom, right, top."""
+    """Returns the tight bounding box: left, bottom, right, top."""
     if isinstance(curve, Line):
         (x0, y0), (x1, y1) = curve.start, curve.end
         return min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
@@ -280,7 +287,7 @@ def _bezier_extremes(curve: Bezier, axis: int) -> list[float]:
 
 
 def nearest(curve: Piece, p: Vec) -> float:
-    """The parameter of the point of the curve that is nearest to p."""
+    """Returns the parameter of the point of the curve that is nearest to p."""
     if isinstance(curve, Line):
         return _nearest_on_line(curve, p)
     if isinstance(curve, Arc | Circle):
@@ -345,7 +352,7 @@ def second_derivative(curve: Piece, t: float) -> Vec:
 
 
 def locate(curve: Piece, p: Vec, tolerance: float) -> float | None:
-    """The parameter of p if it lies on the curve."""
+    """Returns the parameter of p if it lies on the curve; else None."""
     t = nearest(curve, p)
     x, y = point(curve, t)
     return t if math.hypot(x - p[0], y - p[1]) <= tolerance else None

@@ -173,7 +173,7 @@ def _misfit(work: Work) -> TooLarge:
 
 
 def sized(work: Work, size: float) -> Work:
-    """Returns the same finish with its larger size changed, the other in proportion."""
+    """Returns the finish with its larger size changed, the other in proportion."""
     share = size / max(work.sizes)
     return Work(work.kind, work.corner, (work.sizes[0] * share, work.sizes[1] * share))
 

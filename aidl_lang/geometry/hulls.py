@@ -23,7 +23,7 @@ _NEAR = 1e-9
 
 
 @record(slots=True)
-class _Contact:
+class _HullContact:
     """A curve that the hull runs along, about from `t0` to `t1` (which may pass 1 on a closed curve), or
     only its end there.
     """
@@ -72,7 +72,7 @@ def _size(pieces: Sequence[Piece]) -> float:
     return max(math.dist(ends(a)[0], ends(pieces[0])[0]) for a in pieces)
 
 
-def _contacts(curves: Sequence[Piece]) -> list[_Contact]:
+def _contacts(curves: Sequence[Piece]) -> list[_HullContact]:
     """Returns the stretches of curves that the hull of the samples touches, counter-clockwise."""
     samples = [_spread(curve) for curve in curves]
     owner = [number for number, ts in enumerate(samples) for _ in ts]
@@ -96,7 +96,7 @@ def _contacts(curves: Sequence[Piece]) -> list[_Contact]:
     if len(runs) > 1 and follows(runs[-1][-1], runs[0][0]):
         runs[0] = runs.pop() + runs[0]
     return [
-        _Contact(curves[owner[run[0]]], *(float(samples[owner[k]][place[k]]) for k in (run[0], run[-1])))
+        _HullContact(curves[owner[run[0]]], *(float(samples[owner[k]][place[k]]) for k in (run[0], run[-1])))
         for run in runs
     ]
 
@@ -127,7 +127,7 @@ def _convex(p: NDArray[np.float64]) -> list[int]:
     return half(order)[:-1] + half(order[::-1])[:-1]
 
 
-def _touch(a: _Contact, b: _Contact) -> tuple[float, float]:
+def _touch(a: _HullContact, b: _HullContact) -> tuple[float, float]:
     """Returns the parameters where the line from one contact to the next leaves the one and reaches the
     other.
     """

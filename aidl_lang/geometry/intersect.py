@@ -173,7 +173,9 @@ def _crossed(p: NDArray[np.float64], q: NDArray[np.float64]) -> list[tuple[float
 
 
 def _nearest_samples(p: NDArray[np.float64], q: NDArray[np.float64]) -> list[tuple[int, int]]:
-    """Pairs of samples that are nearer than those beside them, and no further apart than samples are."""
+    """Returns pairs of samples that are nearer than those beside them, and no further apart than neighbouring
+    samples.
+    """
     away = np.hypot(*np.moveaxis(p[:, None, :] - q[None, :, :], -1, 0))
     padded = np.pad(away, 1, constant_values=np.inf)
     n, m = away.shape

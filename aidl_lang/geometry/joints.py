@@ -10,7 +10,7 @@ from aidl_lang.geometry.region import Face, Loop
 
 
 def jointed(face: Face) -> Face:
-    """Returns the same face, the pieces of its outlines divided where these touch."""
+    """Returns the face with the pieces of its outlines divided where these touch."""
     network = Network([piece for loop in face.loops for piece in loop.pieces])
     number, loops = 0, []
     for loop in face.loops:

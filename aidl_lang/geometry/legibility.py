@@ -65,9 +65,7 @@ class Ground:
         return own is not None and look_alike(own, color)
 
     def covering(self, curves: Sequence[int], place: int) -> str | None:
-        """Returns the path of a body that is drawn over some curves, all of them; None where there is
-        none.
-        """
+        """Returns the path of a body that is drawn over all of some curves; None if there is none."""
         first = bisect_right(self._places, place)
         if not curves or first == len(self.bodies):
             return None
@@ -93,8 +91,8 @@ class Ground:
         return covered / (sum(lengths) or 1.0), [self.bodies[k].path for k in by]
 
     def hidden_part(self, faces: Section, place: int) -> tuple[float, list[str]]:
-        """Returns the same of faces, by their area. A body that lies within them is an inlay and shows
-        them.
+        """Returns the share of the area of faces that later bodies cover, and these bodies. A body within the
+        faces is an inlay and shows them.
         """
         above = [b for b in self.bodies if b.place > place and boxes_meet(b.section, faces)]
         above = [b for b in above if not covers(faces, b.section)]

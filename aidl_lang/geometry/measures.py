@@ -43,7 +43,7 @@ def gauss(count: int) -> tuple[tuple[float, float], ...]:
 
 
 def measure(region: Region) -> Measures:
-    """All measures of a region."""
+    """Returns all measures of a region."""
     area = mx = my = perimeter = 0.0
     for loop in region.loops:
         a, x, y = loop_moments(loop)
@@ -81,7 +81,7 @@ def loop_moments(loop: Loop) -> Moments:
 
 
 def moments_about_start(loop: Loop) -> tuple[Vec, Moments]:
-    """The loop's own start, and its moments about it: far from the origin nothing cancels there."""
+    """Returns the start of a loop and its moments about it: far from the origin nothing cancels there."""
     start = ends(loop.pieces[0])[0]
     a = mx = my = 0.0
     for da, dx, dy in (_moments(piece, start) for piece in loop.pieces):
@@ -91,7 +91,7 @@ def moments_about_start(loop: Loop) -> tuple[Vec, Moments]:
 
 
 def _moments(piece: Piece, origin: Vec) -> Moments:
-    """Of the triangle fan from the origin to the piece."""
+    """Returns the moments of the triangle fan from the origin to the piece."""
     if isinstance(piece, Bezier):
         return _bezier_moments(piece, origin)
     start, end = ends(piece)
@@ -115,7 +115,7 @@ def _moments(piece: Piece, origin: Vec) -> Moments:
 
 
 def _less_sine(angle: float) -> float:
-    """The angle without its sine, by the series where the difference would lose digits."""
+    """Returns the angle minus its sine, by the series where the difference would lose digits."""
     if abs(angle) > 1:
         return angle - math.sin(angle)
     term = total = angle**3 / 6

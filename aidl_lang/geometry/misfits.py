@@ -60,8 +60,8 @@ def _works(failure: TooLarge) -> list[Work]:
 
 
 class _Fault:
-    """Failures that are one fault. `own` are the works whose size is turned to find what fits: all that take
-    part where they have one size, else those of the statement that came last.
+    """Failures that are one fault. `own` are the works whose size is changed to find one that fits: all that
+    take part if they have one size, else those of the last statement.
     """
 
     def __init__(
@@ -178,8 +178,8 @@ class _Fault:
 
 
 def in_one(found: Sequence[Misfit]) -> list[Diagnostic]:
-    """Returns the notes, those of the same statements as one: what fits everywhere is the least of what
-    fits.
+    """Returns one note for each set of statements: that of the smallest size that fits, which fits
+    everywhere.
     """
     least: dict[frozenset[Span], Misfit] = {}
     for misfit in found:

@@ -1,4 +1,4 @@
-"""What lies near what: pairs of boxes, and sides of polylines beside a point, in windows of sorted tables."""
+"""Finds what is near: pairs of boxes, and sides of polylines beside a point, in windows of sorted tables."""
 
 from __future__ import annotations
 
@@ -22,16 +22,14 @@ Floats = NDArray[np.float64]
 
 
 def near_pairs(boxes: Sequence[Bounds], margin: float) -> Iterator[tuple[int, int]]:
-    """Pairs i < j whose boxes come closer than the margin, in the order of a sweep from left to right."""
+    """Yields pairs i < j whose boxes come closer than the margin, in the order of a sweep from left to
+    right.
+    """
     yield from ((i, j) for i, j in near_rows(boxes, margin).tolist())
 
 
 def near_rows(boxes: Sequence[Bounds] | Floats, margin: float) -> Ints:
-    """Returns the same pairs as a table of two columns.
-
-    The sweep itself runs along the axis on which fewer boxes meet, so that a long row costs no more than a
-    long column.
-    """
+    """Returns the pairs of `near_pairs` as a table of two columns."""
     if len(boxes) < 2:
         return np.zeros((0, 2), dtype=np.int64)
     b = np.array(boxes, dtype=np.float64)

@@ -100,7 +100,7 @@ class Network:
     """Nodes and edges of a set of curves. `uses[i]` lists the edges of curve i in its own direction.
 
     A result may have vertices that no curve owns: chords crossed where their curves do not. `blurred` has the
-    numbers of these curves; work done by `exactly` is then begun again with these curves cut finer.
+    numbers of these curves; work done by `with_finer_chords` is then begun again with these curves cut finer.
     """
 
     def __init__(self, curves: Sequence[Piece], boxes: Sequence[Bounds] | None = None) -> None:
@@ -257,7 +257,7 @@ class Network:
         self._draw_polylines()
 
     def _index(self) -> None:
-        """A sorted table of all grid points with the edge they lie inside of (-1 for nodes)."""
+        """Makes a sorted table of all grid points with the edge they lie inside of (-1 for nodes)."""
         self.node_grid = self.to_grid(np.array(self.nodes, dtype=float).reshape(-1, 2))
         inner = [e.inner for e in self.edges if len(e.inner)]
         sizes = np.array([len(self.node_grid), *(len(e.inner) for e in self.edges)])
@@ -347,7 +347,7 @@ class Network:
         return self._straight.get((start, end), default)
 
 
-def exactly(network: Network, work: Callable[[], T]) -> T:
+def with_finer_chords(network: Network, work: Callable[[], T]) -> T:
     """Returns the result of `work`, done again with finer chords while curves come too close for them."""
     network.may_refine = True
     while True:

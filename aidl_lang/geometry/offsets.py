@@ -13,7 +13,7 @@ from aidl_lang.geometry.boolean import section_of
 from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import bounds, ends, is_closed, point
 from aidl_lang.geometry.finishing import direction
-from aidl_lang.geometry.network import Network, exactly, union_bounds
+from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import difference, fill, union
 from aidl_lang.geometry.strips import Strip, beside, cap, disc, wedge
@@ -124,4 +124,4 @@ def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
         base, added = section_of(network, region, 0), union(sections)
         return trace(network, difference(base, added) if cut else union([base, added])).region
 
-    return exactly(network, traced)
+    return with_finer_chords(network, traced)

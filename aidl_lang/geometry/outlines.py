@@ -23,7 +23,7 @@ from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, cor
 from aidl_lang.geometry.hulls import hull
 from aidl_lang.geometry.measures import area, length
 from aidl_lang.geometry.misfits import Misfit, in_one, misfits
-from aidl_lang.geometry.network import Network, exactly, union_bounds
+from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.offsets import NEAR, offset, thick
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import Box, Finish, Recipe, SolvedGeometry, SolvedModel, SolvedStructure
@@ -250,7 +250,9 @@ class _Outliner:
                 yield from ((f, corner) for corner in corners)
 
     def _inherited(self, leaves: Leaves, near: float) -> Iterator[tuple[Finish, Corner]]:
-        """A copy has the finishes of its source: corners between the same curves, and sizes in proportion."""
+        """Yields the finishes that a copy has from its source: of corners between the same curves, with sizes
+        in proportion.
+        """
         sources = [(self._source(g), c) for g, c in leaves]
         for _ in self.index:  # copies of copies: no chain is longer than that
             if not any(g is not None for g, _ in sources):
@@ -346,7 +348,9 @@ def _region(geometry: Sequence[SolvedGeometry]) -> Region:
         if leaves:
             shapes.append(Shape(g, tuple(leaves)))
     network = Network(curves)
-    return exactly(network, lambda: trace(network, union_of(own_faces(network, shapes).faces)).region)
+    return with_finer_chords(
+        network, lambda: trace(network, union_of(own_faces(network, shapes).faces)).region
+    )
 
 
 def _pieces(region: Region) -> list[Piece]:

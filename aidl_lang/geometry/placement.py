@@ -1,4 +1,4 @@
-"""Where the flat drawing of a structure stands in space, and what is said of bodies that have a thickness.
+"""The place of the flat drawing of each structure in space, and notes on bodies that have a thickness.
 
 World axes: x to the right, y to the back, z up, mm. `top` is drawn in x and y and grows up from there,
 `front` in x and z and grows to the back, `side` in y and z and grows to the right.
@@ -48,9 +48,9 @@ class Plane:
         return replace(self, origin=self.origin + distance * self.growth)
 
     def placed(self, thickness: float = 0.0) -> Matrix:
-        """Returns the rigid motion, shape (3, 4), that takes what stands from 0 to `thickness` over the
-        root's plane to its place: rotation, then shift. It never mirrors: where the material grows away from
-        the viewer, it begins at its far side.
+        """Returns the rigid motion, shape (3, 4), from 0 to `thickness` over the root's plane to the
+        structure's place: rotation, then shift. It never mirrors: material that grows away from the viewer
+        begins at its far side.
         """
         normal = np.cross(self.u, self.v)
         depth = min(0.0, thickness * float(normal @ self.growth))

@@ -56,7 +56,7 @@ _FULL_TURN = 2 * math.pi
 def read_out(
     model: Model, lowered: Lowered, solution: Solution, freedom: Freedom
 ) -> tuple[SolvedModel, Evaluator]:
-    """The solved model, and the evaluator of its values for what is checked afterwards."""
+    """Returns the solved model, and the evaluator of its values for later checks."""
     values: dict[Unknown, float] = {
         u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)
     }
@@ -78,7 +78,9 @@ def read_out(
 
 
 def _literal(model: Model, finish: Finish) -> ast.Number | None:
-    """The number in the call that is the size of a fillet or chamfer, where no constraint speaks of it."""
+    """Returns the number in the call that is the size of a fillet or chamfer, if no constraint mentions
+    it.
+    """
     size, *more = finish.sizes
     rows = (c for constraint in model.constraints for c in constraint.comparisons)
     if more or size.expression.payload in set(ex.unknowns(side for c in rows for side in (c.left, c.right))):
@@ -88,14 +90,14 @@ def _literal(model: Model, finish: Finish) -> ast.Number | None:
 
 
 def _motions(model: Model, lowered: Lowered, solution: Solution, freedom: Freedom) -> tuple[Motion, ...]:
-    """What can still move, by code that is loaded when it is asked for."""
+    """Returns the motions that are left, by code that is loaded when it is needed."""
     from aidl_lang.geometry.freedom import motions
 
     return motions(model, lowered, solution, freedom)
 
 
 def _floating(lowered: Lowered, freedom: Freedom) -> Iterator[str]:
-    """Structures that no constraint ties to what is around them, and that hold what was guessed."""
+    """Yields the paths of structures with guessed values that no constraint ties to what is around them."""
     guessed: set[tuple[int, int]] = set()
     problem = lowered.problem
     if problem.axis is not None:
@@ -113,7 +115,7 @@ def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:
 
 
 def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[ConstraintReport]:
-    """How well each constraint holds, in order of writing."""
+    """Yields the report of each constraint, in order of writing."""
     number = {stated: index for index, stated in enumerate(lowered.stated)}
     for stated in model.constraints:
         if (index := number.get(stated)) is not None:
@@ -172,7 +174,7 @@ class _Reader:
         )
 
     def _params(self, s: Structure) -> Iterator[tuple[str, Scalar]]:
-        """Every named number of a structure itself: its params, variables and arguments."""
+        """Yields every named number of a structure itself: its params, variables and arguments."""
         assert isinstance(s.scope, Scope)
         # The root shows the params of the file, too.
         scopes = list(s.scope.chain()) if s is self.model.root else [s.scope]
@@ -193,7 +195,7 @@ class _Reader:
                     yield name, self._scalar(value)
 
     def _orientation(self, s: Structure) -> str:
-        """Its own, else that of what is around it."""
+        """Returns the orientation of a structure: its own, else that of the structure around it."""
         match s.attributes.get("orientation"):
             case (Text(word, _),):
                 return word
@@ -285,7 +287,7 @@ class _Reader:
         return SolvedFinish(finish.kind, of, at, sizes, finish.text, finish.span, literal=literal)
 
     def _text(self, g: Geometry) -> SolvedGeometry:
-        """A text with its characters as parts, and the curves of each as theirs."""
+        """Returns a text with its characters as parts, and the curves of each as theirs."""
         (x, y), height = self._at(g.fields["start"], g.owner), self._number(g.fields["height"])
         c, s = ex.exact_turn(self._direction(g))
         up = -1.0 if clockwise(g, self.model.root) else 1.0
@@ -301,12 +303,12 @@ class _Reader:
         return replace(whole, source=source, attributes=self._attributes(g))
 
     def _at(self, value: Value, owner: Structure) -> Vec:
-        """A point of `owner` in the frame of the root."""
+        """Returns a point of `owner` in the frame of the root."""
         x, y = xy(value)
         return self.place(self.evaluate(x), self.evaluate(y), owner)
 
     def _direction(self, g: Geometry) -> float:
-        """The angle of an ellipse or a text in the frame of the root, in degrees."""
+        """Returns the angle of an ellipse or a text in the frame of the root, in degrees."""
         return self._number(translate("angle", g.fields["angle"], g.owner, self.model.root))
 
     def _number(self, value: Value) -> float:
@@ -321,7 +323,7 @@ class _Reader:
         return self._values(g.recipe.numbers if g.recipe and g.is_drawn_later else g.fields, g.owner)
 
     def _values(self, values: Mapping[str, Binding], owner: Structure) -> Values:
-        """The numbers and points among values of `owner`."""
+        """Returns the numbers and points among values of `owner`."""
         found: Values = {}
         for name, value in values.items():
             if isinstance(value, PointVal):
@@ -331,7 +333,7 @@ class _Reader:
         return found
 
     def _curve(self, g: Geometry) -> Curve | None:
-        """The curve of a primitive; None of one that is made of lines and cubics."""
+        """Returns the curve of a primitive; None for one made of lines and cubics."""
         core, at = g.fields, partial(self._at, owner=g.owner)
         match g.type:
             case "line" | "bezier":
@@ -348,7 +350,7 @@ class _Reader:
                 return None
 
     def _pieces(self, g: Geometry) -> Iterator[list[Vec]]:
-        """The ends of the lines and the control points of the cubics that a primitive is made of."""
+        """Yields the ends of the lines and the control points of the cubics that a primitive is made of."""
         for piece in pieces(g, g.owner):
             yield [self.place(self.evaluate(x), self.evaluate(y), g.owner) for x, y in piece]
 
@@ -367,14 +369,14 @@ class _Reader:
 def _glyph(
     text: Geometry, name: str, outline: Sequence[Sequence[Vec]], at: Callable[[Vec], Vec]
 ) -> SolvedGeometry:
-    """One character of a text, with its curves as parts."""
+    """Returns one character of a text, with its curves as parts."""
     checkpoint()
     edges = tuple(_edge(text, f"{name}.edge[{i}]", [at(p) for p in c]) for i, c in enumerate(outline))
     return SolvedGeometry(name, f"{text.path}.{name}", "glyph", {}, None, edges, text.construction, text.span)
 
 
 def _edge(of: Geometry, path: str, points: Sequence[Vec]) -> SolvedGeometry:
-    """One of the lines and cubics that a primitive is made of, by its path in it."""
+    """Returns one of the lines and cubics of a primitive, by its path in it."""
     curve = _through(points)
     kind, values = described(curve)
     name, whole = path.rpartition(".")[2], f"{of.path}.{path}"

@@ -1,4 +1,4 @@
-"""Which curves cannot meet but in an end that they share, told for many pairs at once.
+"""Proofs, for many pairs of curves at once, that two curves meet at most in an end that they share.
 
 Every curve is cut into `PARTS` parts, each within the hull of four points. Two curves are apart where no
 boxes of their parts meet; beside a shared end they are where a straight line through it has all of one on one

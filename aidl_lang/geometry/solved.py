@@ -118,11 +118,11 @@ class SolvedGeometry:
 
 @record()
 class SolvedStructure:
-    """`box` is None where there is nothing to bound. `orientation` is its own, or that of what is around it.
-    `attributes`: name → argument values as written (`color`, `layer`, `thickness`, `elevation`, `material`,
-    `detached`, `note`, `orientation`). `degrees` is None where they could not be counted. `is_empty`: no
-    geometry of its own and no children, so that `box` is that of the plan. `state` says how it is
-    constrained: `fully`, `under`, `over`, `contradictory` or `unknown`.
+    """A solved structure. `box` is None if there is nothing to bound. `orientation` is its own, or that of
+    what is around it. `attributes`: name → argument values as written (`color`, `layer`, `thickness`,
+    `elevation`, `material`, `detached`, `note`, `orientation`). `degrees` is None if they could not be
+    counted. `is_empty`: no geometry of its own and no children, so that `box` is that of the plan. `state` is
+    that of its constraints: `fully`, `under`, `over`, `contradictory` or `unknown`.
     """
 
     name: str
@@ -171,8 +171,8 @@ class Relating(Protocol):
 
 @record()
 class ConstraintReport:
-    """A constraint as written, the structure that holds it, and how well it holds. `stated`: what tells what
-    it speaks of; `exact`: it is made of equations alone.
+    """A constraint as written, the structure that holds it, and its violation. `stated` names the things it
+    relates; `exact`: it is made of equations alone.
     """
 
     path: str

@@ -18,7 +18,7 @@ from aidl_lang.geometry.finishing import direction
 
 Outline = tuple[Piece, ...]
 Strip = tuple[Outline, ...]
-"""One closed outline, or an outer and an inner one."""
+"""A closed outline, or an outer and an inner one."""
 
 FIT = 1e-5
 """Largest error of a fitted parallel curve, relative to its distance plus the extent of the curve."""

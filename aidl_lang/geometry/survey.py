@@ -125,7 +125,9 @@ class Survey:
 
 
 class NothingThereError(KeyError):
-    """There is nothing to measure at a path. `known` is what there is, `near` what may have been meant."""
+    """Raised if there is nothing to measure at a path. `known` are the paths there are, `near` those that may
+    have been meant.
+    """
 
     def __init__(self, path: str, reason: str, near: Sequence[str], known: Sequence[str]) -> None:
         super().__init__(path)
@@ -144,7 +146,7 @@ class NothingThereError(KeyError):
 
 
 def some_of(names: Sequence[str]) -> str:
-    """Returns the first of them as a sentence has them, and how many more there are."""
+    """Returns the first names as a sentence has them, and the number of the others."""
     return first_few(ticked(names), _NAMED)
 
 
@@ -177,7 +179,7 @@ def survey(
 
 
 def _far_pairs(drawing: Drawing) -> Iterator[Contact]:
-    """Yields the pairs of bodies that the drawing leaves out, since their boxes are far from each other."""
+    """Yields the pairs of bodies that the drawing leaves out because their boxes are far from each other."""
     compared = {(pair.a, pair.b) for pair in drawing.pairs}
     for one, other in combinations(drawing.bodies, 2):
         if (one.path, other.path) not in compared:

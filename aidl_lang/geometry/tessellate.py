@@ -41,8 +41,8 @@ def face_polygons(face: Face, tolerance: float) -> list[Polygon]:
 
 
 def _faithful(loop: Loop, tolerance: float) -> Polygon:
-    """A loop that is thinner than the tolerance is followed more closely, so that it does not turn inside
-    out.
+    """Returns a loop's polygon; a loop that is thinner than the tolerance is followed more closely, so that
+    it does not turn inside out.
     """
     checkpoint()
     exact = loop_area(loop)

@@ -200,7 +200,9 @@ def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[
 
 
 def _split_at_pinches(runs: list[Run]) -> list[list[Run]]:
-    """A polygon may pass a point twice (a circle inscribed in a square does): loops that do not."""
+    """Returns loops that pass no point twice, from a polygon that may (a circle inscribed in a square
+    does).
+    """
     if len({run.start for run in runs}) == len(runs):
         return [runs] if runs else []
     loops: list[list[Run]] = []

@@ -70,7 +70,9 @@ def widths(region: Region) -> Widths:
         return Widths(None, None)
     outline = Skeleton(region)
     ends_of_tapers = list(_tapers(outline))
-    wall, gap = (_Search(outline, kind, [c for k, c in ends_of_tapers if k == kind]) for kind in (WALL, GAP))
+    wall, gap = (
+        _ChordSearch(outline, kind, [c for k, c in ends_of_tapers if k == kind]) for kind in (WALL, GAP)
+    )
     if _is_convex(outline):
         gap.is_done = True
     size = math.dist(outline.boxes[:, :2].min(axis=0), outline.boxes[:, 2:].max(axis=0))
@@ -88,7 +90,7 @@ def widths(region: Region) -> Widths:
     return Widths(wall.best or wall.tip, gap.best or gap.tip)
 
 
-class _Search:
+class _ChordSearch:
     """A search for the shortest chord of a kind. `tip` is the least end of a taper, where nothing is
     shorter.
     """

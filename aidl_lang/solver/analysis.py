@@ -49,10 +49,10 @@ class Freedom:
     group_degrees the same for what each group itself draws
     states        of each group
     free          unknowns that can still move (kept ones never do)
-    motions       of what can move, each part by itself
+    motions       the possible motions, each part by itself
     redundant     equality constraints already implied by others
     undecided     unknowns of each part of which the degrees of freedom could not be counted
-    unclear       constraints of which it could not be told whether they follow from others
+    unclear       constraints whose dependence on others is undecided
     loose         groups that ride along, though they belong to nothing that is drawn around them
     """
 

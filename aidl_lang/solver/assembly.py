@@ -22,7 +22,7 @@ UNUSED = 0
 
 
 @record(slots=True)
-class Recipe:
+class SlotRecipe:
     """The computation of a slot from others: an operation, or a sum with these slopes.
 
     inputs  the free unknowns that it depends on
@@ -41,7 +41,7 @@ class Assembly:
     recipes.
     """
 
-    def __init__(self, recipes: Sequence[Recipe], width: int, columns: list[int]) -> None:
+    def __init__(self, recipes: Sequence[SlotRecipe], width: int, columns: list[int]) -> None:
         self._recipes, self._width, self._columns = recipes, width, columns
         self._local = {unknown: i for i, unknown in enumerate(columns)}
         self._values = [0.0] * len(columns)
@@ -77,7 +77,7 @@ class Assembly:
                 stack.pop()
                 self._local[slot] = self._make(recipe)
 
-    def _make(self, recipe: Recipe) -> int:
+    def _make(self, recipe: SlotRecipe) -> int:
         operands = tuple(self._local[slot] for slot in recipe.operands)
         if recipe.op == NUMBER:
             return self._new_slot(recipe.constant, False)

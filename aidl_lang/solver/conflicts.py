@@ -82,12 +82,12 @@ def explain(
     `best` are the values of the stage that came closest.
     """
     hierarchy.values.assign(best.items())
-    unmet = tuple(_Search.member(hierarchy, index) for index in violated)
+    unmet = tuple(_ConflictSearch.member(hierarchy, index) for index in violated)
     if hierarchy.timed_out:
         return GroupFailure(group, Failure.TIMED_OUT, unmet)
     if not hierarchy.settings.explain:
         return GroupFailure(group, Failure.NOT_CONVERGED, unmet)
-    return _Search(hierarchy, scope, before).explain(group, best)
+    return _ConflictSearch(hierarchy, scope, before).explain(group, best)
 
 
 def conflict(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) -> tuple[list[int], bool]:
@@ -95,7 +95,7 @@ def conflict(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) -> tu
     `before` (empty if all can), and whether it is known to be minimal.
     """
     hierarchy.values.assign(before.items())
-    search = _Search(hierarchy, scope, before)
+    search = _ConflictSearch(hierarchy, scope, before)
     trial = search._try(tuple(sorted(scope.constraints)))
     if trial.holds:
         return [], True
@@ -104,7 +104,7 @@ def conflict(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) -> tu
 
 
 @record(frozen=False)
-class _Search:
+class _ConflictSearch:
     hierarchy: Hierarchy
     scope: Scope
     before: dict[int, float]

@@ -20,7 +20,7 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.solver.array_freezing import TIE, ZERO, ArrayFreezing
 from aidl_lang.solver.array_program import ArrayProgram
-from aidl_lang.solver.assembly import NUMBER, SUM, Assembly, Recipe
+from aidl_lang.solver.assembly import NUMBER, SUM, Assembly, SlotRecipe
 from aidl_lang.solver.components import components
 from aidl_lang.solver.forms import Affine, Form, Knot, add_terms, applied, branched, combined, scaled
 from aidl_lang.solver.operations import BRANCHING, Op
@@ -54,9 +54,9 @@ class Frozen:
 
 
 class Freezer:
-    """Makes programs of rows with the unknowns `free`, for one branch after another. What hangs on no branch
-    is worked out once. The nodes that the rows are made of must be up to date, and what of them does not
-    change with these unknowns may not change meanwhile.
+    """Makes programs of rows with the unknowns `free`, for one branch after another. Parts that hang on no
+    branch are worked out once. The nodes of the rows must be up to date, and those of them that do not change
+    with these unknowns may not change meanwhile.
 
     A form over free unknowns has the index of an unknown as its slot, or `width` and the number of a recipe.
     """
@@ -64,7 +64,7 @@ class Freezer:
     def __init__(self, values: Valuation, free: Iterable[int]) -> None:
         self.values, self.free = values, frozenset(free)
         self.forms = values.forms(self.free)
-        self.recipes: list[Recipe] = []
+        self.recipes: list[SlotRecipe] = []
         self.steady: dict[int, Form] = {}
         """The forms of knots that hang on no choice."""
         self.hanging: set[int] = set()
@@ -281,7 +281,7 @@ class Choice:
         self, op: int, operands: tuple[int, ...], slopes: tuple[float, ...] = (), constant: float = 0.0
     ) -> int:
         inputs = frozenset[int]().union(*map(self._inputs, operands))
-        self.recipes.append(Recipe(op, operands, inputs, slopes, constant))
+        self.recipes.append(SlotRecipe(op, operands, inputs, slopes, constant))
         return self.width + len(self.recipes) - 1
 
     def _inputs(self, slot: int) -> frozenset[int]:

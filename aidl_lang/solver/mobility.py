@@ -81,11 +81,11 @@ class Motions:
 @record(frozen=False)
 class Mobility:
     """
-    degrees    (g,) of each group by what it draws; -1 where it could not be counted
-    total      of the whole; None where a part could not be counted
-    moving     (n,) whether an unknown takes part in a visible motion
-    motions    of the parts that can move
-    undecided  unknowns of each part of which the rank could not be told
+    degrees    (g,) degrees of freedom of what each group draws; -1 if they could not be counted
+    total      degrees of freedom of the whole; None if those of a part could not be counted
+    moving     (n,) True for an unknown that takes part in a visible motion
+    motions    the motions of the parts that can move
+    undecided  the unknowns of each part whose rank is undecided
     """
 
     degrees: Ints

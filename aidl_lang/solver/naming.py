@@ -17,10 +17,10 @@ from aidl_lang.solver.problem import Problem
 @record()
 class Naming:
     """
-    frames  (g,) whether a constraint around each group names it or something in it, so that its frame may
+    frames  (g,) True if a constraint around the group names it or something in it, so that its frame may
             move; the others ride along
-    inside  (g,) whether a constraint names something of what the group itself draws
-    whole   (g,) whether a constraint names it as a whole, by its box or its place
+    inside  (g,) True if a constraint names something that the group itself draws
+    whole   (g,) True if a constraint names it as a whole, by its box or its place
     """
 
     frames: Bools

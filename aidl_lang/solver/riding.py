@@ -24,9 +24,9 @@ UNMOVED = 1e-9
 @record()
 class Riding:
     """
-    carried (g,) whether a group rides along: its frame does not move in the group around it
-    anchor  (g,) the group from whose frame what each draws is seen: the innermost around it that rides along
-            and clings to what is drawn around it; 0 for the root
+    carried (g,) True for a group that rides along: its frame does not move in the group around it
+    anchor  (g,) the group in whose frame the drawing of each is observed: the innermost around it that rides
+            along and clings to what is drawn around it; 0 for the root
     movable (n,) the unknowns that may move
     """
 

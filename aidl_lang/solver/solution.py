@@ -50,13 +50,13 @@ class GroupFailure:
     moving    the unknowns that could move for them
     equations the number of their rows that are equations
     work      rows times unknowns of the attempts that this took
-    holds_elsewhere whether the members hold at `nearest` after all, found from another place than the first
+    holds_elsewhere True if the members hold at `nearest` after all, found from another place than the first
               guesses
     within    all constraints that took part in the search, by index
     nearest   (unknown, value) where the search for the members came nearest, of all that was free
-    gaps      (member, what its one row comes to where the others hold), where equations alone contradict
-    is_curved whether the slopes of the members' rows depend on the place
-    sizes     the kept sizes that members are about which hang on no position, as `a.radius == 6` does
+    gaps      (member, residual of its one row where the others hold), if equations alone contradict
+    is_curved True if the slopes of the members' rows depend on the place
+    sizes     the kept sizes in members that hang on no position, as `a.radius == 6` does
     """
 
     group: int
@@ -118,7 +118,7 @@ class Solution:
                    evaluated on the original expressions at `values`, in the units of the row
     satisfied      per constraint
     changed        unknowns of kept sizes that had to change
-    stages         what was tried, in order
+    stages         the stages tried, in order
     """
 
     status: Status

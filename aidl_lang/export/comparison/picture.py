@@ -18,7 +18,7 @@ from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.drawing import Stroke
 from aidl_lang.geometry.evaluate import Bounds, point
 from aidl_lang.geometry.measures import area, measure
-from aidl_lang.geometry.network import Network, exactly, union_bounds
+from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import difference, intersection, union
 from aidl_lang.geometry.tessellate import face_polygons
@@ -68,7 +68,7 @@ def parts(before: Sequence[Region], after: Sequence[Region]) -> dict[str, Region
         wanted = [intersection(first, last), difference(first, last), difference(last, first)]
         return [outline.region for outline in trace_all(network, wanted)]
 
-    return dict(zip(FILLS, exactly(network, traced), strict=True))
+    return dict(zip(FILLS, with_finer_chords(network, traced), strict=True))
 
 
 def _box(*versions: Version) -> Bounds:

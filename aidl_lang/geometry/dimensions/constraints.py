@@ -259,7 +259,7 @@ class _Statement:
         return (is_of_thing and node.name.text not in _SIZES) or self._is_place(node.value)
 
     def _coordinate(self, node: ast.Expression) -> tuple[int, tuple[Vec, ...]] | None:
-        """Returns a place along an axis of the holder: the axis, and points that are there."""
+        """Returns a place along an axis of the holder: the axis, and points at that place."""
         match node:
             case ast.Member(value=of, name=word) if word.text in _AXIS:
                 points = self._side(of, word.text)
@@ -341,7 +341,7 @@ class _Statement:
 
 
 def _agrees(found: Dimension, value: float) -> bool:
-    """Tells whether a dimension is what was stated; of what is round either the radius or the diameter."""
+    """Tells whether a dimension has the stated value; a round one by its radius or its diameter."""
     sizes = [found.value]
     if isinstance(found, Roundness):
         sizes = [found.curve.radius, 2 * found.curve.radius]

@@ -119,7 +119,7 @@ def meeting(a: Line, b: Line) -> Vec | None:
 
 
 def _arm(line: Line, side: float, corner: Vec) -> tuple[float, tuple[float, float]]:
-    """Returns the direction of a line to one side, and from where to where it is drawn there."""
+    """Returns the direction of a line to one side, and the stretch in which it is drawn there."""
     ux, uy = side * (line.end[0] - line.start[0]), side * (line.end[1] - line.start[1])
     reach = math.hypot(ux, uy)
     u = ux / reach, uy / reach

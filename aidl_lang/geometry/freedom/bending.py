@@ -1,4 +1,6 @@
-"""Whether a motion goes on as it begins: a slide along a line may be the first of a way around something."""
+"""Tests whether a motion goes on as it begins: a slide along a line may be the first of a way around
+something.
+"""
 
 from __future__ import annotations
 

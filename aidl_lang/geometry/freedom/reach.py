@@ -1,4 +1,4 @@
-"""What is possible in one part of a model, and how that which moves is called."""
+"""The motions possible in one part of a model, and the names of what moves."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Reach:
         return len(self.taken) == int(self.reach.shape[1])
 
     def at(self, observables: Ints) -> Ints:
-        """Returns the place of each of the scene's observables in the part, -1 for those that are not in
+        """Returns the index in the part of each of the scene's observables, -1 for those that are not in
         it.
         """
         own = self.part.observables

@@ -28,9 +28,9 @@ class Relations:
         }
 
     def against(self, things: Sequence[str], moving: Ints) -> str:
-        """Returns the path of what is related to things and does not go along where these observables move,
-        be it free itself or held: by the constraint that stands first, one of another array if there is one;
-        for structures without such, the part beside them. "" if there is nothing.
+        """Returns the path of the thing that is related to things and does not go along when these
+        observables move, be it free itself or held: that of the first such constraint, in another array if
+        there is one; for structures without such, the part beside them. "" if there is none.
         """
         flags = np.zeros(len(self.scene.places), dtype=np.bool_)
         flags[moving] = True
@@ -60,8 +60,8 @@ class Relations:
 
 
 def _related(constraint: Constraint) -> tuple[str, ...]:
-    """Paths of what a constraint relates: structures by their boxes, else what its unknowns belong to; where
-    these are of one thing only, also what else it names, which has none.
+    """Returns the paths of the things that a constraint relates: structures by their boxes, else the holders
+    of its unknowns; if these are all one thing, also the other things that it names, which have no unknowns.
     """
     boxes = {s.path for c in constraint.comparisons for s in c.boxes}
     mentioned = {u.holder.path for c in constraint.comparisons for u in c.spoken_of}

@@ -40,10 +40,10 @@ class Scene:
     anchor  (o,) the group from whose frame it is seen
     turning (o,) degrees that a direction turns in units of a turn by an angle of one radian
     axis    (o,) X, Y or NUMBER
-    number  (o,) the path of the place or number that an observable is the first of
+    number  (o,) the path of the place or number whose first observable it is
     of      (o,) the things that it belongs to
     known   the things by their paths
-    bending how what is observed bends along a motion
+    bending the bends of the observables along a motion
     """
 
     def __init__(self, model: Model, lowered: Lowered, motions: Motions, bending: Bending) -> None:
@@ -69,7 +69,7 @@ class Scene:
                     self.of[observable].append(thing)
 
     def own(self, thing: Thing) -> Ints:
-        """Returns the observables of a thing, but for what rides along in it."""
+        """Returns the observables of a thing, without those of what rides along in it."""
         found: Ints = np.flatnonzero(self.anchor[thing.start : thing.stop] == thing.anchor) + thing.start
         return found
 

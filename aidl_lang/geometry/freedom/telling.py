@@ -72,8 +72,8 @@ def _interest(told: _Told, scene: Scene) -> tuple[int, int, int, int]:
 
 
 def _own_place(scene: Scene, tellings: Sequence[_Telling], root: str) -> Iterator[Motion]:
-    """Yields the ways in which everything moves as one. They are known to that part of the model to which
-    most belongs, so that what moves is told of the others, and of what is small in it.
+    """Yields the motions in which everything moves as one, as motions of the part of the model that most
+    belongs to: then other motions are told of the others, and of what is small in it.
     """
     size = np.zeros(len(scene.places) + 1)
     for axis, words in ((X, "slide along x"), (Y, "slide along y"), (NUMBER, "turn")):
@@ -95,7 +95,7 @@ def _own_place(scene: Scene, tellings: Sequence[_Telling], root: str) -> Iterato
 
 
 def _is_one(scene: Scene, tellings: Sequence[_Telling]) -> bool:
-    """Tells whether parts hang together by the places whose x is in one of them and whose y is in another."""
+    """Tells whether the parts are connected by places with x in one of them and y in another."""
     part = np.full(len(scene.places) + 1, -1)
     for number, telling in enumerate(tellings):
         part[telling.part.observables] = number
@@ -104,7 +104,7 @@ def _is_one(scene: Scene, tellings: Sequence[_Telling]) -> bool:
 
 
 def _all_move(scene: Scene, tellings: Sequence[_Telling], axis: int) -> bool:
-    """Tells whether no place stays where it is along an axis; for a turn, along both."""
+    """Tells whether every place moves along an axis; for a turn, along both."""
     stays = scene.anchor == 0
     stays &= (scene.axis == axis) if axis != NUMBER else (scene.axis != NUMBER)
     for telling in tellings:
@@ -171,9 +171,9 @@ class _Telling(Reach):
         moving: Flags | None = None,
         spin: float = 0.0,
     ) -> Iterator[_Told]:
-        """Yields the motion, if it is possible and no combination of those that were told; with what moves in
-        it. One that soon leaves its line or its centre is told as such; growth and change that soon take
-        along something else are not told.
+        """Yields the motion with what moves in it, if it is possible and no combination of those found
+        before. One that soon leaves its line or its centre is marked so; growth and change that soon take
+        along something else are left out.
         """
         if self.is_done or not velocity.any() or not self.is_possible(velocity):
             return
@@ -299,7 +299,7 @@ class _Telling(Reach):
             yield from self._told(velocity, "together", things, words)
 
     def _opposed(self, velocity: Floats) -> Iterator[_Told]:
-        """Two groups that slide along one axis, each as a whole: one against the other."""
+        """Yields the slide of two groups along one axis, each as a whole: one against the other."""
         moving = self._moving(velocity)
         for axis, words in ((X, "slide along x"), (Y, "slide along y")):
             if (self.axis[moving] != axis).any():
@@ -344,8 +344,8 @@ def _try(tried: dict[bytes, _Masked], thing: Thing | None, xs: Floats, ys: Float
 
 
 def _reduced(basis: Floats) -> Floats:
-    """Returns the same space by vectors each of which has an unknown of its own, and so few entries. They do
-    not depend on the basis: these unknowns are pivots of the projection onto the space.
+    """Returns a basis of the same space whose vectors each have an unknown of their own, and so few entries.
+    It does not depend on the given basis: these unknowns are pivots of the projection onto the space.
     """
     rest = np.linalg.qr(basis)[0]
     own: list[int] = []

@@ -15,7 +15,7 @@ from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.givens import Dial, exact_numbers, written_numbers
-from aidl_lang.explaining.remedies import Remedy, Search, remedies
+from aidl_lang.explaining.remedies import Remedy, RemedySearch, remedies
 from aidl_lang.explaining.trials import Trials
 from aidl_lang.explaining.verifying import mends
 from aidl_lang.solver import Solution
@@ -72,7 +72,7 @@ def _answered(
         return d
 
     def fitting(dials: Sequence[Dial]) -> Iterator[Remedy]:
-        searches = (Search(dial, failure, trials, dial.place) for dial in dials if not dial.is_factor)
+        searches = (RemedySearch(dial, failure, trials, dial.place) for dial in dials if not dial.is_factor)
         return (each for each in remedies(searches) if mends(d, each.fix, everything, trials))
 
     uses = wording.it.program.resolution.uses

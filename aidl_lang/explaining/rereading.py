@@ -1,4 +1,4 @@
-"""Programs that do not solve as their first guesses have it: with ambiguous calls taken otherwise, or from
+"""Rereads ambiguous calls of programs that do not solve as their first guesses have them, or solves from
 another place.
 
 Which angle between two lines is meant, and on which side a circle touches, is read off the first guesses.
@@ -43,7 +43,7 @@ _LOOK = "look whether this is how it is meant"
 
 
 @record()
-class Otherwise:
+class Rereading:
     """A program that solved with some ambiguous calls read differently; `calls` are their places and
     readings.
     """
@@ -54,13 +54,13 @@ class Otherwise:
     calls: tuple[tuple[Span, str], ...]
 
 
-def otherwise(
+def reread(
     built: Interpretation,
     lowered: Lowered,
     solution: Solution,
     again: Callable[[Mapping[int, int]], Interpretation | None],
     settings: Settings,
-) -> tuple[Otherwise | None, Solution]:
+) -> tuple[Rereading | None, Solution]:
     """Returns the program with ambiguous calls read so that it solves and nothing dear gives way (None if it
     does so as it is, or no such reading was found), and the solution as it is: a conflict of such calls is no
     contradiction in it unless every reading was tried.
@@ -85,7 +85,7 @@ def otherwise(
         found = solve(made.problem, replace(settings, explain=False, seconds=min(settings.seconds, _LONGEST)))
         if found.status is Status.SOLVED and not any(stage.concession for stage in found.stages):
             calls = tuple(taken[n] for n in turned if n < len(taken))
-            return Otherwise(other, made, found, calls), solution
+            return Rereading(other, made, found, calls), solution
     return None, solution
 
 
@@ -137,7 +137,7 @@ def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:
 
 
 def elsewhere_notes(
-    model: Model, lowered: Lowered, solution: Solution, other: Otherwise | None, trials: Trials
+    model: Model, lowered: Lowered, solution: Solution, other: Rereading | None, trials: Trials
 ) -> Iterator[Diagnostic]:
     """Yields notes on calls that were read differently from the first guesses, and on places found far from
     them, each with first guesses that fit.
