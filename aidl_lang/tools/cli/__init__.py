@@ -1,4 +1,4 @@
-"""The command `aidl`: one module per verb, and here what they share at the door.
+"""The command `aidl`: one module per verb, and their common entry point.
 
 Only the verb that is asked for is loaded, and what costs time to import is imported inside it where it is
 needed, so that `aidl --help` is quick.
@@ -46,12 +46,12 @@ _VERBS = {
     "tool-schema": "print the tools for agents as JSON",
     "eval": "measure how models do, over prompts and runs",
 }
-"""In the order of the help; the options of a verb are in the module of its name."""
+"""The verbs in the order of the help; the options of a verb are in the module of its name."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit code; wrong use of options raises `SystemExit(2)`."""
-    # Threads cost more than they bring for matrices of the size of a part; numpy asks when it is loaded.
+    """Runs the command line and returns its exit code; wrong use of options raises `SystemExit(2)`."""
+    # Threads cost more than they save for matrices of the size of a part; numpy reads this when it is loaded.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     _keep_writing()
     _seldom_search()
@@ -75,7 +75,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
-    """The parser for a command line; it has the options of the verb that is in it."""
+    """Returns the parser for a command line, with the options of its verb."""
     parser = argparse.ArgumentParser(
         prog="aidl",
         description="AIDL: a text language for 2D CAD. Say relationships, get a constraint-solved drawing.",
@@ -94,8 +94,8 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
 
 
 def _seldom_search() -> None:
-    """What is loaded and made is mostly needed until the command ends: it is seldom searched for cycles that
-    nothing refers to, which bounds what they take in a verb that goes on, and not once more at the end.
+    """Searches garbage seldom: most objects are needed until the command ends. Bounds the cost in a verb that
+    goes on, and saves the search at the end.
     """
     gc.set_threshold(_BETWEEN_SEARCHES)
     atexit.unregister(gc.freeze)
@@ -103,12 +103,12 @@ def _seldom_search() -> None:
 
 
 def _keep_writing() -> None:
-    """Characters that the terminal's encoding lacks are written as escapes instead of raising."""
+    """Makes standard streams escape characters that the terminal's encoding lacks instead of raising."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
 
 
 def _forget_output() -> None:
-    """The reader has gone: let the flush at exit write to nowhere."""
+    """Redirects output to nowhere after the reader has gone, for the flush at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

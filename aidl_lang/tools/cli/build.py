@@ -1,4 +1,4 @@
-"""From a program to written files: what `compile` does once and `watch` again and again."""
+"""Compiles a program and writes files, once for `compile`, again and again for `watch`."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Target:
 
 @record()
 class BuildResult:
-    """What came of one run."""
+    """The result of one run."""
 
     compiled: Compiled
     written: tuple[str, ...]
@@ -45,14 +45,14 @@ class BuildResult:
         return exit_code(self.compiled.diagnostics) or (0 if self.compiled.ok else 1)
 
     def motions(self, most: int) -> list[str]:
-        """What can still move, one sentence a line."""
+        """Returns the remaining motions, one sentence a line."""
         from aidl_lang.geometry.freedom import report
 
         model = self.compiled.model
         return [] if model is None or not self.compiled.ok else report(model, most)
 
     def line(self, program: str) -> str:
-        """The outcome in a line."""
+        """Returns the result in a line."""
         model = self.compiled.model
         freedom = ""
         if model is not None and model.degrees is not None and self.compiled.ok:
@@ -65,7 +65,7 @@ class BuildResult:
 
 
 def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
-    """The outputs asked for, refused here if their format or directory does not exist."""
+    """Returns the outputs asked for; refuses those whose format or directory does not exist."""
     names = arguments.output or [_default_output(arguments.file)]
     found = tuple(Target(name, _suffix(name, arguments.format)) for name in names)
     for target in found:
@@ -76,7 +76,7 @@ def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
 
 
 def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildResult:
-    """Compile and write. Nothing is written unless every output could be made.
+    """Compiles and writes. Nothing is written unless every output could be made.
 
     With a `memory` of the last run, only what has changed since then is solved again.
     """
@@ -117,7 +117,7 @@ def _options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
 def _write(
     compiled: Compiled, outputs: Sequence[Target], options: Options
 ) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
-    """Write all outputs once all could be made: their names, and what there is to say of them."""
+    """Writes all outputs once all could be made; returns their names, and diagnostics about them."""
     from aidl_lang.export import ExportError
 
     try:
@@ -138,7 +138,7 @@ def _write(
 
 
 def _names(target: Target, further: int) -> list[str]:
-    """The name of the output, and those of further files: `part.svg`, `part-2.svg`, …"""
+    """Returns the name of the output, and those of further files: `part.svg`, `part-2.svg`, …"""
     if further and target.name == files.STANDARD:
         raise UseError("E0914", f"{further + 1} files do not fit on standard output", "name a file with -o")
     path = Path(target.name)
@@ -151,7 +151,7 @@ def _default_output(program: str) -> str:
 
 
 def _suffix(name: str, fallback: str | None) -> str:
-    """The format of an output: its own suffix, else `--format`, else SVG on standard output."""
+    """Returns the format of an output: its own suffix, else `--format`, else SVG on standard output."""
     from aidl_lang.export import FORMATS
 
     own = "" if name == files.STANDARD else Path(name).suffix.lower()

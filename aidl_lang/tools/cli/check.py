@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 @record()
 class _Checked:
-    """What was found in a file, the titles of the fixes made, and what came of solving: `solved`, `partial`,
-    `failed`; nothing where it was not tried.
+    """The findings in a file, the titles of the fixes made, and the result of solving: `solved`, `partial`,
+    `failed`; "" if it was not tried.
     """
 
     diagnostics: list[Diagnostic]
@@ -86,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _check(name: str, arguments: argparse.Namespace) -> _Checked:
-    """Check one file; a file that cannot be read is a finding like others, so that the rest is checked."""
+    """Checks one file; an unreadable file is a finding like others, so that the rest is checked."""
     from aidl_lang import pipeline
 
     settings = pipeline.Settings(variant=arguments.variant)
@@ -100,7 +100,7 @@ def _check(name: str, arguments: argparse.Namespace) -> _Checked:
         if name == files.STANDARD or mended.source.text != source.text:
             files.write(name, mended.source.text.encode())
         if has_errors(mended.diagnostics):
-            return _Checked(mended.diagnostics, mended.fixes)  # the rest would say no more
+            return _Checked(mended.diagnostics, mended.fixes)  # the rest would add nothing
         return _found(mended.source, world, settings, arguments, mended.fixes)
     except UseError as reason:
         return _Checked([reason.diagnostic], was_read=False)
@@ -113,7 +113,7 @@ def _found(
     arguments: argparse.Namespace,
     fixes: tuple[str, ...] = (),
 ) -> _Checked:
-    """What there is to say of a program as it stands."""
+    """Returns the findings in a program as it stands."""
     from aidl_lang import pipeline
 
     if not arguments.solve:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from aidl_lang.solver.solution import StageReport
 
 _MOST_MOTIONS = 6
-"""Lines about what can still move."""
+"""Most lines about remaining motions."""
 
 
 def register(parser: argparse.ArgumentParser) -> None:
@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _show_stages(stages: Sequence[tuple[str, StageReport]]) -> None:
-    """One line for each stage tried, in order: a parent comes after its children."""
+    """Prints one line for each stage tried, in order: a parent comes after its children."""
     width = max((len(path) for path, _ in stages), default=0)
     width = max(width, len("structure"))
     say(f"{'structure':<{width}}  {'stage':<16}{'unknowns':>9}{'rows':>6}")

@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _suffix(name: str, arguments: argparse.Namespace) -> str:
-    """The format of an output; refused here if there is none, or if it is one of the programs."""
+    """Returns the format of an output; refuses a missing one, and one of the programs as output."""
     from aidl_lang.export import PICTURES
 
     files.require_directory(name)
@@ -85,7 +85,7 @@ def _suffix(name: str, arguments: argparse.Namespace) -> str:
 
 
 def _comparison(arguments: argparse.Namespace) -> Comparison | int:
-    """The exit code if a side is wrong; then it has been said why."""
+    """Returns the comparison, or the exit code if a side is wrong, which has been reported."""
     names = arguments.before, arguments.after or arguments.before
     if arguments.after is None and not (arguments.params_before or arguments.params_after):
         raise UseError(
@@ -123,7 +123,7 @@ def _refusal(name: str, compiled: Compiled) -> Diagnostic:
 
 
 def _draw(comparison: Comparison, outputs: list[tuple[str, str]], pixels: int) -> None:
-    """Write all pictures once all could be made."""
+    """Writes all pictures once all could be made."""
     if not outputs:
         return
     from aidl_lang.common.drawing_time import within

@@ -44,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _found(known: Reference, name: str) -> Entry:
-    """The entry of a name, or of the one that it seems to be a misspelling of, which is said."""
+    """Returns the entry of a name, or, with a note, of the one that it seems to misspell."""
     if (entry := known.find(name)) is not None:
         return entry
     from aidl_lang.common.render import escape

@@ -1,4 +1,4 @@
-"""The ends of params, for `aidl check --ends`: tried with progress, and told."""
+"""The ends of params, for `aidl check --ends`: tried with progress, and reported."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def swept(source: SourceFile, world: World, settings: Settings, compiled: Compiled) -> Sweep:
-    """What becomes of a program that works at the ends of its params; a terminal is told how far that is."""
+    """Tries a working program at the ends of its params, with progress on a terminal."""
     from aidl_lang.tools.ends import Job, sweep
 
     job = Job(source.name, source.text, world, settings)
@@ -27,14 +27,14 @@ def swept(source: SourceFile, world: World, settings: Settings, compiled: Compil
 
 
 def _progress(done: int, count: int) -> None:
-    """One line of a terminal, which the next one takes the place of; none is left when there is no more."""
+    """Prints progress over the last line of a terminal; removes it when done."""
     if sys.stderr.isatty():
         text = f"{done} of {count} ends tried" if count else ""
         print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
 
 
 def tell(name: str, sweep: Sweep) -> None:
-    """What fails where, on standard output; then what was tried."""
+    """Prints the faults on standard output; then a summary."""
     from aidl_lang.common.render import escape
     from aidl_lang.tools.ends import sentence
 
@@ -62,7 +62,7 @@ def _summary(sweep: Sweep) -> str:
 
 
 def data(name: str, sweep: Sweep) -> dict[str, Any]:
-    """What was tried, for JSON."""
+    """Returns the results for JSON."""
     from aidl_lang.tools.ends import described
 
     return {

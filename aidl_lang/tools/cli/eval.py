@@ -86,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace, store: Store) -> int:
-    """Do what is left to do, and return how many jobs are still left."""
+    """Does the open jobs, and returns how many are still left."""
     from aidl_lang.tools.evaluation.run import run
 
     asked = None if arguments.report else provider(arguments)

@@ -1,4 +1,4 @@
-"""Reading programs and writing results: whole or not at all, and every mishap in one clear line."""
+"""Reads programs and writes results: whole or not at all, with one clear line on any error."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from aidl_lang.common.world import DiskWorld
 
 STANDARD = "-"
-"""As a file name: standard input or output."""
+"""The file name of standard input or output."""
 
 
 def read(name: str) -> SourceFile:
-    """The program in a file, or on standard input for `-`."""
+    """Returns the program in a file, or on standard input for `-`."""
     if name == STANDARD:
         return SourceFile("<stdin>", _decode(sys.stdin.buffer.read(), "standard input"))
     try:
@@ -34,21 +34,21 @@ def read(name: str) -> SourceFile:
 
 
 def world(name: str) -> DiskWorld:
-    """The world whose imports are read beside the program."""
+    """Returns the world whose imports are read beside the program."""
     from aidl_lang.common.world import DiskWorld
 
     return DiskWorld(Path.cwd() if name == STANDARD else Path(name).resolve().parent)
 
 
 def require_directory(name: str) -> None:
-    """Refuse an output whose directory is missing before any work is done for it."""
+    """Refuses an output whose directory is missing before any work is done for it."""
     parent = Path(name).parent
     if name != STANDARD and not parent.is_dir():
         raise UseError("E0904", f"`{name}` cannot be written: there is no directory `{parent}`")
 
 
 def write(name: str, data: bytes) -> None:
-    """Replace a file by its new content in one step; `-` is standard output."""
+    """Replaces a file by its new content in one step; `-` is standard output."""
     if name == STANDARD:
         if sys.stdout.isatty() and b"\0" in data:
             raise UseError(
@@ -72,7 +72,7 @@ def write(name: str, data: bytes) -> None:
 
 
 def create(name: str, data: bytes) -> None:
-    """Write a file that must not exist yet."""
+    """Writes a file that must not exist yet."""
     try:
         with open(name, "xb") as file:
             file.write(data)
@@ -109,7 +109,7 @@ def _decode(data: bytes, what: str) -> str:
 
 
 def _neighbours(path: Path) -> list[str]:
-    """Programs beside a missing one that may have been meant."""
+    """Returns programs beside a missing one that may have been meant."""
     from difflib import get_close_matches
 
     with suppress(OSError):

@@ -23,7 +23,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _format(name: str, check: bool, diff: bool) -> int:
-    """Format one file and return its exit code, so that one bad file does not keep the others from it."""
+    """Formats one file and returns its exit code, so that one bad file does not stop the others."""
     from aidl_lang import pipeline
 
     try:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 _PROGRAM = ".aidl"
 _CODES = 4
-"""Codes of errors that the line of an attempt names."""
+"""Most error codes in the line of an attempt."""
 
 
 def register(parser: argparse.ArgumentParser) -> None:
@@ -75,7 +75,7 @@ def _weight(generation: Generation) -> tuple[int, ...]:
 
 @record()
 class _Places:
-    """Where the program goes (None: standard output), where drawings go, and where the transcript."""
+    """Outputs: of the program (None: standard output), of drawings, and of the transcript."""
 
     program: str | None
     drawings: tuple[str, ...]
@@ -83,7 +83,7 @@ class _Places:
 
 
 def _of_run(name: str, number: int) -> str:
-    """`phone.run-3.aidl` beside `phone.aidl`"""
+    """Returns `phone.run-3.aidl` beside `phone.aidl`."""
     path = Path(name)
     stem, dot, rest = path.name.partition(".")
     return str(path.with_name(f"{stem}.run-{number}{dot}{rest}"))
@@ -133,7 +133,7 @@ def _language(arguments: argparse.Namespace) -> Language:
 
 
 class _Run:
-    """One conversation, with what is shown while it goes on."""
+    """One conversation, with its display."""
 
     def __init__(
         self,
@@ -150,7 +150,7 @@ class _Run:
         self.is_watched = sys.stderr.isatty()
 
     def generation(self) -> Generation:
-        """Raises UseError when not one reply could be had."""
+        """Returns the conversation. Raises UseError if not one reply could be had."""
         from aidl_lang.tools.llm.generation import Settings, generate
 
         asked = sampling(self.arguments)
@@ -236,7 +236,7 @@ def _number(value: int | None) -> str:
 
 
 def _deliver(arguments: argparse.Namespace, places: _Places, generation: Generation, name: str) -> int:
-    """Write what is kept and say what is still missing in it."""
+    """Writes the kept program and reports what is still missing in it."""
     verdict = generation.verdict
     if verdict is None:
         last = generation.attempts[-1].reply
@@ -283,7 +283,7 @@ def _write_program(
 
 
 def _draw(places: _Places, program: str, arguments: argparse.Namespace) -> None:
-    """The drawings of the program as it was written."""
+    """Writes the drawings of the program."""
     from aidl_lang import pipeline
     from aidl_lang.common.source import SourceFile
     from aidl_lang.export import ExportError

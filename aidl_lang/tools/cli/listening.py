@@ -1,4 +1,4 @@
-"""Ports of this machine that verbs serve on."""
+"""Local ports that verbs serve on."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ LOCALHOST = "127.0.0.1"
 
 
 def port(text: str) -> int:
-    """The port that an option gives."""
+    """Parses the port of an option."""
     if not (text.isascii() and text.isdecimal()) or int(text) > 65535:
         raise argparse.ArgumentTypeError(f"expected a port from 0 to 65535, not `{text}`")
     return int(text)
 
 
 def address(text: str) -> str:
-    """The address that an option gives: one that no other machine can reach."""
+    """Parses the address of an option: one that no other machine can reach."""
     from ipaddress import ip_address
 
     if text.lower() == "localhost":
@@ -36,7 +36,7 @@ def address(text: str) -> str:
 
 
 def listener(host: str, port: int, code: str, hint: str) -> socket.socket:
-    """A socket that takes connections already. Raises UseError of a code where there can be none."""
+    """Returns a socket that accepts connections already. Raises UseError with a code if there can be none."""
     try:
         family, kind, protocol, _, at = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         found = socket.socket(family, kind, protocol)

@@ -22,7 +22,7 @@ def register(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """The exit code is that of the protocol: 0 where the client has shut the server down before its exit."""
+    """Returns the exit code of the protocol: 0 if the client has shut the server down before its exit."""
     if find_spec("pygls") is None:
         raise UseError(
             _CODE, "the server needs `pygls`, not installed here", "pip install 'aidl-lang[editor]'"

@@ -101,7 +101,7 @@ def _text(found: Survey, asked: bool) -> Iterator[str]:
 
 
 def _block(part: Part) -> Iterator[str]:
-    """A part with all that is known of it."""
+    """Yields all measures of a part."""
     kinds = {"bodies": counted(part.bodies, "body", "bodies"), "body": "a body"}
     yield f"{part.path}: {kinds.get(part.kind, part.kind)}"
     left, bottom, right, top = part.box
@@ -149,7 +149,7 @@ def _width(width: Width | None, part: Part, size: float) -> str:
 
 
 def _table(parts: Sequence[Part]) -> Iterator[str]:
-    """One line for each body."""
+    """Yields one line for each body."""
     heads = ("body", "area mm²", "perimeter mm", "size mm", "holes", "wall mm", "gap mm", "mass g")
     rows = [heads]
     for p in parts:
@@ -191,7 +191,7 @@ def _relation(pair: Contact) -> str:
 
 
 def _number(value: float, tiny: float = 0.0) -> str:
-    """Six digits; nothing below `tiny`."""
+    """Writes six digits; nothing below `tiny`."""
     return f"{0.0 if abs(value) <= tiny else value:.6g}"
 
 

@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def structure_name(stem: str) -> str:
-    """A name that the language takes, as near to the file's as can be."""
+    """Returns a valid name, as near to the file's as possible."""
     from aidl_lang.syntax.tables import load_tables
 
     name = re.sub(r"\W+", "_", stem.lower(), flags=re.ASCII).strip("_")

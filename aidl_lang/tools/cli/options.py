@@ -55,7 +55,7 @@ def add_pixels(parser: argparse.ArgumentParser) -> None:
 
 
 def add_look(parser: argparse.ArgumentParser) -> None:
-    """The options that say what is seen in a picture."""
+    """Adds the options for the contents of a picture."""
     parser.add_argument(
         "--show",
         type=_layers,
@@ -73,7 +73,7 @@ def add_look(parser: argparse.ArgumentParser) -> None:
 
 
 def add_drawing(parser: argparse.ArgumentParser) -> None:
-    """The options that say what to draw and where to put it."""
+    """Adds the options for what to draw and where to write it."""
     parser.add_argument(
         "-o",
         "--output",
@@ -97,7 +97,7 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_cutting(parser: argparse.ArgumentParser) -> None:
-    """The options for cutters and for printing 1:1."""
+    """Adds the options for cutters and for printing 1:1."""
     parser.add_argument(
         "--sheet",
         type=sizes.size,
@@ -134,7 +134,7 @@ def _add_cutting(parser: argparse.ArgumentParser) -> None:
 
 
 def add_provider(parser: argparse.ArgumentParser) -> None:
-    """The options that say which language model is asked, and how; see `provider` and `sampling`."""
+    """Adds the options for the language model; see `provider` and `sampling`."""
     group = parser.add_argument_group("the model")
     group.add_argument(
         "--provider",
@@ -173,7 +173,7 @@ def add_provider(parser: argparse.ArgumentParser) -> None:
 
 
 def provider(arguments: argparse.Namespace) -> Closable:
-    """The model that the options of `add_provider` name. Raises UseError."""
+    """Returns the model that the options of `add_provider` name. Raises UseError."""
     from aidl_lang.tools.llm.messages import ProviderError
     from aidl_lang.tools.llm.providers import Connection, connect
 
@@ -255,7 +255,7 @@ def _temperature(text: str) -> float:
 
 
 def count_to(most: int) -> Callable[[str], int]:
-    """Reads a whole number from 1 to `most`."""
+    """Returns a parser of whole numbers from 1 to `most`."""
 
     def read(text: str) -> int:
         if not text.isdecimal() or not 1 <= int(text) <= most:

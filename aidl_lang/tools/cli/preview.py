@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _open(url: str) -> None:
-    """In the browser. Some of those for terminals return only when they are closed."""
+    """Opens the browser; some of those for terminals return only when they are closed."""
     import threading
     import webbrowser
 

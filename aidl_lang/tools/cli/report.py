@@ -1,4 +1,4 @@
-"""What the command says: diagnostics on standard error, and the exit code that follows from them."""
+"""Reports on standard error, and the exit code that follows from diagnostics."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _FAMILY_OF_USE = "E09"
 
 
 class UseError(Exception):
-    """What was asked for cannot be done: a file is missing, a format unknown. The command ends with 2."""
+    """Raised for wrong use: a file is missing, a format unknown. The command ends with 2."""
 
     def __init__(self, code: str, message: str, *hints: str) -> None:
         super().__init__(message)
@@ -20,12 +20,12 @@ class UseError(Exception):
 
     @classmethod
     def of(cls, diagnostic: Diagnostic) -> UseError:
-        """The error that says what a diagnostic says."""
+        """Wraps a diagnostic as an exception."""
         return cls(diagnostic.code, diagnostic.message, *diagnostic.hints)
 
 
 def show(diagnostics: Iterable[Diagnostic], quiet: bool = False) -> None:
-    """Print diagnostics for a reader, errors only if `quiet`."""
+    """Prints diagnostics for a reader, errors only if `quiet`."""
     said = [d for d in diagnostics if not quiet or d.severity is Severity.ERROR]
     if not said:
         return
@@ -40,12 +40,12 @@ def show(diagnostics: Iterable[Diagnostic], quiet: bool = False) -> None:
 
 
 def say(line: str, end: str = "\n") -> None:
-    """A line about what was done; standard output is left to what was asked for."""
+    """Prints a line about the work; standard output is left to the results."""
     print(line, end=end, file=sys.stderr)
 
 
 def exit_code(diagnostics: Iterable[Diagnostic]) -> int:
-    """2 if the command was used wrongly, 1 if the program is wrong, else 0."""
+    """Returns 2 if the command was used wrongly, 1 if the program is wrong, else 0."""
     codes = {d.code for d in diagnostics if d.is_error}
     if any(code.startswith(_FAMILY_OF_USE) for code in codes):
         return 2

@@ -22,7 +22,7 @@ _PROMPT = 2
 """Rows left free: for the command, and for the prompt after it."""
 _MOST_COLUMNS = 1000
 _SAMPLES = 4
-"""Pixels drawn for each that is shown, across and down."""
+"""Pixels drawn per shown pixel, across and down."""
 
 
 def register(parser: argparse.ArgumentParser) -> None:
@@ -77,7 +77,7 @@ def _protocol() -> str:
 
 
 def _screen(width: int | None) -> Screen:
-    """What there is room for. In a file there is, for a picture up to twice as high as `width`."""
+    """Returns the room for a picture; in a file up to twice as high as `width`."""
     size = shutil.get_terminal_size()
     rows = max(1, size.lines - _PROMPT)
     if sys.stdout.isatty():
@@ -86,7 +86,7 @@ def _screen(width: int | None) -> Screen:
 
 
 def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
-    """The picture in a protocol."""
+    """Returns the picture in a protocol."""
     from aidl_lang.export.coarse import coarse, framed
 
     extent = fit(picture.width, picture.height, screen)
@@ -119,7 +119,7 @@ def _characters(picture: Picture, name: str, extent: Extent) -> bytes:
 
 
 def _label(mark: Text, picture: Picture, extent: Extent) -> Label:
-    """A text of the picture in cells. One that is turned is written level, about its middle."""
+    """Returns a text of the picture in cells. A turned one is written level, about its middle."""
     from aidl_lang.geometry.colors import rgb
     from aidl_lang.tools.terminal.letters import Label
 

@@ -1,4 +1,4 @@
-"""Lengths and sizes of paper and sheets as they are given on the command line."""
+"""Lengths and sizes of paper and sheets on the command line."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ PAPERS = {
 }
 """Width and height in mm, upright."""
 LARGEST = 1e5
-"""Of a sheet, mm."""
+"""Largest side of a sheet, mm."""
 
 _SIZE = re.compile(r"(?P<width>[\d.]+)\s*[x×*]\s*(?P<height>[\d.]+)\s*(?P<unit>[a-z]*)")
 _LENGTH = re.compile(r"(?P<number>[\d.]+)\s*(?P<unit>[a-z]*)")
 
 
 def size(text: str) -> tuple[float, float]:
-    """Width and height in mm: of a paper by its name, or as in `600x400`, `60x40cm`."""
+    """Parses width and height in mm: of a paper by its name, or as in `600x400`, `60x40cm`."""
     wanted = text.strip().lower()
     if wanted in PAPERS:
         return PAPERS[wanted]
@@ -40,7 +40,7 @@ def size(text: str) -> tuple[float, float]:
 
 
 def length(text: str) -> float:
-    """Millimetres, 0 or more: `3`, `0.15mm`, `0.1in`."""
+    """Parses a length of 0 mm or more: `3`, `0.15mm`, `0.1in`."""
     found = _LENGTH.fullmatch(text.strip().lower())
     value = _millimetres(found["number"], found["unit"]) if found else math.nan
     if not 0 <= value <= LARGEST:
@@ -49,7 +49,7 @@ def length(text: str) -> float:
 
 
 def _millimetres(number: str, unit: str) -> float:
-    """NaN for what is no length."""
+    """Returns millimetres; NaN for an invalid length."""
     from aidl_lang.checking.units import LENGTH, UNITS
 
     factor, dimension = UNITS.get(unit or "mm", (math.nan, LENGTH))

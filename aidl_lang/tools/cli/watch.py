@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _once(arguments: argparse.Namespace, memory: Memory) -> None:
-    """One run, told in one line. A file that is gone for a moment does not end the watch."""
+    """Runs once, with one line of report. A file that is gone for a moment does not end the watch."""
     from aidl_lang.common.render import one_line
 
     clock = time.strftime("%H:%M:%S")

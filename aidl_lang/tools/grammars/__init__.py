@@ -1,4 +1,4 @@
-"""The grammar of AIDL for those who constrain what a model may write, and for those who read grammars.
+"""Exports of the grammar of AIDL, for constrained decoding and for readers.
 
 All formats are made of `grammar/aidl.lark`, the grammar that the parser is made of.
 """

@@ -24,7 +24,7 @@ from aidl_lang.tools.grammars.notation import (
 
 
 def from_left_to_right(rules: Rules) -> dict[str, Node]:
-    """The same language in rules that do not begin with themselves, with common beginnings shared."""
+    """Returns the same language in rules without left recursion, with common beginnings shared."""
     result = dict(rules)
     for members in left_recursive(rules):
         group = _Group(rules, members)
@@ -34,7 +34,7 @@ def from_left_to_right(rules: Rules) -> dict[str, Node]:
 
 
 class _Group:
-    """Rules that may begin with each other.
+    """A group of mutually left-recursive rules.
 
     What they hold is a walk: from a beginning that is in no rule of the group (`base`), over what may
     follow each rule that is complete (`steps`), to the rule that was wanted. `rules` are the new ones: for
@@ -57,7 +57,9 @@ class _Group:
             self.rules[name] = self._walk(frozenset([name]))
 
     def _split(self, node: Node) -> tuple[list[tuple[str, Node]], Node | None]:
-        """The alternatives that begin with a rule of the group, each with its rest, and all the others."""
+        """Splits the alternatives into those that begin with a rule of the group, each with its rest, and the
+        others.
+        """
         match node:
             case Name(name) if name in self.group:
                 return [(name, EMPTY)], None
@@ -77,7 +79,7 @@ class _Group:
         return [], node
 
     def joined(self, node: Node) -> Node:
-        """A node in which a choice of rules of the group is one rule, so that they are walked together."""
+        """Replaces a choice of rules of the group by one rule, so that they are walked together."""
         match node:
             case Alt(items) if all(isinstance(item, Name) and item.name in self.group for item in items):
                 targets = frozenset(item.name for item in items if isinstance(item, Name))
@@ -106,7 +108,7 @@ class _Group:
         return alt(*(seq(self.bases[name], self._rest(name, targets)) for name in starts))
 
     def _rest(self, name: str, targets: frozenset[str]) -> Node:
-        """What may follow a rule that is complete, up to one of the targets."""
+        """Returns what may follow a complete rule, up to one of the targets."""
         steps = [(after, node) for after, node in self.steps[name] if self._reaches(after, targets)]
         if all(after == name for after, _ in steps) and name in targets:
             return Repeat(alt(*(node for _, node in steps)), 0, None) if steps else EMPTY
@@ -119,7 +121,7 @@ class _Group:
 
 
 def _one_name(targets: frozenset[str]) -> str:
-    """The name of a rule, or of the choice between several with the same beginning of their names."""
+    """Returns the name of a rule, or of the choice between several whose names begin alike."""
     shortest = min(targets, key=lambda name: (len(name), name))
     return shortest if len(targets) == 1 else f"{shortest}_or_other"
 
@@ -128,7 +130,7 @@ _DEEPEST = 2  # rules to look into for a common beginning
 
 
 class _Sharing:
-    """Puts together what begins alike; `open` are the rules that may be replaced by what they stand for."""
+    """Shares common beginnings; `open` are the rules that may be expanded for that."""
 
     def __init__(self, rules: Rules, open: frozenset[str]) -> None:
         self.rules = rules
@@ -161,7 +163,7 @@ class _Sharing:
         )
 
     def _opened(self, items: list[Node]) -> list[Node]:
-        """The alternatives with one beginning replaced by what it stands for, if that helps to share it."""
+        """Expands the alternatives with one beginning, if that helps to share it."""
         firsts = [_first(item)[0] for item in items]
         below = [self._below(first) for first in firsts]
         pairs = [(i, j) for i in range(len(items)) for j in range(len(items)) if firsts[i] != firsts[j]]
@@ -177,7 +179,7 @@ class _Sharing:
         return items
 
     def _below(self, node: Node) -> set[Node]:
-        """The rules that a rule may begin with, not deep."""
+        """Returns the rules that a rule may begin with, to a small depth."""
         found: set[Node] = set()
         level: set[Node] = {node}
         for _ in range(_DEEPEST):
@@ -194,7 +196,7 @@ class _Sharing:
 
 
 def _is_choice(node: Node) -> bool:
-    """Whether a beginning is a choice; white space is none, for all have it alike."""
+    """True for a beginning that is a choice; white space is not, since all have it alike."""
     return isinstance(node, Alt) or (isinstance(node, Repeat) and node.high == 1 and node.item != Name("gap"))
 
 

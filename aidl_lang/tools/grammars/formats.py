@@ -1,4 +1,4 @@
-"""The formats: what each is made of."""
+"""The export formats and how each is built."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from aidl_lang.tools.grammars.spacing import spaced
 from aidl_lang.tools.grammars.terminals import SPACING, bounded_terminals, reading_terminals
 from aidl_lang.tools.grammars.writing import GBNF, LARK, W3C
 
-# Lines that do not hold three backticks, and the opening of a block.
+# Lines without three backticks, and the opening of a block.
 _TICKS = optional(alt(Text("`"), Text("``")))
 _LINES = optional(seq(Repeat(seq(_TICKS, Chars("^`")), 0, None), _TICKS, Chars("\\n")))
 _OPENING = seq(_LINES, Text("```aidl"), optional(Chars("\\r")), Chars("\\n"))
@@ -33,12 +33,14 @@ def as_it_is() -> str:
 
 
 def for_readers() -> str:
-    """W3C EBNF: the rules of the source, of which white space is no part."""
+    """Returns W3C EBNF: the rules of the source, without white space."""
     return W3C.definitions(read_source().rules) + "\n" + W3C.definitions(reading_terminals())
 
 
 def for_decoding(format: str, fenced: bool) -> str:
-    """Bounded terminals, white space in the rules, and no kinds of structures other than those there are."""
+    """Returns a grammar with bounded terminals, white space in the rules, and only existing kinds of
+    structures.
+    """
     rules = spaced(_with_kinds(read_source().rules), "module") | SPACING
     program = seq(optional(Name("heading")), Name("module"))
     if fenced:
@@ -53,7 +55,7 @@ def for_decoding(format: str, fenced: bool) -> str:
 
 
 def _with_kinds(rules: Rules) -> dict[str, Node]:
-    """The rules with the kinds of structures where they take any name; the parser refuses others."""
+    """Returns the rules with the kinds of structures in the place of any name; the parser refuses others."""
     return {
         **rules,
         "kind": alt(*map(Text, KINDS)),
@@ -65,7 +67,7 @@ def _with_kinds(rules: Rules) -> dict[str, Node]:
 
 
 def _first_replaced(node: Node, old: Node, new: Node) -> Node:
-    """A sequence with another item in the place of the first of one sort."""
+    """Returns a sequence with its first item of one sort replaced."""
     if not isinstance(node, Seq):
         raise TypeError(f"not a sequence: {node}")
     at = node.items.index(old)

@@ -1,4 +1,4 @@
-"""Grammars as trees: what the formats have in common, and small operations on it."""
+"""Grammars as trees: the common form of all formats, and small operations on it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Name:
 
 @record(slots=True)
 class Seq:
-    """One after the other; without items, the empty text."""
+    """Items one after the other; without items, the empty text."""
 
     items: tuple[Node, ...] = ()
 
@@ -44,7 +44,7 @@ class Alt:
 
 @record(slots=True)
 class Repeat:
-    """From `low` to `high` times; `high` is None where there is no end."""
+    """From `low` to `high` times; `high` is None without a limit."""
 
     item: Node
     low: int
@@ -65,7 +65,7 @@ def seq(*items: Node) -> Node:
 
 
 def alt(*items: Node) -> Node:
-    """One of several, each listed once; an empty one makes the rest optional."""
+    """Returns a choice, each alternative listed once; an empty one makes the rest optional."""
     flat: dict[Node, None] = {}
     for item in items:
         flat.update(dict.fromkeys(item.items if isinstance(item, Alt) else (item,)))
@@ -88,14 +88,14 @@ def repeat(item: Node, low: int, high: int | None) -> Node:
 
 
 def parts(node: Node) -> tuple[Node, ...]:
-    """What a node is made of."""
+    """Returns the children of a node."""
     if isinstance(node, Seq | Alt):
         return node.items
     return (node.item,) if isinstance(node, Repeat) else ()
 
 
 def names(node: Node) -> Iterator[str]:
-    """The names in a node, in order."""
+    """Yields the names in a node, in order."""
     if isinstance(node, Name):
         yield node.name
     for part in parts(node):
@@ -103,7 +103,7 @@ def names(node: Node) -> Iterator[str]:
 
 
 def nullable_rules(rules: Rules) -> set[str]:
-    """The rules that may be empty."""
+    """Returns the rules that may be empty."""
     found: set[str] = set()
     while more := {n for n, node in rules.items() if n not in found and nullable(node, found)}:
         found |= more
@@ -111,7 +111,7 @@ def nullable_rules(rules: Rules) -> set[str]:
 
 
 def nullable(node: Node, rules: Iterable[str]) -> bool:
-    """Whether a node may be empty, given the rules that may."""
+    """Tells whether a node may be empty, given the rules that may."""
     match node:
         case Seq(items):
             return all(nullable(item, rules) for item in items)
@@ -125,7 +125,7 @@ def nullable(node: Node, rules: Iterable[str]) -> bool:
 
 
 def reachable(rules: Rules, start: str) -> dict[str, Node]:
-    """The rules that a start needs, each before those it names first."""
+    """Returns the rules that a start needs, each before those it names first."""
     found: dict[str, Node] = {}
     pending = [start]
     while pending:
@@ -137,7 +137,7 @@ def reachable(rules: Rules, start: str) -> dict[str, Node]:
 
 
 def heads(node: Node, empty: set[str]) -> Iterator[Name | Text | Chars]:
-    """What may stand first in a node, given the rules that may be empty."""
+    """Yields possible first tokens and rules of a node, given the rules that may be empty."""
     if isinstance(node, Name | Text | Chars):
         yield node
     for part in parts(node):
@@ -147,7 +147,7 @@ def heads(node: Node, empty: set[str]) -> Iterator[Name | Text | Chars]:
 
 
 def corners(name: str, rules: Rules, empty: set[str]) -> set[Name | Text | Chars]:
-    """All rules and tokens that may stand first in a rule, at any depth."""
+    """Returns all possible first rules and tokens of a rule, at any depth."""
     found: set[Name | Text | Chars] = set()
     pending = [name]
     while pending:
@@ -160,7 +160,7 @@ def corners(name: str, rules: Rules, empty: set[str]) -> set[Name | Text | Chars
 
 
 def left_recursive(rules: Rules) -> list[set[str]]:
-    """The groups of rules that may stand first in each other."""
+    """Returns the groups of rules that may begin with each other."""
     empty = nullable_rules(rules)
     below = {n: {c.name for c in corners(n, rules, empty) if isinstance(c, Name)} for n in rules}
     groups: list[set[str]] = []

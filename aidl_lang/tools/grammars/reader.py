@@ -1,4 +1,4 @@
-"""The grammar file as trees, as far as it uses Lark's notation."""
+"""Reads the grammar file as trees, as far as it uses Lark's notation."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _COUNTS: dict[str, tuple[int, int | None]] = {"?": (0, 1), "*": (0, None), "+": 
 
 @record()
 class Source:
-    """What `grammar/aidl.lark` says: rules as trees, and the names of its terminals."""
+    """The contents of `grammar/aidl.lark`: rules as trees, and the names of its terminals."""
 
     text: str
     rules: dict[str, Node]
@@ -43,7 +43,7 @@ def read_source() -> Source:
 
 
 def _definitions(text: str) -> dict[str, list[tuple[str, str]]]:
-    """The tokens behind the colon of each definition. Raises ValueError for notation that is not known."""
+    """Returns the tokens after the colon of each definition. Raises ValueError for unknown notation."""
     found: dict[str, list[tuple[str, str]]] = {}
     current: list[tuple[str, str]] = []
     position = 0

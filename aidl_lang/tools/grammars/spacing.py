@@ -1,4 +1,4 @@
-"""White space, written into the rules: what `%ignore` and longest matches do for the parser.
+"""Writes white space into the rules: what `%ignore` and longest matches do for the parser.
 
 Engines for constrained decoding differ in how they read `%ignore`, or have none, and not all of them take the
 longest match. So each token is given the white space that may stand before it, by the token before that:
@@ -51,7 +51,7 @@ _RULES_INSTEAD = {"NUMBER": "number"}
 
 
 def spaced(rules: Rules, start: str) -> dict[str, Node]:
-    """The rules that `start` needs, with white space before their tokens."""
+    """Returns the rules that `start` needs, with white space before their tokens."""
     weaver = _Weaver(rules)
     weaver.name_for(start, FREE)
     while weaver.pending:
@@ -65,7 +65,7 @@ def spaced(rules: Rules, start: str) -> dict[str, Node]:
 
 
 class _Weaver:
-    """What is known of the rules, those woven so far, and those that have been asked for."""
+    """Facts about the rules, those woven so far, and those requested."""
 
     def __init__(self, rules: Rules) -> None:
         self.rules = rules
@@ -91,7 +91,7 @@ class _Weaver:
         }
 
     def end(self, node: Node) -> int:
-        """What the last token counts as, the strictest of the possible ones."""
+        """Returns the class of the last token, the strictest of the possible ones."""
         match node:
             case Text(text):
                 return WORD if text.isidentifier() else FREE
@@ -111,7 +111,7 @@ class _Weaver:
         raise TypeError(node)
 
     def ways(self, node: Node, before: int) -> dict[int, Node]:
-        """The node behind a token that counts as `before`, by what its own last token counts as."""
+        """Returns the node after a token of class `before`, by the class of its own last token."""
         match node:
             case Name(name) if name in self.lists:
                 self.name_for(name, before)
@@ -136,7 +136,7 @@ class _Weaver:
         return self._one(node, before)
 
     def _begins_with_sign(self, node: Node) -> bool:
-        """Whether it does not matter what stands before a node."""
+        """True if the token before a node does not matter."""
         first = set(heads(node, self.nullable))
         kinds = [
             self.firsts[n.name] if isinstance(n, Name) and n.name in self.rules else {_kind(n)} for n in first
@@ -144,14 +144,14 @@ class _Weaver:
         return not nullable(node, self.nullable) and all(kind == {"sign"} for kind in kinds)
 
     def _one(self, node: Node, before: int) -> dict[int, Node]:
-        """A rule or a token."""
+        """Returns the ways of a rule or a token."""
         if isinstance(node, Name) and node.name in self.rules:
             after = max(self.ends[node.name], before if node.name in self.nullable else FREE)
             return {after: Name(self.name_for(node.name, before))}
         return {self.end(node): seq(_gap(before, _kind(node)), _token(node))}
 
     def name_for(self, name: str, before: int) -> str:
-        """The name of a rule behind a token that counts as `before`; it is made if it is new."""
+        """Returns the name of a rule after a token of class `before`, made on first use."""
         firsts = self.firsts[name]
         if before == NAME and "(" not in firsts:
             before = WORD
@@ -174,7 +174,7 @@ def _union(ways: Iterable[tuple[int, Node]]) -> dict[int, Node]:
 
 
 def _kind(token: Node) -> str:
-    """What a token is to the one before it."""
+    """Returns the class of a token for the one before it."""
     match token:
         case Text(text):
             return "word" if text.isidentifier() else "(" if text == "(" else "sign"

@@ -1,4 +1,4 @@
-"""The terminals of the grammar, bounded: what a model may write where the language itself sets no end.
+"""The terminals of the grammar, bounded where the language itself sets no limit.
 
 Small models repeat themselves: a comment, blank lines, the digits of a number or the letters of a name
 without end. Every repetition inside a terminal is bounded here, and what a model has no need of is left
@@ -28,7 +28,7 @@ _MOST_NEWLINES = 3  # in a row
 
 
 def _members(characters: set[str]) -> str:
-    """The inside of a class of characters, as ranges."""
+    """Returns the inside of a class of characters, as ranges."""
     runs: list[str] = []
     for character in sorted(characters):
         if runs and ord(runs[-1][-1]) + 1 == ord(character):
@@ -54,7 +54,7 @@ def _quoted(quote: str) -> Node:
 
 
 def bounded_terminals() -> dict[str, Node]:
-    """The terminals of the source, and those that only exports have.
+    """Returns the terminals of the source, and those that only exports have.
 
     A number is a rule rather than a terminal. Engines without backtracking in their lexers could not go
     back over the point in `0..9`: WHOLE ends before a point, and FRACTION begins with it.
@@ -85,7 +85,7 @@ SPACING: dict[str, Node] = {
 
 
 def reading_terminals() -> dict[str, Node]:
-    """The terminals by their own names, without what the rules name as literals."""
+    """Returns the terminals by their own names, without those that rules name as literals."""
     bounded = bounded_terminals()
     return {
         "NAME": seq(Chars(_members(set(_ASCII) - set(_DECIMALS)) + _LETTERS), _REST),
@@ -97,14 +97,14 @@ def reading_terminals() -> dict[str, Node]:
 
 
 def _taken_soft_words() -> set[str]:
-    """The words that the parser reads as keywords in some place where a name could stand as well."""
+    """Returns the words that the parser reads as keywords in some place of a name."""
     tables = load_tables()
     rows = [row for row in tables.actions if "NAME" in row or "CALL" in row]
     return {word for word in tables.soft_words if any(word in row for row in rows)}
 
 
 def _names_without(words: Iterable[str]) -> Node:
-    """Names other than the words given, as those that leave every one of them at some letter.
+    """Returns names other than the given words, as those that leave each of them at some letter.
 
     Not all engines know the complement of an expression.
     """
@@ -112,7 +112,7 @@ def _names_without(words: Iterable[str]) -> Node:
 
 
 def _tails(words: list[str], is_first: bool = False) -> Node:
-    """What may follow a beginning, given what would complete it to a word."""
+    """Returns what may follow a beginning, given the rests that would complete it to a word."""
     letters = set(_ASCII) - (set(_DECIMALS) if is_first else set())
     firsts = sorted({word[0] for word in words if word})
     choices: list[Node] = [seq(Chars(_members(letters - set(firsts)) + _LETTERS), _REST)]

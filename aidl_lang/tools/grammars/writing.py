@@ -1,4 +1,4 @@
-"""Trees as text, in the notation of each format."""
+"""Writes trees as text, in the notation of each format."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Notation:
     counted: Callable[[int, int | None], str]
 
     def definitions(self, rules: Rules) -> str:
-        """One definition below the other."""
+        """Returns one definition below the other."""
         return "".join(f"{self.name(n)}{self.defines} {self._choice(node)}\n" for n, node in rules.items())
 
     def _choice(self, node: Node) -> str:
@@ -55,7 +55,7 @@ def _quoted(text: str) -> str:
 
 
 def _name_in_gbnf(name: str) -> str:
-    """Letters, digits and dashes are what all its readers take."""
+    """Returns a name of letters, digits and dashes, which all GBNF readers take."""
     return "root" if name == "start" else ("in" if name.startswith("_") else "") + name.replace("_", "-")
 
 
@@ -76,7 +76,7 @@ GBNF = Notation(
     lambda members: f"[{members}]",
     lambda low, high: f"{{{low},{high}}}",
 )
-# W3C knows no bounds: they are dropped.
+# W3C EBNF has no bounds: they are dropped.
 W3C = Notation(
     " ::=",
     "\n    | ",

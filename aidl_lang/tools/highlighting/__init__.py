@@ -1,1 +1,1 @@
-"""Colours for programs: what each token is, and the grammars for editors and for Pygments made from that."""
+"""Syntax colours: the class of each token, and the grammars for editors and for Pygments made from these."""

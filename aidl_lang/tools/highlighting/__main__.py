@@ -1,4 +1,6 @@
-"""`python -m aidl_lang.tools.highlighting ROOT`: write all that is generated for editors (`make colours`)."""
+"""`python -m aidl_lang.tools.highlighting ROOT`: writes all that is generated for editors (`make
+colours`).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each token of a text is, told from the tokens alone: for broken programs as well as for whole ones.
+"""Classifies the tokens of a text by the tokens alone: in broken programs as well as in whole ones.
 
 All colourers follow this: the Pygments lexer uses it, and the grammars for editors are tested against it.
 What a name refers to is not asked. So a definition of the program's own that is called like one of the
@@ -71,7 +71,7 @@ class Piece(NamedTuple):
 
 
 def classify(text: str) -> list[Piece]:
-    """The pieces of a text in order. What lies between them is blank."""
+    """Returns the pieces of a text in order, without the blanks between them."""
     found = tokenize(SourceFile("", text))
     pieces = list(_Reader(text, found.tokens).pieces())
     pieces += [Piece(c.span.start, c.span.end, _comment_class(c.text)) for c in found.comments]
@@ -86,20 +86,20 @@ def _comment_class(text: str) -> str:
 
 @cache
 def fixed_classes() -> dict[str, str]:
-    """Words and signs of the grammar with their classes."""
+    """Returns words and signs of the grammar with their classes."""
     words = vocabulary()
     return {word: kind for name, kind in _KEYWORD_CLASSES.items() for word in getattr(words, name)}
 
 
 @cache
 def called() -> dict[str, str]:
-    """Names that may be called, with the class of the call."""
+    """Returns callable names, with the class of the call."""
     return {name: _CALL_CLASSES[kind] for name, kind in vocabulary().named().items() if kind in _CALL_CLASSES}
 
 
 @cache
 def _plain_names() -> dict[str, str]:
-    """Names that are there without being defined, with their classes."""
+    """Returns predefined names that are not called, with their classes."""
     words = vocabulary()
     found = dict.fromkeys(words.everywhere, "name.everywhere")
     return {**found, **dict.fromkeys(words.constants, "name.constant")}
@@ -108,8 +108,8 @@ def _plain_names() -> dict[str, str]:
 @record(frozen=False)
 class _Inside:
     """An open bracket. `role` is `parameters` of a definition, `arguments` of a call, `block`, `constraints`
-    (a block of them) or `group`; `header` is `names` where the variables of a `for`, or imported names,
-    stand, `values` behind the `in` of a `for`, else nothing.
+    (a block of them) or `group`; `header` is `names` before the variables of a `for`, or imported names,
+    `values` after the `in` of a `for`, else nothing.
     """
 
     role: str
@@ -118,13 +118,13 @@ class _Inside:
 
 @record(frozen=False)
 class _Reader:
-    """Walks over the tokens once, and knows what is open."""
+    """Walks over the tokens once, with the open brackets."""
 
     text: str
     tokens: Sequence[Token]
     stack: list[_Inside] = field(default_factory=lambda: [_Inside("block")])
     opens: str = "block"
-    """What the next `{` opens, unless it stands inside one of constraints."""
+    """The role of the next `{`, except inside constraints."""
 
     def pieces(self) -> Iterator[Piece]:
         for place, token in enumerate(self.tokens):
@@ -168,11 +168,11 @@ class _Reader:
     # --- Names ------------------------------------------------------------------------------------
 
     def _kind(self, place: int) -> str:
-        """The kind of the token at a place; END outside of the text."""
+        """Returns the kind of the token at a place; END outside of the text."""
         return self.tokens[place].kind if 0 <= place < len(self.tokens) else END
 
     def _is_keyword(self, place: int) -> bool:
-        """Whether a word that may also be a name is none here."""
+        """Tells whether a word that may also be a name is a keyword here."""
         before, after = self._kind(place - 1), self._kind(place + 1)
         match self._kind(place):
             case "as":
@@ -216,12 +216,12 @@ class _Reader:
         return _plain_names().get(word, "name")
 
     def _is_assigned(self, place: int) -> bool:
-        """Whether `=` gives the name a value here: it begins a statement, and stands in no constraint."""
+        """Tells whether `=` gives the name a value here: it begins a statement, outside constraints."""
         begins = self._kind(place - 1) in _BEFORE_STATEMENTS
         return begins and self.stack[-1].role == "block" and self._kind(self._after_index(place + 1)) == "="
 
     def _is_kind(self, place: int) -> bool:
-        """Whether the word begins a structure: a name follows, with `{`, `at` or `rotated` behind it."""
+        """Tells whether the word begins a structure: a name follows, then `{`, `at` or `rotated`."""
         if self._kind(place - 1) not in _BEFORE_STATEMENTS or self.stack[-1].role not in _BLOCKS:
             return False
         known = kind_of(self.tokens[place].text) is not None
@@ -235,13 +235,13 @@ class _Reader:
         return after not in ("=", ".")  # its body may still have to be written
 
     def _after_index(self, place: int) -> int:
-        """The place behind `[…]`, any number of them."""
+        """Returns the place after `[…]`, any number of them."""
         while self._kind(place) == "[":
             place = self._closing(place) + 1
         return place
 
     def _closing(self, place: int) -> int:
-        """Where what is opened here is closed, or what stops it before."""
+        """Returns the place that closes the bracket opened here, or cuts it off."""
         return self._closings[place]
 
     @cached_property
@@ -299,7 +299,7 @@ class _Reader:
             self.opens = "block"  # `constrain if a then b else c` is one expression
 
     def _leave_calls(self) -> None:
-        """Braces stand in no call: one that is open is still being written."""
+        """Leaves unclosed calls: they contain no braces."""
         while self.stack[-1].role not in _BLOCKS:
             self.stack.pop()
 
@@ -319,15 +319,15 @@ _BEFORE_STATEMENTS = frozenset(
         *("true", "false", "True", "False", "todo", "construction", "template"),
     )
 )
-"""Behind these a statement may begin."""
+"""Tokens after which a statement may begin."""
 
 _ALONE = {"@": "attribute", ".": "name.member"} | dict.fromkeys(
     ("param", "var", "let", "alias"), "name.definition"
 )
-"""What a name is behind these."""
+"""Classes of a name after these tokens."""
 
 
 @cache
 def _units() -> tuple[str, ...]:
-    """The longest first, so that `mm` is not taken for `m`."""
+    """Returns units, the longest first, so that `mm` is not taken for `m`."""
     return tuple(sorted(vocabulary().units, key=len, reverse=True))

@@ -18,8 +18,8 @@ _LISTS = (
 
 
 def words() -> str:
-    """`words`: lists by class; `calls`: names by the class of their call; `about`: the names of the library
-    with what they are for; `snippets`.
+    """Returns `words`: lists by class; `calls`: names by the class of their call; `about`: the names of the
+    library with their purpose; `snippets`.
     """
     known = vocabulary()
     lists = {name: getattr(known, name) for name in _LISTS}
@@ -36,7 +36,7 @@ def words() -> str:
 
 
 def _literal(value: object) -> str:
-    """A value with each of its items on a line."""
+    """Writes a value with each of its items on a line."""
     if isinstance(value, Mapping):
         inside = ",\n".join(f"  {json.dumps(k)}: {_short(v)}" for k, v in value.items())
         return f"{{\n{inside},\n}}"

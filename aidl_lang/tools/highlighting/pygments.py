@@ -66,7 +66,7 @@ TOKENS: Mapping[str, _TokenType] = {
     "escape": String.Escape,
     "unknown": Error,
 }
-"""What Pygments calls the classes; its styles know these names."""
+"""Pygments' names of the classes, which its styles know."""
 
 
 class AidlLexer(Lexer):  # type: ignore[misc]  # Pygments has no types
@@ -78,7 +78,7 @@ class AidlLexer(Lexer):  # type: ignore[misc]  # Pygments has no types
     mimetypes: ClassVar[list[str]] = ["text/x-aidl"]
 
     def get_tokens_unprocessed(self, text: str) -> Iterator[tuple[int, _TokenType, str]]:
-        """Every piece and every blank as (offset, token, text)."""
+        """Yields every piece and every blank as (offset, token, text)."""
         end = 0
         for piece in classify(text):
             if end < piece.start:

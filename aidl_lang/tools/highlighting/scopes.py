@@ -1,4 +1,4 @@
-"""What TextMate calls the classes, and its rules as data."""
+"""TextMate's names of the classes, and its rules as data."""
 
 from __future__ import annotations
 
@@ -56,13 +56,13 @@ SCOPES: Mapping[str, str] = {
 
 
 def scope(written: str) -> str:
-    """`class`, or `class/more.words` for a scope that tells more."""
+    """Returns the scope of `class`, or of `class/more.words` for a more precise one."""
     kind, _, more = written.partition("/")
     return ".".join(filter(None, (SCOPES[kind], more, "aidl")))
 
 
 def match(pattern: str, *groups: str, whole: str = "") -> Rule:
-    """A rule for a pattern: the classes of its groups, "" for one without, and that of the whole."""
+    """Returns a rule for a pattern: the classes of its groups, "" for one without, and that of the whole."""
     rule: Rule = {"match": pattern}
     if whole:
         rule["name"] = scope(whole)
@@ -72,7 +72,7 @@ def match(pattern: str, *groups: str, whole: str = "") -> Rule:
 def region(
     begin: str, end: str, *inside: str | Rule, begins: Sequence[str] = (), ends: Sequence[str] = ()
 ) -> Rule:
-    """A rule for what lies between two patterns; a rule inside goes by the name it has in the repository."""
+    """Returns a rule for the text between two patterns; rules inside go by their names in the repository."""
     rule: Rule = {
         "begin": begin,
         "end": end,

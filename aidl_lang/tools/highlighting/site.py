@@ -1,4 +1,6 @@
-"""What is generated for editors in a checkout: grammars, lists of words, snippets, and what tests expect."""
+"""The generated files for editors in a checkout: grammars, lists of words, snippets, and expectations of
+tests.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,7 @@ SAMPLES = "tests/editors/classes.json"
 
 
 def texts(root: Path) -> dict[str, str]:
-    """Every generated text by its path below the root of a checkout."""
+    """Returns every generated text by its path below the root of a checkout."""
     return {
         "editors/vscode/syntaxes/aidl.tmLanguage.json": _json(grammar()),
         "editors/vscode/syntaxes/markdown-aidl.tmLanguage.json": _json(markdown()),
@@ -30,7 +32,7 @@ def texts(root: Path) -> dict[str, str]:
 
 
 def write(root: Path) -> None:
-    """Bring the generated files up to date. A file that is right already is not touched."""
+    """Updates the generated files. A file that is right already is not touched."""
     for path, text in texts(root).items():
         file = root / path
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -43,14 +45,14 @@ def _json(data: object) -> str:
 
 
 def _formats() -> str:
-    """The files that menus offer to make of a drawing."""
+    """Returns the export formats that menus offer."""
     rows = "".join(f'  ["{name}", "{label}"],\n' for name, label in OFFERED.items())
     says = "// Made by `make colours` from aidl_lang/export/__init__.py; do not edit.\n"
     return f"{says}\nexport const FORMATS = /** @type {{const}} */ ([\n{rows}]);\n"
 
 
 def _snippets() -> dict[str, object]:
-    """By their titles, in the form of VS Code."""
+    """Returns snippets by their titles, in the form of VS Code."""
     return {
         snippet.title: {
             "prefix": snippet.prefix,
@@ -62,8 +64,8 @@ def _snippets() -> dict[str, object]:
 
 
 def _samples(root: Path) -> str:
-    """The class of every piece of the examples and of one program that has them all, for tests that run
-    without Python: [start, end, class], in units of UTF-16, a line for each line of the program.
+    """Returns the class of every piece of the examples and of one program that has them all, for tests that
+    run without Python: [start, end, class], in units of UTF-16, a line for each line of the program.
     """
     files = [*sorted((root / "examples").glob("*.aidl")), root / "tests/editors/classes.aidl"]
     programs = ",\n".join(

@@ -1,4 +1,4 @@
-"""The TextMate grammar, by which VS Code, GitHub and others colour.
+"""The TextMate grammar, used by VS Code, GitHub and others.
 
 Such a grammar reads line by line, by regular expressions of Oniguruma; what is open over several lines is a
 region between two of them. Braces stand in no call and in no list: each region inside a statement ends before
@@ -20,7 +20,7 @@ _BEFORE, _AFTER = f"(?<!{_LETTER})", f"(?!{_LETTER})"
 
 
 def _any(words: Iterable[str]) -> str:
-    """One of the texts, the longest that fits."""
+    """Returns a pattern for one of the texts, the longest that fits."""
     longest = sorted(words, key=lambda word: (-len(word), word))
     return f"(?:{'|'.join(map(re.escape, longest))})"
 
@@ -40,14 +40,14 @@ _STATEMENTS = _word(*(word for word in _WORDS.statements if word not in ("for", 
 _BODY = rf"(?=\s*{_INDEXES}(?:\{{|{_word('at', 'rotated')}))"
 _STRUCTURE = rf"{_KIND}\s+{_NAME}{_BODY}"
 _STOP = rf"(?=[{{}};]|{_STATEMENTS}|{_STRUCTURE})"
-"""What ends a call that is not closed; `for` and `if` may stand in one."""
+"""Ends of a call that is not closed; `for` and `if` may stand in one."""
 
 _DEFINING = ("fn", "shape", "constraint")
 """Declarations that have parameters."""
 
 
 def grammar() -> Rule:
-    """The grammar as data for JSON."""
+    """Returns the grammar as data for JSON."""
     return {
         "comment": "Made by `make colours`; do not edit.",
         "name": "AIDL",
@@ -173,7 +173,7 @@ def _keywords() -> list[Rule]:
 
 
 def markdown() -> Rule:
-    """What colours fenced blocks of AIDL in Markdown, as data for JSON."""
+    """Returns the grammar of fenced AIDL blocks in Markdown, as data for JSON."""
     fence = r"(^|\G)(\s*)(`{3,}|~{3,})\s*(?i:(aidl)(?=\s|$)[^`]*)$"
     begins = {
         "3": {"name": "punctuation.definition.markdown"},
@@ -205,7 +205,7 @@ def markdown() -> Rule:
 
 
 def _call(name: str, kind: str, *, sign: str = "", sign_kind: str = "", inside: str = "arguments") -> Rule:
-    """A name, what is before it if anything is, and what stands in its parentheses."""
+    """Returns a rule for a name, with what may precede it, and the contents of its parentheses."""
     before, begins = (rf"({sign})\s*", [sign_kind]) if sign else ("", [])
     return region(
         rf"{before}({name})[ \t]*(\()",
@@ -265,7 +265,7 @@ def _definition(word: str) -> Rule:
 
 
 def _structures() -> list[Rule]:
-    """A kind and a name; a word that is no kind counts as one if a body or a place follows."""
+    """Returns rules for a kind and a name; an unknown word counts as a kind before a body or a place."""
     return [
         _call(_NAME, "name.template", sign=_KIND, sign_kind="kind", inside="parameters"),
         match(rf"({_NAME})\s+({_NAME}){_BODY}", "kind", "name.structure"),

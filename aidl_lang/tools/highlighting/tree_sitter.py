@@ -1,4 +1,4 @@
-"""The queries by which editors colour what the tree-sitter grammar has read.
+"""The queries by which editors colour the nodes of the tree-sitter grammar.
 
 Editors have different names for the colours and one language for queries: a node is named by what stands
 around it. Where several patterns fit, the last one holds; so the general ones come first.
@@ -60,7 +60,7 @@ NEOVIM: Mapping[str, str] = {
     "escape": "string.escape",
     "unknown": "comment.error",
 }
-"""What Neovim calls the classes, and the command line of tree-sitter and Zed for the most part."""
+"""Neovim's names of the classes, which tree-sitter's command line and Zed mostly share."""
 
 HELIX: Mapping[str, str] = {
     **NEOVIM,
@@ -128,11 +128,11 @@ _DEFINED = (
         "(assignment target: (index_expression object: (index_expression object: (identifier) $)))",
     ),
 )
-"""Names by where they stand, with their classes."""
+"""Names by their place, with their classes."""
 
 
 def highlights(captures: Mapping[str, str]) -> str:
-    """The query for colours, by the names that an editor has for the classes."""
+    """Returns the query for colours, by an editor's names of the classes."""
     parts = ["; Made by `make colours`; do not edit."]
     for kind, pattern in _in_order():
         parts.append(pattern.replace("$", f"@{captures[kind]}"))
@@ -140,7 +140,7 @@ def highlights(captures: Mapping[str, str]) -> str:
 
 
 def queries() -> dict[str, str]:
-    """Every generated query by its path in a checkout."""
+    """Returns every generated query by its path in a checkout."""
     return {
         f"{FOLDER}/highlights.scm": highlights(NEOVIM),
         f"{FOLDER}/helix/highlights.scm": highlights(HELIX),
@@ -165,7 +165,7 @@ def _in_order() -> Iterator[tuple[str, str]]:
 
 
 def _tokens() -> Iterator[tuple[str, str]]:
-    """Words and signs that are no nodes of their own, those of one class in a row."""
+    """Yields words and signs that are no nodes of their own, those of one class in a row."""
     lists: dict[str, list[str]] = {}
     for text, kind in fixed_classes().items():
         if kind != "constant.truth" and text != "todo":
@@ -175,7 +175,7 @@ def _tokens() -> Iterator[tuple[str, str]]:
 
 
 def _listed(pattern: str, names: Iterable[str]) -> str:
-    """A pattern whose name is one of these, in lines that can be read."""
+    """Returns a pattern for one of these names, in lines that can be read."""
     lines, line = [], ""
     for name in map(json.dumps, names):
         if line and len(line) + len(name) > 100:
