@@ -64,8 +64,8 @@ def with_remedies(
 def _answered(
     d: Diagnostic, stated: Constraint, failure: GroupFailure, everything: Sequence[Diagnostic], trials: Trials
 ) -> Diagnostic:
-    """Returns a finding with what fits where its numbers are given, and the least change of these as the fix.
-    If there is none, tells what fits in a constraint; what an `assert` asks is not up for change.
+    """Returns a finding with numbers that fit where its values are given, and the least change of these as
+    the fix. If there are none, names a number that fits in a constraint; an `assert` is not up for change.
     """
     wording = stated.wording
     if not isinstance(wording, Wording) or wording.node.span != stated.span:

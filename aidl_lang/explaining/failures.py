@@ -190,7 +190,7 @@ class Explanation:
         *_, size = operands[problem.constraints[index].rows[0].expression]
         return self.lowered.unknowns[operands[size][0]]
 
-    # -- what would help
+    # -- remedies
 
     @cached_property
     def _remedies(self) -> list[Remedy]:
@@ -218,7 +218,7 @@ class Explanation:
 
         def order(span: Span) -> tuple[int, bool, float]:
             dials = stated[span]
-            # Where all is straight, the largest numbers change by the smallest part of themselves.
+            # If all rows are straight, the largest numbers change by the smallest part of themselves.
             largest = 0.0 if self.failure.is_curved else max((abs(dial.value) for dial in dials), default=0.0)
             return -self._shares(span), any(dial.is_rough for dial in dials), -largest
 

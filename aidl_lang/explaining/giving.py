@@ -49,7 +49,7 @@ def gave_way(lowered: Lowered, solution: Solution, settings: Settings) -> tuple[
             one = _given(lowered, solution, reason, told)
             told |= reason.unknowns
             if one.moved:
-                # What a shape asks of itself takes along what its author asked of it, and is told with that.
+                # A constraint inherent in a shape is reported with the author's constraints on that shape.
                 said = tuple(c for c in one.because if not c.is_inherent)
                 known = together.get(said, one)
                 chief = min(one, known, key=lambda each: len(each.because))

@@ -1,4 +1,4 @@
-"""Builds the program with edits and compares it with what could not hold in it before.
+"""Builds the program with edits and checks whether constraints that failed before hold.
 
 Each remedy is tried here, as it is printed, before a message offers it.
 """

@@ -32,7 +32,7 @@ from aidl_lang.geometry.sections import (
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 
 _FEW_HOLES, _FEW_VERTICES = 8, 200
-"""Below which a hole is compared with the whole material."""
+"""Numbers below which each hole is compared with the whole material."""
 
 
 @record()

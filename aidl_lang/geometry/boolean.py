@@ -36,7 +36,7 @@ def common(a: Region, b: Region) -> Region:
 
 
 def overlap_area(a: Region, b: Region) -> float:
-    """Area of what lies in both, mm²."""
+    """Returns the area of the intersection of two regions, mm²."""
     return area(common(a, b))
 
 

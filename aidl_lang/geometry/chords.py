@@ -17,7 +17,7 @@ from aidl_lang.common.records import record
 from aidl_lang.geometry.skeleton import Floats, Ints, Skeleton, within
 
 ANGLE = 1e-6
-"""Radians by which a right angle may be missed."""
+"""Tolerance of right angles, radians."""
 _CHUNK = 400_000
 """Pairs that are worked on at a time."""
 

@@ -120,7 +120,7 @@ class Drawing:
 
 
 def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
-    """Returns the drawing of a model, and what is noteworthy about its curves and parts."""
+    """Returns the drawing of a model, and diagnostics on its curves and parts."""
     notes: list[Diagnostic] = []
     curves, boxes, shapes = _collect(model.root, notes)
     network, walk, masses, traced, gaps = _closed(model.root, Network(curves, boxes), shapes)

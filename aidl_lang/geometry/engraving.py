@@ -20,11 +20,7 @@ from aidl_lang.geometry.sections import inside_mask
 def engraved(
     bodies: Sequence[Body], strokes: Sequence[Stroke]
 ) -> tuple[dict[str, list[Stroke]], list[Stroke]]:
-    """Returns the strokes of drawings by the path of their body, and what lies on no body.
-
-    A drawing inside a part stays with it. Any other is cut where parts end: what lies on several of them goes
-    to the one that has most of the stroke, of equal ones to that drawn last.
-    """
+    """Returns the strokes of drawings by the path of their body, and the strokes on no body."""
     by_path = {body.path: body for body in bodies}
     around = {owner(by_path, body.path.rpartition(".")[0]) for body in bodies}  # these have others in them
     on: dict[str, list[Stroke]] = {}

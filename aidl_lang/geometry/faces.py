@@ -227,7 +227,9 @@ def _chain_free(
 def _close_with_outlines(
     network: Network, rest: list[tuple[SolvedGeometry, int]], outlines: list[Use], result: OwnFaces
 ) -> set[int]:
-    """Add what the remaining curves enclose outside the closed shapes; returns the edges that took part."""
+    """Adds the areas that the remaining curves enclose outside the closed shapes; returns the edges that took
+    part.
+    """
     uses = [use for _, number in rest for use in network.uses[number]]
     together, bounding = _outlines(network, _without_dangling(network, [*uses, *outlines]))
     hull, _ = _outlines(network, outlines)

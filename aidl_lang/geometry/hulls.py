@@ -34,7 +34,7 @@ class _HullContact:
 
 
 def hull(curves: Sequence[Piece]) -> Region:
-    """Returns the least convex region around the curves; empty for what lies on one line."""
+    """Returns the least convex region around the curves; empty if they lie on one line."""
     contacts = _contacts(_distinct(curves))
     if len(contacts) == 1 and is_closed(contacts[0].curve):
         return Region((Face(Loop((contacts[0].curve,))),))

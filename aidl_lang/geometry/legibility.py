@@ -1,4 +1,4 @@
-"""Strokes that cannot be seen, because what they lie on has their colour; lettering that parts lie over."""
+"""Finds strokes that cannot be seen on a ground of their colour, and lettering that parts cover."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from aidl_lang.geometry.sections import (
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 
 COVERED = 0.01
-"""Part of the letters below which nobody misses what is covered."""
+"""Part of the letters below which a cover is not noticed."""
 _WHOLE = 0.995
 
 

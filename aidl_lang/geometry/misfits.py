@@ -190,7 +190,7 @@ def in_one(found: Sequence[Misfit]) -> list[Diagnostic]:
 
 
 def _floor(value: float) -> float:
-    """Rounded down to four digits, so that what is printed fits when it is written."""
+    """Returns a size rounded down to four digits, so that the printed size fits."""
     if value <= 0:
         return 0.0
     step = 10.0 ** (math.floor(math.log10(value)) - 3)

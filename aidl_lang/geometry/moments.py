@@ -19,7 +19,7 @@ from aidl_lang.geometry.region import Loop, Region
 _ISOTROPIC = 1e-9
 """Difference of the principal moments, relative to them, below which every axis is a principal one."""
 _ROUNDING = 1e-12
-"""Part of the moments up to which the product of inertia is none."""
+"""Part of the moments below which the product of inertia counts as zero."""
 
 Squares = tuple[float, float, float]
 """Integrals of x², y² and xy over an area."""

@@ -24,10 +24,8 @@ NEAR = 1e-6
 
 
 def offset(region: Region, distance: float, sharp: bool = True) -> Region:
-    """Returns all that is within a distance of the region; for a negative one, what is left without its
+    """Returns all points within a distance of the region; for a negative one, the region without its
     border.
-
-    With `sharp`, edges are lengthened at corners until they meet.
     """
     if distance == 0 or not region:
         return region

@@ -1,8 +1,4 @@
-"""Outlines made of others, and finished corners: what was recorded while building, worked out in numbers.
-
-The model that comes out has the curves of every derived outline as its parts, and beside its geometry, whose
-corners stay sharp, the geometry as it is drawn. What an outline is made of is taken as it is drawn.
-"""
+"""Works out outlines derived from others, and finished corners, as recorded while building."""
 
 from __future__ import annotations
 
@@ -38,7 +34,7 @@ _HALVINGS = 24
 
 
 def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
-    """Returns the model with its derived outlines and finished corners, and what is wrong with them."""
+    """Returns the model with its derived outlines and finished corners, and diagnostics on them."""
     index = {g.path: g for g in model.root.walk_geometry()}
     outliner = _Outliner(tuple(f for s in model.root.walk() for f in s.finishes), index)
     root = outliner.structure(model.root)
@@ -311,7 +307,9 @@ def _renumbered(corner: Corner, numbers: Sequence[int]) -> Corner:
 
 
 def _rebuilt(geometry: Sequence[SolvedGeometry], leaves: Leaves, result: Result) -> list[SolvedGeometry]:
-    """Returns the geometry with its new curves; a new one belongs to what both its neighbours belong to."""
+    """Returns the geometry with its new curves; a new one belongs to the parts that both its neighbours
+    belong to.
+    """
     changed = {g.path: c for (g, old), c in zip(leaves, result.curves, strict=True) if c is not old}
     added: dict[str, list[SolvedGeometry]] = {}
     free: list[SolvedGeometry] = []
@@ -376,7 +374,7 @@ def _deepest(region: Region, too_deep: float) -> float:
 def _box(
     s: SolvedStructure, geometry: Iterable[SolvedGeometry], children: Iterable[SolvedStructure]
 ) -> Box | None:
-    """Returns the box with what was derived since it was read out."""
+    """Returns the box with the curves derived since it was read out."""
     boxes = [s.box] if s.box is not None else []
     boxes += [Box(*bounds(c)) for g in geometry for c in g.curves()]
     boxes += [c.box for c in children if c.box is not None and c.kind != "hole"]

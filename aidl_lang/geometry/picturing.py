@@ -1,4 +1,4 @@
-"""Solution → Drawing: places put back into names, regions worked out, and what there is to say of them."""
+"""Makes the drawing of a solution: names with places, regions, and diagnostics."""
 
 from __future__ import annotations
 
@@ -28,9 +28,7 @@ _HEAVY = "most of its curves are made here"
 def pictured(
     built: Model, lowered: Lowered, solution: Solution, freedom: Freedom, watch: Stopwatch
 ) -> tuple[SolvedModel, Evaluator, Drawing, list[Diagnostic]]:
-    """Returns a solution put back into names and coordinates, its drawing, and what there is to say of
-    that.
-    """
+    """Returns the solved model with its evaluator, its drawing, and diagnostics on it."""
     from aidl_lang.geometry.drawing import draw
     from aidl_lang.geometry.placeless import with_places
     from aidl_lang.geometry.readout import read_out

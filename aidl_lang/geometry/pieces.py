@@ -70,8 +70,8 @@ def loose_piece_notes(
     solids: Sequence[Solid],
     pairs: Sequence[Contact],
 ) -> Iterator[Diagnostic]:
-    """Yields a warning for pieces of a solid that touch neither the rest of it nor what touches that. A solid
-    that is the whole program is a drawing without parts, in which gaps are as good as lines.
+    """Yields a warning for pieces of a solid that no chain of touching pieces links to the rest. A solid that
+    is the whole program is a drawing without parts, in which gaps are as good as lines.
     """
     free = marked_detached(root)
     known = {solid.path: solid for solid in solids}
@@ -287,7 +287,9 @@ def _enclosed(sections: Sequence[Section]) -> Iterator[tuple[Section, Section]]:
 
 
 def _was_joined(walk: Bodies, mass: Mass, piece: Section, opening: Section) -> bool:
-    """Tells whether a piece hung together with what is around the opening before anything was cut out."""
+    """Tells whether a piece was connected with the material around the opening before anything was cut
+    out.
+    """
     faces = [f.section for s in _material(mass.structure) for f in walk.faces.get(s.path, ())]
     near = union([f for f in faces if boxes_meet(f, opening)])
     return any(covers(whole, opening) and covers(whole, piece) for whole in near.decompose())
@@ -304,7 +306,7 @@ def _touches(walk: Bodies, piece: Section, others: Sequence[Solid]) -> bool:
 def _cutting(
     walk: Bodies, holes: Iterable[SolvedStructure], opening: Section, piece: Section
 ) -> Iterator[str]:
-    """Yields the paths of those holes that took away what was between a piece and the rest."""
+    """Yields the paths of the holes that took away the material between a piece and the rest."""
     between = difference(opening, piece)
     for hole in holes:
         if hole.path in walk.faces:

@@ -1,5 +1,5 @@
-"""Leaves out of a solved model what has no place in a drawing, so that every number after this is one that
-can be drawn, measured and written.
+"""Leaves curves and values without a place out of a solved model, so that all later numbers can be drawn,
+measured and written.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from aidl_lang.geometry.solved import Box, Frame, SolvedGeometry, SolvedModel, S
 
 
 def with_places(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
-    """Returns the model without curves and numbers that are no numbers or beyond reach, and what was left
-    out.
+    """Returns the model without curves and numbers that are not finite or out of range, and diagnostics on
+    them.
     """
     if all(map(_is_sound, model.root.walk())):
         return model, []
@@ -36,7 +36,7 @@ def _is_sound(structure: SolvedStructure) -> bool:
 
 
 def _has_place(geometry: SolvedGeometry) -> bool:
-    """Tells whether all of a geometry, what it is made of included, can be drawn."""
+    """Tells whether all of a geometry, with its parts, can be drawn."""
     return (
         _is_within(geometry.values.values())
         and all(map(_has_place, geometry.parts))
@@ -92,7 +92,7 @@ def _lost(geometry: SolvedGeometry) -> Iterator[SolvedGeometry]:
 
 
 def _stripped(geometry: SolvedGeometry) -> SolvedGeometry:
-    """Returns a geometry with what of it has a place; its name stays."""
+    """Returns a geometry with those of its parts and values that have a place; its name stays."""
     if _has_place(geometry):
         return geometry
     values = {name: value for name, value in geometry.values.items() if _is_within(value)}

@@ -79,7 +79,7 @@ class _Hulls:
         self._hulls = _hulls(curves)
         self._least = 2 * tolerance
         margin = _MARGIN * tolerance / 2
-        # By axis, as to reduce an axis of two takes long.
+        # One axis after the other: a reduction over an axis of length two is slow.
         self._low = np.moveaxis(self._hulls.min(axis=2) - margin, 2, 0).copy()
         self._high = np.moveaxis(self._hulls.max(axis=2) + margin, 2, 0).copy()
 

@@ -26,11 +26,11 @@ SPACING = 3.0
 """Millimetres between parts, and between them and the edge of the sheet."""
 
 GRID = 1000
-"""Places are whole micrometres: sums of them are exact, and so is the comparison of what is left over."""
+"""Unit of places: whole micrometres, so that sums and comparisons of what is left are exact."""
 SLACK = 1e-3
-"""Micrometres by which rounding may have enlarged a part."""
+"""Micrometres by which rounding may enlarge a part."""
 FEW = 200
-"""Up to so many parts a slower packer is used, which fills the sheets better."""
+"""The most parts for which a slower packer is used, which fills the sheets better."""
 
 Size = tuple[float, float]
 Cell = tuple[int, int]
@@ -52,7 +52,7 @@ class Layout:
 
 @record()
 class _Part:
-    """A body with what is engraved on it, and the regions of the structures it was made of."""
+    """A body with its engraving and the regions of the structures it was made of."""
 
     body: Body
     strokes: tuple[Stroke, ...]

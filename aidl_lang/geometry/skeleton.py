@@ -154,7 +154,9 @@ def _bend(piece: int, t: float, at: Vec, arriving: float, turn: float) -> Bit:
 
 
 def _chopped(number: int, piece: Piece) -> Iterator[Bit]:
-    """Chords of a curve and the corners between them, and at its ends what lies between chord and tangent."""
+    """Yields chords of a curve with the corners between them, and the range between chord and tangent at its
+    ends.
+    """
     count = _CHORDS[type(piece).__name__]
     ts = np.linspace(0.0, 1.0, count + 1)
     spots: list[Vec] = [(float(x), float(y)) for x, y in points(piece, ts)]

@@ -27,7 +27,7 @@ from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.walls import widths
 
 ALL_PAIRS = 100
-"""Bodies up to which every two of them are compared."""
+"""The most bodies of which all pairs are compared."""
 _NAMED = 6
 """Paths that a list names."""
 
@@ -281,7 +281,7 @@ class _Surveyor:
             )
 
     def _find(self, written: str) -> tuple[str, str]:
-        """Returns the full path of what is meant, and its kind."""
+        """Returns the full path of the thing named, and its kind."""
         known = self._known()
         root = self.model.root.path
         for path in (written, f"{root}.{written}"):

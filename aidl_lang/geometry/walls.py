@@ -40,7 +40,7 @@ _LEAN = math.radians(15)
 _ASIDE = 1e-6
 """Distance beside a chord within which crossings are sought, relative to its length."""
 _EQUAL = 1e-9
-"""Part of their length by which chords may differ that are the same."""
+"""Part of their length by which equal chords may differ."""
 _NEAR_END = 1e-4
 """Part of a chord at each end where it may touch the outline."""
 
@@ -113,7 +113,7 @@ class _ChordSearch:
         """Looks through chords, of which there are all up to the limit."""
         o = self.outline
         mine = found.where(found.kind == self.kind)
-        # Of equal ones that is shown which ends on edges, not on corners.
+        # Of equal chords the one that ends on edges, not on corners, is shown.
         corners = (o.first[mine.i] > 1).astype(int) + (o.first[mine.j] > 1)
         for k in np.argsort(mine.length * (1 + _EQUAL * corners), kind="stable"):
             if mine.length[k] - 2 * o.error >= self.bound:
@@ -236,7 +236,7 @@ def _tapers(o: Skeleton) -> Iterator[tuple[int, Chord]]:
         checkpoint()
         p, q = ends(piece)
         along = math.atan2(q[1] - p[1], q[0] - p[0])
-        # How far the neighbours lean towards each other, as turns from the chord: a quarter is straight up.
+        # The lean of the neighbours towards each other, as turns from the chord: a quarter is straight up.
         back = math.remainder(direction(o.pieces[o.before[k]], 1.0) + math.pi - along, 2 * math.pi)
         on = math.remainder(direction(o.pieces[o.after[k]], 0.0) - along, 2 * math.pi)
         kind = WALL if back > 0 else GAP

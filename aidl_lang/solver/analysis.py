@@ -25,7 +25,7 @@ from aidl_lang.solver.riding import Riding, groups_riding
 from aidl_lang.solver.solution import Solution
 
 SINGULAR = 1e-7
-"""Slope of a row, in units of its scale, below which it has none: that says nothing about the constraint."""
+"""Slope of a row, in units of its scale, below which it counts as none and says nothing of the constraint."""
 
 
 class State(StrEnum):

@@ -21,7 +21,7 @@ from aidl_lang.solver.schedule import Batch
 DENSE = 4096
 """Entries of a Jacobian up to which it is a dense matrix."""
 CANCELLED = 1e-13
-"""A sum this small beside its terms is what rounding has left of zero."""
+"""Part of its terms below which a sum is what rounding left of zero."""
 IDENTITY = 40
 """The code of a branching node whose branch is chosen; beyond the codes of `Op`."""
 

@@ -185,7 +185,7 @@ class _Stack:
             wanted = np.where(self.polishing[:, None], np.einsum("bmk,bk->bm", jacobian, self.z) - r, -r)
             point, outside = least_norm(jacobian, wanted, moving)
             feasible = ~outside.any(axis=1)
-            # By the lemma of Farkas, if what is out of reach pulls at no inequality.
+            # This is a proof by Farkas' lemma if the part out of reach pulls at no inequality.
             pulls = (np.where(self.at_most, outside, 0.0) > 0.0).any(axis=1)
             self.out_of_reach |= moving & ~feasible & ~pulls
             self.failed |= moving & ~feasible
@@ -235,10 +235,10 @@ class _Stack:
 
 
 def least_norm(jacobian: Floats, y: Floats, which: Bools) -> tuple[Floats, Floats]:
-    """Returns the shortest z (b, k) with J z = y for J (b, m, k), y (b, m), and what of y is beyond reach (b,
-    m).
+    """Returns the shortest z (b, k) with J z = y for J (b, m, k), y (b, m), and the part of y that is out of
+    reach (b, m).
 
-    Only those in `which` (b,) are looked for. Where J or y is not finite, everything is beyond reach.
+    Only the systems in `which` (b,) are solved. If J or y is not finite, all of y is out of reach.
     """
     b, m, k = jacobian.shape
     point = np.zeros((b, k))

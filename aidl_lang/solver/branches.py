@@ -109,7 +109,7 @@ class Metric:
 
 
 def attempt(task: Task, values: Valuation, metric: Metric, settings: Settings, clock: Clock) -> Verdict:
-    """Tries to satisfy `task`, moving its free unknowns the least; leaves `values` at what was reached."""
+    """Tries to satisfy `task`, moving its free unknowns the least; leaves `values` at the result."""
     return _Attempt(task, values, metric, settings, clock).run()
 
 
@@ -225,9 +225,9 @@ class _Attempt:
         return (0.0 if a == ZERO else nodes[a]) - nodes[b]
 
     def _try_neighbours(self, verdict: Verdict) -> Verdict:
-        """Turns branching nodes to their other branch, one and then several together, as the last resort. A
-        branch that has no part in what contradicts itself would not help, so only those below the rows to
-        blame are turned; those that decide most about them (the outermost) come first.
+        """Turns branching nodes to their other branch, one and then several together, as the last resort.
+        Branches outside a contradiction would not help, so only those below the rows to blame are turned;
+        those that decide most about them (the outermost) come first.
         """
         reached, blamed = self._current(), self.blamed
         proof = self._proof_without_branches()

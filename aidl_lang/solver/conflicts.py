@@ -43,13 +43,13 @@ THOROUGH = 5
 CURVED = 1e-6
 """Change of a slope, relatively, that shows that a row is not affine."""
 STARTS = 32
-"""Other places in which the search for a set begins before it is called contradictory."""
+"""Number of other places in which the search for a set begins before it is called contradictory."""
 FIRST = 8
 """Starts for all constraints together, before a conflict among them is sought."""
 LONGEST = 1.0
 """Seconds for these searches."""
 COSTLY = 4000
-"""Work of one attempt beyond which all constraints are not tried in other places."""
+"""Greatest work of one attempt for which all constraints together are tried in other places."""
 SPREADS = (0.3, 1.0, 3.0)
 """Distances of these places from the first guesses, in sizes of the drawing."""
 SEED = 1
@@ -306,7 +306,7 @@ class _ConflictSearch:
         yield from (sorted(members) for _, members in groups)
         yield list(self.scope.constraints)
 
-    # -- what there is to say of it
+    # -- data of the explanation
 
     def _count(self, conflict: Sequence[int]) -> tuple[tuple[int, ...], int]:
         """Returns the unknowns that could move for the conflict, and its number of equations."""

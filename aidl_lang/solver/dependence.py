@@ -92,7 +92,7 @@ def _entangled(matrix: Sparse, width: int) -> Ints:
     and again.
     """
     matrix = matrix.only(matrix.entries != 0.0)
-    # How many rows mention a column, and the sum of their numbers: with one left, this is its number.
+    # The count of rows that mention a column, and the sum of their numbers: with one left, it is its number.
     counts = np.bincount(matrix.columns, minlength=width).tolist()
     sums = np.bincount(matrix.columns, matrix.rows, width).astype(np.int64).tolist()
     lone = [column for column, count in enumerate(counts) if count == 1]

@@ -26,11 +26,11 @@ from aidl_lang.solver.stacks import DOUBT, RANK
 STABLE = 0.1
 """Least size of a pivot, relative to the greatest entry of its row."""
 ROUNDING = 1e-13
-"""Entries below this are what cancellation leaves of unit rows."""
+"""Entries of unit rows below this are left by cancellation."""
 REMAINDER = 150
 """Rows that are few enough for dense algebra."""
 DENSITY = 0.15
-"""Share of entries from which on dense algebra is quicker."""
+"""Share of entries above which dense algebra is quicker."""
 LARGEST = 2500
 """Rows of the greatest dense remainder that is within the budget."""
 ROUNDS = 400

@@ -70,7 +70,7 @@ class Expected:
 
 @record()
 class Case:
-    """A problem, and what only its file knows.
+    """A problem with the names and expectations of its file.
 
     groups  the name of each group
     tags    the tag of each constraint; `#` and its index where the file gives none
@@ -316,7 +316,7 @@ class _Loading:
             a, b = min(a, b), self.parent[max(a, b)]
         return a
 
-    # -- what is expected
+    # -- expectations
 
     def _expected(self, value: object) -> Expected:
         members = Members(value, *(field.name for field in fields(Expected)))

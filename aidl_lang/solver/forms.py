@@ -31,7 +31,7 @@ Form: TypeAlias = "float | Affine"
 
 @record(slots=True)
 class Knot:
-    """An operation that is not affine in what it is made of.
+    """An operation that is not affine in its operands.
 
     node   of the tape
     parts  the forms of its operands

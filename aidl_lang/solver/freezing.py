@@ -34,7 +34,7 @@ MANY = 400
 """Roots from which on programs work on arrays."""
 
 Branch: TypeAlias = tuple[int, int]
-"""A branching node and which of its branches is meant."""
+"""A branching node and the number of its branch."""
 
 
 @record(frozen=False)

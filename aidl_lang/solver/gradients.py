@@ -28,9 +28,9 @@ Gradient: TypeAlias = dict[int, float]
 FEW = 3000
 """Number of nodes up to which dictionaries are quicker than arrays."""
 MANY = 100
-"""Nodes to a root beyond which it is not worth it to evaluate the whole tape."""
+"""Nodes to a root above which the whole tape is not evaluated."""
 STEEPEST = 1e100
-"""Slopes above this are what overflow leaves."""
+"""Slopes above this are left by overflow."""
 NARROW = 50
 """Nodes to a level up to which dictionaries are quicker, as in chains of things that hang on each other."""
 FLAT = 1e-9

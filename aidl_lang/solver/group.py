@@ -56,7 +56,7 @@ class Group:
 
     def solve(self, reached: Tier = (0, 0)) -> None:
         """Satisfies the constraints. Those that share nothing that could ever move are problems of their own:
-        what one needs does not loosen the other. `reached` is the last stage that some of them needed before.
+        the needs of one do not loosen the other. `reached` is the last stage that some of them needed before.
         """
         hierarchy = self.hierarchy
         for part in [part for part in self.tiers.independent(self.hard) if hierarchy.unmet(part)]:
@@ -154,8 +154,8 @@ class Group:
     def _climb(
         self, tiers: list[Tier], seeds: list[int], best: Best
     ) -> tuple[Tier | None, Best, tuple[Tier, Proof]]:
-        """Tries the stages in order. Returns the first that satisfies `seeds` and all that binds what it
-        moves, or None; the values that came nearest; and the last stage that was tried with the proof why it
+        """Tries the stages in order. Returns the first that satisfies `seeds` and the constraints on all that
+        it moves, or None; the values that came nearest; and the last stage tried, with the proof why it
         failed.
         """
         hierarchy = self.hierarchy
@@ -181,7 +181,7 @@ class Group:
             if turning and self._is_refuted(seeds):
                 break
             tried[turning] = scope.free
-            # What builds on a part that failed is drawn as well as it goes, and not searched for long.
+            # Groups above a part that failed are not searched for long: the best effort is drawn.
             last = turning and tier == tiers[-1] and not hierarchy.failures
             earlier = failed.get(scope.free) if turning and not last else None
             if earlier is not None and earlier.turned is not None:
@@ -201,7 +201,7 @@ class Group:
                 break
         return None, best, obstacle
 
-    # -- what stands in the way
+    # -- proofs, and sizes in the way
 
     def _is_refuted(self, seeds: Sequence[int]) -> bool:
         """Tells whether a proof exists that no stage can satisfy `seeds` and what binds all that is free for
@@ -323,8 +323,8 @@ class Group:
         before: dict[int, float] | None,
         despite: tuple[int, ...] = (),
     ) -> None:
-        """Reports a stage. If it succeeded, from the values `before`, what need not move is held first; those
-        it held `despite` are the constraints for which a search from there had failed.
+        """Reports a stage. If it succeeded, starting from the values `before`, first holds the unknowns that
+        need not move. `despite` are constraints that hold though a search from `before` had failed.
         """
         hierarchy, concession = self.hierarchy, None
         if before is not None:
@@ -354,7 +354,7 @@ class Group:
     # -- preferences
 
     def _weigh_preferences(self, reached: Tier) -> None:
-        """Satisfies preferences as well as possible within what the winning stage had free."""
+        """Satisfies preferences as well as possible with the unknowns that the winning stage had free."""
         hierarchy = self.hierarchy
         if hierarchy.all_hard:
             return

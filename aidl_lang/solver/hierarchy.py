@@ -56,7 +56,7 @@ class Hierarchy:
         self._broken: set[int] = set()
         self._levels: Levels | None = None
 
-    # What is looked up one by one is kept in lists, and made when the first group asks.
+    # Lists are quicker to read one by one than arrays; they are made when the first group asks.
 
     @cached_property
     def _kept(self) -> list[bool]:
@@ -257,7 +257,7 @@ class Hierarchy:
         )
 
     def give_up(self, indices: Iterable[int]) -> None:
-        """Releases constraints: they no longer bind what is solved later."""
+        """Releases constraints: they no longer bind groups that are solved later."""
         self._broken.update(indices)
 
     def rows(self, indices: Iterable[int]) -> list[Row]:
@@ -276,7 +276,7 @@ class Hierarchy:
     def attempt(
         self, scope: Scope, restarts: int, clock: Clock | None = None, turning: bool = True
     ) -> Verdict:
-        """Tries to satisfy the constraints of `scope` as hard ones; leaves `values` at what was reached.
+        """Tries to satisfy the constraints of `scope` as hard ones; leaves `values` at the result.
 
         A kept size is dearer than any position: first as few and as little of them change as will do, and
         among the positions that these allow the nearest is taken.
@@ -288,7 +288,7 @@ class Hierarchy:
         task = Task(rows, [0.0] * len(rows), scope.free, restarts, turning)
         verdict = attempt(task, self.values, metric, self.settings, clock or self.clock)
         if sizes and not verdict.satisfied:
-            # What is dear moves last in a search, too, which may end before that.
+            # The search moves dear unknowns last, and may have ended before that.
             self.values.assign(before.items())
             verdict = attempt(task, self.values, self.metric, self.settings, clock or self.clock)
             verdict = replace(verdict, turned=None)  # that would be of this search alone

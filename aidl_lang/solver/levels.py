@@ -80,7 +80,7 @@ class Levels:
         everything = np.ones(len(problem.initial), dtype=np.bool_)
         freezing = ArrayFreezing(self.schedule, problem.tape.constants, everything, choosing=False)
         self._everything = freezing if freezing.knows_all_values else None
-        """The rows with all unknowns free, for a stage at which they are; if values play no part in it."""
+        """The rows with all unknowns free, for stages that free all; None if values have a part in it."""
         rows = np.flatnonzero(freezing.varies(problem.rows.expression))
         row, unknown = freezing.pattern(problem.rows.expression[rows])
         key = problem.rows.constraint[rows[row]] * len(everything) + unknown
@@ -150,7 +150,7 @@ class Levels:
         found[self.problem.rows.constraint[~holding]] = False
         return found
 
-    # -- what takes part
+    # -- parts and scopes
 
     def _parts(self, active: Bools) -> tuple[Ints, Ints]:
         """Returns the part of each constraint and of each unknown: the connected parts that the active
@@ -191,8 +191,8 @@ class Levels:
         return found
 
     def _scope(self, active: Bools, seeds: Bools, allowed: Bools) -> tuple[Bools, Bools]:
-        """Returns the constraints and the free unknowns of a stage: what the seeds mention, what binds that,
-        and so on.
+        """Returns the closure of the seeds: the constraints, and the free unknowns that they mention, with
+        all constraints on these, and so on.
         """
         pairs = np.flatnonzero(active[self.constraints] & allowed[self.unknowns])
         constraints, unknowns = self.constraints[pairs], self.unknowns[pairs]
@@ -284,7 +284,7 @@ class Levels:
         choosy = np.zeros(len(solved), dtype=np.bool_)  # which inequalities bind has to be searched for
         choosy[systems.of_row[listed.at_most[rows]]] = True
         if not systems.wanted.any() and systems.square and len(solved) > 1:
-            # Where nothing is left to choose, nothing is lost by solving them as one.
+            # Systems that leave no choice may be solved as one.
             solved[:] = self._solve_alone(program, rows, x) is End.CONVERGED
         for system in np.flatnonzero((~systems.wanted | choosy) & ~solved & ~hopeless).tolist():
             members = np.flatnonzero(systems.of_row == system)

@@ -68,7 +68,7 @@ class Recollection:
         self._reached[depth] = x.copy()
 
     def close(self, stages: list[StageReport], in_full: bool) -> None:
-        """Stores this solve, or nothing if it did not succeed in full: what failed is tried again."""
+        """Stores this solve, or nothing if it did not succeed in full: failed groups are tried again."""
         by_group: dict[int, list[StageReport]] = {}
         for stage in stages:
             by_group.setdefault(stage.group, []).append(stage)
@@ -83,7 +83,7 @@ def subtree_keys(problem: Problem, settings: Settings) -> tuple[int, ...]:
     rows, longest = problem.rows, problem.longest
     own: list[list[object]] = [[] for _ in problem.parent]
     bounds = [0.0] * len(problem.initial) if longest is None else longest.tolist()
-    # What rides along depends on constraints further up, too.
+    # Groups that ride along depend on constraints further up, too.
     riding = riding_depths(problem, depths(problem.parent))
     dearness = (problem.standing, problem.spanned, riding)
     columns = (problem.initial, problem.scale, problem.kept, problem.frame_of, *dearness)

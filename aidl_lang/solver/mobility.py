@@ -210,7 +210,7 @@ def _settle_small(parts: _Parts, members: Ints, found: Mobility) -> None:
 
 
 def _by_group(parts: _Parts, slot: Ints, velocities: Floats, total: Ints) -> tuple[Ints, Ints]:
-    """Returns the groups that see some of a part in `slot`, and the rank of what each sees of it."""
+    """Returns the groups that see some of a part in `slot`, and the rank of the motions that each sees."""
     part = parts.observable_part[parts.watch.rows]
     pairs = np.flatnonzero(slot[part] >= 0)
     owner, group, row = slot[part[pairs]], parts.watch.groups[pairs], parts.watch.rows[pairs]

@@ -55,7 +55,7 @@ STEPS_ROUND = 3.0
 TURNED = 4
 """The most directions that are turned round, one after another, after a search failed."""
 COSTLY = 40_000
-"""Entries of the Jacobian above which one restart must do."""
+"""Entries of the Jacobian above which only one restart is tried."""
 GOLDEN = 0.6180339887498949
 SILVER = 0.4142135623730951
 STALLED = 0.99
@@ -93,8 +93,8 @@ class NewtonResult:
 
 @record(frozen=False)
 class Clock:
-    """The time of one solve: that of the processor in this thread, so that the answer does not depend on what
-    else the machine is doing.
+    """The time of one solve: processor time of this thread, so that the answer does not depend on other work
+    of the machine.
     """
 
     seconds: float
@@ -271,7 +271,7 @@ class _Newton:
         if found.violation <= ROUNDED:
             return found
         residuals = system.residuals(found.z)
-        # Where the solution is isolated, the derivatives of the last step, whose factors are known, will do.
+        # At an isolated solution the derivatives of the last step, whose factors are known, are good enough.
         jacobian = system.jacobian() if self._isolated is None else self._isolated
         step = nearest(jacobian, -residuals, system.inequality)
         if not step.feasible:

@@ -25,7 +25,7 @@ NEARLY = 1e-6
 
 
 def prefer(hierarchy: Hierarchy, scope: Scope, soft: tuple[int, ...]) -> bool:
-    """Moves what is free in `scope` towards the preferences; returns whether all of them hold then."""
+    """Moves the free unknowns of `scope` towards the preferences; returns whether all of them hold then."""
     before = hierarchy.save(scope.free)
     if hierarchy.attempt(scope, 1).satisfied:
         return True

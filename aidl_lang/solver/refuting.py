@@ -20,7 +20,7 @@ from aidl_lang.solver.quadratic import nearest, plainly_hold
 from aidl_lang.solver.valuation import Valuation
 
 CANCELLED = 1e-9
-"""Part of the slopes that are added up which may be left of them by rounding."""
+"""Part of the slopes added up that rounding may leave of them."""
 DECIDED = 10.0
 """Factor by which the sum of the rows must exceed what the tolerances allow."""
 FEW_TERMS = 3
@@ -37,9 +37,7 @@ MANY = 3000
 
 @record()
 class _Refutation:
-    """Factors of rows, by number, what the rows add up to with them, and whether all of these are
-    equations.
-    """
+    """Factors of rows, by number; the sum of the rows with them; and whether all of these are equations."""
 
     factors: Mapping[int, float]
     off: float
@@ -298,8 +296,8 @@ class Relaxation:
                 yield combined(form, scaled(further, slope), 1.0)
 
     def _leaves(self, op: int, part: Form) -> list[Form]:
-        """Returns the operands of the `max` or `min` that `part` is, with what is added to it added to each;
-        else `part` itself.
+        """Returns the operands of the `max` or `min` that `part` is but for an added form, each with that
+        form added; else `part` itself.
         """
         knots = self._knots(part)
         if len(knots) != 1 or isinstance(part, float):

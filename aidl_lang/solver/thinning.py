@@ -45,8 +45,8 @@ Rank: TypeAlias = "Callable[[int], tuple[int, ...]]"
 
 
 def thin(hierarchy: Hierarchy, scope: Scope, before: dict[int, float], rank: Rank) -> None:
-    """Holds what need not move among the unknowns of `scope`. `before` are their values before a move to the
-    current ones, which satisfy its constraints.
+    """Holds unknowns of `scope` that need not move. `before` are their values before a move to the current
+    ones, which satisfy its constraints.
     """
     moved = _moved(hierarchy, before)
     if len({int(hierarchy.problem.thing[unknown]) for unknown in moved}) < 2 or len(moved) > MANY:
@@ -65,8 +65,8 @@ def thin(hierarchy: Hierarchy, scope: Scope, before: dict[int, float], rank: Ran
 
 
 def _as_expected(moved: dict[int, float], furthest: float, expected: dict[int, float]) -> bool:
-    """Tells whether what bends moved about as far as its slopes promised, not through a singular place, and
-    nothing further than `furthest`.
+    """Tells whether unknowns in curved rows moved about as far as the slopes promised, not through a singular
+    place, and no unknown further than `furthest`.
     """
     if expected and max(map(abs, moved.values()), default=0.0) > furthest:
         return False

@@ -222,7 +222,7 @@ class _Statement:
             return
         offsets = [(-sign, value) for sign, _, value in terms if value is not None]
         if len(offsets) != 1:
-            # Of several numbers none is stated; their sum is what is measured.
+            # If there are several numbers, none is stated: only their sum is measured.
             offsets = [(1, total)] if (total := _total(offsets)) is not None else []
         for _, offset in offsets:
             yield from self._between(places[0][1], places[1][1], offset)
@@ -290,7 +290,7 @@ class _Statement:
     # --- Values ------------------------------------------------------------------------------------
 
     def _constant(self, node: ast.Expression) -> Num | PointVal | None:
-        """Returns the value of what does not depend on the solver."""
+        """Returns the value of an expression that does not depend on the solver; None for others."""
         value = self.wording.value(node)
         match value:
             case Num(expression=e) if e.is_constant:

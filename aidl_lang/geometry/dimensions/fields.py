@@ -46,7 +46,7 @@ _PARALLEL = 1 - 1e-9
 def field_sizes(
     model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
 ) -> Iterator[Dimension]:
-    """Yields the sizes of all geometry that is drawn; of copies only what is round, to be counted."""
+    """Yields the sizes of all geometry that is drawn; of copies only round ones, to be counted."""
     for structure, read in zip(model.root.walk(), solved.root.walk(), strict=True):
         checkpoint()
         turned = evaluate(convert_angle(ex.ZERO, structure, model.root))
@@ -81,10 +81,7 @@ def origin_of(value: Num, holder: Geometry | None = None) -> str | None:
 
 @record()
 class Sized:
-    """A geometry as it was built (or what it is a copy of) and as it came out.
-
-    turned  degrees by which its structure is turned
-    """
+    """A geometry as it was built (or the source of a copy) and as it was solved."""
 
     built: Geometry
     solved: SolvedGeometry

@@ -27,9 +27,9 @@ there, and the motion is possible to one side.
 STRAIGHT = 1e-5
 """The bend that counts as none, in units of the unknowns."""
 ROUNDING = 1e-14
-"""Part of a value by which a difference of three like it may be off."""
+"""Relative error of a difference of three values that rounding explains."""
 WORK = 2_000_000
-"""Numbers in the matrix of a part up to which its motions are followed."""
+"""Greatest size of the matrix of a part whose motions are followed."""
 
 
 class Bending:

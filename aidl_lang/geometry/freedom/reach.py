@@ -183,15 +183,15 @@ class Reach:
     # --- Naming ------------------------------------------------------------------------------------
 
     def _whole_things(self, thing: Thing | None, mask: Floats) -> list[str]:
-        """Returns the names of what moves as a whole; none if some of it does not."""
+        """Returns the names of the things that move as a whole; empty if a thing moves in part."""
         if thing:
             return [thing.path]
         found = self._cover(mask > 0.0)
         return [path for path, _ in found] if all(whole for _, whole in found) else []
 
     def _cover(self, moving: Flags) -> list[tuple[str, bool]]:
-        """Paths of what takes part, and whether all places of it do: structures, geometry and points of which
-        that is so, then other geometry, then numbers.
+        """Returns the paths of the things that take part, and whether all their places do: structures,
+        geometry and points that move as a whole, then other geometry, then numbers.
         """
         left = np.zeros(len(self.scene.places), dtype=np.bool_)
         left[self.part.observables[moving]] = True

@@ -1,4 +1,4 @@
-"""Against what a thing moves: what constraints relate it to, and what stands beside it."""
+"""The things against which a thing moves: those that constraints relate it to, and those beside it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The observables of a model by what they belong to: their axis, their number, the things around."""
+"""The observables of a model with their axis, their number, and the things that they belong to."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ def _own_place(scene: Scene, tellings: Sequence[_Telling], root: str) -> Iterato
         largest, velocity = max(
             pairs, key=lambda pair: float(size[pair[0].part.observables].sum() + len(pair[1]))
         )
-        # What moves along x and what moves along y are often apart: the same things shall be known of both.
+        # Motions along x and along y are often separate: both shall know the same things.
         size[largest.part.observables[velocity != 0.0] + 1] = len(size)
         largest.know(velocity)
         moves = {path: rate for t, each in pairs for path, rate in t.rates(each).items()}
@@ -113,7 +113,9 @@ def _all_move(scene: Scene, tellings: Sequence[_Telling], axis: int) -> bool:
 
 
 _Masked: TypeAlias = tuple[Thing | None, Floats, Floats]
-"""A thing, and what of a part is its x and its y, as 0 and 1; None for several things that keep together."""
+"""A thing, and its x and y among the observables of a part, as 0 and 1; None for several things that keep
+together.
+"""
 
 _Told: TypeAlias = tuple[Motion, Ints]
 """A motion, and the observables that move in it."""

@@ -12,9 +12,9 @@ from aidl_lang.geometry.freedom.relations import pattern
 from aidl_lang.geometry.solved import Motion, SolvedModel
 
 _NAMED = 3
-"""Things that are named in one line."""
+"""The most things named in one line."""
 _RUN = 3
-"""Members of an array from which on the first and the last stand for all."""
+"""Number of members of an array from which on the first and the last stand for all."""
 
 
 @record()
@@ -112,7 +112,9 @@ def _named(paths: Sequence[str], root: str) -> str:
 
 
 def _runs(paths: Sequence[str]) -> Iterator[list[str]]:
-    """Members of one array that stand side by side; what is no member by itself."""
+    """Yields members of one array that stand side by side; things that are no members are yielded by
+    themselves.
+    """
     for key, run in groupby(paths, key=lambda path: pattern(path) if "[" in path else path):
         found = list(run)
         if key in found or len(found) < _RUN:
