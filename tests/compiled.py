@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Container, Iterable
 from functools import cache
+from pathlib import Path
 
 import pytest
+from _pytest.mark import ParameterSet
 
 import aidl_lang
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from tests.documents import ROOT
 
+
+def lighter(paths: Iterable[Path], dear: Container[str]) -> list[ParameterSet]:
+    """Returns files as parameters of a test; those whose names are among `dear` are slow."""
+    slow = [pytest.mark.slow]
+    return [pytest.param(path, id=path.stem, marks=slow if path.stem in dear else []) for path in paths]
+
+
 EXAMPLES = sorted((ROOT / "examples").glob("*.aidl"))
 
 DEAR = {"finger_box", "gear_pair", "ruler"}
-LIGHTER = [
-    pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.stem in DEAR else [])
-    for path in EXAMPLES
-]
+LIGHTER = lighter(EXAMPLES, DEAR)
 """The examples for tests that ask much of each: the largest three are slow. They are drawn, exported and
 checked on every run, and what they are made of (gears, joints, text) has specs.
 """

@@ -25,6 +25,7 @@ from aidl_lang.syntax.lines import begins_with_sign
 from aidl_lang.syntax.tables import load_tables
 from aidl_lang.syntax.tokens import END, Token, tokenize
 from aidl_lang.tools.vocabulary import vocabulary
+from tests.amount import TRIES_ALL, large
 from tests.documents import ROOT, programs
 from tests.editors.trees import FOLDER, beyond, nodes, parse, refused
 from tests.property.test_hostile import HOSTILE
@@ -155,7 +156,8 @@ def mutants(count: int) -> Iterator[str]:
 def test_mutants_are_taken_or_refused_as_by_the_parser() -> None:
     verdicts = Counter[str]()
     different = []
-    for text in mutants(1000):
+    count = large(1000)
+    for text in mutants(count):
         tree, codes = parse(text), errors(text)
         if bool(refused(tree)) == bool(codes):
             verdicts["refused" if codes else "taken"] += 1
@@ -164,8 +166,8 @@ def test_mutants_are_taken_or_refused_as_by_the_parser() -> None:
         else:
             different.append((refused(tree), codes, text))
     assert different == []
-    assert verdicts["taken"] > 250
-    assert verdicts["refused"] > 550
+    assert verdicts["taken"] > count / 4
+    assert verdicts["refused"] > count / 2
     assert sum(verdicts.values()) - verdicts["taken"] - verdicts["refused"] <= 3, verdicts
 
 
@@ -226,7 +228,8 @@ def test_the_letters_of_names_are_those_of_the_parser() -> None:
         assert not parse("\n".join(f"let {before}{char} = 1" for char in good)).root_node.has_error
         bad = set(letters).difference(good)
         assert len(bad) > 5_000
-        assert [char for char in bad if not parse(f"let {before}{char} = 1").root_node.has_error] == []
+        some = sorted(bad)[:: 1 if TRIES_ALL else 4]
+        assert [char for char in some if not parse(f"let {before}{char} = 1").root_node.has_error] == []
 
 
 # --- Words ----------------------------------------------------------------------------------------

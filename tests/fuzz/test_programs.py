@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.amount import large
+from tests.compiled import lighter
 from tests.fuzz.judge import Judge
 from tests.fuzz.minimise import minimised
 from tests.fuzz.sources import FOUND, program
@@ -57,12 +58,32 @@ LARGE = {
 }
 
 
-@pytest.mark.parametrize("path", WRITTEN, ids=lambda path: path.stem)
+DEAR = {
+    "crowd_of_circles",
+    "gear_of_12000_teeth",
+    "member_of_two_conflicts",
+    "offset_of_800_circles",
+    "path_of_4000_steps",
+    "thick_spline_of_400_points",
+}
+"""What took long even when it no longer takes for ever; on every run `LARGE` shows that there are limits."""
+
+
+@pytest.mark.parametrize("path", lighter(WRITTEN, DEAR))
 def test_nothing_breaks_any_more(path: Path) -> None:
     assert Judge().finding(path.read_text("utf-8")) is None
 
 
-@pytest.mark.parametrize("text", LARGE.values(), ids=LARGE.keys())
+SLOW = {"many names, much alike", "constraints doubled", "many errors"}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param(text, id=name, marks=[pytest.mark.slow] if name in SLOW else [])
+        for name, text in LARGE.items()
+    ],
+)
 def test_what_is_large_ends_too(text: str) -> None:
     assert Judge().finding(text) is None
 

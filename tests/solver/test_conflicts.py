@@ -16,7 +16,7 @@ from aidl_lang.solver import Settings, Solution, solve
 from aidl_lang.solver.conflicts import WORK
 from aidl_lang.solver.shortfall import shortfall
 from aidl_lang.solver.solution import GroupFailure
-from tests.amount import tries
+from tests.amount import TRIES_ALL, tries
 
 from .build import E, Model, call, distance
 from .test_linear_programming import Linear, random_problem
@@ -122,7 +122,7 @@ def random_distances(seed: int) -> Distances:
 
 
 @given(SEEDS)
-@tries(10)
+@tries(8)
 def test_distances_that_conflict(seed: int) -> None:
     problem = random_distances(seed)
     solution = solve(problem.model().problem())
@@ -195,8 +195,9 @@ def test_without_time_what_did_not_hold_is_named() -> None:
 
 def test_explanations_keep_to_their_budget() -> None:
     m = Model()
-    points = [m.point(10.0 * i, float(i % 3)) for i in range(10)]
-    for a, b in combinations(range(10), 2):
+    count = 10 if TRIES_ALL else 8
+    points = [m.point(10.0 * i, float(i % 3)) for i in range(count)]
+    for a, b in combinations(range(count), 2):
         m.equal(distance(points[a], points[b]) - 7.0 - (a + b) % 5)
     failures = solve(m.problem()).failures
     assert failures

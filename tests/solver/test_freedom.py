@@ -403,7 +403,10 @@ def frame_of_bars(columns: int, rows: int = 2, extra: float = 0.0) -> tuple[Mode
     return bars(np.array(grid) * (10.0, 8.0) + rng.uniform(-1, 1, (len(grid), 2)), ends)
 
 
-@pytest.mark.parametrize(("columns", "rows", "extra"), [(120, 2, 0.0), (90, 2, 0.1), (13, 13, 0.0)])
+@pytest.mark.parametrize(
+    ("columns", "rows", "extra"),
+    [(120, 2, 0.0), (90, 2, 0.1), pytest.param(13, 13, 0.0, marks=pytest.mark.slow)],
+)
 def test_a_large_frame_of_bars(columns: int, rows: int, extra: float) -> None:
     m, slopes = frame_of_bars(columns, rows, extra)
     problem, solution = unsolved(m)

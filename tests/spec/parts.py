@@ -9,6 +9,7 @@ from pathlib import Path
 
 _FENCE = re.compile(r"^```(\S+) *(.*)$")
 _PENDING = re.compile(r"<!--\s*pending:\s*(.*?)\s*-->")
+_SLOW = "<!-- slow -->"
 _EXPECTED = re.compile(r"\s*// (?=(?:error|warning|note)\[[EWN]\d{4}\]: )")
 _HEADING = re.compile(r"^#+ +(.*)$")
 
@@ -79,6 +80,7 @@ class Case:
     program: Program
     files: dict[str, str]
     pending: str | None = None
+    slow: bool = False
     expectations: list[Expectation] = field(default_factory=list)
     formatted: tuple[int, str] | None = None
     message: tuple[int, str] | None = None
@@ -92,7 +94,7 @@ class Case:
 def read(path: Path) -> list[Case]:
     """The cases of a spec in order. A block `fixed` is a case of its own as well: the mended program."""
     cases: list[Case] = []
-    heading, pending = "", None
+    heading, pending, slow = "", None, False
     files: dict[str, str] = {}
     lines = path.read_text(encoding="utf-8").splitlines()
     for number, line, body in _blocks(lines):
@@ -101,13 +103,14 @@ def read(path: Path) -> list[Case]:
                 heading = title[1]
             if mark := _PENDING.search(line):
                 pending = mark[1]
+            slow |= line == _SLOW
             continue
         fence = _FENCE.match(line)
         assert fence, f"{path.name}:{number}: a block needs a language"
         match fence[1], fence[2].strip():
             case "aidl", "":
-                cases.append(Case(path, heading, _program(number + 1, body), dict(files), pending))
-                files, pending = {}, None
+                cases.append(Case(path, heading, _program(number + 1, body), dict(files), pending, slow))
+                files, pending, slow = {}, None, False
             case "aidl", note if note.startswith("file="):
                 files[note.removeprefix("file=")] = "".join(f"{text}\n" for text in body)
             case "expect", "":
@@ -118,7 +121,8 @@ def read(path: Path) -> list[Case]:
                 broken = cases[-1]
                 mended = _program(number + 1, body)
                 reason = pending or broken.pending
-                cases.append(Case(path, heading, mended, broken.files, reason, fixes=broken.program))
+                fixed = Case(path, heading, mended, broken.files, reason, broken.slow, fixes=broken.program)
+                cases.append(fixed)
                 pending = None
             case "formatted", "":
                 cases[-1].formatted = number + 1, "".join(f"{text}\n" for text in body)

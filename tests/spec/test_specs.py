@@ -24,6 +24,7 @@ def outcome_of(place: str) -> Outcome:
 
 def _parameter(case: Case) -> object:
     marks = [pytest.mark.xfail(reason=case.pending, strict=True)] if case.pending else []
+    marks += [pytest.mark.slow] if case.slow else []
     return pytest.param(case, id=f"{case.place} {case.heading}", marks=marks)
 
 
