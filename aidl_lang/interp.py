@@ -6,7 +6,7 @@ touches passes on in silence, so that one run reports all errors and still yield
 
 The work is told in `building/`: `modules` (files and roots), `structures`, `statements`, `evaluate`
 (expressions), `overloads` and `calls` (definitions), `construct` (geometry and the exactness of its numbers),
-`stated` and `impose` (constraints), `placing` and `anchors` (what they move first).
+`constraints` and `impose` (constraints), `placing` and `anchors` (what they move first).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Model, Structure
 from aidl_lang.building.modules import run_module
 from aidl_lang.building.scopes import Binding, Candidate, LetBinding, Scope
-from aidl_lang.building.state import DEFAULT_LIMITS, Interpreter, Limits, Stop
+from aidl_lang.building.state import DEFAULT_LIMITS, BuildingLimits, Interpreter, Stop
 from aidl_lang.building.statements import EXECUTORS
 from aidl_lang.building.values import NOTHING, Namespace
 from aidl_lang.checking.builtins import MATH, ROTATION, SIGNATURES
@@ -46,7 +46,7 @@ class Interpretation:
 def interpret(
     program: Program,
     overrides: Mapping[str, str | float | bool] | None = None,
-    limits: Limits = DEFAULT_LIMITS,
+    limits: BuildingLimits = DEFAULT_LIMITS,
     turned: Mapping[int, int] | None = None,
     states_constants: bool = False,
 ) -> Interpretation:

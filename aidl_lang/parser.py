@@ -27,7 +27,7 @@ from aidl_lang.syntax.warnings import lines_joined_by_minus
 
 
 @record()
-class Limits:
+class TextLimits:
     """The limits on a program: its length, the levels of its tree, and how many errors are reported."""
 
     max_characters: int = 2_000_000
@@ -35,7 +35,7 @@ class Limits:
     max_errors: int = MOST_ERRORS
 
 
-DEFAULT_LIMITS = Limits()
+DEFAULT_LIMITS = TextLimits()
 
 
 @record()
@@ -46,7 +46,7 @@ class Parsed:
     diagnostics: list[Diagnostic]
 
 
-def parse(source: SourceFile, limits: Limits = DEFAULT_LIMITS) -> Parsed:
+def parse(source: SourceFile, limits: TextLimits = DEFAULT_LIMITS) -> Parsed:
     """Returns the tree of a file. Never raises: what cannot be read is reported (E01xx, E08xx) and left
     out.
     """
@@ -55,7 +55,7 @@ def parse(source: SourceFile, limits: Limits = DEFAULT_LIMITS) -> Parsed:
     return Parsed(parsed.module, ordered(parsed.diagnostics + joined))
 
 
-def standing_before(source: SourceFile, offset: int, limits: Limits = DEFAULT_LIMITS) -> Automaton:
+def standing_before(source: SourceFile, offset: int, limits: TextLimits = DEFAULT_LIMITS) -> Automaton:
     """Returns the automaton after reading the text before an offset, mended where it is broken; it tells what
     may come next there.
     """
@@ -65,7 +65,7 @@ def standing_before(source: SourceFile, offset: int, limits: Limits = DEFAULT_LI
     return reader.automaton
 
 
-def _read(source: SourceFile, limits: Limits) -> tuple[Parsed, list[Token]]:
+def _read(source: SourceFile, limits: TextLimits) -> tuple[Parsed, list[Token]]:
     """Returns what `parse` does, without warnings, and the tokens it came from."""
     everything = Span(source, 0, len(source.text))
     if len(source.text) > limits.max_characters:
@@ -96,7 +96,7 @@ class _Reader:
 
     _MOST_REPAIRS = 20  # of one statement; beyond that it is not a statement with slips in it
 
-    def __init__(self, source: SourceFile, builder: Builder, tokens: Tokens, limits: Limits) -> None:
+    def __init__(self, source: SourceFile, builder: Builder, tokens: Tokens, limits: TextLimits) -> None:
         self.source = source
         self.tokens = tokens.tokens
         self.limits = limits
@@ -158,7 +158,7 @@ class _Reader:
         self.repairs = 0
 
     def _stop(self, why: Diagnostic) -> tuple[ast.Statement, ...]:
-        """Gives up on the rest of the text; blocks end where they are."""
+        """Gives up on the rest of the text; open blocks end there."""
         self.diagnostics.append(why)
         self.automaton.drop_statement()
         end = self.automaton.end
@@ -328,7 +328,7 @@ def _depth(root: ast.Node) -> int:
     return deepest
 
 
-def _too_long(source: SourceFile, limits: Limits) -> Diagnostic:
+def _too_long(source: SourceFile, limits: TextLimits) -> Diagnostic:
     return Diagnostic(
         "E0801",
         f"the program is longer than {limits.max_characters:,} characters",
@@ -337,7 +337,7 @@ def _too_long(source: SourceFile, limits: Limits) -> Diagnostic:
     )
 
 
-def _too_deep(span: Span, limits: Limits) -> Diagnostic:
+def _too_deep(span: Span, limits: TextLimits) -> Diagnostic:
     return Diagnostic(
         "E0802",
         f"this is nested more than {limits.max_nesting} levels deep",

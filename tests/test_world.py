@@ -6,7 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, Reason, World, normalize, relative_to
+from aidl_lang.common.world import (
+    DiskWorld,
+    FileError,
+    MemoryWorld,
+    ReadFailure,
+    World,
+    normalize,
+    relative_to,
+)
 
 
 @pytest.fixture(params=["disk", "memory"])
@@ -30,16 +38,16 @@ def test_files_are_read(world: World) -> None:
 @pytest.mark.parametrize(
     ("path", "reason"),
     [
-        ("nut.aidl", Reason.MISSING),
-        ("../secret", Reason.OUTSIDE),
-        ("parts/../../secret", Reason.OUTSIDE),
-        ("/etc/passwd", Reason.OUTSIDE),
-        ("..\\secret", Reason.OUTSIDE),
-        ("C:\\secret", Reason.OUTSIDE),
-        ("", Reason.MISSING),
+        ("nut.aidl", ReadFailure.MISSING),
+        ("../secret", ReadFailure.OUTSIDE),
+        ("parts/../../secret", ReadFailure.OUTSIDE),
+        ("/etc/passwd", ReadFailure.OUTSIDE),
+        ("..\\secret", ReadFailure.OUTSIDE),
+        ("C:\\secret", ReadFailure.OUTSIDE),
+        ("", ReadFailure.MISSING),
     ],
 )
-def test_what_cannot_be_read(world: World, path: str, reason: Reason) -> None:
+def test_what_cannot_be_read(world: World, path: str, reason: ReadFailure) -> None:
     with pytest.raises(FileError) as caught:
         world.read(path)
     assert caught.value.reason is reason
@@ -57,7 +65,7 @@ def test_links_lead_nowhere_else(tmp_path: Path) -> None:
     for path in ("link", "folder/secret"):
         with pytest.raises(FileError) as caught:
             world.read(path)
-        assert caught.value.reason is Reason.OUTSIDE
+        assert caught.value.reason is ReadFailure.OUTSIDE
     for path in ("loop", "a\0b"):
         with pytest.raises(FileError):
             world.read(path)
@@ -71,14 +79,14 @@ def test_a_link_leads_to_no_other_kind_of_file(tmp_path: Path) -> None:
     assert DiskWorld(tmp_path).read("other.aidl") == "bolt"
     with pytest.raises(FileError) as caught:
         DiskWorld(tmp_path).read("link.aidl")
-    assert caught.value.reason is Reason.ANOTHER_KIND
+    assert caught.value.reason is ReadFailure.ANOTHER_KIND
 
 
 def test_only_text_is_read(tmp_path: Path) -> None:
     (tmp_path / "bytes").write_bytes(b"\xff\xfe")
     with pytest.raises(FileError) as caught:
         DiskWorld(tmp_path).read("bytes")
-    assert caught.value.reason is Reason.NOT_TEXT
+    assert caught.value.reason is ReadFailure.NOT_TEXT
 
 
 def test_paths_are_relative_to_the_importing_file() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from aidl_lang.building.values import NOTHING, ListVal, Num, PointVal, Value
-from aidl_lang.checking.types import Binding, Source
+from aidl_lang.checking.types import ArgumentSource, Binding
 from aidl_lang.checking.units import LENGTH
 from aidl_lang.syntax import ast
 
@@ -19,7 +19,7 @@ def arranged(
     return [_value(s, values) for s in binding.sources], [nodes[s.index] for s in binding.sources]
 
 
-def _value(source: Source, values: Sequence[Value]) -> Value:
+def _value(source: ArgumentSource, values: Sequence[Value]) -> Value:
     value = values[source.index]
     if source.other is not None:
         x, y = value, values[source.other]

@@ -11,7 +11,7 @@ from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.values import (
     Nothing,
     Num,
-    Text,
+    TextVal,
     Value,
     holds,
     members,
@@ -111,8 +111,8 @@ def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attrib
         return False
     wanted = ""
     match name, *values:
-        case ("orientation", Text(word)) if (meant := find(word, dict.fromkeys(ORIENTATIONS))) is not None:
-            values[:] = [Text(meant)]
+        case ("orientation", TextVal(word)) if (meant := find(word, dict.fromkeys(ORIENTATIONS))) is not None:
+            values[:] = [TextVal(meant)]
         case ("orientation", *_):
             wanted = "one of `top`, `front` and `side`, as in `@orientation(front)`"
         case ("thickness", Num() as thickness) if thickness.dimension in (None, units.LENGTH):
@@ -123,7 +123,7 @@ def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attrib
             pass
         case ("elevation", *_):
             wanted = "a length, as in `@elevation(18mm)` or `@elevation(-3)`"
-        case ("layer" | "material" | "note", Text()) | ("detached",) | ("detached", bool()):
+        case ("layer" | "material" | "note", TextVal()) | ("detached",) | ("detached", bool()):
             pass
         case ("layer" | "material" | "note", *_):
             wanted = f'a text, as in `@{name}("…")`'

@@ -15,7 +15,7 @@ from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.lists import run
 from aidl_lang.building.model import Condition, Geometry
 from aidl_lang.building.outlines import remember, usable
-from aidl_lang.building.overloads import Site, candidates_of, no_overload, site_of
+from aidl_lang.building.overloads import CallSite, candidates_of, no_overload, site_of
 from aidl_lang.building.placing import placing, spliced
 from aidl_lang.building.scopes import Candidate, LetBinding, Scope
 from aidl_lang.building.state import Env, Interpreter, Reach
@@ -91,7 +91,7 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
         it.leave()
 
 
-def _env_of_arguments(site: Site, env: Env) -> Env:
+def _env_of_arguments(site: CallSite, env: Env) -> Env:
     """Returns the environment of a call's arguments, which may reach further than what is around it, or less
     far.
     """
@@ -106,7 +106,7 @@ def _env_of_arguments(site: Site, env: Env) -> Env:
 
 
 def _given(
-    it: Interpreter, site: Site, receiver: Value | None, node: ast.Call, env: Env
+    it: Interpreter, site: CallSite, receiver: Value | None, node: ast.Call, env: Env
 ) -> tuple[list[Value], Sequence[ast.Node]]:
     """Returns the arguments of a call, its receiver among them, and the text each comes from."""
     given = [evaluate(it, at, env) if word is None else word for at, word in site.written]

@@ -20,7 +20,7 @@ from aidl_lang.building.values import (
     Nothing,
     Num,
     PointVal,
-    Text,
+    TextVal,
     Value,
     members,
     type_of,
@@ -50,10 +50,10 @@ def compare(
     """Returns `left relation right` as a condition, or as a truth if both are constants."""
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
-    if isinstance(left, Text | bool) or isinstance(right, Text | bool):
+    if isinstance(left, TextVal | bool) or isinstance(right, TextVal | bool):
         if relation not in ("==", "!=") or type(left) is not type(right):
             return _incomparable(it, relation, left, right, node, left_node, right_node)
-        both = (side.value if isinstance(side, Text) else side for side in (left, right))
+        both = (side.value if isinstance(side, TextVal) else side for side in (left, right))
         return (next(both) == next(both)) == (relation == "==")
     a, b = as_point(it, left, left_node, env), as_point(it, right, right_node, env)
     if a is not None and b is not None:

@@ -20,7 +20,7 @@ from aidl_lang.building.lettering import typeset
 from aidl_lang.building.model import Constraint, Geometry, Measurement, Structure, is_size
 from aidl_lang.building.primitives import direction, distance, polar
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.building.values import Nothing, Num, PointVal, Status, Value, length, point
+from aidl_lang.building.values import Exactness, Nothing, Num, PointVal, Value, length, point
 from aidl_lang.checking.builtins import SIGNATURES
 from aidl_lang.checking.registry import PRIMITIVES
 from aidl_lang.checking.types import NumberType, PointType
@@ -68,17 +68,17 @@ def size(it: Interpreter, value: Num, holder: Geometry, name: str, dimension: Ma
             holder.span,
             hints=[f"write {-value.value:g}; directions belong to angles and positions"],
         )
-    if expression.is_constant and value.status in (Status.NUMBER, Status.GUESS):
+    if expression.is_constant and value.status in (Exactness.NUMBER, Exactness.GUESS):
         expression = it.unknown(
             value.value,
             holder,
             name,
             owner=holder.owner,
             dimension=dimension,
-            kept=value.status is Status.NUMBER,
+            kept=value.status is Exactness.NUMBER,
         )
         it.became(value, expression, holder, name, dimension)
-    return Num(expression, dimension, Status.REFERENCE)
+    return Num(expression, dimension, Exactness.REFERENCE)
 
 
 def turn(it: Interpreter, value: Num, holder: Geometry, name: str, rotatable: bool) -> Num:
@@ -86,13 +86,13 @@ def turn(it: Interpreter, value: Num, holder: Geometry, name: str, rotatable: bo
     constraint.
     """
     expression = value.expression
-    if not expression.is_constant or value.status >= Status.PARAM or (value.value != 0 and not rotatable):
+    if not expression.is_constant or value.status >= Exactness.PARAM or (value.value != 0 and not rotatable):
         return size(it, value, holder, name, ANGLE)
     made = it.unknown(value.value, holder, name, owner=holder.owner, dimension=ANGLE)
     assert isinstance(made.payload, ex.Unknown)
     made.payload.locked = made.payload.exact = not rotatable
     it.became(value, made, holder, name, ANGLE)
-    return Num(made, ANGLE, Status.REFERENCE)
+    return Num(made, ANGLE, Exactness.REFERENCE)
 
 
 def positions(
@@ -127,7 +127,7 @@ def positions(
 
 
 def _is_literal(at: PointVal) -> bool:
-    return at.x.status is at.y.status is Status.NUMBER
+    return at.x.status is at.y.status is Exactness.NUMBER
 
 
 def _apart(a: PointVal, b: PointVal) -> bool:
@@ -169,15 +169,15 @@ def _coordinate(
     owner: Structure,
 ) -> Expression:
     """Returns one coordinate: exact, a first guess, or a difference from the first guess before it."""
-    if number.status >= Status.FIXED:
+    if number.status >= Exactness.FIXED:
         return solvable(it, number, holder.span)
-    if axis not in anchors or number.status is Status.GUESS:
+    if axis not in anchors or number.status is Exactness.GUESS:
         made = it.unknown(number.value, holder, f"{name}.{axis}", owner=owner, dimension=LENGTH)
         anchors.setdefault(axis, (number, made, name))
         return made
     first, base, since = anchors[axis]
     offset = number.value - first.value
-    if Status.PARAM in (number.status, first.status):
+    if Exactness.PARAM in (number.status, first.status):
         return ex.add(base, ex.constant(offset))
     kept = it.unknown(
         offset, holder, f"{name}.d{axis}", owner=owner, dimension=LENGTH, kept=True, since=since
@@ -203,7 +203,7 @@ def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
     """Returns a named point: its unknowns are called `p.x` and `p.y`."""
     x, y = (
         solvable(it, n, g.span)
-        if n.status >= Status.FIXED
+        if n.status >= Exactness.FIXED
         else it.became(n, it.unknown(n.value, g, axis, owner=g.owner, dimension=LENGTH), g, axis)
         for n, axis in ((at.x, "x"), (at.y, "y"))
     )
@@ -338,7 +338,7 @@ def hold(it: Interpreter, g: Geometry, equations: Sequence[tuple[Num, Num]]) -> 
 
 
 def _plain(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
-    """Of a kind that is called in one way: the fields that it is given. Its points are no corners, and a
+    """Sets the fields of a kind that is called in one way to its arguments. Its points are no corners, and a
     direction that may be left out stays 0 until something asks for another.
     """
     points, numbers = _given(g.type)

@@ -38,7 +38,7 @@ from aidl_lang.building.values import (
     Num,
     PointVal,
     StructureCopy,
-    Text,
+    TextVal,
     Value,
     kind_of,
     members,
@@ -181,7 +181,7 @@ def _mirror(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 def _reflection(it: Interpreter, about: Value, node: ast.Call, env: Env) -> Motion | None:
     match about:
-        case Text(word) if word in _AXES:
+        case TextVal(word) if word in _AXES:
             x, y = _AXES[word]
             return mirrored_at_line(_at(*NOWHERE), _at(ex.constant(x), ex.constant(y)))
         case PointVal():
@@ -197,7 +197,7 @@ def _reflection(it: Interpreter, about: Value, node: ast.Call, env: Env) -> Moti
             if any(p.value != q.value for p, q in zip(xy(start), xy(end), strict=True)):
                 return mirrored_at_line(start, end)
             message, hint = "the line to mirror about has no length", "give its ends different places"
-        case Text(word):
+        case TextVal(word):
             message, hint = f'"{word}" is no axis', 'the axes are `"x"` and `"y"`'
         case _:
             message = f"`mirror` is about a line or a point, and this is {kind_of(about)}"

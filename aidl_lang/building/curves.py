@@ -1,8 +1,8 @@
-"""Curves of the primitives in numbers that are not solved yet: what they can be asked for, what they are made
-of, and how far they reach.
+"""Curves of the primitives in numbers that are not solved yet: their fields, their pieces, and how far they
+reach.
 
-A curve of straight lines and cubics says what these are (`pieces`), and its box, its ends and its outline
-follow; any other says how far it reaches, and `geometry.readout` makes it of its numbers.
+A curve of straight lines and cubics gives these (`pieces`), and its box, its ends and its outline follow; any
+other gives its reach, and `geometry.readout` makes it of its numbers.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from aidl_lang.building.primitives import (
     view,
     xy,
 )
-from aidl_lang.building.values import ListVal, Num, PointVal, Status, length, point
+from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, length, point
 from aidl_lang.checking.units import ANGLE
 from aidl_lang.common.lettering import box_around
 from aidl_lang.common.records import record
@@ -39,12 +39,12 @@ Piece: TypeAlias = tuple[tuple[Expression, Expression], ...]
 
 @record()
 class Formulas:
-    """What follows from the numbers that define a primitive, as a structure sees it.
+    """The formulas of one kind of primitive, in the numbers that define it, as a structure sees it.
 
     field    a field by its name, beside those numbers; None if there is none
-    pieces   what its curve is made of, each piece from where the one before ends; what is left of a direction
-             is right of it where the primitive is `clockwise`, turned over
-    reach    what may be its furthest coordinate towards a side, where it has no pieces
+    pieces   the pieces of its curve, each from where the one before ends; what is left of a direction is
+             right of it if the primitive is `clockwise`, turned over
+    reach    candidates for its furthest coordinate towards a side, if it has no pieces
     """
 
     field: Callable[[str, Geometry, Structure], Value | None] = lambda name, g, here: None
@@ -53,7 +53,7 @@ class Formulas:
 
 
 def field(g: Geometry, name: str, here: Structure) -> Value | None:
-    """Returns a field of a primitive as `here` sees it; None when it has none of that name."""
+    """Returns a field of a primitive as `here` sees it; None if it has none of that name."""
     core = view(g, here)
     if name in core:
         return core[name]
@@ -67,13 +67,13 @@ def field(g: Geometry, name: str, here: Structure) -> Value | None:
 
 
 def pieces(g: Geometry, here: Structure) -> Sequence[Piece]:
-    """What the curve of a primitive is made of; nothing where it is neither lines nor cubics."""
+    """Returns the pieces of a primitive's curve; none if it is neither lines nor cubics."""
     formulas = FORMULAS.get(g.type)
     return formulas.pieces(g, here) if formulas is not None and formulas.pieces is not None else ()
 
 
 def reach(g: Geometry, here: Structure, side: str) -> Iterable[Expression]:
-    """Candidates for the furthest coordinate of a primitive towards a side; none of a point."""
+    """Returns candidates for the furthest coordinate of a primitive towards a side; none for a point."""
     formulas = FORMULAS[g.type]
     if formulas.pieces is None:
         return formulas.reach(g, here, side)
@@ -81,7 +81,7 @@ def reach(g: Geometry, here: Structure, side: str) -> Iterable[Expression]:
 
 
 def _reach_of(of: Iterable[Piece], side: str) -> list[Expression]:
-    """Candidates of lines, cubics and single points."""
+    """Returns the candidates of lines, cubics and single points."""
     axis, positive = side in ("top", "bottom"), side in ("right", "top")
     found: list[Expression] = []
     for piece in of:
@@ -125,7 +125,7 @@ def _line(name: str, g: Geometry, here: Structure) -> Value | None:
 
 
 def _angle(expression: Expression) -> Num:
-    return Num(expression, ANGLE, Status.REFERENCE)
+    return Num(expression, ANGLE, Exactness.REFERENCE)
 
 
 # --- Cubics ----------------------------------------------------------------------------------------
@@ -196,7 +196,9 @@ def _arc_reach(arc: Geometry, here: Structure, side: str) -> Iterator[Expression
 
 
 def _turn(arc: Geometry, here: Structure) -> tuple[Expression, Expression]:
-    """Counter-clockwise, the direction in which an arc begins and its sweep, the same for all four sides."""
+    """Returns the direction in which an arc begins and its sweep, both counter-clockwise, the same for all
+    four sides.
+    """
     if (known := arc.turns.get(here)) is None:
         core, is_clockwise = view(arc, here), clockwise(arc, here)
         first = direction(core["center"], core["end" if is_clockwise else "start"])
@@ -208,7 +210,7 @@ def _turn(arc: Geometry, here: Structure) -> tuple[Expression, Expression]:
 
 
 def _ellipse_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
-    """Centre plus or minus sqrt((rx cos)^2 + (ry sin)^2), the half-width of a turned ellipse."""
+    """Yields centre plus or minus sqrt((rx cos)^2 + (ry sin)^2), the half-width of a turned ellipse."""
     axis, positive, core = side in ("top", "bottom"), side in ("right", "top"), view(g, here)
     angle = number(core["angle"])
     along, across = (ex.sin, ex.cos) if axis else (ex.cos, ex.sin)
@@ -228,13 +230,13 @@ def _characters(name: str, g: Geometry, here: Structure) -> Value | None:
 
 
 def _single(text: Geometry, number: int) -> Geometry:
-    """One character of a text, to be measured: it is drawn with the others."""
+    """Returns one character of a text, to be measured: it is drawn with the others."""
     return replace(text, glyphs=(text.glyphs[number],), name=f"glyph[{number}]", container=text, views={})
 
 
 def _text_reach(text: Geometry, here: Structure, side: str) -> Iterator[Expression]:
-    """Of a text that stands square to the axes, the corners of its ink; of one that is turned, what of its
-    silhouette reaches furthest, or all of that where it is not known how far it is turned.
+    """Yields, for a text square to the axes, the corners of its ink; for a turned one, the point of its
+    silhouette that reaches furthest, or all of it if its turn is not known.
     """
     if not text.glyphs:
         return
@@ -261,4 +263,4 @@ FORMULAS: dict[str, Formulas] = {
     "bezier": Formulas(pieces=_cubic),
     "glyphs": Formulas(_characters, reach=_text_reach),
 }
-"""What each kind of the registry has of its own."""
+"""The formulas of each kind in the registry."""

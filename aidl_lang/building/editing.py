@@ -8,17 +8,17 @@ from dataclasses import replace
 from aidl_lang.building import expression as ex
 from aidl_lang.building.copies import centre_of
 from aidl_lang.building.derive import Copier
-from aidl_lang.building.edits import Edit, follows, motion_of, referred, refuse
+from aidl_lang.building.edits import EditCall, follows, motion_of, referred, refuse
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Geometry
 from aidl_lang.building.motion import STILL, Motion, turned
 from aidl_lang.building.primitives import DIRECTIONS, xy
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.values import (
+    Exactness,
     ListVal,
     Num,
     PointVal,
-    Status,
     Value,
     number,
 )
@@ -32,7 +32,7 @@ _CLOSE = 1e-9
 
 
 @record()
-class Placed:
+class GeometryPlacement:
     """The place that `at` and `rotated` give a geometry, and how exact it is."""
 
     at: PointVal
@@ -49,22 +49,22 @@ class Placed:
     def direction(self, angle: Num) -> Num:
         if self.turn is None:
             return angle
-        if self.turn.status is Status.GUESS:
-            return replace(angle, status=Status.GUESS)
+        if self.turn.status is Exactness.GUESS:
+            return replace(angle, status=Exactness.GUESS)
         return self._as_exact(angle, self.turn)
 
     @staticmethod
     def _as_exact(n: Num, by: Num) -> Num:
-        return replace(n, status=by.status) if by.status >= max(n.status, Status.FIXED) else n
+        return replace(n, status=by.status) if by.status >= max(n.status, Exactness.FIXED) else n
 
 
 def edited(
     it: Interpreter,
     node: ast.Assign,
     value: Value,
-    edits: Sequence[Edit],
+    edits: Sequence[EditCall],
     env: Env,
-    placed: Placed | None = None,
+    placed: GeometryPlacement | None = None,
 ) -> Value:
     """Returns the value of an assignment, placed by `at` and with the edits below it applied."""
     cause = edits[0].call if edits else node.placement
@@ -84,10 +84,10 @@ def _edited_point(
     it: Interpreter,
     name: str,
     at: PointVal,
-    edits: Sequence[Edit],
+    edits: Sequence[EditCall],
     env: Env,
     cause: ast.Node,
-    placed: Placed | None,
+    placed: GeometryPlacement | None,
 ) -> Value:
     if (source := referred(at)) is not None:
         follows(it, cause, name, source)
@@ -106,10 +106,10 @@ class _Editing:
     it: Interpreter
     node: ast.Assign
     first: Geometry
-    edits: Sequence[Edit]
+    edits: Sequence[EditCall]
     env: Env
     cause: ast.Node
-    placed: Placed | None = None
+    placed: GeometryPlacement | None = None
     refers: str | None = None
 
     def run(self) -> Value:
@@ -136,7 +136,7 @@ class _Editing:
         if (
             self.placed is not None
             and self.placed.turn is not None
-            and self.placed.turn.status is Status.GUESS
+            and self.placed.turn.status is Exactness.GUESS
         ):
             turn = self.it.unknown(motion.turn.value, made, "rotation", owner=made.owner, dimension=ANGLE)
             motion = replace(motion, turn=turn, cos=ex.cos(turn), sin=ex.sin(turn))

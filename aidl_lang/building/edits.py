@@ -40,7 +40,7 @@ from aidl_lang.building.values import (
 )
 from aidl_lang.checking.binding import select
 from aidl_lang.checking.builtins import EDITS
-from aidl_lang.checking.types import Given
+from aidl_lang.checking.types import GivenArgument
 from aidl_lang.checking.units import ANGLE
 from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
@@ -50,7 +50,7 @@ T = TypeVar("T")
 
 
 @record()
-class Edit:
+class EditCall:
     """One edit, the names it sees, and the indices of the thing it changes."""
 
     call: ast.Call
@@ -86,11 +86,11 @@ def _path(it: Interpreter, node: ast.Expression | None) -> tuple[str, tuple[ast.
     return (it.spelled(node), tuple(indices)) if isinstance(node, ast.Name) else None
 
 
-def edits_on(it: Interpreter, name: str, indices: tuple[int, ...], scope: Scope) -> list[Edit]:
+def edits_on(it: Interpreter, name: str, indices: tuple[int, ...], scope: Scope) -> list[EditCall]:
     """Returns the edits of a thing that is being made, in text order: those below it in the bodies
     around it.
     """
-    found: list[Edit] = []
+    found: list[EditCall] = []
     for ahead in reversed(it.ahead):
         if ahead.scope.declaring() is not scope.declaring():
             break
@@ -121,7 +121,7 @@ def _edited_names(it: Interpreter, statements: Sequence[ast.Statement]) -> froze
 
 def _among(
     it: Interpreter, statements: Sequence[ast.Statement], scope: Scope, wanted: tuple[str, tuple[int, ...]]
-) -> Iterator[Edit]:
+) -> Iterator[EditCall]:
     if wanted[0] not in _edited_names(it, statements):
         return
     env = Env(scope, it.ahead[-1].here, Reach.OWN)
@@ -129,7 +129,7 @@ def _among(
         match statement:
             case ast.ExpressionStatement(ast.Call() as call) if _is_on(it, call, env, wanted):
                 it.edited.add((call, scope.labels))
-                yield Edit(call, scope, wanted[1])
+                yield EditCall(call, scope, wanted[1])
             case ast.For(variables, iterable, body) if wanted[0] in _edited_names(it, body.statements):
                 for item in _tried(it, partial(iterate, it, iterable, env)) or ():
                     it.count_turn(statement)
@@ -171,7 +171,7 @@ def _tried(it: Interpreter, action: Callable[[], T]) -> T | None:
 
 def motion_of(
     it: Interpreter,
-    edits: Sequence[Edit],
+    edits: Sequence[EditCall],
     thing: Value,
     centre: Place,
     here: Structure,
@@ -192,7 +192,7 @@ def motion_of(
     return motion
 
 
-def _step(it: Interpreter, edit: Edit, thing: Value, centre: Place, here: Structure) -> Motion | None:
+def _step(it: Interpreter, edit: EditCall, thing: Value, centre: Place, here: Structure) -> Motion | None:
     node, env = edit.call, Env(_seeing(it, edit, thing), here, Reach.OWN)
     nodes = [node.receiver] if node.receiver is not None else []
     nodes += [a.value for a in node.arguments]
@@ -210,7 +210,7 @@ def _step(it: Interpreter, edit: Edit, thing: Value, centre: Place, here: Struct
         return None
     names: list[str | None] = [None] * (len(nodes) - len(node.arguments))
     names += [a.name.text if a.name else None for a in node.arguments]
-    given = [Given(name, type_of(v)) for name, v in zip(names, values, strict=True)]
+    given = [GivenArgument(name, type_of(v)) for name, v in zip(names, values, strict=True)]
     candidates = edit.scope.candidates(it.spelled(node.callee))
     chosen = select([c.signature for c in candidates], given)
     if isinstance(chosen, list):
@@ -230,7 +230,7 @@ def _mentions(nodes: Sequence[ast.Expression], target: ast.Node | None, name: st
     return any(isinstance(n, ast.Name) and fold(n.text) == fold(name.partition("[")[0]) for n in others)
 
 
-def _seeing(it: Interpreter, edit: Edit, thing: Value) -> Scope:
+def _seeing(it: Interpreter, edit: EditCall, thing: Value) -> Scope:
     """Returns the scope of an edit's arguments: the thing's name means it as the edits before have left
     it.
     """
@@ -313,7 +313,7 @@ def referred(value: PointVal | Num) -> str | None:
 
 
 def frame_edited(
-    it: Interpreter, edits: Sequence[Edit], s: Structure, at: PointVal, turn: Num | None
+    it: Interpreter, edits: Sequence[EditCall], s: Structure, at: PointVal, turn: Num | None
 ) -> tuple[PointVal, Num | None]:
     """Returns the place of a structure, with the edits below it applied."""
     assert s.parent is not None

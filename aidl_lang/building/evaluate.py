@@ -23,7 +23,7 @@ from aidl_lang.building.values import (
     PointVal,
     RangeVal,
     RecordVal,
-    Text,
+    TextVal,
     Value,
     members,
     number,
@@ -51,7 +51,7 @@ def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
     return value
 
 
-_UNBOUNDED = frozenset({ListVal, RecordVal, Text})
+_UNBOUNDED = frozenset({ListVal, RecordVal, TextVal})
 """Values that grow without limit when they are joined with themselves."""
 
 
@@ -118,7 +118,11 @@ def turn_scope(
     for variable, value in zip(variables, items, strict=True):
         inner.values[variable.text] = value
         shown = (
-            f"{value.value:g}" if isinstance(value, Num) else value.value if isinstance(value, Text) else "…"
+            f"{value.value:g}"
+            if isinstance(value, Num)
+            else value.value
+            if isinstance(value, TextVal)
+            else "…"
         )
         inner.labels += (f"{variable.text} = {shown}",)
     return inner
@@ -152,7 +156,7 @@ def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
         if (branch := scope.unbuilt.get(name)) is not None:
             return not_built(it, node, branch)
     if node.text in WORDS:
-        return Text(node.text)
+        return TextVal(node.text)
     if node in it.program.resolution.uses or node.span.source in it.library_sources:
         it.report("E0201", f"there is no `{node.text}` here yet", node, label="made further on")
     return NOTHING  # else reported by the checker, or its file could not be imported
@@ -168,7 +172,7 @@ def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
     index = evaluate(it, node.index, env)
     if isinstance(value, Nothing) or isinstance(index, Nothing):
         return NOTHING
-    if isinstance(value, RecordVal) and isinstance(index, Text):
+    if isinstance(value, RecordVal) and isinstance(index, TextVal):
         return lists.entry(it, value, index.value, node.index)
     items = members(value)
     if items is None:
@@ -383,7 +387,7 @@ def _conditional(it: Interpreter, node: ast.Conditional, env: Env) -> Value:
 
 _EVALUATE: dict[type, Callable[..., Value]] = {
     ast.Number: _number,
-    ast.String: lambda it, node, env: Text(node.value),
+    ast.String: lambda it, node, env: TextVal(node.value),
     ast.Boolean: lambda it, node, env: node.value,
     ast.Name: _name,
     ast.Member: _member,

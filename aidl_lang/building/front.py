@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TypeAlias
 
 from aidl_lang import parser
-from aidl_lang.building.state import DEFAULT_LIMITS, Limits
+from aidl_lang.building.state import DEFAULT_LIMITS, BuildingLimits
 from aidl_lang.checking import library as library_module
 from aidl_lang.checking.resolve import resolve
 from aidl_lang.checking.subset import adapted
@@ -33,8 +33,8 @@ class Settings:
              writing a file, measuring, comparing
     """
 
-    text: parser.Limits = parser.DEFAULT_LIMITS
-    building: Limits = DEFAULT_LIMITS
+    text: parser.TextLimits = parser.DEFAULT_LIMITS
+    building: BuildingLimits = DEFAULT_LIMITS
     solving: SolverSettings = SolverSettings(tolerance=1e-10)
     variant: Variant = Variant.FULL
     strict: bool = False

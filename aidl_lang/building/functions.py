@@ -17,12 +17,12 @@ from aidl_lang.building.outlines import OPERATIONS
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.values import (
     NOTHING,
+    Exactness,
     ListVal,
     Num,
     PointVal,
     RangeVal,
-    Status,
-    Text,
+    TextVal,
     Value,
     kind_of,
     members,
@@ -123,7 +123,7 @@ def _numbers(it: Interpreter, a: Arguments, name: str, node: ast.Call, env: Env)
     return None if None in found else [n for n in found if n is not None]
 
 
-def _common(it: Interpreter, values: list[Num], node: ast.Call) -> tuple[MaybeDimension, Status] | None:
+def _common(it: Interpreter, values: list[Num], node: ast.Call) -> tuple[MaybeDimension, Exactness] | None:
     dimension: MaybeDimension = None
     try:
         for value in values:
@@ -131,7 +131,7 @@ def _common(it: Interpreter, values: list[Num], node: ast.Call) -> tuple[MaybeDi
     except units.UnequalError as pair:
         it.misfit(rules.unequal(f"`{node.callee.text}` does not join", *pair.args), node)
         return None
-    return dimension, max((v.status for v in values), default=Status.NUMBER)
+    return dimension, max((v.status for v in values), default=Exactness.NUMBER)
 
 
 def _extreme(op: str) -> Function:
@@ -162,7 +162,7 @@ def _sum(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _total(values: list[Num], dimension: MaybeDimension) -> Num:
-    total, status = ex.ZERO, Status.NUMBER
+    total, status = ex.ZERO, Exactness.NUMBER
     for value in values:
         total, status = ex.add(total, value.expression), max(status, value.status)
     return Num(total, dimension, status)
@@ -191,7 +191,7 @@ def _half_up(value: float) -> float:
 def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     items: Sequence[Value] | None
     match values := a["values"]:
-        case Text(text):
+        case TextVal(text):
             return number(float(len(text)))
         case RangeVal():
             items = lists.run(it, values, node)
@@ -206,8 +206,8 @@ def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 def _choice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns a word, checked to be one of those that are allowed."""
     word = a["word"]
-    words = [w.value for w in members(a["words"]) or () if isinstance(w, Text)]
-    assert isinstance(word, Text)
+    words = [w.value for w in members(a["words"]) or () if isinstance(w, TextVal)]
+    assert isinstance(word, TextVal)
     meant = find(word.value, dict.fromkeys(words)) or find(
         _SAME_WORD.get(word.value, ""), dict.fromkeys(words)
     )
@@ -218,13 +218,13 @@ def _choice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         message = f'"{word.value}" is not one of the words that are meant here'
         it.report("E0516", message, node, hints=[*hints, f"it is one of {allowed}"])
         return NOTHING
-    return Text(meant)
+    return TextVal(meant)
 
 
 _SAME_WORD = {"middle": "center", "centre": "center", "horizontal": "x", "vertical": "y"}
 
 
-def _mark(status: Status) -> Function:
+def _mark(status: Exactness) -> Function:
     """Makes `fixed(x)` or `guess(x)`: the value with another status, points and lists by member."""
 
     def mark(value: Value) -> Value:
@@ -244,7 +244,7 @@ def _mark(status: Status) -> Function:
         value = a["value"]
         value = as_point(it, value, node, env) or value if isinstance(value, Geometry) else value
         if isinstance(value, Num | PointVal | ListVal):
-            return mark(as_written(value) if status is Status.GUESS else value)
+            return mark(as_written(value) if status is Exactness.GUESS else value)
         it.report(
             "E0310",
             f"`{node.callee.text}` marks a number or a point, and this is {kind_of(value)}",
@@ -318,7 +318,7 @@ def _measure(kind: str, dimension: Dimension) -> Function:
             wrong = next(v for v in a.values() if not isinstance(v, Structure | Geometry))
             it.report("E0310", f"`{kind}` measures structures and geometry, not {kind_of(wrong)}", node)
             return NOTHING
-        measured = Num(ex.measure(Measurement(kind, of)), dimension, Status.REFERENCE)
+        measured = Num(ex.measure(Measurement(kind, of)), dimension, Exactness.REFERENCE)
         return compare_numbers(it, "==", measured, _YES, node) if kind == "overlaps" else measured
 
     return function
@@ -350,8 +350,8 @@ FUNCTIONS: dict[str, Function] = {
     **lists.FUNCTIONS,
     "choice": _choice,
     "ink": ink,
-    "fixed": _mark(Status.FIXED),
-    "guess": _mark(Status.GUESS),
+    "fixed": _mark(Exactness.FIXED),
+    "guess": _mark(Exactness.GUESS),
     "written": _written,
     "nearest": _nearest,
     "where": _where,

@@ -28,7 +28,7 @@ from aidl_lang.building.values import (
     Nothing,
     Num,
     PointVal,
-    Text,
+    TextVal,
     Value,
     kind_of,
     members,
@@ -316,7 +316,7 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
         return
     message = evaluate(it, node.message, env) if node.message is not None else None
     if value is False and shape:
-        why = message.value if isinstance(message, Text) else f"`{node.test.span.one_line}` is false"
+        why = message.value if isinstance(message, TextVal) else f"`{node.test.span.one_line}` is false"
         false = differences(Wording(node.test, it, env, evaluate), ex.Evaluator({}), EXACT)
         label = "; ".join(false) or "false as written"
         it.report("E0604", f"assertion failed: {why}{_turn(env)}", node.test, label=label)
@@ -328,7 +328,7 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
         Assertion(
             env.here,
             value,
-            message.value if isinstance(message, Text) else None,
+            message.value if isinstance(message, TextVal) else None,
             node.test.span.one_line,
             it.place(node.test) or node.span,
             ", ".join(env.scope.labels),

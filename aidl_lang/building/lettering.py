@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.building.values import NOTHING, Num, RecordVal, Text, Value, number
+from aidl_lang.building.values import NOTHING, Num, RecordVal, TextVal, Value, number
 from aidl_lang.common import lettering
 from aidl_lang.common.lettering import Glyph
 from aidl_lang.common.prose import first_few
@@ -23,8 +23,8 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
     """Returns the characters of a text in units of its height; empty after an error, reported here."""
     node = it.call_sites[-1]
     text, align, spacing = a["text"], a["align"], a["line_spacing"]
-    assert isinstance(text, Text)
-    assert isinstance(align, Text)
+    assert isinstance(text, TextVal)
+    assert isinstance(align, TextVal)
     assert isinstance(spacing, Num)
     apart = constant(it, spacing, node, "the spacing of lines")
     if align.value not in lettering.ALIGNMENTS:

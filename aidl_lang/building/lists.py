@@ -9,12 +9,12 @@ from aidl_lang.building.coerce import constant
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
+    Exactness,
     ListVal,
     Num,
     RangeVal,
     RecordVal,
-    Status,
-    Text,
+    TextVal,
     Value,
     kind_of,
     members,
@@ -43,7 +43,7 @@ def run(it: Interpreter, value: RangeVal, node: ast.Node) -> list[Value] | None:
     if count > it.limits.items:
         it.report("E0805", f"this range has {count} members; at most {it.limits.items} are allowed", node)
         return None
-    status = min(max(n.status for n in parts), Status.NUMBER)
+    status = min(max(n.status for n in parts), Exactness.NUMBER)
     return [number(start + i * step, value.start.dimension, status) for i in range(max(count, 0))]
 
 
@@ -66,8 +66,8 @@ def entry(it: Interpreter, value: RecordVal, name: str, node: ast.Node) -> Value
 
 def joined(left: Value, right: Value) -> Value | None:
     """Returns `left + right` of two texts or two lists; None if they are neither."""
-    if isinstance(left, Text) and isinstance(right, Text):
-        return Text(left.value + right.value)
+    if isinstance(left, TextVal) and isinstance(right, TextVal):
+        return TextVal(left.value + right.value)
     a, b = members(left), members(right)
     return ListVal((*a, *b)) if a is not None and b is not None else None
 
@@ -79,7 +79,7 @@ def shown(value: Value) -> str | None:
     match value:
         case Num():
             return f"{value.value:.10g}"
-        case Text(text):
+        case TextVal(text):
             return text
         case bool():
             return "true" if value else "false"
@@ -99,7 +99,7 @@ def _str(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     if text is None:
         it.report("E0302", f"`str` writes numbers, texts and truth values, not {kind_of(value)}", node)
         return NOTHING
-    return Text(text)
+    return TextVal(text)
 
 
 def _range(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:

@@ -26,6 +26,7 @@ from aidl_lang.building.turning import unlock
 from aidl_lang.building.values import (
     NOTHING,
     Array,
+    Exactness,
     ListVal,
     Namespace,
     Nothing,
@@ -33,7 +34,6 @@ from aidl_lang.building.values import (
     Pattern,
     PointVal,
     RecordVal,
-    Status,
     Value,
     kind_of,
     members,
@@ -217,7 +217,7 @@ def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, 
 
 def _rotation(it: Interpreter, s: Structure, around: Structure, node: ast.Node, env: Env) -> Value:
     """Returns the turn of a structure; a constraint on it lets the structure turn."""
-    turn = primitives.translate("angle", Num(s.frame.rotation, ANGLE, Status.REFERENCE), around, env.here)
+    turn = primitives.translate("angle", Num(s.frame.rotation, ANGLE, Exactness.REFERENCE), around, env.here)
     if not may_read(it, s, node, env):
         return as_written(turn)
     if env.reach is Reach.SUBTREE:

@@ -13,11 +13,11 @@ from aidl_lang.building.scopes import Candidate
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
+    Exactness,
     ListVal,
     Num,
     PointVal,
-    Status,
-    Text,
+    TextVal,
     Value,
     kind_of,
     length,
@@ -101,7 +101,7 @@ def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> st
     allowed = CORNER_WORDS[name]
     if value is None:
         return allowed[0]
-    written = value.value if isinstance(value, Text) else ""
+    written = value.value if isinstance(value, TextVal) else ""
     meant = find(_SYNONYMS.get(fold(written), written), dict.fromkeys(allowed))
     if meant is None:
         choices = ", ".join(ticked(allowed))
@@ -239,7 +239,7 @@ def _sizes(it: Interpreter, kind: str, a: Arguments, target: _Target) -> tuple[N
                 v.value, target.owner, f"{kind}[{index}]", owner=target.owner, dimension=LENGTH, kept=True
             )
         )
-        if v.expression.is_constant and v.status is Status.NUMBER
+        if v.expression.is_constant and v.status is Exactness.NUMBER
         else v
         for v in numbers
     )

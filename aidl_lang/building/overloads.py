@@ -7,20 +7,20 @@ from functools import lru_cache
 
 from aidl_lang.building.scopes import Candidate, Scope
 from aidl_lang.building.state import Interpreter
-from aidl_lang.building.values import Namespace, Text, Value, kind_of, type_of
+from aidl_lang.building.values import Namespace, TextVal, Value, kind_of, type_of
 from aidl_lang.checking.binding import select
 from aidl_lang.checking.builtins import CUTS, DERIVING, OUTLINES, PATTERNS, is_word
 from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.resolving.cuts import meant
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
-from aidl_lang.checking.types import ANY, Binding, Given, Mismatch, Signature, Type, with_article
+from aidl_lang.checking.types import ANY, Binding, GivenArgument, Mismatch, Signature, Type, with_article
 from aidl_lang.syntax import ast
 
 _NO_NAMES: Mapping[ast.Node, Symbol] = {}
 _DRAWING = PATTERNS.union(PUBLIC)
 
 
-class Site:
+class CallSite:
     """A call in the text, with what follows from the overloads of its name.
 
     nodes          its arguments
@@ -40,7 +40,7 @@ class Site:
         words = [i for i, a in enumerate(node.arguments) if is_word(a, signatures)]
         self.doubtful = [i for i in words if _is_declared(names.get(self.nodes[i]))]
         self.written = tuple(
-            (n, Text(n.span.text) if i in words and i not in self.doubtful else None)
+            (n, TextVal(n.span.text) if i in words and i not in self.doubtful else None)
             for i, n in enumerate(self.nodes)
         )
         self.instantiates = any(s.kind is ast.Structure for s in signatures)
@@ -62,7 +62,7 @@ class Site:
             if len(self._meanings) >= _MOST_MEANINGS:
                 self._meanings.clear()
             names = (None,) * (len(kinds) - len(self._names)) + self._names
-            given = [Given(name, kind) for name, kind in zip(names, kinds, strict=True)]
+            given = [GivenArgument(name, kind) for name, kind in zip(names, kinds, strict=True)]
             known = self._meanings[kinds] = select(self.signatures, given)
         self._last = kinds, known
         return known
@@ -76,7 +76,7 @@ class Site:
             before = len(values) - len(self.nodes)
             worded = list(values)
             for index in self.doubtful:
-                worded[before + index] = Text(self.nodes[index].span.text)
+                worded[before + index] = TextVal(self.nodes[index].span.text)
             if isinstance(other := self.meaning(worded), Binding):
                 return other, worded
         return chosen, values
@@ -86,7 +86,7 @@ def _is_declared(symbol: Symbol | None) -> bool:
     return symbol is not None and symbol.kind is not SymbolKind.WORD
 
 
-def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) -> Site:
+def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) -> CallSite:
     """Returns the site of a call for these overloads of its name; a body that runs again defines them
     anew.
     """
@@ -99,23 +99,23 @@ def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) ->
         known = (
             _standard_site(node, tuple(signatures))
             if is_standard
-            else Site(node, signatures, it.program.resolution.uses)
+            else CallSite(node, signatures, it.program.resolution.uses)
         )
     it.sites[node] = candidates, known
     return known
 
 
 @lru_cache(maxsize=4096)
-def _standard_site(node: ast.Call, signatures: tuple[Signature, ...]) -> Site:
+def _standard_site(node: ast.Call, signatures: tuple[Signature, ...]) -> CallSite:
     """Returns the site of a call within the library, which is the same for all programs."""
-    return Site(node, list(signatures))
+    return CallSite(node, list(signatures))
 
 
 _MOST_MEANINGS = 100  # of one call; lists of every length are types of their own
 
 
 def candidates_of(it: Interpreter, node: ast.Call, scope: Scope, receiver: Value | None) -> list[Candidate]:
-    """Returns the callables that a call may mean where it stands."""
+    """Returns the callables that a call may mean at its place."""
     if isinstance(receiver, Namespace):
         inner = receiver.values.get("")
         return inner.candidates(it.spelled(node.callee)) if isinstance(inner, Scope) else []
@@ -138,7 +138,7 @@ def no_overload(
     name = node.callee.text
     if it.place(node) is not node.span:
         # An error in the library on a pair of things is reported at the author's call, in the author's words.
-        things = [v for v in values if not isinstance(v, Text | bool)]
+        things = [v for v in values if not isinstance(v, TextVal | bool)]
         pairs = [[kind for _, kind, _ in m.signature.parameters] for m in misses]
         known = dict.fromkeys(
             " and ".join(map(with_article, kinds[:2])) for kinds in pairs if ANY not in kinds

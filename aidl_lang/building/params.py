@@ -11,11 +11,11 @@ from aidl_lang.building.scopes import ParamBinding
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.values import (
     NOTHING,
+    Exactness,
     Nothing,
     Num,
     RangeVal,
-    Status,
-    Text,
+    TextVal,
     Value,
     kind_of,
     members,
@@ -60,7 +60,7 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
     if isinstance(written, Num):
         known = constant(it, written, node.value, "the value of a `param`")
         written = number(known, written.dimension) if known is not None else NOTHING
-    elif not isinstance(written, Text | bool | Nothing):
+    elif not isinstance(written, TextVal | bool | Nothing):
         it.report("E0314", f"a `param` is a number, a text or true/false, not {kind_of(written)}", node.value)
         return NOTHING
     domain = it.evaluate(node.domain, env) if node.domain is not None else None
@@ -106,8 +106,8 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
         )
     )
     if isinstance(value, Num):
-        return Num(value.expression, value.dimension, Status.PARAM)
-    return Text(value.value, is_param=True) if isinstance(value, Text) else value
+        return Num(value.expression, value.dimension, Exactness.PARAM)
+    return TextVal(value.value, is_param=True) if isinstance(value, TextVal) else value
 
 
 def _unit_of_range(node: ast.Param) -> Fix | None:
@@ -128,7 +128,7 @@ def _plain(value: Value) -> float | str | bool:
     match value:
         case Num():
             return value.value
-        case Text():
+        case TextVal():
             return value.value
         case bool():
             return value
@@ -144,7 +144,7 @@ def _domain(
     if isinstance(domain, RangeVal):
         return domain.start.value, domain.end.value, ()
     items = members(domain)
-    if items is None or not all(isinstance(i, Num | Text | bool) for i in items):
+    if items is None or not all(isinstance(i, Num | TextVal | bool) for i in items):
         if node.domain is not None:
             it.misfit(rules.no_domain(type_of(domain)), node.domain)
         return None, None, ()
@@ -175,7 +175,7 @@ def _from_outside(
     if value is None:
         kind = (
             "a text"
-            if isinstance(written, Text)
+            if isinstance(written, TextVal)
             else "true or false"
             if isinstance(written, bool)
             else "a number"
@@ -193,8 +193,8 @@ def _override(it: Interpreter, path: str) -> str | None:
 
 def _parse(given: str | float | bool, written: Value) -> Value | None:
     match written:
-        case Text():
-            return Text(given.strip().strip("\"'")) if isinstance(given, str) else None
+        case TextVal():
+            return TextVal(given.strip().strip("\"'")) if isinstance(given, str) else None
         case bool():
             word = str(given).strip().casefold()
             return {"true": True, "false": False, "1": True, "0": False}.get(word)

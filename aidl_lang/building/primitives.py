@@ -1,4 +1,4 @@
-"""What defines a primitive, seen from any structure (language reference: geometry).
+"""The numbers and points that define a primitive, seen from any structure (language reference: geometry).
 
 A primitive stores what defines it in the frame of its owner; `view` converts that to the frame of the
 structure that asks, and everything else a primitive is asked for follows from the view (see `curves`).

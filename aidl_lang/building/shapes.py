@@ -11,7 +11,7 @@ from aidl_lang.building.coerce import look
 from aidl_lang.building.model import Geometry
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.building.values import NOTHING, ListVal, Num, PointVal, Text, Value
+from aidl_lang.building.values import NOTHING, ListVal, Num, PointVal, TextVal, Value
 from aidl_lang.checking.units import LENGTH
 from aidl_lang.syntax import ast
 
@@ -75,7 +75,7 @@ def _next(items: Sequence[tuple[float, float]]) -> Sequence[tuple[float, float]]
 def _refuse(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Reports that a definition of the library makes no sense of its arguments."""
     why = a["why"]
-    assert isinstance(why, Text)
+    assert isinstance(why, TextVal)
     it.refuse(node, why.value)
     return NOTHING
 

@@ -12,7 +12,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Unknown
 from aidl_lang.building.model import Assertion, Comparison, Constraint, Geometry, Knob, Literal, Structure
 from aidl_lang.building.scopes import Scope
-from aidl_lang.building.values import ListVal, Num, PointVal, RecordVal, Text, Value
+from aidl_lang.building.values import ListVal, Num, PointVal, RecordVal, TextVal, Value
 from aidl_lang.checking.rules import Misfit
 from aidl_lang.checking.types import Binding, Signature
 from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
@@ -25,7 +25,7 @@ from aidl_lang.typecheck import Program
 
 if TYPE_CHECKING:
     from aidl_lang.building.derive import Copier
-    from aidl_lang.building.overloads import Site
+    from aidl_lang.building.overloads import CallSite
     from aidl_lang.building.scopes import Candidate
 
 
@@ -52,7 +52,7 @@ class Env:
 
 
 @record()
-class Limits:
+class BuildingLimits:
     """Bounds on what a program may build; exceeding one is a diagnostic."""
 
     entities: int = 30_000
@@ -63,7 +63,7 @@ class Limits:
     seconds: float = 20.0
 
 
-DEFAULT_LIMITS = Limits()
+DEFAULT_LIMITS = BuildingLimits()
 
 
 class Stop(Exception):  # noqa: N818 (not an error of ours: the program went over a limit, which is reported)
@@ -90,7 +90,7 @@ class Interpreter:
 
     program: Program
     overrides: Mapping[str, str | float | bool]
-    limits: Limits
+    limits: BuildingLimits
     executors: Mapping[type, Executor]
     evaluator: Callable[[Interpreter, ast.Expression, Env], Value]
     caller: Callable[[Interpreter, ast.Call, Env], Value]
@@ -128,7 +128,7 @@ class Interpreter:
     edited_names: dict[int, frozenset[str]] = field(default_factory=dict)
     signatures: dict[ast.Callable, Signature] = field(default_factory=dict)
     """signatures of definitions in bodies"""
-    sites: dict[ast.Call, tuple[Sequence[Candidate], Site]] = field(default_factory=dict)
+    sites: dict[ast.Call, tuple[Sequence[Candidate], CallSite]] = field(default_factory=dict)
     """the overloads of a call's name when it was last met, and the site that follows from these and its
     text"""
     numbers: dict[ast.Number, Num] = field(default_factory=dict)
@@ -223,7 +223,7 @@ class Interpreter:
     def check_extent(self, node: ast.Node, value: Value) -> None:
         """Stops at a list, record or text that is too large to be looked through again and again."""
         most = self.limits.items
-        if isinstance(value, Text):
+        if isinstance(value, TextVal):
             if len(value.value) > most:
                 self._stop(node, f"this text has {len(value.value)} characters; at most {most} are allowed")
         elif isinstance(value, ListVal | RecordVal):

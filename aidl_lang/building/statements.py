@@ -6,31 +6,31 @@ import math
 from collections.abc import Mapping
 
 from aidl_lang.building import expression as ex
+from aidl_lang.building.assignment import Assignment
 from aidl_lang.building.attributes import read_own_attributes
 from aidl_lang.building.blocks import declared_names, run_block
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.construct import loose_point, refuses_measure
 from aidl_lang.building.declare import adopt, declare, give_name, index_values
-from aidl_lang.building.editing import Placed, edited
+from aidl_lang.building.editing import GeometryPlacement, edited
 from aidl_lang.building.edits import check_edit, edits_on, is_edit
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
 from aidl_lang.building.impose import record_assertion
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.params import read_param
 from aidl_lang.building.scopes import LetBinding, ParamBinding, Scope, VarBinding
-from aidl_lang.building.settle import Settling
 from aidl_lang.building.state import Env, Executor, Interpreter, Reach
 from aidl_lang.building.structures import build_structure, place_of
 from aidl_lang.building.values import (
     NOTHING,
     Array,
+    Exactness,
     Instantiation,
     ListVal,
     Nothing,
     Num,
     Pattern,
     PointVal,
-    Status,
     StructureCopy,
     Value,
     holds,
@@ -49,7 +49,7 @@ def _assign(it: Interpreter, node: ast.Assign, scope: Scope, here: Structure) ->
         return
     is_new = isinstance(value, Instantiation | StructureCopy | Pattern)
     was_there = holds(value, Structure)
-    value = Settling(it, node, scope, here).whole(value, indices)
+    value = Assignment(it, node, scope, here).whole(value, indices)
     container = scope.declaring().container or here
     if not is_new:
         value = _named(it, node, value, scope, here, indices)
@@ -72,7 +72,7 @@ def _made(
     placed = None
     if node.placement is not None:
         if isinstance(value, Geometry | PointVal):
-            placed = Placed(*place_of(it, node.placement, env))
+            placed = GeometryPlacement(*place_of(it, node.placement, env))
         elif not isinstance(value, StructureCopy | Pattern):
             it.report(
                 "E0509",
@@ -153,7 +153,7 @@ def _var(it: Interpreter, node: ast.Var, scope: Scope, here: Structure) -> None:
     made = it.unknown(found.value, holder, node.name.text, owner=here, dimension=found.dimension)
     assert isinstance(made.payload, ex.Unknown)
     it.became(found, made, holder, node.name.text, found.dimension)
-    var = VarBinding(Num(made, found.dimension, Status.REFERENCE), made.payload)
+    var = VarBinding(Num(made, found.dimension, Exactness.REFERENCE), made.payload)
     declare(it, scope, node.name, (), var, node)
 
 

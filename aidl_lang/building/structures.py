@@ -9,21 +9,21 @@ from aidl_lang.building.attributes import read_attributes
 from aidl_lang.building.blocks import run_block
 from aidl_lang.building.calls import default_of
 from aidl_lang.building.coerce import as_point, numeric
+from aidl_lang.building.constraints import read_constraint
 from aidl_lang.building.construct import solvable
-from aidl_lang.building.edits import Edit, edits_on, frame_edited
+from aidl_lang.building.edits import EditCall, edits_on, frame_edited
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Frame, Geometry, Structure
 from aidl_lang.building.scopes import Scope, indexed
 from aidl_lang.building.state import Env, Interpreter, Reach
-from aidl_lang.building.stated import read_constraint
 from aidl_lang.building.templates import passed
 from aidl_lang.building.values import (
     NOTHING,
+    Exactness,
     Instantiation,
     Nothing,
     Num,
     PointVal,
-    Status,
     number,
     point,
     type_of,
@@ -126,7 +126,7 @@ def _around(scope: Scope, name: str, structure: Structure) -> Scope:
 
 def own_names(scope: Scope, structure: Structure) -> None:
     """Adds `self`, `origin` and the axes, which every structure has."""
-    exact = [point(ex.constant(x), ex.constant(y), Status.FIXED) for x, y in ((0, 0), (1, 0), (0, 1))]
+    exact = [point(ex.constant(x), ex.constant(y), Exactness.FIXED) for x, y in ((0, 0), (1, 0), (0, 1))]
     scope.values["self"] = structure
     scope.values["origin"] = exact[0]
     for name, end in zip(("x_axis", "y_axis"), exact[1:], strict=True):
@@ -140,7 +140,7 @@ def _place(
     s: Structure,
     placement: ast.Placement | None,
     scope: Scope,
-    edits: Sequence[Edit] = (),
+    edits: Sequence[EditCall] = (),
 ) -> None:
     """Sets the frame: `at` is a position, `rotated` is exact unless it is a guess or an unknown."""
     if s.parent is None:
@@ -154,15 +154,15 @@ def _place(
         at, turn = frame_edited(it, edits, s, at, turn)
     x, y = (
         solvable(it, n, s.span)
-        if n.status >= Status.FIXED
+        if n.status >= Exactness.FIXED
         else it.became(n, it.unknown(n.value, s, axis, owner=s.parent, dimension=LENGTH, frame_of=s), s, axis)
         for n, axis in ((at.x, "x"), (at.y, "y"))
     )
     rotation = solvable(it, turn, s.span) if turn is not None else ex.ZERO
-    if turn is not None and turn.status is Status.GUESS:
+    if turn is not None and turn.status is Exactness.GUESS:
         rotation = it.unknown(turn.value, s, ROTATION, owner=s.parent, dimension=ANGLE, frame_of=s)
         it.became(turn, rotation, s, ROTATION, ANGLE)
-    elif it.frames_turn and (turn is None or turn.status is Status.NUMBER) and rotation.is_constant:
+    elif it.frames_turn and (turn is None or turn.status is Exactness.NUMBER) and rotation.is_constant:
         rotation = it.unknown(rotation.value, s, ROTATION, owner=s.parent, dimension=ANGLE, frame_of=s)
         assert isinstance(rotation.payload, ex.Unknown)
         rotation.payload.locked = rotation.payload.exact = True

@@ -13,7 +13,7 @@ from aidl_lang.building.construct import positions, refuses_measure
 from aidl_lang.building.model import Condition, Constraint, Geometry, Structure, convert_point
 from aidl_lang.building.scopes import PassedBinding
 from aidl_lang.building.state import Env, Interpreter
-from aidl_lang.building.values import Num, PointVal, RecordVal, Status, Value, kind_of, members
+from aidl_lang.building.values import Exactness, Num, PointVal, RecordVal, Value, kind_of, members
 from aidl_lang.syntax import ast
 
 
@@ -51,18 +51,18 @@ def read_passed(it: Interpreter, binding: PassedBinding, env: Env) -> Value:
 
 def _tie(it: Interpreter, binding: PassedBinding, here: Structure) -> Value:
     match binding.value:
-        case Num(status=Status.REFERENCE) as number:
+        case Num(status=Exactness.REFERENCE) as number:
             refuses_measure(it, number, binding.node.span)
             made = it.unknown(number.value, here, binding.name, owner=here, dimension=number.dimension)
-            own = Num(made, number.dimension, Status.REFERENCE)
+            own = Num(made, number.dimension, Exactness.REFERENCE)
             _hold_equal(it, binding, [(own, number)])
             return own
-        case Num(status=Status.NUMBER) as number if here is binding.instance:
+        case Num(status=Exactness.NUMBER) as number if here is binding.instance:
             made = it.unknown(
                 number.value, here, binding.name, owner=here, dimension=number.dimension, kept=True, cell=True
             )
             it.became(number, made, here, binding.name, number.dimension)
-            return Num(made, number.dimension, Status.NUMBER)
+            return Num(made, number.dimension, Exactness.NUMBER)
         case PointVal() as point if here is not binding.instance and not _refers(point):
             return point
         case PointVal() as point:
@@ -70,14 +70,14 @@ def _tie(it: Interpreter, binding: PassedBinding, here: Structure) -> Value:
             if _refers(point):
                 outside = convert_point(own_point, here, binding.holder)
                 pairs = [(outside.x, point.x), (outside.y, point.y)]
-                _hold_equal(it, binding, [p for p in pairs if p[1].status is Status.REFERENCE])
+                _hold_equal(it, binding, [p for p in pairs if p[1].status is Exactness.REFERENCE])
             return own_point
         case value:
             return value
 
 
 def _refers(point: PointVal) -> bool:
-    return Status.REFERENCE in (point.x.status, point.y.status)
+    return Exactness.REFERENCE in (point.x.status, point.y.status)
 
 
 def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: Structure) -> PointVal:

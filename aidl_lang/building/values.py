@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from aidl_lang.building.model import Condition, Geometry, Structure
 
 
-class Status(IntEnum):
+class Exactness(IntEnum):
     """The exactness that a number is meant to have, weakest first; it travels with the value (the exactness
     table).
     """
@@ -53,7 +53,7 @@ class Num:
 
     expression: Expression
     dimension: MaybeDimension = None
-    status: Status = Status.NUMBER
+    status: Exactness = Exactness.NUMBER
 
     @property
     def value(self) -> float:
@@ -77,7 +77,7 @@ class PointVal:
 
 
 @record(slots=True)
-class Text:
+class TextVal:
     value: str
     is_param: bool = False
 
@@ -212,7 +212,7 @@ if TYPE_CHECKING:
     Value: TypeAlias = (
         Num
         | PointVal
-        | Text
+        | TextVal
         | bool
         | Condition
         | RangeVal
@@ -231,15 +231,15 @@ else:
     Value = object
 
 
-def number(value: float, dimension: MaybeDimension = None, status: Status = Status.NUMBER) -> Num:
+def number(value: float, dimension: MaybeDimension = None, status: Exactness = Exactness.NUMBER) -> Num:
     return Num(ex.constant(value), dimension, status)
 
 
-def length(expression: Expression, status: Status = Status.REFERENCE) -> Num:
+def length(expression: Expression, status: Exactness = Exactness.REFERENCE) -> Num:
     return Num(expression, LENGTH, status)
 
 
-def point(x: Expression, y: Expression, status: Status = Status.REFERENCE) -> PointVal:
+def point(x: Expression, y: Expression, status: Exactness = Exactness.REFERENCE) -> PointVal:
     return PointVal(Num(x, LENGTH, status), Num(y, LENGTH, status))
 
 
@@ -283,7 +283,7 @@ def _types() -> Mapping[type, Callable[[Any], Type]]:
         Geometry: lambda v: geometry_type(v.type),
         **dict.fromkeys((Structure, Instantiation), always(StructureType())),
         Box: always(BoxType()),
-        Text: always(TextType()),
+        TextVal: always(TextType()),
         **dict.fromkeys((bool, Condition), always(TruthType())),
         RangeVal: always(RangeType()),
         RecordVal: always(RecordType()),

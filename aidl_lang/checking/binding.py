@@ -15,14 +15,14 @@ from typing import TypeAlias
 from aidl_lang.checking.synonyms import COORDINATES, PAIRS, PARAMETERS
 from aidl_lang.checking.types import (
     AnyType,
+    ArgumentSource,
     Binding,
-    Given,
+    GivenArgument,
     ListType,
     Mismatch,
     NumberType,
     PointType,
     Signature,
-    Source,
     TruthType,
     Type,
     accepts,
@@ -38,7 +38,7 @@ _MOST_KEPT = 16
 """Arguments of a call whose outcomes are cached: hardly any has more, and those take memory."""
 
 
-def outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> Outcomes:
+def outcomes(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -> Outcomes:
     """Returns the candidates that fit, perhaps beside mismatches, or else a mismatch for each. Arguments are
     read in other words only if none takes them as written. The author's own definitions come before the
     standard ones of that name.
@@ -49,12 +49,12 @@ def outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> Outcome
 
 
 @lru_cache(maxsize=8192)
-def _of_standard(candidates: tuple[Signature, ...], given: tuple[Given, ...]) -> Outcomes:
+def _of_standard(candidates: tuple[Signature, ...], given: tuple[GivenArgument, ...]) -> Outcomes:
     """Returns the outcomes for standard definitions, which are the same in every program."""
     return tuple(_outcomes(candidates, given))
 
 
-def _outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> Outcomes:
+def _outcomes(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -> Outcomes:
     words = {fold(g.name) for g in given if g.name is not None}
     positional = sum(g.name is None for g in given)
     own = [candidate for candidate in candidates if not candidate.standard]
@@ -70,7 +70,7 @@ def _outcomes(candidates: Sequence[Signature], given: Sequence[Given]) -> Outcom
     return loose
 
 
-def select(candidates: Sequence[Signature], given: Sequence[Given]) -> Binding | list[Mismatch]:
+def select(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -> Binding | list[Mismatch]:
     """Returns the candidate that fits best (least conversion, then fewest defaults, then first written), or
     all mismatches.
     """
@@ -79,7 +79,7 @@ def select(candidates: Sequence[Signature], given: Sequence[Given]) -> Binding |
     return min(fits, key=lambda b: b.cost) if fits else [o for o in found if isinstance(o, Mismatch)]
 
 
-def _unambiguous(fits: Sequence[Binding], given: Sequence[Given]) -> list[Binding | Mismatch]:
+def _unambiguous(fits: Sequence[Binding], given: Sequence[GivenArgument]) -> list[Binding | Mismatch]:
     """Returns the candidates that fit; a mismatch instead if a word means one parameter here and another
     there.
     """
@@ -97,9 +97,9 @@ def _ambiguous(signature: Signature, word: str, meant: Sequence[str], index: int
     return Mismatch(signature, f"does not tell by `{word}` whether {names} is meant", index, tuple(meant))
 
 
-def _loosely(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch:
+def _loosely(signature: Signature, given: Sequence[GivenArgument]) -> Binding | Mismatch:
     """Matches arguments to the parameters of one callable in other words than theirs."""
-    read = [(replace(g), Source(i)) for i, g in enumerate(given)]
+    read = [(replace(g), ArgumentSource(i)) for i, g in enumerate(given)]
     read = _without_flag(signature, read)
     read = _joined(signature, read)
     read = _split(signature, read)
@@ -114,7 +114,7 @@ def _loosely(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch
     return outcome
 
 
-_Read = list[tuple[Given, Source]]
+_Read = list[tuple[GivenArgument, ArgumentSource]]
 
 
 def _bound(signature: Signature, read: _Read) -> Binding | Mismatch:
@@ -158,7 +158,10 @@ def _joined(signature: Signature, read: _Read) -> _Read:
             continue
         pair = found[x], found[y]
         if all(accepts(NumberType(LENGTH), g.type) is not None for g, _ in pair):
-            point = Given(target, PointType()), Source(pair[0][1].index, other=pair[1][1].index)
+            point = (
+                GivenArgument(target, PointType()),
+                ArgumentSource(pair[0][1].index, other=pair[1][1].index),
+            )
             read = [one for one in read if one not in pair] + [point]
     return read
 
@@ -173,7 +176,7 @@ def _split(signature: Signature, read: _Read) -> _Read:
         if targets is None or parts is None or not all(t in signature.by_fold for t in targets):
             result.append((g, source))
             continue
-        result += [(Given(t, parts), replace(source, part=i)) for i, t in enumerate(targets)]
+        result += [(GivenArgument(t, parts), replace(source, part=i)) for i, t in enumerate(targets)]
     return result
 
 

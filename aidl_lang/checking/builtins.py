@@ -1,4 +1,4 @@
-"""What is built in: the names that the standard library itself stands on, and what they take.
+"""The built-in names, on which the standard library itself stands, and their parameters.
 
 Everything that AIDL can say is written in AIDL in `stdlib/`; this table holds what it cannot: the functions
 of a number, the primitives (from their registry), the marks of exactness, and measurements of the finished

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from aidl_lang.checking import fields, units
 from aidl_lang.checking.binding import outcomes
 from aidl_lang.checking.builtins import COPYING, PATTERNS, is_word
-from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, Place, joined
+from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, ReadPlace, joined
 from aidl_lang.checking.habits import check_habits
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.checking.standard import CONSTANT, result
@@ -18,7 +18,7 @@ from aidl_lang.checking.types import (
     AnyType,
     Binding,
     GeometryType,
-    Given,
+    GivenArgument,
     ListType,
     Mismatch,
     NumberType,
@@ -112,11 +112,13 @@ def _spell(
             check.resolution.canonical[argument.name] = meant
 
 
-def _given(node: ast.Call, nodes: Sequence[ast.Expression], facts: Sequence[Fact]) -> list[Given]:
+def _given(node: ast.Call, nodes: Sequence[ast.Expression], facts: Sequence[Fact]) -> list[GivenArgument]:
     names = [None] * (len(nodes) - len(node.arguments)) + [
         a.name.text if a.name else None for a in node.arguments
     ]
-    return [Given(name, _may_be(fact.type, n)) for name, fact, n in zip(names, facts, nodes, strict=True)]
+    return [
+        GivenArgument(name, _may_be(fact.type, n)) for name, fact, n in zip(names, facts, nodes, strict=True)
+    ]
 
 
 def _may_be(kind: Type, node: ast.Expression) -> Type:
@@ -155,7 +157,7 @@ def _result(
     signature: Signature,
     nodes: Sequence[ast.Expression],
     facts: Sequence[Fact],
-    reads: frozenset[Place],
+    reads: frozenset[ReadPlace],
 ) -> Fact:
     match signature.node:
         case None:
@@ -170,7 +172,7 @@ def _result(
             return Fact(StructureType(), NOTHING_READ, definition)
 
 
-def _function(check: Inference, definition: ast.FunctionDefinition, reads: frozenset[Place]) -> Fact:
+def _function(check: Inference, definition: ast.FunctionDefinition, reads: frozenset[ReadPlace]) -> Fact:
     """Returns the fact of a function's expression, which reads what the expression and its arguments read."""
     if definition in check.running:
         return UNKNOWN
@@ -187,7 +189,7 @@ def _built_in(
     name: str,
     nodes: Sequence[ast.Expression],
     facts: Sequence[Fact],
-    reads: frozenset[Place],
+    reads: frozenset[ReadPlace],
 ) -> Fact:
     if name in CONSTANT:
         reads = NOTHING_READ

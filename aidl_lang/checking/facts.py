@@ -11,7 +11,7 @@ from aidl_lang.syntax import ast
 
 
 @record(slots=True)
-class Place:
+class ReadPlace:
     """A structure whose unknowns are read: the one at the path `below`, seen from the structure `holder`
     around the program text (or from the file).
     """
@@ -20,7 +20,7 @@ class Place:
     below: tuple[str, ...] = ()
 
 
-NOTHING_READ: frozenset[Place] = frozenset()
+NOTHING_READ: frozenset[ReadPlace] = frozenset()
 
 
 @record(slots=True)
@@ -36,9 +36,9 @@ class Fact:
     """
 
     type: Type = ANY
-    reads: frozenset[Place] = NOTHING_READ
+    reads: frozenset[ReadPlace] = NOTHING_READ
     of: ast.Node | None = None
-    place: Place | None = None
+    place: ReadPlace | None = None
     bare: Symbol | None = None
     pattern: str = ""
 
@@ -46,7 +46,7 @@ class Fact:
     def is_any(self) -> bool:
         return isinstance(self.type, AnyType)
 
-    def reading(self, reads: frozenset[Place]) -> Fact:
+    def reading(self, reads: frozenset[ReadPlace]) -> Fact:
         return replace(self, reads=reads)
 
     def listed(self, times: int = 1) -> Fact:

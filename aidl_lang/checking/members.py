@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.checking import fields
-from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, Place
+from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, ReadPlace
 from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.resolving.complaints import respell
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
@@ -111,7 +111,7 @@ def _of_structure(check: Inference, base: Fact, node: ast.Member) -> Fact:
     return replace(fact, place=place, reads=reads)
 
 
-def _seen(check: Inference, place: Place, of: ast.Node, base: Place, symbol: Symbol) -> Place:
+def _seen(check: Inference, place: ReadPlace, of: ast.Node, base: ReadPlace, symbol: Symbol) -> ReadPlace:
     """Returns a place that is given from inside a structure, or from around it, as seen from where that
     structure is named. A structure that the expression itself stands in is seen from inside.
     """
@@ -120,11 +120,11 @@ def _seen(check: Inference, place: Place, of: ast.Node, base: Place, symbol: Sym
         if place.holder in check.homes or place.holder not in around:
             return place
         outwards = len(around) - 1 - around.index(place.holder)
-        return Place(base.holder, base.below[: max(len(base.below) - outwards, 0)] + place.below)
+        return ReadPlace(base.holder, base.below[: max(len(base.below) - outwards, 0)] + place.below)
     if place.below == (symbol.name,) and symbol.node in check.homes and not symbol.is_array:
         assert symbol.node is not None
-        return Place(symbol.node)
-    return Place(base.holder, base.below + place.below)
+        return ReadPlace(symbol.node)
+    return ReadPlace(base.holder, base.below + place.below)
 
 
 def _of_shape(check: Inference, base: Fact, node: ast.Member) -> Fact:

@@ -9,7 +9,7 @@ from aidl_lang.checking.habits import two_sizes
 from aidl_lang.checking.resolving.complaints import called_field, respell
 from aidl_lang.checking.synonyms import FIELDS, PAIRS, PARAMETERS
 from aidl_lang.checking.types import (
-    Given,
+    GivenArgument,
     ListType,
     Mismatch,
     NumberType,
@@ -33,7 +33,7 @@ def no_overload(
     check: Inference,
     node: ast.Call,
     nodes: Sequence[ast.Expression],
-    given: Sequence[Given],
+    given: Sequence[GivenArgument],
     misses: Sequence[Mismatch],
 ) -> None:
     if node.receiver is not None and not node.arguments and fold(node.callee.text) in FIELDS:
@@ -80,7 +80,7 @@ def example_of(signature: Signature) -> str | None:
     return None
 
 
-def _closeness(miss: Mismatch, given: Sequence[Given]) -> tuple[int, int, int, int, int]:
+def _closeness(miss: Mismatch, given: Sequence[GivenArgument]) -> tuple[int, int, int, int, int]:
     """Returns how near a candidate comes: named arguments it knows, best by these names, then what is
     missing.
     """
@@ -100,7 +100,9 @@ def _knows(signature: Signature, word: str) -> bool:
     return any(fold(m) in known for m in meanings) or all(p in known for p in pair)
 
 
-def _ambiguous(check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]) -> bool:
+def _ambiguous(
+    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
+) -> bool:
     """Reports a word that may mean several parameters. Returns whether there is one."""
     miss = next((m for m in misses if m.meanings), None)
     if miss is None or miss.argument is None:
@@ -120,7 +122,7 @@ def _ambiguous(check: Inference, node: ast.Call, given: Sequence[Given], misses:
 
 
 def _loose_coordinates(
-    check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
+    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
 ) -> bool:
     """Reports numbers in place of points: `line(0, 0, 10, 5)`, `circle(0, 0, 5)`. Returns whether there are
     any.
@@ -165,7 +167,7 @@ def _loose_coordinates(
 
 
 def _pair_for_one(
-    check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
+    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
 ) -> bool:
     """Reports two sizes in brackets: `square([40, 20])`, `rectangle([40, 20])`. Returns whether there are
     any.
@@ -193,7 +195,7 @@ def _pair_for_one(
     return takes_one or (takes_two and argument.name is None)
 
 
-def _is_pair(given: Given) -> bool:
+def _is_pair(given: GivenArgument) -> bool:
     return isinstance(given.type, PointType) or (isinstance(given.type, ListType) and given.type.length == 2)
 
 
@@ -202,7 +204,7 @@ def _may_be_size(argument: ast.Argument) -> bool:
 
 
 def _half_or_double(
-    check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
+    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
 ) -> bool:
     """Reports a diameter in place of a radius, or the reverse. Returns whether there is one."""
     for argument in node.arguments:
@@ -230,7 +232,7 @@ def _half_or_double(
 
 
 def _not_together(
-    check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
+    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
 ) -> bool:
     """Reports named arguments that some overloads know, but none all of them. Returns whether there are
     any.
@@ -255,7 +257,7 @@ def _meanings(word: str, names: Sequence[str]) -> list[str]:
 
 
 def _unknown_parameter(
-    check: Inference, node: ast.Call, given: Sequence[Given], misses: Sequence[Mismatch]
+    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Sequence[Mismatch]
 ) -> bool:
     """Reports argument names that no overload knows. Returns whether there is one."""
     names = list(dict.fromkeys(name for m in misses for name, _, _ in m.signature.parameters))

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.checking import fields
-from aidl_lang.checking.facts import UNKNOWN, Fact, Place, joined
+from aidl_lang.checking.facts import UNKNOWN, Fact, ReadPlace, joined
 from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import (
     ANY,
@@ -57,7 +57,7 @@ def _literal(check: Inference, node: ast.Expression) -> Fact:
 def _structure_itself(check: Inference, node: ast.Node | None) -> Fact:
     if not isinstance(node, ast.Structure):
         return UNKNOWN
-    place = Place(node)
+    place = ReadPlace(node)
     return Fact(StructureType(), frozenset({place}), node, place)
 
 
@@ -117,20 +117,20 @@ def _value_of(check: Inference, symbol: Symbol, node: ast.Node) -> Fact:
         case ast.Let(value=value):
             return check.fact(value)
         case ast.Var(value=value):
-            return Fact(_unlocked(check.fact(value).type), frozenset({Place(home)}))
+            return Fact(_unlocked(check.fact(value).type), frozenset({ReadPlace(home)}))
         case ast.Structure(indices=indices):
-            place = Place(home, (symbol.name,))
+            place = ReadPlace(home, (symbol.name,))
             return Fact(StructureType(), frozenset({place}), node, place).listed(len(indices))
         case ast.Assign(value=value, indices=indices):
             fact = check.fact(value)
             is_made = symbol.kind is SymbolKind.GEOMETRY
             if isinstance(fact.type, StructureType) or (is_made and _holds_structures(fact.type)):
-                place = Place(home, (symbol.name,))
+                place = ReadPlace(home, (symbol.name,))
                 fact = replace(fact, reads=frozenset({place}), place=place)
             elif is_made:
                 # A copy of an ancestor's geometry is for the ancestor to constrain.
                 far = {p for p in fact.reads if p.holder is not home}
-                fact = fact.reading(frozenset({Place(home), *far}))
+                fact = fact.reading(frozenset({ReadPlace(home), *far}))
             return fact.listed(len(indices))
         case _:
             return UNKNOWN

@@ -1,8 +1,8 @@
 """The registry of primitives: a record of each kind of point, curve and text that is built in.
 
-How a kind is called, which fields it has and of what types, which of them are sizes and which turn with what
-they are in, what is told of one and how one is written to be tried: all this is read from here, and written
-nowhere else. What follows from the numbers of a kind stands in `building.curves`.
+The calls of a kind, its fields and their types, which of them are sizes and which turn with the things
+around, the fields that are shown of one and a sample for trying it: all this is read from here, and written
+nowhere else. The formulas of a kind stand in `building.curves`.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ class Primitive:
     """A kind of primitive.
 
     calls    the parameters of each of its constructors, as in `builtins`
-    fields   what it can be asked for: `name: point`, `length` (that may be negative), `size` (that may not),
-             `angle`, `direction` (an angle that turns with what it is in), `KIND[]` for a list
-    unlisted fields that messages and completion do not offer: another says the same
-    told     the fields that are told of one that is pointed at; all where there are none
-    sample   how one is written at `({x}, {y})`; "" for what the library alone uses
+    fields   its fields: `name: point`, `length` (that may be negative), `size` (that may not), `angle`,
+             `direction` (an angle that turns with the things around), `KIND[]` for a list
+    unlisted fields that messages and completion do not offer, as another says the same
+    told     the fields to show of one that is pointed at; all if it is empty
+    sample   the text of one at `({x}, {y})`; "" for a kind that the library alone uses
     """
 
     kind: str
@@ -39,12 +39,12 @@ class Primitive:
 
     @cached_property
     def types(self) -> Mapping[str, str]:
-        """The word for the type of each field, those that are not offered too."""
+        """The word for the type of each field, unlisted ones included."""
         return dict([*_items(self.fields), *_items(self.unlisted)])
 
     @cached_property
     def shown(self) -> tuple[str, ...]:
-        """The fields that are told of one."""
+        """The fields to show of one."""
         return tuple(self.told.split()) or self.names
 
 
@@ -125,5 +125,5 @@ def fields_of(word: str) -> frozenset[str]:
 
 
 def offered(kind: str) -> tuple[str, ...]:
-    """Returns the fields that a primitive is said to have; none for a kind that is no primitive."""
+    """Returns the fields to offer for a kind of primitive; none for a kind that is none."""
     return PRIMITIVES[kind].names if kind in PRIMITIVES else ()

@@ -21,7 +21,7 @@ def member_path(name: ast.Identifier, indices: Sequence[ast.Expression]) -> str:
 
 
 @record(eq=False)
-class Site:
+class StatementSite:
     """A place among the statements of a file.
 
     homes  the structures around, the file first
@@ -35,22 +35,22 @@ class Site:
     def home(self) -> ast.Node:
         return self.homes[-1]
 
-    def within(self, statement: ast.Statement) -> Site:
-        return Site(self.homes, (*self.trail, (statement, False)))
+    def within(self, statement: ast.Statement) -> StatementSite:
+        return StatementSite(self.homes, (*self.trail, (statement, False)))
 
-    def inside(self, structure: ast.Structure) -> Site:
-        return Site((*self.homes, structure), self.trail)
+    def inside(self, structure: ast.Structure) -> StatementSite:
+        return StatementSite((*self.homes, structure), self.trail)
 
-    def otherwise(self, _: ast.If) -> Site:
-        return Site(self.homes, (*self.trail[:-1], (self.trail[-1][0], True)))
+    def otherwise(self, _: ast.If) -> StatementSite:
+        return StatementSite(self.homes, (*self.trail[:-1], (self.trail[-1][0], True)))
 
 
-class Move:
+class Relocation:
     """A move of expressions from a site to an ancestor of its structure, behind the statement that holds the
     site.
     """
 
-    def __init__(self, site: Site, ancestor: ast.Node, infer: Inference) -> None:
+    def __init__(self, site: StatementSite, ancestor: ast.Node, infer: Inference) -> None:
         self.site = site
         self.infer = infer
         self.level = site.homes.index(ancestor)

@@ -236,7 +236,7 @@ def _accepts_box(given: Type) -> int | None:
 
 
 @record()
-class Given:
+class GivenArgument:
     """An argument of a call for the choice of an overload; `name` is None for a positional one."""
 
     name: str | None
@@ -291,7 +291,7 @@ class Signature:
 
 
 @record()
-class Source:
+class ArgumentSource:
     """The origin of an argument: the one at `index` of the call, one of its two parts, or the point of it as
     x and of `other` as y.
     """
@@ -314,7 +314,7 @@ class Binding:
     gathered: str | None
     cost: tuple[int, int]
     positional: tuple[int, ...] = ()
-    sources: tuple[Source, ...] = ()
+    sources: tuple[ArgumentSource, ...] = ()
 
     @cached_property
     def taken(self) -> tuple[tuple[str, Type, tuple[int, ...]], ...]:
@@ -331,8 +331,8 @@ class Binding:
         meant: dict[int, str] = {}
         for name, taken in self.arguments.items():
             for place in taken:
-                source = self.sources[place] if self.sources else Source(place)
-                if source == Source(source.index):
+                source = self.sources[place] if self.sources else ArgumentSource(place)
+                if source == ArgumentSource(source.index):
                     meant.setdefault(source.index, name)
         return meant
 
@@ -363,7 +363,7 @@ _GATHERED = 20
 """The cost of collecting arguments into a list: an overload that names them comes before."""
 
 
-def bind(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch:
+def bind(signature: Signature, given: Sequence[GivenArgument]) -> Binding | Mismatch:
     """Matches arguments to the parameters of one callable.
 
     If the first parameter is a list and the arguments do not fit as they stand, all positional ones are its
@@ -376,7 +376,7 @@ def bind(signature: Signature, given: Sequence[Given]) -> Binding | Mismatch:
     return gathered if isinstance(gathered, Binding) or plain.argument != gathered.argument else plain
 
 
-def _bind(signature: Signature, given: Sequence[Given], *, gather: bool) -> Binding | Mismatch:
+def _bind(signature: Signature, given: Sequence[GivenArgument], *, gather: bool) -> Binding | Mismatch:
     positional = [i for i, g in enumerate(given) if g.name is None]
     parameters = signature.parameters
     arguments: dict[str, tuple[int, ...]] = {}
@@ -405,7 +405,7 @@ def _bind(signature: Signature, given: Sequence[Given], *, gather: bool) -> Bind
 
 def _fitted(
     signature: Signature,
-    given: Sequence[Given],
+    given: Sequence[GivenArgument],
     arguments: Mapping[str, tuple[int, ...]],
     gathered: str | None,
     positional: tuple[int, ...],

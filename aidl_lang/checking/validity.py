@@ -16,29 +16,29 @@ from collections.abc import Sequence
 from aidl_lang.checking.binding import select
 from aidl_lang.checking.builtins import DERIVING, PATTERNS
 from aidl_lang.checking.calls import arguments
-from aidl_lang.checking.facts import Fact, Place, is_point
+from aidl_lang.checking.facts import Fact, ReadPlace, is_point
 from aidl_lang.checking.fields import PRIMITIVE
 from aidl_lang.checking.infer import Inference
-from aidl_lang.checking.relocate import Site, member_path
+from aidl_lang.checking.relocate import StatementSite, member_path
 from aidl_lang.checking.resolving.complaints import used_early
 from aidl_lang.checking.resolving.symbols import UNKNOWNS
 from aidl_lang.checking.types import (
     Binding,
     GeometryType,
-    Given,
+    GivenArgument,
     ListType,
     NumberType,
     PointType,
     StructureType,
 )
-from aidl_lang.checking.violations import Target, Violation
+from aidl_lang.checking.violations import FarReference, Violation
 from aidl_lang.syntax import ast
 
 
 def check_validity(module: ast.Module, infer: Inference) -> list[Violation]:
     """Returns the breaches of both rules in one file."""
     walker = _Walker(infer)
-    walker.block(module.statements, Site((module,), ()))
+    walker.block(module.statements, StatementSite((module,), ()))
     return walker.found
 
 
@@ -51,11 +51,11 @@ class _Walker:
         self.infer = infer
         self.found: list[Violation] = []
 
-    def block(self, statements: Sequence[ast.Statement], site: Site) -> None:
+    def block(self, statements: Sequence[ast.Statement], site: StatementSite) -> None:
         for statement in statements:
             self._statement(statement, site.within(statement))
 
-    def _statement(self, node: ast.Statement, site: Site) -> None:
+    def _statement(self, node: ast.Statement, site: StatementSite) -> None:
         match node:
             case ast.Structure():
                 if node.parameters is None:
@@ -65,7 +65,7 @@ class _Walker:
                 self._assign(node, site)
                 self._placement(node, site)
             case ast.Var(name, value):
-                target = Target(
+                target = FarReference(
                     value, (name.text,), is_point=is_point(self.infer.fact(value).type), is_size=False
                 )
                 self._geometry([target], value, site)
@@ -87,7 +87,7 @@ class _Walker:
 
     # --- Rule 1 --------------------------------------------------------------------------------
 
-    def _assign(self, node: ast.Assign, site: Site) -> None:
+    def _assign(self, node: ast.Assign, site: StatementSite) -> None:
         path = (member_path(node.name, node.indices),)
         value = node.value
         match value:
@@ -108,7 +108,7 @@ class _Walker:
             case _:
                 pass  # a name for an expression is judged where it is used
 
-    def _made(self, call: ast.Call, path: tuple[str, ...] | None, site: Site) -> None:
+    def _made(self, call: ast.Call, path: tuple[str, ...] | None, site: StatementSite) -> None:
         """Checks the arguments of a constructor; those of a template may reach anywhere."""
         fact = self.infer.fact(call)
         name = self.infer.resolution.canonical.get(call.callee, call.callee.text)
@@ -130,7 +130,7 @@ class _Walker:
                 continue
             self._geometry(self._targets(call, index, node, path), node, site)
 
-    def _order(self, node: ast.Expression, site: Site) -> None:
+    def _order(self, node: ast.Expression, site: StatementSite) -> None:
         """Reports an operand of a derivation that is made further down. Names of this structure without a
         path are checked elsewhere.
         """
@@ -158,33 +158,33 @@ class _Walker:
 
     def _targets(
         self, call: ast.Call, index: int, node: ast.Expression, path: tuple[str, ...] | None
-    ) -> list[Target]:
+    ) -> list[FarReference]:
         """Returns the expressions in an argument that a guess may replace, with the paths that reach them."""
         name = self._parameter(call, index)
         if path is None or name is None or not self._is_field(call, name):
-            return [Target(node, None, is_point=self._is_point(node), is_size=True)]
+            return [FarReference(node, None, is_point=self._is_point(node), is_size=True)]
         if isinstance(node, ast.Point):
             return self._coordinates(node, (*path, name))
         if isinstance(node, ast.List) and node.items and self._is_point(node.items[0]):
-            items: list[Target] = []
+            items: list[FarReference] = []
             for i, item in enumerate(node.items):
                 place = (*path, f"{name}[{i}]")
                 items += (
                     self._coordinates(item, place)
                     if isinstance(item, ast.Point)
-                    else [Target(item, place, True)]
+                    else [FarReference(item, place, True)]
                 )
             return items
         is_position = self._is_point(node)
-        return [Target(node, (*path, name), is_position, is_size=not is_position)]
+        return [FarReference(node, (*path, name), is_position, is_size=not is_position)]
 
-    def _coordinates(self, node: ast.Point, path: tuple[str, ...]) -> list[Target]:
+    def _coordinates(self, node: ast.Point, path: tuple[str, ...]) -> list[FarReference]:
         """Returns a point as target, or the one coordinate of it that reads too far, so that the other stays
         as it is.
         """
         if self._reads(node.x) and self._reads(node.y):
-            return [Target(node, path, is_point=True)]
-        return [Target(node.x, (*path, "x")), Target(node.y, (*path, "y"))]
+            return [FarReference(node, path, is_point=True)]
+        return [FarReference(node.x, (*path, "x")), FarReference(node.y, (*path, "y"))]
 
     def _parameter(self, call: ast.Call, index: int) -> str | None:
         """Returns the parameter that the argument of that number goes to, if there is no doubt."""
@@ -192,7 +192,7 @@ class _Walker:
         names = [None] * (len(nodes) - len(call.arguments)) + [
             a.name.text if a.name else None for a in call.arguments
         ]
-        given = [Given(n, self.infer.fact(e).type) for n, e in zip(names, nodes, strict=True)]
+        given = [GivenArgument(n, self.infer.fact(e).type) for n, e in zip(names, nodes, strict=True)]
         chosen = select(self.infer.resolution.candidates.get(call, ()), given)
         return chosen.parameter_of(index) if isinstance(chosen, Binding) else None
 
@@ -207,7 +207,7 @@ class _Walker:
         kind = self.infer.fact(node).type
         return is_point(kind) or isinstance(node, ast.List)
 
-    def _placement(self, node: ast.Structure | ast.Assign, site: Site) -> None:
+    def _placement(self, node: ast.Structure | ast.Assign, site: StatementSite) -> None:
         """Checks `at` and `rotated`, which belong to the structure that holds the one they place."""
         if node.placement is None:
             return
@@ -216,31 +216,31 @@ class _Walker:
             targets = (
                 self._coordinates(at, path)
                 if isinstance(at, ast.Point)
-                else [Target(at, path, is_point=True)]
+                else [FarReference(at, path, is_point=True)]
             )
             self._geometry(targets, at, site)
         if (rotated := node.placement.rotated) is not None:
-            self._geometry([Target(rotated, None, is_size=True)], rotated, site)
+            self._geometry([FarReference(rotated, None, is_size=True)], rotated, site)
 
-    def _geometry(self, targets: Sequence[Target], whole: ast.Expression, site: Site) -> None:
+    def _geometry(self, targets: Sequence[FarReference], whole: ast.Expression, site: StatementSite) -> None:
         """Checks rule 1 for an expression that geometry is made with."""
-        own = Place(site.home)
+        own = ReadPlace(site.home)
         for target in targets:
             far = [p for p in self._reads(target.node) if p != own]
             if far:
                 self.found.append(Violation(1, target, whole, tuple(far), site, self.infer))
 
-    def _reads(self, node: ast.Node) -> list[Place]:
+    def _reads(self, node: ast.Node) -> list[ReadPlace]:
         return _sorted(self.infer.fact(node).reads)
 
     # --- Rule 2 --------------------------------------------------------------------------------
 
-    def _constraint(self, statement: ast.Statement, item: ast.Statement, site: Site) -> None:
+    def _constraint(self, statement: ast.Statement, item: ast.Statement, site: StatementSite) -> None:
         expressions = [e for e in ast.children(item) if e in self.infer.facts]
         reads = {p for e in expressions for p in self.infer.facts[e].reads}
         far = [p for p in _sorted(reads) if p.holder is not site.home]
         if far and isinstance(item, ast.ExpressionStatement | ast.Prefer | ast.Equation):
-            self.found.append(Violation(2, Target(item, None), statement, tuple(far), site, self.infer))
+            self.found.append(Violation(2, FarReference(item, None), statement, tuple(far), site, self.infer))
 
 
 def _may_derive(fact: Fact, homes: Sequence[ast.Node]) -> bool:
@@ -255,5 +255,5 @@ def _may_derive(fact: Fact, homes: Sequence[ast.Node]) -> bool:
     return all(p.holder in homes for p in fact.reads)
 
 
-def _sorted(places: frozenset[Place] | set[Place]) -> list[Place]:
+def _sorted(places: frozenset[ReadPlace] | set[ReadPlace]) -> list[ReadPlace]:
     return sorted(places, key=lambda p: (p.holder.span.start, p.holder.span.end, p.below))

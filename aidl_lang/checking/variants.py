@@ -36,7 +36,7 @@ class Construct(StrEnum):
 
 
 @record()
-class Rule:
+class Restriction:
     """The diagnostic for a construct; `{name}` is its name."""
 
     code: str
@@ -48,58 +48,58 @@ _ONE = "`no-hierarchy` has one structure"
 _AS_WRITTEN = "`no-constraints` draws everything as it is written"
 _CUT = "cut it out: `body = cut(plate, bore)`"
 
-FORBIDDEN: Mapping[Variant, Mapping[Construct, Rule]] = {
+FORBIDDEN: Mapping[Variant, Mapping[Construct, Restriction]] = {
     Variant.FULL: {},
     Variant.NO_HIERARCHY: {
-        Construct.HOLE: Rule(
+        Construct.HOLE: Restriction(
             "E0403",
             f"{_ONE}, and `{{name}}` is a hole of its own",
             f"draw its outline in the one structure, and {_CUT}",
         ),
-        Construct.STRUCTURE: Rule(
+        Construct.STRUCTURE: Restriction(
             "E0403",
             f"{_ONE}, and `{{name}}` is another",
             "write its geometry and constraints straight into the first structure, under names of their own",
         ),
-        Construct.LOOSE: Rule(
+        Construct.LOOSE: Restriction(
             "E0403",
             f"{_ONE}, and this stands outside `{{name}}`",
             "write it inside `{name}`",
         ),
-        Construct.TEMPLATE: Rule(
+        Construct.TEMPLATE: Restriction(
             "E0404",
             f"{_ONE}, and the template `{{name}}` makes more",
             f"repeat geometry in a loop, `for i in 0..3 {{ bore[i] = circle(…) }}`; if it is a hole, {_CUT}",
         ),
-        Construct.SHAPE: Rule(
+        Construct.SHAPE: Restriction(
             "E0405",
             "in `no-hierarchy` all geometry is on one level, and the shape `{name}` has parts of its own",
             "write its parts where it is used, or make it one `path` or `polygon`; `fn` can work out points",
         ),
     },
     Variant.NO_CONSTRAINTS: {
-        Construct.CONSTRAINT: Rule(
+        Construct.CONSTRAINT: Restriction(
             "E0406",
             f"{_AS_WRITTEN} and has no constraints",
             "write where things are and how large: by numbers, `param`s, or parts of geometry above, as in "
             "`center: plate.top_left + (5, -5)`",
         ),
-        Construct.UNKNOWN: Rule(
+        Construct.UNKNOWN: Restriction(
             "E0407",
             f"{_AS_WRITTEN}, and `{{name}}` is an unknown",
             "name its value by `let`, or make it a `param`",
         ),
-        Construct.DEFINITION: Rule(
+        Construct.DEFINITION: Restriction(
             "E0408",
             f"{_AS_WRITTEN}, and `{{name}}` defines a constraint",
             "let a function work out what it ties, as in `fn top_of(a) = a.center + (0, 10)`",
         ),
-        Construct.RELATION: Rule(
+        Construct.RELATION: Restriction(
             "E0409",
             "`no-constraints` has no relations, and `{name}` is one",
             "compare coordinates or measures, as in `assert lid.bottom >= box.top`",
         ),
-        Construct.SMOOTH: Rule(
+        Construct.SMOOTH: Restriction(
             "E0409",
             f"{_AS_WRITTEN}, and `{{name}}` would move a step of the path",
             "give the points of a smooth outline, or use `tangent_arc_to` and `arc_by`, which go on smoothly",

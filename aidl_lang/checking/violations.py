@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterator, Mapping
 
 from aidl_lang.checking.conditions import operation
-from aidl_lang.checking.facts import Place, is_point
+from aidl_lang.checking.facts import ReadPlace, is_point
 from aidl_lang.checking.infer import Inference
-from aidl_lang.checking.relocate import Move, Site, insertion_after
+from aidl_lang.checking.relocate import Relocation, StatementSite, insertion_after
 from aidl_lang.checking.resolving.symbols import SymbolKind
 from aidl_lang.checking.types import GeometryType, NumberType, StructureType
 from aidl_lang.checking.wording import shown
@@ -19,7 +19,7 @@ from aidl_lang.syntax import ast
 
 
 @record(eq=False)
-class Target:
+class FarReference:
     """An expression that reads too far.
 
     node       the expression (or, of rule 2, the statement) that reads too far
@@ -44,10 +44,10 @@ class Violation:
     """
 
     rule: int
-    target: Target
+    target: FarReference
     whole: ast.Node
-    far: tuple[Place, ...]
-    site: Site
+    far: tuple[ReadPlace, ...]
+    site: StatementSite
     infer: Inference
 
     @property
@@ -162,12 +162,12 @@ class Violation:
 
     def _relation(self, ancestor: ast.Node) -> str | None:
         """Returns the constraint as the ancestor can state it; None if it cannot."""
-        move = Move(self.site, ancestor, self.infer)
+        move = Relocation(self.site, ancestor, self.infer)
         if not move.is_possible:
             return None
         return self._equation(move) if self.rule == 1 else self._moved(move)
 
-    def _equation(self, move: Move) -> str | None:
+    def _equation(self, move: Relocation) -> str | None:
         path, node = self.target.path, self.target.node
         if path is None:
             return None
@@ -183,7 +183,7 @@ class Violation:
         left = ".".join(step for step in (move.path(), *path) if step)
         return move.statement(f"constrain {left} == {right}")
 
-    def _moved(self, move: Move) -> str | None:
+    def _moved(self, move: Relocation) -> str | None:
         item = self.target.node
         match item:
             case ast.Prefer(value, weight):
@@ -205,7 +205,7 @@ class Violation:
     def _fix(
         self, relation: str, ancestor: ast.Node, written: Mapping[ast.Node, tuple[float, float] | float]
     ) -> Fix:
-        move = Move(self.site, ancestor, self.infer)
+        move = Relocation(self.site, ancestor, self.infer)
         where, text = insertion_after(move.anchor, relation)
         if self.rule == 2:
             return Fix(

@@ -61,7 +61,7 @@ class Guarded:
 
 
 def limit_met(error: BaseException) -> Limit | None:
-    """Returns what broke a call that ended in an error; None where the call raised it by itself."""
+    """Returns the limit that broke a call; None if the call raised the error by itself."""
     from pebble import ProcessExpired
 
     if isinstance(error, ProcessExpired):

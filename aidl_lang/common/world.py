@@ -14,7 +14,7 @@ from typing import Protocol
 MAX_BYTES = 10_000_000  # of one file; a program is far smaller, and a device file has no end
 
 
-class Reason(StrEnum):
+class ReadFailure(StrEnum):
     """The reason why a file cannot be read."""
 
     MISSING = "there is no such file"
@@ -29,7 +29,7 @@ class Reason(StrEnum):
 class FileError(OSError):
     """Raised for a file that cannot be read: `path` as asked for, and the reason in words."""
 
-    def __init__(self, path: str, reason: Reason) -> None:
+    def __init__(self, path: str, reason: ReadFailure) -> None:
         super().__init__(f"{path}: {reason}")
         self.path = path
         self.reason = reason
@@ -51,7 +51,7 @@ def normalize(path: str) -> str:
         if part == ".." and parts:
             parts.pop()
         elif part == ".." or pure.is_absolute() or part.endswith(":"):
-            raise FileError(path, Reason.OUTSIDE)
+            raise FileError(path, ReadFailure.OUTSIDE)
         else:
             parts.append(part)
     return "/".join(parts)
@@ -62,7 +62,7 @@ def relative_to(path: str, importer: str) -> str:
     does.
     """
     if PurePosixPath(path).is_absolute():
-        raise FileError(path, Reason.OUTSIDE)
+        raise FileError(path, ReadFailure.OUTSIDE)
     return normalize(str(PurePosixPath(importer).parent / path))
 
 
@@ -76,7 +76,7 @@ class MemoryWorld:
         try:
             return self.files[normalize(path)]
         except KeyError:
-            raise FileError(path, Reason.MISSING) from None
+            raise FileError(path, ReadFailure.MISSING) from None
 
 
 class DiskWorld:
@@ -89,19 +89,19 @@ class DiskWorld:
         try:
             file = (self.root / normalize(path)).resolve()
             if not file.is_relative_to(self.root):
-                raise FileError(path, Reason.OUTSIDE)
+                raise FileError(path, ReadFailure.OUTSIDE)
             if not file.is_file():
-                raise FileError(path, Reason.MISSING)
+                raise FileError(path, ReadFailure.MISSING)
             if (
                 file.suffix != PurePosixPath(path).suffix
             ):  # a link to a file of another kind, which is no program
-                raise FileError(path, Reason.ANOTHER_KIND)
+                raise FileError(path, ReadFailure.ANOTHER_KIND)
             if file.stat().st_size > MAX_BYTES:
-                raise FileError(path, Reason.TOO_LARGE)
+                raise FileError(path, ReadFailure.TOO_LARGE)
             return file.read_text(encoding="utf-8")
         except UnicodeDecodeError:
-            raise FileError(path, Reason.NOT_TEXT) from None
+            raise FileError(path, ReadFailure.NOT_TEXT) from None
         except FileError:
             raise
         except (OSError, ValueError, RuntimeError):  # no permission, a NUL in the name, a loop of links
-            raise FileError(path, Reason.UNREADABLE) from None
+            raise FileError(path, ReadFailure.UNREADABLE) from None

@@ -23,7 +23,7 @@ from aidl_lang.building.model import (
 from aidl_lang.building.primitives import clockwise, number, translate, xy
 from aidl_lang.building.root_frame import FLOATS, Placing
 from aidl_lang.building.scopes import Binding, ParamBinding, PassedBinding, Scope, VarBinding
-from aidl_lang.building.values import Num, PointVal, Text, Value
+from aidl_lang.building.values import Num, PointVal, TextVal, Value
 from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.drawing_time import blaming
 from aidl_lang.common.records import record
@@ -189,15 +189,15 @@ class _Reader:
                     case PassedBinding(tied=tied):
                         # A copy shares those of its source.
                         value = tied.get(s) or tied.get(binding.instance, binding.value)
-                    case Text() | bool() if scope is s.scope:
+                    case TextVal() | bool() if scope is s.scope:
                         value = binding
-                if isinstance(value, Num | Text | bool):
+                if isinstance(value, Num | TextVal | bool):
                     yield name, self._scalar(value)
 
     def _orientation(self, s: Structure) -> str:
         """Returns the orientation of a structure: its own, else that of the structure around it."""
         match s.attributes.get("orientation"):
-            case (Text(word, _),):
+            case (TextVal(word, _),):
                 return word
             case _:
                 return self._orientation(s.parent) if s.parent is not None else "top"
@@ -209,7 +209,7 @@ class _Reader:
         match value:
             case Num(expression, _, _):
                 return self.evaluate(expression)
-            case Text(text, _):
+            case TextVal(text, _):
                 return text
             case bool():
                 return value

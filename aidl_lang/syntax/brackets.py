@@ -5,7 +5,7 @@ from __future__ import annotations
 from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax.tokens import END, Token, begins_line
-from aidl_lang.syntax.trouble import Problem, Repair, Trouble, closing, replaced
+from aidl_lang.syntax.trouble import SyntaxProblem, TokenRepair, Trouble, closing, replaced
 from aidl_lang.syntax.words import VALUE_STARTS
 
 _CLOSER = {"(": ")", "CALL": ")", "[": "]", "{": "}"}
@@ -60,7 +60,7 @@ def _list_as_statement(source: SourceFile, token: Token, joined: bool) -> Diagno
     )
 
 
-def wrong_closer(t: Trouble) -> Problem | None:
+def wrong_closer(t: Trouble) -> SyntaxProblem | None:
     """Recognises a closing bracket of another kind than the one that is open."""
     if t.token.kind not in (")", "]") or not t.open or _CLOSER[t.open[-1].kind] == t.token.kind:
         return None
@@ -68,7 +68,7 @@ def wrong_closer(t: Trouble) -> Problem | None:
     right = _CLOSER[opener.kind]
     if not t.accepts(right):
         return None
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0102",
             f"expected `{right}` to close {_BRACKET[opener.kind]} that begins here, not `{t.token.text}`",
@@ -77,11 +77,11 @@ def wrong_closer(t: Trouble) -> Problem | None:
             (Label(t.span(), f"`{right}` belongs here"),),
             fix=replaced(f"write `{right}`", t.span(), right),
         ),
-        Repair(t.position, t.position + 1, (t.token._replace(kind=right, text=right),)),
+        TokenRepair(t.position, t.position + 1, (t.token._replace(kind=right, text=right),)),
     )
 
 
-def unclosed_bracket(t: Trouble) -> Problem | None:
+def unclosed_bracket(t: Trouble) -> SyntaxProblem | None:
     """Recognises a bracket left open at the end of its statement, or where another begins."""
     if not t.open or not (t.begins_statement() or t.token.kind in (";", "{", "at", "rotated")):
         return None
@@ -90,7 +90,7 @@ def unclosed_bracket(t: Trouble) -> Problem | None:
         return None
     opener = t.open[-1]
     text = "".join(closers)
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0102",
             f"expected `{text}` to close {_BRACKET[opener.kind]} that begins here",
@@ -99,11 +99,11 @@ def unclosed_bracket(t: Trouble) -> Problem | None:
             (Label(t.gap(), f"`{text}` is missing"),),
             fix=replaced(f"put in `{text}`", t.gap(), text),
         ),
-        Repair(t.position, t.position, tuple(t.token_here(c) for c in closers)),
+        TokenRepair(t.position, t.position, tuple(t.token_here(c) for c in closers)),
     )
 
 
-def unclosed_block(t: Trouble) -> Problem | None:
+def unclosed_block(t: Trouble) -> SyntaxProblem | None:
     """Recognises a block left open at the end of the file; indentation tells which one was to end, and
     where.
     """
@@ -116,7 +116,7 @@ def unclosed_block(t: Trouble) -> Problem | None:
     place = _place_for_brace(t, opener)
     indent = " " * t.indentation(opener.start)
     closer = f"\n{indent}}}"
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0102",
             "expected `}` to close the block that begins here",
@@ -125,7 +125,7 @@ def unclosed_block(t: Trouble) -> Problem | None:
             (Label(place, "`}` is missing"),),
             fix=replaced("close the block", place, closer),
         ),
-        Repair(t.position, t.position, (t.token_here("}"),)),
+        TokenRepair(t.position, t.position, (t.token_here("}"),)),
     )
 
 
@@ -159,10 +159,10 @@ def _place_for_brace(t: Trouble, opener: Token) -> Span:
     return Span(t.source, last.end, last.end)
 
 
-def stray_closer(t: Trouble) -> Problem | None:
+def stray_closer(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind not in (")", "]", "}") or t.open or not (t.between or t.accepts(";")):
         return None
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0118",
             f"`{t.token.text}` closes nothing",
@@ -170,16 +170,16 @@ def stray_closer(t: Trouble) -> Problem | None:
             "no bracket is open here",
             fix=replaced("remove it", t.span(), ""),
         ),
-        Repair(t.position, t.position + 1),
+        TokenRepair(t.position, t.position + 1),
     )
 
 
-def missing_comma(t: Trouble) -> Problem | None:
+def missing_comma(t: Trouble) -> SyntaxProblem | None:
     if not t.open or t.token.kind not in VALUE_STARTS or not t.accepts(",", t.token.kind):
         return None
     opener = t.open[-1]
     inside = {"CALL": "arguments", "[": "items", "(": "coordinates"}[opener.kind]
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0112",
             f"expected `,` between two {inside}",
@@ -188,16 +188,16 @@ def missing_comma(t: Trouble) -> Problem | None:
             (Label(t.span(opener), f"in {_BRACKET[opener.kind]} that begins here"),),
             fix=replaced("put in `,`", t.gap(), ","),
         ),
-        Repair(t.position, t.position, (t.token_here(","),)),
+        TokenRepair(t.position, t.position, (t.token_here(","),)),
     )
 
 
-def three_coordinates(t: Trouble) -> Problem | None:
+def three_coordinates(t: Trouble) -> SyntaxProblem | None:
     if not t.open or t.open[-1].kind != "(" or t.token.kind in (")", END) or t.before is None:
         return None
     if t.before.kind != "," or not t.accepts(")"):
         return None
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0123",
             "a point has two coordinates: `(x, y)`",
@@ -208,10 +208,10 @@ def three_coordinates(t: Trouble) -> Problem | None:
     )
 
 
-def stray_comma(t: Trouble) -> Problem | None:
+def stray_comma(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind != "," or t.open or not t.accepts(";"):
         return None
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0122",
             "statements are not separated by commas",
@@ -220,5 +220,5 @@ def stray_comma(t: Trouble) -> Problem | None:
             hints=("commas stand between arguments, and between constraints inside `constrain { }`",),
             fix=replaced("write `;`", t.span(), ";"),
         ),
-        Repair(t.position, t.position + 1, (t.token._replace(kind=";", text=";"),)),
+        TokenRepair(t.position, t.position + 1, (t.token._replace(kind=";", text=";"),)),
     )

@@ -9,10 +9,10 @@ from aidl_lang.common.prose import listed
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import brackets, foreign, functions, missing, placements, spelling
 from aidl_lang.syntax.tokens import END, Token
-from aidl_lang.syntax.trouble import Problem, Trouble, replaced
+from aidl_lang.syntax.trouble import SyntaxProblem, Trouble, replaced
 from aidl_lang.syntax.words import describe
 
-_QUESTIONS: tuple[Callable[[Trouble], Problem | None], ...] = (
+_QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
     foreign.import_of_module,
     foreign.documentation_text,
     foreign.inches,
@@ -74,7 +74,7 @@ _EXPECTED = (
 )
 
 
-def explain(trouble: Trouble) -> Problem:
+def explain(trouble: Trouble) -> SyntaxProblem:
     """Returns the first answer to the questions, or else a problem that names the token and what could stand
     here.
     """
@@ -84,7 +84,7 @@ def explain(trouble: Trouble) -> Problem:
     return _unexpected(trouble)
 
 
-def _unexpected(t: Trouble) -> Problem:
+def _unexpected(t: Trouble) -> SyntaxProblem:
     possible = [words for words, kinds in _EXPECTED if t.accepts(*kinds)]
     if "a name" in possible and "`then`" in possible:
         possible.remove("`then`")  # which would be a name here
@@ -101,7 +101,7 @@ def _unexpected(t: Trouble) -> Problem:
         place = describe(t.token) if t.token.kind != END else "the end of the file"
         message = f"expected {expected}, not {place}" if expected else f"{place} cannot stand here"
     secondary = (Label(t.span(t.first), "in the statement that begins here"),) if not t.between else ()
-    return Problem(Diagnostic("E0101", message, t.span(), secondary=secondary))
+    return SyntaxProblem(Diagnostic("E0101", message, t.span(), secondary=secondary))
 
 
 def spaced_call(source: SourceFile, token: Token) -> Diagnostic:

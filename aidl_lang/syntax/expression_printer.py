@@ -1,6 +1,6 @@
 """Expressions in canonical form: parentheses only if needed, line breaks if they help.
 
-An expression becomes a `Doc`: text with groups in it, the bracketed lists that may be broken over lines.
+An expression becomes a `PrintDocument`: text with groups, the bracketed lists that may be broken over lines.
 """
 
 from __future__ import annotations
@@ -29,49 +29,49 @@ _BINARY = {
 
 
 @record()
-class Group:
+class BracketGroup:
     """`opening item, item closing`: on one line, all items on one line of their own, or each on its own."""
 
     opening: str
-    items: tuple[Doc, ...]
+    items: tuple[PrintDocument, ...]
     closing: str
 
 
 @record()
-class Doc:
+class PrintDocument:
     """Pieces of text and groups, in order; `width` is that of the whole on one line."""
 
-    pieces: tuple[str | Group, ...]
+    pieces: tuple[str | BracketGroup, ...]
     width: int
 
     def flat(self) -> str:
         return "".join(piece if isinstance(piece, str) else _flat_group(piece) for piece in self.pieces)
 
 
-def doc(*parts: str | Group | Doc) -> Doc:
+def doc(*parts: str | BracketGroup | PrintDocument) -> PrintDocument:
     """Joins parts to one document."""
-    pieces: list[str | Group] = []
+    pieces: list[str | BracketGroup] = []
     width = 0
     for part in parts:
-        if isinstance(part, Doc):
+        if isinstance(part, PrintDocument):
             pieces += part.pieces
             width += part.width
         else:
             pieces.append(part)
             width += len(part) if isinstance(part, str) else _group_width(part)
-    return Doc(tuple(pieces), width)
+    return PrintDocument(tuple(pieces), width)
 
 
-def _flat_group(group: Group) -> str:
+def _flat_group(group: BracketGroup) -> str:
     return group.opening + ", ".join(item.flat() for item in group.items) + group.closing
 
 
-def _group_width(group: Group) -> int:
+def _group_width(group: BracketGroup) -> int:
     items = sum(item.width for item in group.items) + 2 * max(0, len(group.items) - 1)
     return len(group.opening) + items + len(group.closing)
 
 
-def render(document: Doc, indent: int, column: int | None = None, after: int = 0) -> str:
+def render(document: PrintDocument, indent: int, column: int | None = None, after: int = 0) -> str:
     """Lays a document out, beginning at `column`, with `after` more characters to follow on its last line."""
     column = indent if column is None else column
     if column + document.width + after <= WIDTH:
@@ -115,23 +115,23 @@ class ExpressionPrinter:
     def name(self, node: ast.Identifier | ast.Name) -> str:
         return self.names.get(node, node.text)
 
-    def expression(self, node: ast.Expression, level: int = CHOICE) -> Doc:
+    def expression(self, node: ast.Expression, level: int = CHOICE) -> PrintDocument:
         """Returns a node in a place that asks for at least `level`: in parentheses if it binds less."""
         own, document = self._print(node)
         return document if own >= level else doc("(", document, ")")
 
-    def iterable(self, node: ast.Expression) -> Doc:
+    def iterable(self, node: ast.Expression) -> PrintDocument:
         """Returns the expression behind `in`: a range without parentheses, or a sum."""
         return self.expression(node, CONDITION if isinstance(node, ast.Range) else SUM)
 
-    def arguments(self, opening: str, arguments: Sequence[ast.Argument]) -> Doc:
+    def arguments(self, opening: str, arguments: Sequence[ast.Argument]) -> PrintDocument:
         items = tuple(
             doc(f"{self.name(a.name)}: ", self.expression(a.value)) if a.name else self.expression(a.value)
             for a in arguments
         )
-        return doc(Group(opening, items, ")"))
+        return doc(BracketGroup(opening, items, ")"))
 
-    def _print(self, node: ast.Expression) -> tuple[int, Doc]:  # noqa: C901 (one case a node)
+    def _print(self, node: ast.Expression) -> tuple[int, PrintDocument]:  # noqa: C901 (one case a node)
         """Returns how tightly a node binds, and its text."""
         match node:
             case ast.Number():
@@ -152,7 +152,7 @@ class ExpressionPrinter:
             case ast.Point():
                 return ATOM, doc("(", self.expression(node.x), ", ", self.expression(node.y), ")")
             case ast.List():
-                return ATOM, doc(Group("[", tuple(map(self.expression, node.items)), "]"))
+                return ATOM, doc(BracketGroup("[", tuple(map(self.expression, node.items)), "]"))
             case ast.Comprehension():
                 variables = ", ".join(map(self.name, node.variables))
                 test = doc(" if ", self.expression(node.condition, OR)) if node.condition else doc()
@@ -182,7 +182,7 @@ class ExpressionPrinter:
                 then, otherwise = self.expression(node.then), self.expression(node.otherwise)
                 return CHOICE, doc("if ", self.expression(node.test, OR), " then ", then, " else ", otherwise)
 
-    def _owner(self, node: ast.Expression) -> Doc:
+    def _owner(self, node: ast.Expression) -> PrintDocument:
         """Returns the expression before `.` or `[`; a number gets parentheses, as it would swallow the
         point.
         """

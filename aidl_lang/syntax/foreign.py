@@ -10,8 +10,8 @@ from aidl_lang.common.source import Span
 from aidl_lang.syntax.tokens import END, UNKNOWN, Token, tokenize
 from aidl_lang.syntax.trouble import (
     LONGEST,
-    Problem,
-    Repair,
+    SyntaxProblem,
+    TokenRepair,
     Trouble,
     closing,
     line_end,
@@ -32,7 +32,7 @@ _LOOP = re.compile(
 )
 
 
-def foreign_loop(t: Trouble) -> Problem | None:
+def foreign_loop(t: Trouble) -> SyntaxProblem | None:
     """Recognises `for (i = 0; i < 4; i++)`, `for i = [0:3]`, `for (i in list)`, `for i of list`, `for i = 0
     to 3`.
     """
@@ -62,14 +62,14 @@ def foreign_loop(t: Trouble) -> Problem | None:
     head.append(Token("in", "in", *found.span("i")))
     stop = next(n for n, token in enumerate(t.tokens) if token.start >= end)
     span = Span(t.source, start, end)
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0113",
             f"a loop is written `{right} {{ … }}`",
             span,
             fix=replaced(f"write `{right}`", span, right),
         ),
-        Repair(t.begin, stop, (*head, *inner)),
+        TokenRepair(t.begin, stop, (*head, *inner)),
     )
 
 
@@ -85,7 +85,7 @@ def _slice(t: Trouble, start: int, end: int) -> list[Token]:
     return [token for token in t.tokens if token.start >= start and token.end <= end]
 
 
-def indented_block(t: Trouble) -> Problem | None:
+def indented_block(t: Trouble) -> SyntaxProblem | None:
     """Recognises `for i in 0..3:` and an indented block, as in Python."""
     if (
         t.between
@@ -115,7 +115,7 @@ def indented_block(t: Trouble) -> Problem | None:
         Token("}", "}", t.tokens[last].end, t.tokens[last].end),
     )
     opening = Edit(Span(t.source, t.gap().start, t.token.end), " {")
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0121",
             f"the block of `{t.first.text}` stands in braces, not behind a colon",
@@ -123,14 +123,14 @@ def indented_block(t: Trouble) -> Problem | None:
             "`{` belongs here, and `}` at the end of the block",
             fix=Fix("put the block in braces", (opening, close), is_sure=True),
         ),
-        Repair(t.position, last + 1, (braces[0], *t.tokens[t.position + 1 : last + 1], braces[1])),
+        TokenRepair(t.position, last + 1, (braces[0], *t.tokens[t.position + 1 : last + 1], braces[1])),
     )
 
 
 # --- Values ---------------------------------------------------------------------------------------
 
 
-def object_literal(t: Trouble) -> Problem | None:
+def object_literal(t: Trouble) -> SyntaxProblem | None:
     """Recognises `{x: 1, y: 2}`."""
     if t.token.kind != "{" or t.between or not t.accepts("NUMBER"):
         return None
@@ -173,15 +173,15 @@ def object_literal(t: Trouble) -> Problem | None:
             tokens += [name, Token(":", ":", *place), *value, Token(",", ",", *place)]
         tokens.append(Token(")", ")", *place))
     span = t.span(t.token, t.tokens[close])
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0109", f"{what} is written `{right}`", span, fix=replaced(f"write `{right}`", span, right)
         ),
-        Repair(t.position, close + 1, tuple(tokens)),
+        TokenRepair(t.position, close + 1, tuple(tokens)),
     )
 
 
-def question_mark(t: Trouble) -> Problem | None:
+def question_mark(t: Trouble) -> SyntaxProblem | None:
     """Recognises `c ? a : b`."""
     if t.token.text != "?" or t.between:
         return None
@@ -199,9 +199,9 @@ def question_mark(t: Trouble) -> Problem | None:
     tokens = [token for word, part in zip(words, parts, strict=True) for token in (word, *part)]
     span = t.span(parts[0][0], parts[2][-1])
     fix = replaced(f"write `{right}`", span, right)
-    return Problem(
+    return SyntaxProblem(
         Diagnostic("E0109", f"a choice is written `{right}`", span, fix=fix),
-        Repair(begin, stop, tuple(tokens)),
+        TokenRepair(begin, stop, tuple(tokens)),
     )
 
 
@@ -220,7 +220,7 @@ def _operand(tokens: Sequence[Token], at: int, step: int, limit: int) -> int:
     return n
 
 
-def inches(t: Trouble) -> Problem | None:
+def inches(t: Trouble) -> SyntaxProblem | None:
     """Recognises `5"` and `5 in`."""
     token, before = t.token, t.before
     if before is None:
@@ -231,12 +231,12 @@ def inches(t: Trouble) -> Problem | None:
         inch = Token("NUMBER", before.text + "in", before.start, token.start + 1)
         fix = replaced(f"write `{inch.text}`", span, inch.text)
         problem = Diagnostic("E0105", f"inches are written `{inch.text}`", span, fix=fix)
-        return Problem(problem, Repair(t.position - 1, t.position + 1, (inch, *rest)))
+        return SyntaxProblem(problem, TokenRepair(t.position - 1, t.position + 1, (inch, *rest)))
     number = t.tokens[t.position - 2]
     if t.position < 2 or before.kind != "in" or not _has_no_unit(number) or token.kind not in _ENDS:
         return None
     gap = Span(t.source, number.end, before.start)
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0106",
             f"a unit touches its number: `{number.text}in`",
@@ -244,7 +244,9 @@ def inches(t: Trouble) -> Problem | None:
             "the space ends the number",
             fix=replaced("remove the space", gap, ""),
         ),
-        Repair(t.position - 2, t.position, (Token("NUMBER", number.text + "in", number.start, before.end),)),
+        TokenRepair(
+            t.position - 2, t.position, (Token("NUMBER", number.text + "in", number.start, before.end),)
+        ),
     )
 
 
@@ -256,7 +258,7 @@ def _has_no_unit(token: Token) -> bool:
 _ENDS = frozenset([")", "]", "}", ",", ";", "+", "-", "*", "/", "==", "<=", ">=", END])
 
 
-def loose_point(t: Trouble) -> Problem | None:
+def loose_point(t: Trouble) -> SyntaxProblem | None:
     """Recognises `5.`."""
     before = t.before
     if t.token.kind != "." or before is None or before.kind != "NUMBER" or not t.touches:
@@ -272,24 +274,25 @@ def loose_point(t: Trouble) -> Problem | None:
         point, number, at = t.token, before, t.position
     span = t.span(number, point)
     fix = replaced(f"write `{number.text}`", span, number.text)
-    return Problem(
-        Diagnostic("E0105", f"`{number.text}.` is written `{number.text}`", span, fix=fix), Repair(at, at + 1)
+    return SyntaxProblem(
+        Diagnostic("E0105", f"`{number.text}.` is written `{number.text}`", span, fix=fix),
+        TokenRepair(at, at + 1),
     )
 
 
-def word_for_sign(t: Trouble) -> Problem | None:
+def word_for_sign(t: Trouble) -> SyntaxProblem | None:
     """Recognises `if a is b`, `5 mod 3`."""
     sign = {"is": "==", "mod": "%", "equals": "=="}.get(t.token.text)
     if sign is None or t.between or t.token.kind != "NAME" or not t.accepts(sign):
         return None
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0109",
             f"`{t.token.text}` is written `{sign}`",
             t.span(),
             fix=replaced(f"write `{sign}`", t.span(), sign),
         ),
-        Repair(t.position, t.position + 1, (t.token._replace(kind=sign, text=sign),)),
+        TokenRepair(t.position, t.position + 1, (t.token._replace(kind=sign, text=sign),)),
     )
 
 
@@ -314,25 +317,25 @@ _MODULES = frozenset(
 )
 
 
-def import_of_module(t: Trouble) -> Problem | None:
+def import_of_module(t: Trouble) -> SyntaxProblem | None:
     """Recognises `import math`, `from build123d import *`."""
     words = [token.text for token in t.tokens[t.begin : t.begin + 2]]
     if len(words) < 2 or words[0] not in ("import", "from") or words[1] not in _MODULES:
         return None
     stop = statement_end(t.source, t.tokens, t.begin)
     span = t.span(t.first, t.tokens[stop - 1])
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0113",
             f"nothing is imported from `{words[1]}`: functions and shapes are known without it",
             span,
             fix=replaced("remove the line", span, ""),
         ),
-        Repair(t.begin, stop),
+        TokenRepair(t.begin, stop),
     )
 
 
-def several_names(t: Trouble) -> Problem | None:
+def several_names(t: Trouble) -> SyntaxProblem | None:
     """Recognises `x, y = 3, 4` and `let (x, y) = …`."""
     has_let = t.first.kind in ("let", "var", "param") and t.token.kind in ("(", "[") and len(t.statement) == 1
     bare = (
@@ -343,7 +346,7 @@ def several_names(t: Trouble) -> Problem | None:
     )
     if not has_let and not (bare and t.tokens[t.position + 2].kind == "=" and not t.in_constraints):
         return None
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0103",
             "each name gets its value by itself: `let x = 3; let y = 4`",
@@ -353,7 +356,7 @@ def several_names(t: Trouble) -> Problem | None:
     )
 
 
-def documentation_text(t: Trouble) -> Problem | None:
+def documentation_text(t: Trouble) -> SyntaxProblem | None:
     """Recognises a text as a statement: `\"\"\"A bracket.\"\"\"` or `"A bracket."`."""
     if (
         t.token.kind not in ("STRING", UNKNOWN)
@@ -375,12 +378,12 @@ def documentation_text(t: Trouble) -> Problem | None:
     span = Span(t.source, t.token.start, end)
     lines = [line.strip() for line in inner.strip().splitlines()]
     comment = "\n".join(f"// {line}".rstrip() for line in lines)
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0117",
             "a text alone says nothing; a remark begins with `//`",
             span,
             fix=replaced("make it a comment", span, comment),
         ),
-        Repair(t.position, stop),
+        TokenRepair(t.position, stop),
     )

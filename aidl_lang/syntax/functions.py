@@ -9,8 +9,8 @@ from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax.tokens import END, Token, begins_line
 from aidl_lang.syntax.trouble import (
     LONGEST,
-    Problem,
-    Repair,
+    SyntaxProblem,
+    TokenRepair,
     Trouble,
     closing,
     line_end,
@@ -40,7 +40,7 @@ _WORDS = frozenset([*_FUNCTION_WORDS, *_TODO_WORDS, "between", "lambda", "new", 
 _MOST_PLACES, _MOST_REWRITTEN = 5000, 100  # beyond these nobody wrote it by hand
 
 
-def _answer(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | None:
+def _answer(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
     one, two = tokens[at], tokens[at + 1]
     if one.text in _FUNCTION_WORDS:
         return _function_with_body(source, tokens, at) if two.kind == "CALL" else None
@@ -62,13 +62,15 @@ def _answer(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | N
             return None
 
 
-def _left_out(source: SourceFile, word: Token, after: Token, message: str, hint: str = "") -> Problem:
+def _left_out(source: SourceFile, word: Token, after: Token, message: str, hint: str = "") -> SyntaxProblem:
     span = Span(source, word.start, word.end)
     fix = replaced(f"leave out `{word.text}`", Span(source, word.start, after.start), "")
-    return Problem(Diagnostic("E0113", message, span, hints=(hint,) if hint else (), fix=fix), Repair(0, 1))
+    return SyntaxProblem(
+        Diagnostic("E0113", message, span, hints=(hint,) if hint else (), fix=fix), TokenRepair(0, 1)
+    )
 
 
-def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | None:
+def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
     """Recognises `todo "the lid"`, `todo: the lid`, `todo()`: what follows the word on its line is a
     remark.
     """
@@ -94,13 +96,13 @@ def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | Non
         is_last = not source.text[end : line_end(source.text, end)].strip()
         message += "; what is still to be done says a comment"
         right = f"todo  // {remark}" if is_last else f"todo /* {remark.replace('*/', '')} */"
-    return Problem(
+    return SyntaxProblem(
         Diagnostic("E0117", message, span, fix=replaced(f"write `{right}`", span, right)),
-        Repair(0, stop - at, (Token("todo", "todo", word.start, end),)),
+        TokenRepair(0, stop - at, (Token("todo", "todo", word.start, end),)),
     )
 
 
-def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int) -> Problem | None:
+def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int) -> SyntaxProblem | None:
     """Recognises `def f(x): return 2 * x`, `function f(x) { return 2 * x }`, `fn f(x) { 2 * x }`."""
     close = closing(tokens, begin + 1)
     at = close + 1
@@ -126,15 +128,15 @@ def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int)
         Token("=", "=", tokens[at].start, tokens[at].end),
         *value,
     )
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0113", f"a function is written `{right}`", span, fix=replaced("write it so", span, right)
         ),
-        Repair(0, (after + 1 if in_braces else stop) - begin, written),
+        TokenRepair(0, (after + 1 if in_braces else stop) - begin, written),
     )
 
 
-def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | None:
+def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
     """Recognises `x between 3 and 5`."""
     end, last = line_end(source.text, tokens[at].start), min(at + LONGEST, len(tokens) - 1)
     middle = next((n for n in range(at + 2, last) if tokens[n].kind == "and"), last)
@@ -151,13 +153,13 @@ def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | 
     problem = Diagnostic(
         "E0109", f"a range is written `{right}`", span, fix=Fix(f"write `{right}`", edits, is_sure=True)
     )
-    return Problem(problem, Repair(0, middle + 1 - at, (word, *low, dots)))
+    return SyntaxProblem(problem, TokenRepair(0, middle + 1 - at, (word, *low, dots)))
 
 
 _VALUE_ENDS = frozenset(["NAME", "NUMBER", ")", "]"])
 
 
-def _lambda(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | None:
+def _lambda(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
     """Recognises `let f = lambda x: 2 * x`."""
     last = min(at + LONGEST, len(tokens))
     colon = next((n for n in range(at, last) if tokens[n].kind not in ("NAME", ",")), at)
@@ -170,7 +172,7 @@ def _lambda(source: SourceFile, tokens: Sequence[Token], at: int) -> Problem | N
     return _as_function(source, head, value, span, begin - at, stop - at)
 
 
-def arrow_function(t: Trouble) -> Problem | None:
+def arrow_function(t: Trouble) -> SyntaxProblem | None:
     """Recognises `let f = (x) => 2 * x`."""
     at = t.position if t.token.kind == "=" else t.position - 1
     if t.tokens[at].kind != "=" or t.tokens[at + 1].kind != ">" or t.tokens[at].end != t.tokens[at + 1].start:
@@ -189,14 +191,14 @@ def arrow_function(t: Trouble) -> Problem | None:
 
 def _as_function(
     source: SourceFile, head: Sequence[Token], value: Sequence[Token], span: Span, start: int, stop: int
-) -> Problem:
+) -> SyntaxProblem:
     names = [token.text for token in head if token.kind == "NAME"]
     right = f"fn {names[0]}({', '.join(names[1:])}) = {Span(source, value[0].start, value[-1].end).text}"
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0113", f"a function is written `{right}`", span, fix=replaced("write it so", span, right)
         ),
-        Repair(start, stop, tuple(_function(names, head, value, span))),
+        TokenRepair(start, stop, tuple(_function(names, head, value, span))),
     )
 
 

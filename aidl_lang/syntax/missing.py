@@ -8,7 +8,7 @@ from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.source import Span
 from aidl_lang.syntax.kinds import kind_of
 from aidl_lang.syntax.tokens import END
-from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
+from aidl_lang.syntax.trouble import SyntaxProblem, TokenRepair, Trouble, replaced
 from aidl_lang.syntax.words import STATEMENT_WORDS, VALUE_STARTS, describe
 
 _EXAMPLE_VALUE = {"param": "80", "var": "5", "let": "w / 2"}
@@ -17,11 +17,11 @@ _EXAMPLE_VALUE = {"param": "80", "var": "5", "let": "w / 2"}
 # --- Equals signs ---------------------------------------------------------------------------------
 
 
-def equation_for_definition(t: Trouble) -> Problem | None:
+def equation_for_definition(t: Trouble) -> SyntaxProblem | None:
     """Recognises `let x == 3`."""
     if t.token.kind != "==" or not t.accepts("="):
         return None
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0111",
             "a name is given its value by `=`, not `==`",
@@ -29,16 +29,16 @@ def equation_for_definition(t: Trouble) -> Problem | None:
             "`==` compares",
             fix=replaced("write `=`", t.span(), "="),
         ),
-        Repair(t.position, t.position + 1, (t.token._replace(kind="=", text="="),)),
+        TokenRepair(t.position, t.position + 1, (t.token._replace(kind="=", text="="),)),
     )
 
 
-def definition_for_equation(t: Trouble) -> Problem | None:
+def definition_for_equation(t: Trouble) -> SyntaxProblem | None:
     """Recognises `a.x = b.x` outside `constrain`, `assert a = b`."""
     if t.token.kind != "=" or not t.accepts("==", "NAME"):
         return None
     definition = t.first.kind not in STATEMENT_WORDS and not t.open
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0110",
             "`=` gives a value to a name; what must be equal is written with `==`",
@@ -49,17 +49,17 @@ def definition_for_equation(t: Trouble) -> Problem | None:
             else (),
             fix=replaced("write `==`", t.span(), "=="),
         ),
-        Repair(t.position, t.position + 1, (t.token._replace(kind="==", text="=="),)),
+        TokenRepair(t.position, t.position + 1, (t.token._replace(kind="==", text="=="),)),
     )
 
 
-def colon_for_equals(t: Trouble) -> Problem | None:
+def colon_for_equals(t: Trouble) -> SyntaxProblem | None:
     """Recognises `param w: 80` and `param w: length = 80`."""
     if t.token.kind != ":" or not t.accepts("="):
         return None
     after_next = t.tokens[min(t.position + 2, len(t.tokens) - 1)]
     if t.following.kind == "NAME" and after_next.kind == "=":
-        return Problem(
+        return SyntaxProblem(
             Diagnostic(
                 "E0109",
                 f"`{t.first.text}` takes no type: its value tells",
@@ -67,40 +67,40 @@ def colon_for_equals(t: Trouble) -> Problem | None:
                 hints=("write the unit with the number: `80mm`, `30deg`",),
                 fix=replaced("remove the type", Span(t.source, t.gap().start, t.following.end), ""),
             ),
-            Repair(t.position, t.position + 2),
+            TokenRepair(t.position, t.position + 2),
         )
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0109",
             "a name is given its value by `=`, not `:`",
             t.span(),
             fix=replaced("write `=`", Span(t.source, t.gap().start, t.token.end), " ="),
         ),
-        Repair(t.position, t.position + 1, (t.token._replace(kind="=", text="="),)),
+        TokenRepair(t.position, t.position + 1, (t.token._replace(kind="=", text="="),)),
     )
 
 
-def missing_equals(t: Trouble) -> Problem | None:
+def missing_equals(t: Trouble) -> SyntaxProblem | None:
     """Recognises `param w 80`."""
     if t.first.kind not in ("param", "var", "let", "fn", "alias") or t.on_new_line:
         return None
     if t.token.kind not in VALUE_STARTS or not t.accepts("=", t.token.kind):
         return None
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0103",
             f"expected `=` between the name and its value: `{t.first.text} {t.before and t.before.text} = …`",
             t.span(),
             fix=replaced("put in `=`", t.gap(), " ="),
         ),
-        Repair(t.position, t.position, (t.token_here("="),)),
+        TokenRepair(t.position, t.position, (t.token_here("="),)),
     )
 
 
 # --- Statements -----------------------------------------------------------------------------------
 
 
-def missing_value(t: Trouble) -> Problem | None:
+def missing_value(t: Trouble) -> SyntaxProblem | None:
     """Recognises a statement that ends before its value."""
     if t.between or t.open or t.complete:
         return None
@@ -124,15 +124,15 @@ def missing_value(t: Trouble) -> Problem | None:
     return None
 
 
-def _lacking(t: Trouble, message: str) -> Problem:
-    return Problem(Diagnostic("E0103", message, t.span(t.before), "nothing follows"))
+def _lacking(t: Trouble, message: str) -> SyntaxProblem:
+    return SyntaxProblem(Diagnostic("E0103", message, t.span(t.before), "nothing follows"))
 
 
-def choice_without_parentheses(t: Trouble) -> Problem | None:
+def choice_without_parentheses(t: Trouble) -> SyntaxProblem | None:
     """Recognises `a == if c then b else d`."""
     if t.token.kind != "if" or t.between or t.complete or not t.accepts("(", "if"):
         return None
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0101",
             f"a choice stands in parentheses behind {describe(t.before or t.first)}",
@@ -143,14 +143,14 @@ def choice_without_parentheses(t: Trouble) -> Problem | None:
     )
 
 
-def typed_definition(t: Trouble) -> Problem | None:
+def typed_definition(t: Trouble) -> SyntaxProblem | None:
     """Recognises `circle rim = circle(…)`."""
     if len(t.statement) != 2 or t.token.kind != "=" or not t.accepts("{"):
         return None
     kind, name = t.statement
     if kind.kind != "NAME" or name.kind != "NAME":
         return None
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0113",
             f"a definition has no type before its name: `{name.text} = …`",
@@ -158,16 +158,16 @@ def typed_definition(t: Trouble) -> Problem | None:
             "the value tells what it is",
             fix=replaced(f"remove `{kind.text}`", Span(t.source, kind.start, name.start), ""),
         ),
-        Repair(t.begin, t.begin + 1),
+        TokenRepair(t.begin, t.begin + 1),
     )
 
 
-def import_without_path(t: Trouble) -> Problem | None:
+def import_without_path(t: Trouble) -> SyntaxProblem | None:
     """Recognises `import gears`."""
     if t.first.kind != "import" or t.before is None or t.before.kind != "NAME" or not t.accepts("from"):
         return None
     name = t.before.text
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0103",
             f"`import {name}` does not say from which file",
@@ -178,7 +178,7 @@ def import_without_path(t: Trouble) -> Problem | None:
     )
 
 
-def nameless_structure(t: Trouble) -> Problem | None:
+def nameless_structure(t: Trouble) -> SyntaxProblem | None:
     """Recognises `hole { … }` and `solid "base" { … }`."""
     if len(t.statement) != 1 or t.first.kind != "NAME":
         return None
@@ -187,20 +187,20 @@ def nameless_structure(t: Trouble) -> Problem | None:
         inner = t.token.text[1:-1]
         name = "".join(c if c.isalnum() else "_" for c in inner) or word + "_1"
         name = name if name.isidentifier() else "_" + name
-        return Problem(
+        return SyntaxProblem(
             Diagnostic(
                 "E0116",
                 f"a name is written without quotes: `{word} {name}`",
                 t.span(),
                 fix=replaced(f"write `{name}`", t.span(), name),
             ),
-            Repair(t.position, t.position + 1, (t.token._replace(kind="NAME", text=name),)),
+            TokenRepair(t.position, t.position + 1, (t.token._replace(kind="NAME", text=name),)),
         )
     if t.token.kind not in ("{", "at", "rotated") or not (kind_of(word) or t.token.kind == "{"):
         return None
     name = _fresh_name(t, word)
     article = "an" if word[0] in "aeiou" else "a"
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0116",
             f"{article} `{word}` needs a name: `{word} {name} {{ … }}`",
@@ -209,7 +209,7 @@ def nameless_structure(t: Trouble) -> Problem | None:
             hints=("constraints and other parts speak of it by its name",),
             fix=replaced(f"name it `{name}`", t.gap(), f" {name}"),
         ),
-        Repair(t.position, t.position, (t.token_here("NAME", name),)),
+        TokenRepair(t.position, t.position, (t.token_here("NAME", name),)),
     )
 
 
@@ -221,7 +221,7 @@ def _fresh_name(t: Trouble, word: str) -> str:
     return f"{word}_{number}"
 
 
-def missing_block(t: Trouble) -> Problem | None:
+def missing_block(t: Trouble) -> SyntaxProblem | None:
     """Recognises a head without its `{`, or with Python's colon."""
     if t.between or t.open or not t.accepts("{", "}") or t.token.kind in ("(", "="):
         return None
@@ -229,7 +229,7 @@ def missing_block(t: Trouble) -> Problem | None:
     if not (colon or t.on_new_line or t.token.kind in (END, "}", ";") or t.token.kind in STATEMENT_WORDS):
         return None
     head = describe(t.first)
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0121",
             f"expected `{{` to begin the block of {head}",
@@ -238,16 +238,16 @@ def missing_block(t: Trouble) -> Problem | None:
             (Label(t.span(t.first), "for this"),),
             hints=("blocks stand in braces, not behind a colon",) if colon else (),
         ),
-        Repair(t.position, t.position + 1) if colon and t.following.kind == "{" else None,
+        TokenRepair(t.position, t.position + 1) if colon and t.following.kind == "{" else None,
     )
 
 
-def repeated_placement(t: Trouble) -> Problem | None:
+def repeated_placement(t: Trouble) -> SyntaxProblem | None:
     word = t.token.kind
     earlier = next((token for token in t.statement if token.kind == word), None)
     if word not in ("at", "rotated") or earlier is None or t.open:
         return None
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0120",
             f"`{word}` is said twice",
@@ -259,14 +259,14 @@ def repeated_placement(t: Trouble) -> Problem | None:
     )
 
 
-def out_of_place_in_constrain(t: Trouble) -> Problem | None:
+def out_of_place_in_constrain(t: Trouble) -> SyntaxProblem | None:
     """Recognises a statement inside `constrain { }` that is no constraint."""
     definition = len(t.statement) == 1 and kind_of(t.first.text) and t.token.kind in ("NAME", "CALL")
     if not t.in_constraints or not (definition or (t.between and t.token.kind in STATEMENT_WORDS | {"@"})):
         return None
     word = t.first.text
     where = "behind the `}` of `constrain`" if word == "assert" else "in front of `constrain`"
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0119",
             f"`{word}` cannot stand inside `constrain`",
@@ -278,10 +278,10 @@ def out_of_place_in_constrain(t: Trouble) -> Problem | None:
     )
 
 
-def attribute_out_of_place(t: Trouble) -> Problem | None:
+def attribute_out_of_place(t: Trouble) -> SyntaxProblem | None:
     if t.first.kind != "@" or t.between or t.open or not t.accepts("template"):
         return None
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0119",
             f"an attribute stands before a structure or a geometry, not before {describe(t.token)}",
@@ -291,7 +291,7 @@ def attribute_out_of_place(t: Trouble) -> Problem | None:
     )
 
 
-def bare_value(t: Trouble) -> Problem | None:
+def bare_value(t: Trouble) -> SyntaxProblem | None:
     """Recognises an expression as a statement that neither constrains nor does anything."""
     if (
         t.between
@@ -304,7 +304,7 @@ def bare_value(t: Trouble) -> Problem | None:
     if not (t.begins_statement() or t.on_new_line or t.token.kind in (";", ",", "and", "or")):
         return None
     span = t.span(t.first, t.before)
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0117",
             f"`{_shortened(span.text)}` alone says nothing",
@@ -320,10 +320,10 @@ def _shortened(text: str) -> str:
     return text if len(text) <= 40 else text[:37] + "…"
 
 
-def else_without_if(t: Trouble) -> Problem | None:
+def else_without_if(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind != "else" or not t.between:
         return None
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0101",
             "`else` follows the block of an `if`, and there is none before it",

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from aidl_lang.common.diagnostics import Diagnostic, Fix
 from aidl_lang.common.source import Span
 from aidl_lang.syntax.tokens import END, Token, begins_line
-from aidl_lang.syntax.trouble import Problem, Repair, Trouble, closing, replaced
+from aidl_lang.syntax.trouble import SyntaxProblem, TokenRepair, Trouble, closing, replaced
 
 _OPENING, _CLOSING = ("CALL", "(", "[", "{"), (")", "]", "}")
 
 
-def placement_in_expression(t: Trouble) -> Problem | None:
+def placement_in_expression(t: Trouble) -> SyntaxProblem | None:
     """Recognises `[rib(h: 6) at (8, 8), …]`, `mirror(rib() at (8, 8), …)`."""
     if t.token.kind not in ("at", "rotated") or not t.open or t.before is None or t.before.kind != ")":
         return None
@@ -26,8 +26,8 @@ def placement_in_expression(t: Trouble) -> Problem | None:
     hint = f"give the part a name of its own: `part = {call}`"
     if t.tokens[stop].kind == "for":
         hint = f"give each part a name in a loop: `for i in 0..3 {{ part[i] = {call} }}`"
-    fix, repair = listed or (None, Repair(t.position, stop))
-    return Problem(
+    fix, repair = listed or (None, TokenRepair(t.position, stop))
+    return SyntaxProblem(
         Diagnostic(
             "E0126",
             f"`{t.token.kind}` stands behind a definition, not inside an expression",
@@ -39,7 +39,7 @@ def placement_in_expression(t: Trouble) -> Problem | None:
     )
 
 
-def _as_members(t: Trouble, opening: int, close: int) -> tuple[Fix, Repair] | None:
+def _as_members(t: Trouble, opening: int, close: int) -> tuple[Fix, TokenRepair] | None:
     """Returns the fix and repair that write `ribs = [a() at p, b()]` as `ribs[0] = a() at p` and `ribs[1] =
     b()`.
     """
@@ -66,7 +66,7 @@ def _as_members(t: Trouble, opening: int, close: int) -> tuple[Fix, Repair] | No
         lines.append(f"{name.text}[{i}] = {Span(t.source, item[0].start, item[-1].end).text}")
     text = ("\n" + " " * t.indentation(name.start)).join(lines)
     fix = replaced("give each its own line", whole, text)
-    return fix, Repair(t.begin, close + 1, tuple(tokens))
+    return fix, TokenRepair(t.begin, close + 1, tuple(tokens))
 
 
 def _item_end(tokens: Sequence[Token], start: int, close: int) -> int:

@@ -17,9 +17,9 @@ from aidl_lang.syntax.expression_printer import (
     OR,
     SUM,
     WIDTH,
-    Doc,
+    BracketGroup,
     ExpressionPrinter,
-    Group,
+    PrintDocument,
     begins_statement,
     doc,
     format_expression,
@@ -180,7 +180,7 @@ class _Printer:
             return
         self._long(node, indent, constraints)
 
-    def _leaf(self, document: Doc, indent: int) -> None:
+    def _leaf(self, document: PrintDocument, indent: int) -> None:
         text = render(document, indent)
         self.lines += [_Line(line) for line in (" " * indent + text).split("\n")]
 
@@ -190,7 +190,7 @@ class _Printer:
         self._leaf(test, indent)
         self._leaf(self.expressions.expression(message, OR), indent + INDENT)
 
-    def _long_function(self, node: ast.FunctionDefinition, document: Doc, indent: int) -> None:
+    def _long_function(self, node: ast.FunctionDefinition, document: PrintDocument, indent: int) -> None:
         """Prints a function with its value on a line of its own if that is enough."""
         head = doc("fn ", self._parameters(node.name, node.parameters), " =")
         value = self.expressions.expression(node.value)
@@ -280,7 +280,7 @@ class _Printer:
 
     # --- The text of a statement up to its block ---
 
-    def _head(self, node: ast.Statement, constraints: bool) -> Doc:  # noqa: C901 (one case a node)
+    def _head(self, node: ast.Statement, constraints: bool) -> PrintDocument:  # noqa: C901 (one case a node)
         name, expression = self.expressions.name, self.expressions.expression
         match node:
             case ast.Structure():
@@ -331,36 +331,36 @@ class _Printer:
             case ast.Todo():
                 return doc("todo")
 
-    def _structure_head(self, node: ast.Structure) -> Doc:
+    def _structure_head(self, node: ast.Structure) -> PrintDocument:
         if node.parameters is None:
             target = doc(self.expressions.name(node.name), *self._indices(node.indices))
         else:
             target = self._parameters(node.name, node.parameters)
         return doc(f"{node.kind} ", target, *self._placement(node.placement))
 
-    def _parameters(self, name: ast.Identifier, parameters: Sequence[ast.Parameter]) -> Doc:
+    def _parameters(self, name: ast.Identifier, parameters: Sequence[ast.Parameter]) -> PrintDocument:
         items = []
         for p in parameters:
             kind = f": {self.expressions.name(p.type)}" if p.type else ""
             default = doc(" = ", self.expressions.expression(p.default)) if p.default else doc()
             items.append(doc(self.expressions.name(p.name) + kind, default))
-        return doc(Group(self.expressions.name(name) + "(", tuple(items), ")"))
+        return doc(BracketGroup(self.expressions.name(name) + "(", tuple(items), ")"))
 
-    def _indices(self, indices: Sequence[ast.Expression]) -> list[Doc]:
+    def _indices(self, indices: Sequence[ast.Expression]) -> list[PrintDocument]:
         return [doc("[", self.expressions.expression(index), "]") for index in indices]
 
-    def _placement(self, placement: ast.Placement | None) -> list[Doc]:
+    def _placement(self, placement: ast.Placement | None) -> list[PrintDocument]:
         if placement is None:
             return []
         at = [doc(" at ", self.expressions.expression(placement.at, SUM))] if placement.at else []
         rotated = placement.rotated
         return at + ([doc(" rotated ", self.expressions.expression(rotated, SUM))] if rotated else [])
 
-    def _attribute(self, node: ast.Attribute) -> Doc:
+    def _attribute(self, node: ast.Attribute) -> PrintDocument:
         name = "@" + self.expressions.name(node.name)
         return self.expressions.arguments(name + "(", node.arguments) if node.arguments else doc(name)
 
-    def _constrain(self, node: ast.Constrain) -> Doc:
+    def _constrain(self, node: ast.Constrain) -> PrintDocument:
         """Returns `constrain` with its one item."""
         item = node.items.statements[0]
         if isinstance(item, ast.Equation):
@@ -368,13 +368,13 @@ class _Printer:
         assert isinstance(item, ast.ExpressionStatement)
         return doc("constrain ", self.expressions.expression(item.value))
 
-    def _equation(self, node: ast.Equation) -> Doc:
+    def _equation(self, node: ast.Equation) -> PrintDocument:
         expression = self.expressions.expression
         if node in self.declaring:
             return doc(expression(node.left, SUM), " = ", expression(node.right, OR))
         return expression(node.meant)
 
-    def _import(self, node: ast.Import) -> Doc:
+    def _import(self, node: ast.Import) -> PrintDocument:
         path = string_text(node.path.value)
         if node.names:
             return doc(f"import {', '.join(map(self.expressions.name, node.names))} from {path}")

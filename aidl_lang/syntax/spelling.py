@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.source import Span
 from aidl_lang.syntax.tokens import END, UNKNOWN, Token, is_open_comment, tokenize
-from aidl_lang.syntax.trouble import Problem, Repair, Trouble, replaced
+from aidl_lang.syntax.trouble import SyntaxProblem, TokenRepair, Trouble, replaced
 from aidl_lang.syntax.words import (
     FOREIGN_WORDS,
     QUOTES,
@@ -23,12 +23,12 @@ from aidl_lang.syntax.words import (
 # --- Characters -----------------------------------------------------------------------------------
 
 
-def unclosed_comment(t: Trouble) -> Problem | None:
+def unclosed_comment(t: Trouble) -> SyntaxProblem | None:
     if not is_open_comment(t.token):
         return None
     end = Span(t.source, t.token.end, t.token.end)
     opening = Span(t.source, t.token.start, t.token.start + 2)
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0107",
             "this comment is not closed: expected `*/`",
@@ -37,11 +37,11 @@ def unclosed_comment(t: Trouble) -> Problem | None:
             hints=("close it with `*/`, or begin each line of it with `//`",),
             fix=replaced("close the comment at the end of the file", end, " */", is_sure=False),
         ),
-        Repair(t.position, t.position + 1),
+        TokenRepair(t.position, t.position + 1),
     )
 
 
-def unclosed_string(t: Trouble) -> Problem | None:
+def unclosed_string(t: Trouble) -> SyntaxProblem | None:
     text = t.token.text
     if t.token.kind != UNKNOWN or text[0] not in "\"'":
         return None
@@ -53,7 +53,7 @@ def unclosed_string(t: Trouble) -> Problem | None:
     string = Token("STRING", written + closing, t.token.start, end)
     rest = tokenize(t.source, end, t.token.end).tokens[:-1]
     place = Span(t.source, end, end)
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0107",
             f"this text is not closed: expected `{text[0]}` before the end of the line",
@@ -61,30 +61,30 @@ def unclosed_string(t: Trouble) -> Problem | None:
             "the text begins here",
             fix=replaced(f"close the text with `{text[0]}`", place, closing),
         ),
-        Repair(t.position, t.position + 1, (string, *rest)),
+        TokenRepair(t.position, t.position + 1, (string, *rest)),
     )
 
 
-def unknown_unit(t: Trouble) -> Problem | None:
+def unknown_unit(t: Trouble) -> SyntaxProblem | None:
     before = t.before
     if t.token.kind != UNKNOWN or before is None or before.kind != "NUMBER" or not t.touches:
         return None
     text, number = t.token.text, before.text
     if text[0].isdigit() or text[0] == ".":
-        return Problem(
+        return SyntaxProblem(
             Diagnostic(
                 "E0105", f"`{number}{text}` is not a number", t.span(before, t.token), "more than one point"
             ),
-            Repair(t.position, t.position + 1),
+            TokenRepair(t.position, t.position + 1),
         )
     if text[0] == "_" and (digits := text.replace("_", "")).isdigit():
         whole = Token("NUMBER", number + digits, before.start, t.token.end)
         span = t.span(before, t.token)
         fix = replaced(f"write `{whole.text}`", span, whole.text)
         problem = Diagnostic("E0105", f"`{number}{text}` is written `{whole.text}`", span, fix=fix)
-        return Problem(problem, Repair(t.position - 1, t.position + 1, (whole,)))
+        return SyntaxProblem(problem, TokenRepair(t.position - 1, t.position + 1, (whole,)))
     meant = UNIT_WORDS.get(text.lower())
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0105",
             f"`{text}` is not a unit" + (f"; did you mean `{number}{meant}`?" if meant else ""),
@@ -95,11 +95,11 @@ def unknown_unit(t: Trouble) -> Problem | None:
             else ("a number without a unit is in millimetres as a length, in degrees as an angle",),
             fix=replaced(f"write `{meant}`", t.span(), meant) if meant else None,
         ),
-        Repair(t.position, t.position + 1),
+        TokenRepair(t.position, t.position + 1),
     )
 
 
-def foreign_character(t: Trouble) -> Problem | None:
+def foreign_character(t: Trouble) -> SyntaxProblem | None:
     if t.token.kind != UNKNOWN:
         return None
     char = t.token.text
@@ -117,13 +117,13 @@ def foreign_character(t: Trouble) -> Problem | None:
         fix = replaced(f"write `{sign}`", t.span(), written, is_sure=char != "≈")
     stand_in = (t.token._replace(kind=sign, text=sign),) if sign else ()
     hints = (words,) if words else ()
-    repair: Repair | None = Repair(t.position, t.position + 1, stand_in)
+    repair: TokenRepair | None = TokenRepair(t.position, t.position + 1, stand_in)
     if not stand_in and t.complete and t.following.kind != END:
         repair = None  # the rest makes no sense without the character
-    return Problem(Diagnostic("E0108", message, t.span(), hints=hints, fix=fix), repair)
+    return SyntaxProblem(Diagnostic("E0108", message, t.span(), hints=hints, fix=fix), repair)
 
 
-def _curly_quote(t: Trouble) -> Problem:
+def _curly_quote(t: Trouble) -> SyntaxProblem:
     """Recognises a text in typographic quotes: the fix makes both of them straight."""
     quote = "'" if t.token.text in SINGLE_QUOTES else '"'
     line_end = t.source.text.find("\n", t.token.start)
@@ -137,7 +137,7 @@ def _curly_quote(t: Trouble) -> Problem:
         stand_in = (Token("STRING", quote + inner.replace("\\", "\\\\") + quote, t.token.start, close + 1),)
         while t.tokens[stop].kind != END and t.tokens[stop].start <= close:
             stop += 1
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0108",
             f"text stands in straight quotes: `{quote}`",
@@ -145,11 +145,11 @@ def _curly_quote(t: Trouble) -> Problem:
             "this is a typographic quote",
             fix=Fix("make the quotes straight", tuple(edits), is_sure=True),
         ),
-        Repair(t.position, stop, stand_in),
+        TokenRepair(t.position, stop, stand_in),
     )
 
 
-def spaced_unit(t: Trouble) -> Problem | None:
+def spaced_unit(t: Trouble) -> SyntaxProblem | None:
     """Recognises `5 mm`: found at the unit itself, or behind it where a name may stand after a number."""
     for at in (t.position, t.position - 1):
         token, number = t.tokens[at], t.tokens[at - 1]
@@ -160,7 +160,7 @@ def spaced_unit(t: Trouble) -> Problem | None:
         gap = Span(t.source, number.end, token.start)
         if "\n" in gap.text or not gap.text or any(unit in number.text for unit in UNITS):
             continue
-        return Problem(
+        return SyntaxProblem(
             Diagnostic(
                 "E0106",
                 f"a unit touches its number: `{number.text}{token.text}`",
@@ -168,7 +168,7 @@ def spaced_unit(t: Trouble) -> Problem | None:
                 "the space ends the number",
                 fix=replaced("remove the space", gap, ""),
             ),
-            Repair(at, at + 1),
+            TokenRepair(at, at + 1),
         )
     return None
 
@@ -189,7 +189,7 @@ _SPELLINGS = {
 }  # fmt: skip
 
 
-def operator_spelling(t: Trouble) -> Problem | None:
+def operator_spelling(t: Trouble) -> SyntaxProblem | None:
     """Recognises `=>`, `===`, `:=` and the like, whose first half may have been taken already."""
     for at in (t.position, t.position - 1):
         one, two = t.tokens[at], t.tokens[min(at + 1, len(t.tokens) - 1)]
@@ -201,7 +201,7 @@ def operator_spelling(t: Trouble) -> Problem | None:
             "...": ("`a..b` includes both ends, `a..<b` leaves out the last",),
             "..=": ("`a..b` includes both ends, `a..<b` leaves out the last",),
         }.get(written, ())
-        return Problem(
+        return SyntaxProblem(
             Diagnostic(
                 "E0109",
                 f"`{written}` is written `{right}`",
@@ -209,13 +209,13 @@ def operator_spelling(t: Trouble) -> Problem | None:
                 hints=hints,
                 fix=replaced(f"write `{right}`", t.span(one, two), right),
             ),
-            Repair(at, at + 2, (Token(right, right, one.start, two.end),)),
+            TokenRepair(at, at + 2, (Token(right, right, one.start, two.end),)),
         )
     one, two = t.token, t.following
     if (one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start) or ((
         two := one, one := t.before or one
     ) and one.kind in ("+", "-", "*", "/") and two.kind == "=" and one.end == two.start):  # fmt: skip
-        return Problem(
+        return SyntaxProblem(
             Diagnostic(
                 "E0109",
                 f"there is no `{one.text}=`: a name keeps the value it was given",
@@ -229,7 +229,7 @@ def operator_spelling(t: Trouble) -> Problem | None:
 # --- Words ----------------------------------------------------------------------------------------
 
 
-def foreign_statement(t: Trouble) -> Problem | None:
+def foreign_statement(t: Trouble) -> SyntaxProblem | None:
     """Recognises a statement that begins with a word of another language, as `def` or `const`."""
     first = t.first
     word = first.text.rstrip("(")
@@ -245,22 +245,22 @@ def foreign_statement(t: Trouble) -> Problem | None:
         # Geometry made by a call is drawn if it is defined without `let`.
         rest = Span(t.source, first.start, t.tokens[t.begin + 1].start)
         name = t.tokens[t.begin + 1].text
-        return Problem(
+        return SyntaxProblem(
             Diagnostic(
                 "E0113",
                 f"there is no `{word}`: a definition begins with its name, `{name} = …`",
                 span,
                 fix=replaced(f"leave out `{word}`", rest, ""),
             ),
-            Repair(t.begin, t.begin + 1),
+            TokenRepair(t.begin, t.begin + 1),
         )
     if right:
         stand_in = [Token(part, part, first.start, first.end) for part in right.split()]
         if first.kind == "NAME" and _would_take(t, stand_in):
-            repair = Repair(t.begin, t.begin + 1, tuple(stand_in))
+            repair = TokenRepair(t.begin, t.begin + 1, tuple(stand_in))
         is_sure = repair is not None and word.lower() not in TWO_WAYS
         fix = replaced(f"write `{right}`", span, right, is_sure=is_sure)
-    return Problem(Diagnostic("E0113", f"there is no `{word}`: {message}", span, fix=fix), repair)
+    return SyntaxProblem(Diagnostic("E0113", f"there is no `{word}`: {message}", span, fix=fix), repair)
 
 
 def _would_take(t: Trouble, stand_in: Sequence[Token]) -> bool:
@@ -271,7 +271,7 @@ def _would_take(t: Trouble, stand_in: Sequence[Token]) -> bool:
     return t.automaton.accepts((token.kind for token in rest), from_statement=True)
 
 
-def reserved_word(t: Trouble) -> Problem | None:
+def reserved_word(t: Trouble) -> SyntaxProblem | None:
     """Recognises a word that begins statements, used as a name or called."""
     tables = t.automaton.tables
     token, at = t.token, t.position
@@ -284,14 +284,14 @@ def reserved_word(t: Trouble) -> Problem | None:
         return None
     word = token.text
     if word == "at" and t.open and t.following.kind in (":", "="):
-        return Problem(
+        return SyntaxProblem(
             Diagnostic(
                 "E0104",
                 "`at` is a word of the language; where a shape is says its `center`",
                 t.span(token),
                 fix=replaced("write `center`", t.span(token), "center"),
             ),
-            Repair(at, at + 1, (token._replace(kind="NAME", text="center"),)),
+            TokenRepair(at, at + 1, (token._replace(kind="NAME", text="center"),)),
         )
     called = at + 1 < len(t.tokens) and t.tokens[at + 1].kind == "(" and at == t.position
     as_name = Token("NAME", word, token.start, token.end)
@@ -303,7 +303,7 @@ def reserved_word(t: Trouble) -> Problem | None:
     is_declared = (at > 0 and t.tokens[at - 1].kind in STATEMENT_WORDS) or (
         at == t.begin and t.tokens[stop].kind == "="
     )
-    return Problem(
+    return SyntaxProblem(
         Diagnostic(
             "E0104",
             f"`{word}` is a word of the language and cannot be {role}",
@@ -314,7 +314,7 @@ def reserved_word(t: Trouble) -> Problem | None:
             if not called
             else None,
         ),
-        Repair(at, stop, (as_name,)),
+        TokenRepair(at, stop, (as_name,)),
     )
 
 

@@ -14,7 +14,7 @@ from aidl_lang.syntax.words import STATEMENT_WORDS
 
 
 @record()
-class Repair:
+class TokenRepair:
     """Tokens that replace those at `start:stop`, to read on with."""
 
     start: int
@@ -23,13 +23,13 @@ class Repair:
 
 
 @record()
-class Problem:
+class SyntaxProblem:
     """A diagnostic and its repair. `with_block`: if there is no repair, the block of the statement is left
     out as well.
     """
 
     diagnostic: Diagnostic
-    repair: Repair | None = None
+    repair: TokenRepair | None = None
     with_block: bool = False
 
 

@@ -17,7 +17,7 @@ from aidl_lang.checking import library
 from aidl_lang.common.diagnostics import Diagnostic, Fix, has_errors
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.common.world import FileError, Reason, World
+from aidl_lang.common.world import FileError, ReadFailure, World
 from aidl_lang.explaining.failures import Conflict, Party
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.parser import parse
@@ -38,7 +38,7 @@ class Programs:
     def read(self, path: str) -> str:
         text = self.world.read(path)
         if has_errors(parse(SourceFile(path, text)).diagnostics):
-            raise FileError(path, Reason.NOT_A_PROGRAM)
+            raise FileError(path, ReadFailure.NOT_A_PROGRAM)
         return text
 
 

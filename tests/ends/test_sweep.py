@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.building.state import Limits
+from aidl_lang.building.state import BuildingLimits
 from aidl_lang.common.cancelling import Cancelled, cancelled_when
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
@@ -124,7 +124,7 @@ drawing d {
     for i in 1..count { for j in 1..count { a[i, j] = circle(center: (i, j), radius: 0.1) } }
 }
 """
-    (upper,) = [each for each in swept(text, building=Limits(entities=30)).turned if not each.ok]
+    (upper,) = [each for each in swept(text, building=BuildingLimits(entities=30)).turned if not each.ok]
     assert sentence(upper, "plate.aidl") == (
         "at `count = 100000` line 3: this program builds more than 30 structures and geometries; "
         "all is well up to 5"

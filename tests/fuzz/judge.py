@@ -19,7 +19,7 @@ from types import FrameType
 from typing import Any
 
 from aidl_lang import pipeline
-from aidl_lang.building.state import Limits
+from aidl_lang.building.state import BuildingLimits
 from aidl_lang.common.diagnostics import Diagnostic, has_errors
 from aidl_lang.common.render.terminal import render
 from aidl_lang.common.source import SourceFile
@@ -32,7 +32,7 @@ from aidl_lang.tools.mending import mend
 
 SETTINGS = replace(
     Settings(),
-    building=Limits(entities=8000, turns=50_000, seconds=1.5),
+    building=BuildingLimits(entities=8000, turns=50_000, seconds=1.5),
     solving=replace(Settings().solving, seconds=3.0),
     drawing=2.0,
 )

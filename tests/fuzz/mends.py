@@ -18,7 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from aidl_lang import pipeline
-from aidl_lang.building.state import Limits
+from aidl_lang.building.state import BuildingLimits
 from aidl_lang.checking.resolving.foreign import IDLE
 from aidl_lang.common.names import fold
 from aidl_lang.common.source import SourceFile
@@ -30,7 +30,7 @@ from tests.fuzz.judge import RECURSION, Finding, attempt
 from tests.fuzz.minimise import minimised
 from tests.fuzz.sources import misspelt, mutant, seeds
 
-SETTINGS = replace(pipeline.Settings(), building=Limits(entities=8000, turns=50_000, seconds=4.0))
+SETTINGS = replace(pipeline.Settings(), building=BuildingLimits(entities=8000, turns=50_000, seconds=4.0))
 _MISSPELT = 0.3
 """The share of programs in which names are misspelt, with nothing else done to them."""
 

@@ -12,7 +12,7 @@ from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.render import compact
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, Reason
+from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, ReadFailure
 from aidl_lang.tools.agents.calling import answer
 from aidl_lang.tools.agents.tools import Tools
 from aidl_lang.tools.agents.workspace import Workspace
@@ -119,7 +119,7 @@ def _told(program: str, files: dict[str, str]) -> str:
 def test_a_file_with_slips_is_refused_as_a_whole() -> None:
     with pytest.raises(FileError) as caught:
         Programs(MemoryWorld({"a.aidl": PLAIN})).read("a.aidl")
-    assert caught.value.reason is Reason.NOT_A_PROGRAM
+    assert caught.value.reason is ReadFailure.NOT_A_PROGRAM
     assert _told(f'import "a.aidl"\n{BODY}', {"a.aidl": PLAIN}) == (
         "error E0210 line 1: `a.aidl` cannot be imported: it is no program without mistakes\n"
         '  1 | import "a.aidl"\n'

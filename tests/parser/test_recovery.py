@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from aidl_lang.common.source import SourceFile
-from aidl_lang.parser import Limits, parse
+from aidl_lang.parser import TextLimits, parse
 from aidl_lang.syntax import ast
 
 
@@ -101,7 +101,7 @@ def test_limits() -> None:
     assert codes("let = 3\n" * 1000)[-1] == "E0104"
     assert codes("}\n" * 1000)[-1] == "E0803"
     source = SourceFile("", "let a = [[[[1]]]]")
-    assert [d.code for d in parse(source, Limits(max_nesting=5)).diagnostics] == ["E0802"]
+    assert [d.code for d in parse(source, TextLimits(max_nesting=5)).diagnostics] == ["E0802"]
 
 
 def test_much_text_is_read() -> None:

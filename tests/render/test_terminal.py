@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.common.render import Style, one_line, render, summary, to_dict, wants_colour
+from aidl_lang.common.render import TerminalStyle, one_line, render, summary, to_dict, wants_colour
 from aidl_lang.common.source import SourceFile, Span
 
 PART = SourceFile(
@@ -205,7 +205,7 @@ def test_colour_changes_nothing_but_colour() -> None:
     found = Diagnostic(
         "E0401", "out", span("plate.center"), "x", fix=Fix("mend", (Edit(span("plate.center"), "origin"),))
     )
-    coloured = render(found, Style(colour=True))
+    coloured = render(found, TerminalStyle(colour=True))
     assert "\x1b[1;31m" in coloured
     assert re.sub(r"\x1b\[[\d;]*m", "", coloured) == render(found)
 

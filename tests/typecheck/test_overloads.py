@@ -7,7 +7,7 @@ from itertools import combinations
 from aidl_lang import pipeline
 from aidl_lang.checking import library
 from aidl_lang.checking.builtins import SIGNATURES
-from aidl_lang.checking.types import Binding, Given, Signature, bind
+from aidl_lang.checking.types import Binding, GivenArgument, Signature, bind
 from aidl_lang.common.names import fold
 from aidl_lang.common.source import SourceFile
 
@@ -16,14 +16,14 @@ def codes(text: str) -> list[str]:
     return [d.code for d in pipeline.check(SourceFile("program.aidl", text))]
 
 
-def calls(signature: Signature) -> list[list[Given]]:
+def calls(signature: Signature) -> list[list[GivenArgument]]:
     """Arguments of the right types: any number of them without a name, and by name the rest, or all but one
     or two of it.
     """
     found = []
     for split in range(len(signature.parameters) + 1):
-        first = [Given(None, kind) for _, kind, _ in signature.parameters[:split]]
-        rest = [Given(name, kind) for name, kind, _ in signature.parameters[split:]]
+        first = [GivenArgument(None, kind) for _, kind, _ in signature.parameters[:split]]
+        rest = [GivenArgument(name, kind) for name, kind, _ in signature.parameters[split:]]
         for left_out in range(3):
             named = combinations(rest, max(0, len(rest) - left_out))
             found += [[*first, *some] for some in named]

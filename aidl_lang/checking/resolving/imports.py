@@ -15,7 +15,7 @@ from aidl_lang.checking.resolving.cuts import with_placed_cuts
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.common.world import FileError, Reason, World, relative_to
+from aidl_lang.common.world import FileError, ReadFailure, World, relative_to
 from aidl_lang.syntax import ast
 
 SUFFIX = ".aidl"
@@ -125,7 +125,7 @@ class _Loader:
             return self.world.read(path)
         except FileError as error:
             hint = "paths are relative to the file that imports"
-            if error.reason is Reason.NOT_A_PROGRAM:
+            if error.reason is ReadFailure.NOT_A_PROGRAM:
                 hint = f"`aidl check {path}` tells what is wrong in it"
             self._report("E0210", f"`{path}` cannot be imported: {error.reason}", statement.path, hint)
             return None

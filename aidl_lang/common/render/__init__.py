@@ -2,8 +2,8 @@
 
 from aidl_lang.common.render.compact import compact
 from aidl_lang.common.render.data import to_dict
-from aidl_lang.common.render.style import Style, wants_colour
+from aidl_lang.common.render.style import TerminalStyle, wants_colour
 from aidl_lang.common.render.terminal import one_line, render, summary
 from aidl_lang.common.render.text import escape
 
-__all__ = ["Style", "compact", "escape", "one_line", "render", "summary", "to_dict", "wants_colour"]
+__all__ = ["TerminalStyle", "compact", "escape", "one_line", "render", "summary", "to_dict", "wants_colour"]

@@ -12,7 +12,7 @@ from itertools import groupby
 
 from aidl_lang.common.diagnostics import Label, Severity
 from aidl_lang.common.records import record
-from aidl_lang.common.render.style import Style
+from aidl_lang.common.render.style import TerminalStyle
 from aidl_lang.common.render.text import Window, escape, lay_out, window
 from aidl_lang.common.source import SourceFile
 
@@ -47,7 +47,7 @@ def mark(label: Label, primary: bool) -> Mark:
     return Mark(first, start - 1, last, end - 1, escape(label.text), primary)
 
 
-class Row:
+class ExcerptRow:
     """One row of characters under construction, each with the kind of label that drew it."""
 
     def __init__(self) -> None:
@@ -57,14 +57,14 @@ class Row:
         self._cells += [(" ", "")] * (column + len(text) - len(self._cells))
         self._cells[column : column + len(text)] = [(char, kind) for char in text]
 
-    def painted(self, style: Style, severity: Severity) -> str:
+    def painted(self, style: TerminalStyle, severity: Severity) -> str:
         return "".join(
             _paint("".join(char for char, _ in run), kind, style, severity)
             for kind, run in groupby(self._cells, key=lambda cell: cell[1])
         )
 
 
-def _paint(text: str, kind: str, style: Style, severity: Severity) -> str:
+def _paint(text: str, kind: str, style: TerminalStyle, severity: Severity) -> str:
     if kind == "primary":
         return style.severity(text, severity)
     return style.gutter(text) if kind == "secondary" else text
@@ -77,7 +77,7 @@ class Excerpt:
     source: SourceFile
     marks: tuple[Mark, ...]
     severity: Severity
-    style: Style
+    style: TerminalStyle
     width: int
 
     def rows(self) -> Iterator[tuple[int | None, str]]:
@@ -124,7 +124,7 @@ class Excerpt:
         ends = [m.end if m.last == number else m.start for m in here]
         return min(min(starts, default=0), length), min(max(ends, default=0), length)
 
-    def _painted(self, row: Row) -> str:
+    def _painted(self, row: ExcerptRow) -> str:
         return row.painted(self.style, self.severity)
 
 
@@ -138,9 +138,9 @@ class Bars:
     def width(self) -> int:
         return 2 * len(self.marks)
 
-    def row(self, number: int, starting: str | None = None, ended: Iterable[Mark] = ()) -> Row:
+    def row(self, number: int, starting: str | None = None, ended: Iterable[Mark] = ()) -> ExcerptRow:
         """Returns the bars that pass a line; given its text, also those that begin before its first word."""
-        row = Row()
+        row = ExcerptRow()
         row.put(0, " " * self.width, "")
         for slot, m in enumerate(self.marks):
             if m.first < number <= m.last and m not in ended:
@@ -156,7 +156,7 @@ class Bars:
     def ending(self, number: int) -> list[Mark]:
         return [m for m in reversed(self.marks) if m.last == number]
 
-    def below(self, number: int) -> Row:
+    def below(self, number: int) -> ExcerptRow:
         """Returns the bars under a line, those that began on it included."""
         row = self.row(number)
         for slot, m in enumerate(self.marks):
@@ -164,14 +164,14 @@ class Bars:
                 row.put(2 * slot, "|", _kind(m))
         return row
 
-    def opening(self, m: Mark, column: int) -> Row:
+    def opening(self, m: Mark, column: int) -> ExcerptRow:
         slot = self.marks.index(m)
         row = self.row(m.first)
         reach = self.width - 2 * slot + column
         row.put(2 * slot, " " + "_" * (reach - 1) + _sign(m), _kind(m))
         return row
 
-    def closing(self, m: Mark, column: int) -> Row:
+    def closing(self, m: Mark, column: int) -> ExcerptRow:
         slot = self.marks.index(m)
         row = self.row(m.last, ended=[e for e in self.ending(m.last) if self.marks.index(e) > slot])
         reach = self.width - 2 * slot + column
@@ -181,7 +181,7 @@ class Bars:
         return row
 
 
-def _annotations(marks: list[Mark], view: Window, bars: Bars, number: int) -> Iterator[Row]:
+def _annotations(marks: list[Mark], view: Window, bars: Bars, number: int) -> Iterator[ExcerptRow]:
     """Yields the carets under one line and the texts that belong to them."""
     if not marks:
         return
@@ -206,7 +206,7 @@ def _annotations(marks: list[Mark], view: Window, bars: Bars, number: int) -> It
         yield row
 
 
-def _stems(marks: list[Mark], places: dict[Mark, tuple[int, int]], bars: Bars, number: int) -> Row:
+def _stems(marks: list[Mark], places: dict[Mark, tuple[int, int]], bars: Bars, number: int) -> ExcerptRow:
     row = bars.below(number)
     for m in marks:
         row.put(places[m][0], "|", _kind(m))

@@ -13,7 +13,7 @@ _LONGEST = 12
 
 
 @record()
-class Change:
+class ChangedLine:
     """One row: its line, `-`, `+` or a space for a line that stays, its text and what differs in it."""
 
     number: int
@@ -25,7 +25,7 @@ class Change:
 @record()
 class Hunk:
     source: SourceFile
-    changes: tuple[Change, ...]
+    changes: tuple[ChangedLine, ...]
 
 
 def hunks(fix: Fix) -> Iterator[Hunk]:
@@ -51,7 +51,7 @@ def _clusters(edits: list[Edit]) -> Iterator[list[Edit]]:
         yield cluster
 
 
-def _changes(source: SourceFile, edits: list[Edit]) -> Iterator[Change]:
+def _changes(source: SourceFile, edits: list[Edit]) -> Iterator[ChangedLine]:
     first = edits[0].span.line
     last = max(source.position(edit.span.end)[0] for edit in edits)
     old = [source.line(number) for number in range(first, last + 1)]
@@ -64,15 +64,15 @@ def _changes(source: SourceFile, edits: list[Edit]) -> Iterator[Change]:
         yield from _context(source, number)
     focus = _differing(gone[0], come[0]) if len(gone) == len(come) == 1 else ((0, 0), (0, 0))
     for i, text in enumerate(gone[:_LONGEST]):
-        yield Change(number + i, "-", text, focus[0])
+        yield ChangedLine(number + i, "-", text, focus[0])
     for i, text in enumerate(come[:_LONGEST]):
-        yield Change(number + i, "+", text, focus[1])
+        yield ChangedLine(number + i, "+", text, focus[1])
 
 
-def _context(source: SourceFile, number: int) -> Iterator[Change]:
+def _context(source: SourceFile, number: int) -> Iterator[ChangedLine]:
     """Yields the line above an insertion."""
     if number > 1:
-        yield Change(number - 1, " ", source.line(number - 1))
+        yield ChangedLine(number - 1, " ", source.line(number - 1))
 
 
 def _patched(source: SourceFile, edits: list[Edit], first: int, last: int) -> list[str]:

@@ -13,7 +13,7 @@ _SEVERITY = {Severity.ERROR: "\x1b[1;31m", Severity.WARNING: "\x1b[1;33m", Sever
 
 
 @record()
-class Style:
+class TerminalStyle:
     """A way to print: in terminal colours, or plain."""
 
     colour: bool = False

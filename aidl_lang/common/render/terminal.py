@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator
 from aidl_lang.common.diagnostics import Diagnostic, Label, Severity
 from aidl_lang.common.prose import counted, listed
 from aidl_lang.common.render.excerpt import Excerpt, Mark, mark
-from aidl_lang.common.render.patch import Change, Hunk, hunks
-from aidl_lang.common.render.style import Style
+from aidl_lang.common.render.patch import ChangedLine, Hunk, hunks
+from aidl_lang.common.render.style import TerminalStyle
 from aidl_lang.common.render.text import escape, lay_out, window
 from aidl_lang.common.source import SourceFile, Span
 
@@ -17,11 +17,11 @@ WIDTH = 110
 """Columns to use if the width of the terminal is not known."""
 
 
-def render(diagnostic: Diagnostic, style: Style | None = None, width: int = WIDTH) -> str:
+def render(diagnostic: Diagnostic, style: TerminalStyle | None = None, width: int = WIDTH) -> str:
     """Returns the diagnostic for a reader, without a line break at the end; plain text unless `style` has
     colour.
     """
-    return "\n".join(_Page(diagnostic, style or Style(), width).lines())
+    return "\n".join(_Page(diagnostic, style or TerminalStyle(), width).lines())
 
 
 def one_line(diagnostic: Diagnostic) -> str:
@@ -40,7 +40,7 @@ def summary(diagnostics: Iterable[Diagnostic]) -> str:
 class _Page:
     """One diagnostic being written: its settings, marks and hunks, which all its parts share."""
 
-    def __init__(self, diagnostic: Diagnostic, style: Style, width: int) -> None:
+    def __init__(self, diagnostic: Diagnostic, style: TerminalStyle, width: int) -> None:
         self.diagnostic = diagnostic
         self.style = style
         self.hunks = list(hunks(diagnostic.fix)) if diagnostic.fix else []
@@ -102,7 +102,7 @@ class _Page:
         for change in hunk.changes:
             yield self._change(change)
 
-    def _change(self, change: Change) -> str:
+    def _change(self, change: ChangedLine) -> str:
         text = window(lay_out(change.text), self.width, change.focus).text
         if change.sign == " ":
             return self._bar(text, change.number)

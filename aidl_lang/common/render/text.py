@@ -29,7 +29,7 @@ def width_of(text: str) -> int:
 
 
 @record()
-class Line:
+class CellLine:
     """One line as cells. `columns[i]` is where character i begins; the last entry is the end of the line."""
 
     cells: tuple[str, ...]
@@ -44,7 +44,7 @@ class Line:
         return self.columns[min(index, len(self.cells))]
 
 
-def lay_out(text: str) -> Line:
+def lay_out(text: str) -> CellLine:
     """Returns a line as cells: tabs go to the next stop, controls become their pictures or code points."""
     cells: list[str] = []
     columns = [0]
@@ -52,14 +52,14 @@ def lay_out(text: str) -> Line:
         cell = " " * (TAB - columns[-1] % TAB) if char == "\t" else _visible(char)
         cells.append(cell)
         columns.append(columns[-1] + width_of(cell))
-    return Line(tuple(cells), tuple(columns))
+    return CellLine(tuple(cells), tuple(columns))
 
 
 @record()
 class Window:
     """The part of a long line that is shown: characters `start:end`, with `…` in place of the rest."""
 
-    line: Line
+    line: CellLine
     start: int
     end: int
 
@@ -77,7 +77,7 @@ class Window:
         return self.line.column(min(index, self.end)) - shift
 
 
-def window(line: Line, width: int, focus: tuple[int, int]) -> Window:
+def window(line: CellLine, width: int, focus: tuple[int, int]) -> Window:
     """Cuts a line to `width` columns so that the characters of `focus`, or its first ones, can be seen."""
     total = line.columns[-1]
     if total <= width:

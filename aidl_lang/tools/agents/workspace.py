@@ -7,12 +7,12 @@ from dataclasses import field
 from functools import cached_property
 from pathlib import Path
 
-from aidl_lang.building.state import Limits as BuildingLimits
+from aidl_lang.building.state import BuildingLimits
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
-from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, Reason, World
-from aidl_lang.parser import Limits as TextLimits
+from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, ReadFailure, World
+from aidl_lang.parser import TextLimits
 from aidl_lang.pipeline import Settings
 from aidl_lang.solver.problem import Settings as SolverSettings
 from aidl_lang.tools.discretion import Programs, Reader
@@ -80,7 +80,7 @@ class Surroundings:
         try:
             return self.given.read(path)
         except FileError as error:
-            if error.reason is not Reason.MISSING or self.disk is None:
+            if error.reason is not ReadFailure.MISSING or self.disk is None:
                 raise
         return self.disk.read(path)
 

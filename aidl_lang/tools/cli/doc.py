@@ -12,7 +12,7 @@ from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.report import UseError, say
 
 if TYPE_CHECKING:
-    from aidl_lang.common.render import Style
+    from aidl_lang.common.render import TerminalStyle
     from aidl_lang.tools.reference.collect import Entry, Reference
 
 
@@ -24,13 +24,13 @@ def register(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    from aidl_lang.common.render import Style, wants_colour
+    from aidl_lang.common.render import TerminalStyle, wants_colour
     from aidl_lang.tools.reference.collect import reference
 
     known = reference()
     if arguments.name is None and arguments.picture:
         raise UseError("E0912", "`--picture` draws the example of one name", "`aidl doc` lists all names")
-    style = Style(wants_colour(sys.stdout, os.environ))
+    style = TerminalStyle(wants_colour(sys.stdout, os.environ))
     entries = [_found(known, arguments.name)] if arguments.name is not None else list(known.entries.values())
     if arguments.picture:
         return _draw(entries[0], arguments.picture)
@@ -56,7 +56,7 @@ def _found(known: Reference, name: str) -> Entry:
     raise UseError("E0912", f"there is no `{name}` to tell about", *hints, "`aidl doc` lists all names")
 
 
-def _list(known: Reference, style: Style) -> None:
+def _list(known: Reference, style: TerminalStyle) -> None:
     for number, topic in enumerate(known.topics):
         entries = known.of_topic(topic.name)
         width = max(len(entry.name) for entry in entries)
@@ -65,7 +65,7 @@ def _list(known: Reference, style: Style) -> None:
             print(f"  {style.gutter(entry.name)}{' ' * (width - len(entry.name))}  {entry.doc.line}")
 
 
-def _show(entry: Entry, known: Reference, asked: str, style: Style) -> None:
+def _show(entry: Entry, known: Reference, asked: str, style: TerminalStyle) -> None:
     from aidl_lang.common.names import find
     from aidl_lang.tools.reference.pages import facts, forms
 

@@ -31,9 +31,9 @@ def show(diagnostics: Iterable[Diagnostic], quiet: bool = False) -> None:
         return
     import shutil
 
-    from aidl_lang.common.render import Style, render, wants_colour
+    from aidl_lang.common.render import TerminalStyle, render, wants_colour
 
-    style = Style(wants_colour(sys.stderr, os.environ))
+    style = TerminalStyle(wants_colour(sys.stderr, os.environ))
     width = shutil.get_terminal_size((110, 24)).columns
     for diagnostic in said:
         say(render(diagnostic, style, width), end="\n\n" if diagnostic.span else "\n")

@@ -18,7 +18,7 @@ from pathlib import Path
 from aidl_lang import parser
 from aidl_lang.building.expression import Evaluator, Unknown
 from aidl_lang.building.model import Assertion, Condition, Measurement, Model, Structure
-from aidl_lang.building.values import Text
+from aidl_lang.building.values import TextVal
 from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.prose import first_few
 from aidl_lang.common.records import record
@@ -134,7 +134,7 @@ def _built(source: SourceFile, counts: Mapping[str, float]) -> tuple[Model, ast.
 
 def _role(role: Structure, name: str, source: SourceFile, *, many: bool) -> Role:
     match role.attributes.get("note"):
-        case (Text(words, _),):
+        case (TextVal(words, _),):
             try:
                 return Role.read(name, words, many=many)
             except ValueError as reason:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from aidl_lang.checking.resolving.imports import SUFFIX
 from aidl_lang.common.records import record
-from aidl_lang.common.world import DiskWorld, FileError, Reason, normalize
+from aidl_lang.common.world import DiskWorld, FileError, ReadFailure, normalize
 
 MOST_FILES = 2_000
 """Most programs of a project that are searched."""
@@ -72,5 +72,5 @@ class OpenWorld:
         if (text := self.workspace.open.get(self.folder / inside)) is not None:
             return text
         if not self.folder.is_dir():  # of a program that was never saved
-            raise FileError(path, Reason.MISSING)
+            raise FileError(path, ReadFailure.MISSING)
         return DiskWorld(self.folder).read(inside)

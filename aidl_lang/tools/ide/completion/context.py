@@ -7,7 +7,7 @@ from enum import Enum
 from functools import cached_property
 
 from aidl_lang.checking.builtins import COPYING, DERIVING, MATH, PATTERNS
-from aidl_lang.checking.facts import Fact, Place
+from aidl_lang.checking.facts import Fact, ReadPlace
 from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind
 from aidl_lang.checking.types import ANY, ListType, NumberType, TextType, Type
@@ -179,7 +179,7 @@ class Context:
             case Use.CONSTRAINT:
                 return all(p.holder is self.home for p in reads)
             case Use.GEOMETRY:
-                own = all(p == Place(self.home) for p in reads)
+                own = all(p == ReadPlace(self.home) for p in reads)
                 return own and known.name != "self" and known.symbol is not self.scope.own_name
             case Use.DERIVING:
                 return all(p.holder in self.scope.homes for p in reads)

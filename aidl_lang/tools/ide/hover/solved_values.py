@@ -17,7 +17,7 @@ from aidl_lang.building.evaluate import evaluate, iterate, turn_scope
 from aidl_lang.building.expression import Evaluator, Unknown
 from aidl_lang.building.model import Geometry, Model, Structure, own_geometry
 from aidl_lang.building.scopes import LetBinding, Scope
-from aidl_lang.building.state import Env, Interpreter, Limits, Reach
+from aidl_lang.building.state import BuildingLimits, Env, Interpreter, Reach
 from aidl_lang.building.statements import EXECUTORS
 from aidl_lang.building.values import Array, ListVal, Nothing, Num, PointVal, Value, members
 from aidl_lang.common.diagnostics import has_errors
@@ -29,7 +29,7 @@ from aidl_lang.tools.ide.view import View
 MOST = 4
 """Most instances and turns that are listed."""
 _LOOKED_AT = 200
-_LIMITS = Limits(entities=1_000, turns=2_000, depth=30, items=2_000, seconds=0.2)
+_LIMITS = BuildingLimits(entities=1_000, turns=2_000, depth=30, items=2_000, seconds=0.2)
 """Limits for reading one expression: far less than a program may ask for."""
 _DEEPEST = 60
 _STEP = 1e-4

@@ -12,7 +12,7 @@ from aidl_lang.building.expression import Unknown
 from aidl_lang.building.model import Condition, Geometry, Structure
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.state import Env
-from aidl_lang.building.values import Num, PointVal, Status, Text, Value
+from aidl_lang.building.values import Exactness, Num, PointVal, TextVal, Value
 from aidl_lang.checking.registry import PRIMITIVES
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, MaybeDimension
 from aidl_lang.common.numbers import fixed
@@ -76,7 +76,7 @@ def _lines(solved: Solved, name: str, value: Value, env: Env) -> Iterator[str]:
             yield from _geometry(solved, name, value, env)
         case Structure():
             yield from _structure(solved, name, value)
-        case Text(text, _):
+        case TextVal(text, _):
             yield f'{name} = "{text}"'
         case bool() | Condition():
             yield f"{name} = {_truth(solved, value)}"
@@ -116,9 +116,9 @@ def standing(solved: Solved, value: Num) -> str:
 
 
 def _exact(value: Num, unknowns: list[Unknown]) -> str:
-    if value.status is Status.PARAM:
+    if value.status is Exactness.PARAM:
         return "exact (param)"
-    if value.status >= Status.FIXED:
+    if value.status >= Exactness.FIXED:
         return "exact"
     return "as written" if unknowns else ""
 

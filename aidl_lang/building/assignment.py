@@ -29,7 +29,7 @@ _WAITING = Instantiation | StructureCopy | Pattern | ListVal
 
 
 @record(frozen=False)
-class Settling:
+class Assignment:
     """The making of the structures that one assignment names.
 
     first  instances of templates that other members of a pattern are copies of, with the frame each had of
