@@ -80,7 +80,7 @@ class Unknown:
         return not self.angular and not (is_offset and "_to." not in self.field)
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """Its description for people, as not every unknown has a name in the program."""
         if self.since:
             target, _, measure = self.path.rpartition(".")

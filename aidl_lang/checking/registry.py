@@ -21,7 +21,7 @@ class Primitive:
     fields   its fields: `name: point`, `length` (that may be negative), `size` (that may not), `angle`,
              `direction` (an angle that turns with the things around), `KIND[]` for a list
     unlisted fields that messages and completion do not offer, as another says the same
-    told     the fields to show of one that is pointed at; all if it is empty
+    chief    the fields to show of one that is pointed at; all if it is empty
     sample   the text of one at `({x}, {y})`; "" for a kind that the library alone uses
     """
 
@@ -29,7 +29,7 @@ class Primitive:
     calls: tuple[str, ...]
     fields: str
     unlisted: str = ""
-    told: str = ""
+    chief: str = ""
     sample: str = ""
 
     @cached_property
@@ -45,7 +45,7 @@ class Primitive:
     @cached_property
     def shown(self) -> tuple[str, ...]:
         """The fields to show of one."""
-        return tuple(self.told.split()) or self.names
+        return tuple(self.chief.split()) or self.names
 
 
 def _items(fields: str) -> Iterator[tuple[str, str]]:
@@ -60,7 +60,7 @@ _RECORDS = (
         calls=("x: length, y: length", "at: point"),
         fields="x: length, y: length",
         unlisted="at: point, center: point",
-        told="at",
+        chief="at",
         sample="({x}, {y})",
     ),
     Primitive(
@@ -69,7 +69,7 @@ _RECORDS = (
         fields="start: point, end: point, midpoint: point, length: size, angle: direction, dx: length, "
         "dy: length",
         unlisted="center: point",
-        told="start end length angle",
+        chief="start end length angle",
         sample="line(({x}, {y}), ({x} + 12, {y} + 3))",
     ),
     Primitive(
@@ -81,14 +81,14 @@ _RECORDS = (
         ),
         fields="center: point, start: point, end: point, midpoint: point, radius: size, diameter: size, "
         "start_angle: direction, end_angle: direction, sweep: angle, length: size",
-        told="center radius start end sweep",
+        chief="center radius start end sweep",
         sample="arc(center: ({x}, {y}), radius: 8, start_angle: 20deg, end_angle: 130deg)",
     ),
     Primitive(
         "circle",
         calls=("center: point?, radius: length", "center: point?, diameter: length"),
         fields="center: point, radius: size, diameter: size",
-        told="center radius",
+        chief="center radius",
         sample="circle(center: ({x}, {y}), radius: 6)",
     ),
     Primitive(
@@ -107,7 +107,7 @@ _RECORDS = (
         "glyphs",
         calls=("text: text, start: point, height: length, angle: angle, align: text, line_spacing: number",),
         fields="start: point, height: size, angle: direction, glyph: glyphs[]",
-        told="start height angle",
+        chief="start height angle",
     ),
 )
 

@@ -152,7 +152,7 @@ class Explanation:
     def diagnostic(self) -> Diagnostic:
         code, headline = self._headline()
         labels = [
-            Label(u.holder.span, f"{u.told} would have to become 0")
+            Label(u.holder.span, f"{u.description} would have to become 0")
             for u in self.sizes
             if u.holder.span is not None
         ]
@@ -325,7 +325,7 @@ class Explanation:
     def _headline(self) -> tuple[str, str]:
         failure = self.failure
         names = listed([_name(parties) for parties in self.turns.values()], NAMED)
-        names = names or listed([unknown.told for unknown in self.sizes], NAMED)
+        names = names or listed([unknown.description for unknown in self.sizes], NAMED)
         several = len(self.parties) > 1
         match failure.reason:
             case Failure.CONTRADICTORY:
@@ -391,7 +391,9 @@ class Explanation:
                 wordings = [w for party in self.parties if isinstance(w := party.stated.wording, Wording)]
                 held = dict.fromkeys(f"`{name}`" for wording in wordings for name in wording.held())
                 if held:
-                    moving = listed([self.lowered.unknowns[i].told for i in self.failure.moving], NAMED)
+                    moving = listed(
+                        [self.lowered.unknowns[i].description for i in self.failure.moving], NAMED
+                    )
                     yield f"{listed(held, NAMED)} cannot move, only {moving}: a `guess(…)` frees a number"
             case Failure.NOT_CONVERGED:
                 yield "the search starts from what is written: first guesses near to what is meant help it"

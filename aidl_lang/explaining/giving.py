@@ -109,9 +109,9 @@ def _of_sizes(sizes: Sequence[Change], given: GaveWay) -> Diagnostic:
     chief = max(sizes, key=lambda c: (round(_share(c), 6), -c.span.start if c.span else 0))
     rest = [c for c in sizes if c is not chief]
     written, solved = short(chief.written), short(chief.solved)
-    message = f"{chief.told} was written {written} and became {solved}"
+    message = f"{chief.description} was written {written} and became {solved}"
     if rest:
-        others = [f"{c.told} {short(c.written)} → {short(c.solved)}" for c in rest]
+        others = [f"{c.description} {short(c.written)} → {short(c.solved)}" for c in rest]
         message += f", and with it {listed(others, NAMED)}"
     labels = tuple(
         Label(c.span, f"was written {short(c.written)} and became {short(c.solved)}")

@@ -111,7 +111,7 @@ def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:
     for index in solution.changed:
         unknown = lowered.unknowns[index]
         solved, span = float(solution.values[index]), unknown.holder.span
-        yield Change(unknown.path, unknown.guess, solved, span, unknown.told, unknown.is_size)
+        yield Change(unknown.path, unknown.guess, solved, span, unknown.description, unknown.is_size)
 
 
 def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[ConstraintReport]:

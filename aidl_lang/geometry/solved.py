@@ -192,7 +192,7 @@ class ConstraintReport:
 
 @record()
 class Change:
-    """A kept size that had to change. `told`: what it is, for people; `is_size`: no angle or offset;
+    """A kept size that had to change. `description`: its name for people; `is_size`: no angle or offset;
     `because`: the constraints, as written, that ask for it.
     """
 
@@ -200,7 +200,7 @@ class Change:
     written: float
     solved: float
     span: Span | None
-    told: str = ""
+    description: str = ""
     is_size: bool = True
     because: tuple[str, ...] = ()
 
