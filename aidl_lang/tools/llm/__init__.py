@@ -1,1 +1,1 @@
-"""From a sentence to a program: language models asked, their programs checked, what they lose asked back."""
+"""From a sentence to a program: asks language models, checks their programs, asks back for what they lose."""

@@ -1,4 +1,6 @@
-"""AIDL as the language of a conversation: programs are mended, compiled, compared with those before."""
+"""AIDL as the language of a conversation: mends and compiles programs, and compares them with earlier
+ones.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,7 @@ from aidl_lang.tools.reference.guide import guide
 _PIXELS = 512
 """Larger side of the picture of a plan."""
 _ASKED = 2
-"""Times that the same lost thing is asked for, if it is clear that it was not meant."""
+"""Times that the same lost thing is asked for, if it was clearly not meant to go."""
 
 _WRONG = (
     "Mend this without giving up anything the program means: what an error is about is not to be left out, "
@@ -44,8 +46,8 @@ _PLANNED = (
 
 @record()
 class Aidl:
-    """AIDL or a subset of it. `world` is where programs may import from, None for nowhere, and `file` what a
-    program is called there.
+    """AIDL or a subset of it. `world` is where programs may import from, None for nowhere, and `file` the
+    name of a program there.
     """
 
     variant: Variant = Variant.FULL
@@ -62,7 +64,7 @@ class Aidl:
         return guide(self.variant)
 
     def reads(self, text: str) -> bool:
-        """Whether the parser takes a text that has a root structure."""
+        """True for a text with a root structure that the parser accepts."""
         parsed = parser.parse(SourceFile(self.file, text))
         is_rooted = any(isinstance(statement, ast.Structure) for statement in parsed.module.statements)
         return is_rooted and not has_errors(parsed.diagnostics)
@@ -76,7 +78,7 @@ class Aidl:
 
 @record(frozen=False)
 class AidlConversation:
-    """Programs one after another, with what they meant and what was said of them."""
+    """Consecutive programs, with their intents and the answers to them."""
 
     language: Aidl
     told: set[str] = field(default_factory=set)
@@ -88,7 +90,7 @@ class AidlConversation:
         self.ledger = Ledger(self.world, self.settings)
 
     def begin_with(self, program: str) -> None:
-        """The program that is to be changed: what it means shall stay."""
+        """Notes the program to be changed, whose intents shall stay."""
         source = self._source(program)
         self.ledger.note(source, self._compiled(source))
 
@@ -103,8 +105,8 @@ class AidlConversation:
         return replace(verdict, feedback=told)
 
     def finish(self, verdict: Verdict) -> Verdict:
-        """The last word: what fits is put back of what was lost. A constraint that conflicts is given up by
-        nobody but the model, or who reads of it.
+        """Puts back what was lost and fits. A constraint that conflicts is given up only by the model, or the
+        reader of its report.
         """
         source, fixes = self._source(verdict.program), verdict.fixes
         compiled = verdict.compiled or self._compiled(source)
@@ -149,7 +151,7 @@ class AidlConversation:
         )
 
     def _answer(self, verdict: Verdict, compiled: Compiled) -> str:
-        """What the model is told; empty when there is nothing left to ask for."""
+        """Returns the answer to the model; "" if there is nothing left to ask for."""
         losses = self._to_ask_for()
         asked = request(losses) if losses else ""
         if not compiled.ok:
@@ -166,7 +168,7 @@ class AidlConversation:
         return f"{said}\n\n{_VALID}" if said else ""
 
     def _to_ask_for(self) -> tuple[Loss, ...]:
-        """What is missing and was not asked for too often."""
+        """Returns the missing things that were not asked for too often."""
         losses = tuple(
             loss
             for loss in self.ledger.missing
@@ -177,12 +179,12 @@ class AidlConversation:
 
 
 def _what(loss: Loss) -> tuple[str, ...]:
-    """The same for a loss whichever attempt it was last seen in."""
+    """Returns a key that is the same for a loss in all attempts."""
     return loss.kind, loss.path, loss.text
 
 
 def _is_partial(source: SourceFile, compiled: Compiled) -> bool:
-    """Whether a program is to be continued: it says `todo`, or has structures without anything in them."""
+    """True for a program to be continued: it says `todo`, or has empty structures."""
     assert compiled.model is not None
     if any(structure.is_empty for structure in compiled.model.root.walk()):
         return True
@@ -200,7 +202,7 @@ def _numbers(compiled: Compiled) -> dict[str, float]:
 
 
 def counted(model: SolvedModel) -> dict[str, float]:
-    """How many structures and constraints a model has, and how many degrees of freedom if that is known."""
+    """Counts structures and constraints of a model, and its degrees of freedom if known."""
     found: dict[str, float] = {
         "structures": sum(1 for _ in model.root.walk()),
         "constraints": len(model.constraints),

@@ -20,22 +20,25 @@ _MEMBERS: dict[str, Callable[[str], dict[str, object]]] = {
 }
 _ENGINE = ":llguidance"
 SERVERS = (*_MEMBERS, *(kind + _ENGINE for kind in _MEMBERS))
-"""Kinds of servers: as they are, and with llguidance as the engine that decodes."""
+"""Kinds of servers: plain, and with llguidance as the engine that decodes."""
 
 _REPLY = re.compile(r"(?:(?!```).)*^```aidl\r?\n(?P<program>.*)```\s*", re.M | re.S)
 
 
 def members(server: str, fenced: bool = True) -> Mapping[str, object]:
-    """What a request to one of SERVERS has in addition; without `fenced` the reply is a bare program."""
+    """Returns additional members of a request to one of SERVERS; without `fenced` the reply is a bare
+    program.
+    """
     format = "llguidance" if server.endswith(_ENGINE) else "gbnf"
     return _MEMBERS[server.removesuffix(_ENGINE)](export(format, fenced))
 
 
 class Constrained:
-    """A provider whose server is told to keep the model to the grammar, free text first, and does so.
+    """A provider whose server keeps the model to the grammar, free text first.
 
-    Servers pass over members of a request that they do not know. So a reply that came to its end is looked
-    at, and one that the grammar does not let through is an error.
+    Servers ignore members of a request that they do not know. So a complete reply is checked, and one that
+    the
+    grammar does not allow is an error.
     """
 
     def __init__(self, provider: Closable, server: str) -> None:
@@ -65,6 +68,6 @@ class Constrained:
 
 
 def _keeps_to_the_grammar(text: str) -> bool:
-    """Whether a reply is free text and one block, and the program in it has no errors of syntax."""
+    """True for a reply of free text and one block, whose program has no errors of syntax."""
     found = _REPLY.fullmatch(text)
     return found is not None and not has_errors(parse(SourceFile("", found["program"])).diagnostics)

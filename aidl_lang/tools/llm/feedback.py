@@ -1,4 +1,4 @@
-"""What a model is told about its program: what is wrong, what was mended, what can still move."""
+"""Feedback to a model on its program: errors, fixes made, remaining motions."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.llm.intent.probing import CONTACTS
 
 STAGES = ("syntax", "types", "validity", "solve", "asserts", "contacts", "done")
-"""What a program is checked for, in order."""
+"""The checks of a program, in order."""
 
 _STAGE_OF = {"01": "syntax", "02": "types", "03": "types", "06": "solve", "08": "validity"}
 _ASSERT = "E0604"
 _MOST = 12
-"""Motions and boxes that are told."""
+"""Most motions and boxes in the feedback."""
 
 
 def stage_of(diagnostics: Iterable[Diagnostic]) -> str:
-    """The first stage that fails; remarks on parts that touch nothing fail `contacts`."""
+    """Returns the first stage that fails; remarks on parts that touch nothing fail `contacts`."""
     failing = {_stage(d) for d in diagnostics if d.is_error or d.code in CONTACTS}
     return next((stage for stage in STAGES if stage in failing), "done")
 
@@ -39,7 +39,7 @@ def _stage(diagnostic: Diagnostic) -> str:
 
 
 def errors(compiled: Compiled) -> str:
-    """What is wrong, and where the solver failed, what freedom the rest leaves."""
+    """Describes the errors and, if the solver failed, the freedom that the rest leaves."""
     wrong = [d for d in compiled.diagnostics if d.is_error]
     stage = stage_of(wrong)
     count = counted(len(wrong), "error")
@@ -50,7 +50,7 @@ def errors(compiled: Compiled) -> str:
 
 
 def remarks(compiled: Compiled, *, may_constrain: bool) -> str:
-    """Warnings, and structures that nothing ties to the rest; empty if there are none."""
+    """Returns warnings, and structures that nothing ties to the rest; "" if there are none."""
     warnings = [d for d in compiled.diagnostics if d.code.startswith("W")]
     floating = floats(compiled.model) if may_constrain and compiled.model is not None else ()
     blocks = [compact(warnings)] if warnings else []
@@ -65,7 +65,7 @@ def remarks(compiled: Compiled, *, may_constrain: bool) -> str:
 
 
 def floats(model: SolvedModel) -> tuple[str, ...]:
-    """Paths, without the root, of structures of which no constraint says where they are."""
+    """Returns paths, without the root, of structures that no constraint places."""
     return tuple(path.removeprefix(f"{model.root.path}.") for path in model.floating)
 
 
@@ -77,7 +77,7 @@ def _freedom(model: SolvedModel) -> str:
 
 
 def mended(before: str, after: str, titles: Sequence[str]) -> str:
-    """What was changed in the program before it was checked, as lines."""
+    """Returns the changes made in the program before it was checked, as lines."""
     if before == after:
         return ""
     counts = ", ".join(
@@ -100,7 +100,7 @@ def _changed(before: Sequence[str], after: Sequence[str]) -> Iterator[str]:
 
 
 def plan(model: SolvedModel) -> str:
-    """How far a program that is to be continued has come: its structures with their boxes."""
+    """Describes the state of a program to be continued: its structures with their boxes."""
     lines = ["So far it compiles. Boxes, in mm, in the frame of the root:"]
     structures = list(model.root.walk())
     lines += [f"- {_box(s)}" for s in structures[: 4 * _MOST]]

@@ -1,4 +1,4 @@
-"""Ask, check, tell, ask again: from a request to a program that is right."""
+"""The loop from a request to a right program: ask, check, answer, ask again."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from aidl_lang.tools.llm.replies import find_program
 
 @record()
 class Task:
-    """What is asked for. With a `program` it is a change to that."""
+    """A request. With a `program` it is a change to that."""
 
     request: str
     image: Image | None = None
@@ -32,7 +32,7 @@ class Task:
 
 @record()
 class Settings:
-    """`attempts` bounds the replies, and as many again that only fill in what an earlier one planned."""
+    """`attempts` bounds the replies; as many again may only fill in what an earlier one planned."""
 
     attempts: int = 5
     sampling: Sampling = field(default_factory=Sampling)
@@ -40,19 +40,19 @@ class Settings:
 
 @record()
 class Attempt:
-    """One reply and what came of it. Without a verdict it held no program, or not the whole of one."""
+    """One reply and its result. Without a verdict it held no program, or not the whole of one."""
 
     number: int
     reply: Reply
     program: str | None
     verdict: Verdict | None
     answer: str
-    """What the model was told; empty after the last one."""
+    """The answer to the model; empty after the last one."""
 
 
 @record()
 class Generation:
-    """What came of a task: the attempts, and the verdict on the program kept (None without any program)."""
+    """The result of a task: the attempts, and the verdict on the program kept (None without any program)."""
 
     task: Task
     attempts: tuple[Attempt, ...]
@@ -61,7 +61,7 @@ class Generation:
     """The conversation as it was sent."""
 
     failure: Diagnostic | None = None
-    """Why no further reply could be had."""
+    """The reason why no further reply could be had."""
 
     @property
     def ok(self) -> bool:
@@ -80,8 +80,8 @@ def generate(
     hear: Callable[[int, str], None] = lambda attempt, text: None,
     listen: Callable[[Generation], None] = lambda generation: None,
 ) -> Generation:
-    """Run the conversation. `hear` gets the text of an attempt piece by piece, `listen` how far it has come
-    after each attempt.
+    """Runs the conversation. `hear` gets the text of an attempt piece by piece, `listen` the state after each
+    attempt.
     """
     run = _Run(task, provider, language, settings or Settings(), hear)
     attempts: list[Attempt] = []
@@ -118,7 +118,7 @@ class _Run:
         ]
 
     def attempts(self) -> Iterator[Attempt]:
-        """Replies with what they were told, until nothing is left to tell."""
+        """Yields replies with the answers to them, until nothing is left to answer."""
         number = steps = 0
         while number < self.settings.attempts and steps < 2 * self.settings.attempts:
             attempt = self._attempt(steps + 1)

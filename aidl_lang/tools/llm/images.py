@@ -1,4 +1,4 @@
-"""Pictures for a model: files of known formats, whole, and no larger than a model looks at."""
+"""Pictures for a model: whole files of known formats, no larger than a model looks at."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
 
 MAX_FILE = 50_000_000
 MAX_SENT = 3_500_000
-"""Bytes; base64 makes them a third more, and 5 MB is what providers take."""
+"""Most bytes; base64 makes them a third more, and 5 MB is what providers take."""
 
 MAX_SIDE = 2048
-"""Pixels; the models themselves look at fewer."""
+"""Largest side in pixels; the models themselves look at fewer."""
 
 _TYPES = {"PNG": "image/png", "JPEG": "image/jpeg", "WEBP": "image/webp", "GIF": "image/gif"}
 _ORIENTATION = 0x0112
 _BROKEN = (OSError, ValueError, SyntaxError, EOFError, IndexError, OverflowError, struct.error, zlib.error)
-"""What pillow raises for files that are broken."""
+"""Errors of pillow for broken files."""
 
 
 class ImageError(Exception):
-    """The picture cannot be used."""
+    """Raised if the picture cannot be used."""
 
     def __init__(self, message: str, *hints: str) -> None:
         super().__init__(message)
@@ -37,7 +37,7 @@ class ImageError(Exception):
 
 
 def read_image(name: str) -> Image:
-    """The picture in a file, scaled down and turned upright if it has to be; raises ImageError."""
+    """Returns the picture in a file, scaled down and turned upright if needed; raises ImageError."""
     try:
         with open(name, "rb") as file:
             data = file.read(MAX_FILE + 1)
@@ -50,7 +50,7 @@ def read_image(name: str) -> Image:
 
 
 def to_image(data: bytes, name: str) -> Image:
-    """As `read_image`, with the file's content; the format is told by that and not by the name."""
+    """Does as `read_image`, with the file's content, which tells the format rather than the name."""
     import PIL.Image
 
     bomb = (PIL.Image.DecompressionBombError, PIL.Image.DecompressionBombWarning)
@@ -76,7 +76,9 @@ def _remedy(name: str) -> list[str]:
 
 
 def _fitting(picture: Picture, data: bytes) -> Image:
-    """The file as it is where it may stay so, else its first frame as PNG or, when that is too long, JPEG."""
+    """Returns the file itself if it is small enough, else its first frame as PNG or, when that is too long,
+    JPEG.
+    """
     from PIL import ImageOps
 
     is_upright = picture.getexif().get(_ORIENTATION, 1) == 1

@@ -1,4 +1,4 @@
-"""What a conversation needs to know of the language that the programs are written in."""
+"""The interface between a conversation and the language of its programs."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 
 @record()
 class Verdict:
-    """What there is to say of one program."""
+    """The judgement of one program."""
 
     ok: bool
     stage: str
-    """How far it came: the stage that failed, or `done`."""
+    """The stage that failed, or `done`."""
 
     feedback: str
-    """For the model: what is wrong and how to mend it; for a program that is right, remarks or nothing."""
+    """For the model: the errors and their remedies; for a right program, remarks or nothing."""
 
     program: str
-    """The program after mending; as it came where nothing was mended."""
+    """The program after mending."""
 
     fixes: tuple[str, ...] = ()
     """The titles of the fixes that were made."""
@@ -34,30 +34,30 @@ class Verdict:
     """The codes of the errors left."""
 
     is_partial: bool = False
-    """It says that it is to be continued: the model is shown how far it has come, and asked to go on."""
+    """True for a program to be continued: the model is shown its state, and asked to go on."""
 
     images: tuple[Image, ...] = ()
     """Pictures that go with the feedback."""
 
     missing: tuple[str, ...] = ()
-    """What earlier programs of the conversation meant and this one lost, a phrase each."""
+    """Intents of earlier programs of the conversation that this one lost, a phrase each."""
 
     weight: tuple[int, ...] = ()
-    """How far it is from right, to choose the best of several: less is better."""
+    """Distance from right, to choose the best of several: less is better."""
 
     numbers: Mapping[str, float] = field(default_factory=dict)
-    """What was counted: structures, constraints, degrees."""
+    """Counts of structures, constraints, degrees."""
 
     compiled: Compiled | None = None
 
 
 class Conversation(Protocol):
-    """Judges the programs of one conversation in turn; it remembers what earlier ones meant."""
+    """Judges the programs of one conversation in turn; remembers the intents of earlier ones."""
 
     def judge(self, program: str) -> Verdict: ...
 
     def finish(self, verdict: Verdict) -> Verdict:
-        """The last word on the program that is kept: what can be put back into it is."""
+        """Returns the last verdict on the kept program, with everything lost put back that fits."""
 
 
 class Language(Protocol):
@@ -67,7 +67,7 @@ class Language(Protocol):
 
     @property
     def suffix(self) -> str:
-        """Of its files: `.aidl`."""
+        """The suffix of its files: `.aidl`."""
 
     @property
     def fences(self) -> tuple[str, ...]:
@@ -77,7 +77,7 @@ class Language(Protocol):
         """The system prompt."""
 
     def reads(self, text: str) -> bool:
-        """Whether a text without a fence is a program."""
+        """Tells whether a text without a fence is a program."""
 
     def conversation(self, before: str | None = None) -> Conversation:
-        """A new one; `before` is the program that is to be changed, if one is."""
+        """Returns a new conversation; `before` is the program to be changed, if any."""

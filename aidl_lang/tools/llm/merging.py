@@ -1,4 +1,6 @@
-"""A changed program as a minimal edit of the one before: what means the same keeps its text and comments."""
+"""Writes a changed program as a minimal edit of the one before: unchanged meaning keeps its text and
+comments.
+"""
 
 from __future__ import annotations
 
@@ -35,14 +37,14 @@ def _means(module: ast.Module) -> list[str]:
 
 
 def _key(statement: ast.Statement) -> str:
-    """What a statement says, whatever it looks like."""
+    """Returns the meaning of a statement, in canonical form."""
     return re.sub(r"\n\n+", "\n", format_statement(statement))
 
 
 @record()
 class _Item:
-    """A statement in its text: `lead` is what stands before it from the end of the line above on, and `tail`
-    what follows it on its line.
+    """A statement in its text: `lead` is the text before it from the end of the line above on, and `tail` the
+    rest of its line.
     """
 
     node: ast.Statement
@@ -55,7 +57,7 @@ class _Item:
 
     @property
     def subject(self) -> tuple[object, ...]:
-        """What it is about: two statements of one subject are versions of each other."""
+        """A key of its subject: two statements of one subject are versions of each other."""
         match self.node:
             case ast.Structure(kind=kind, name=name, indices=indices):
                 return kind, name.text, len(indices)
@@ -71,7 +73,7 @@ class _Item:
 
 @record()
 class _Body:
-    """The statements of a file or a block, and what stands after the last of them."""
+    """The statements of a file or a block, and the text after the last of them."""
 
     items: tuple[_Item, ...]
     end: str
@@ -111,7 +113,7 @@ def _pieces(old: _Body, new: _Body) -> Iterator[str]:
 
 
 def _versions(gone: Sequence[_Item], come: Sequence[_Item]) -> Iterator[str]:
-    """New statements, each as an edit of the old one of its subject, or of one that goes by a new name."""
+    """Yields new statements, each as an edit of the old one of its subject, or of a renamed one."""
     left, subjects = list(gone), {item.subject for item in come}
     for item in come:
         same = (old for old in left if old.subject == item.subject)
@@ -139,7 +141,7 @@ def _version(old: ast.Statement, new: ast.Statement) -> str:
 
 
 def _block(node: ast.Statement) -> ast.Block | None:
-    """The one block of a statement that is a head and a block."""
+    """Returns the one block of a statement that is a head and a block."""
     blocks = [child for child in ast.children(node) if isinstance(child, ast.Block)]
     return blocks[0] if len(blocks) == 1 and blocks[0].span.text.startswith("{") else None
 

@@ -1,4 +1,4 @@
-"""What is said to a language model and what comes back, whoever serves it."""
+"""Messages to and from a language model, for all providers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Image:
 
     @property
     def uri(self) -> str:
-        """All of it as an address."""
+        """The picture as a data URI."""
         return f"data:{self.media_type};base64,{self.base64}"
 
 
@@ -40,7 +40,7 @@ class Message:
 
 @record()
 class Sampling:
-    """How a reply is drawn. What is None is left to the server."""
+    """Parameters of a reply. None leaves them to the server."""
 
     seed: int | None = None
     temperature: float | None = None
@@ -71,7 +71,7 @@ def _total(a: int | None, b: int | None) -> int | None:
 
 
 class Finish(StrEnum):
-    """Why a reply ended."""
+    """The reason why a reply ended."""
 
     COMPLETE = "complete"
     CUT = "cut"  # at the limit on tokens
@@ -88,7 +88,7 @@ class Reply:
 
 
 class ProviderError(Exception):
-    """No reply could be had, however often it was asked for; the diagnostic says why and what to do."""
+    """Raised if no reply could be had after all retries; the diagnostic gives the reason and a remedy."""
 
     def __init__(self, code: str, message: str, *hints: str) -> None:
         super().__init__(message)
@@ -96,7 +96,7 @@ class ProviderError(Exception):
 
 
 class Provider(Protocol):
-    """Whoever answers: a server or a command."""
+    """The source of replies: a server or a command."""
 
     @property
     def name(self) -> str:
@@ -104,11 +104,11 @@ class Provider(Protocol):
 
     @property
     def takes_seeds(self) -> bool:
-        """Whether a request may say from which seed its reply is drawn."""
+        """True if a request may contain a seed."""
 
     @property
     def takes_grammars(self) -> bool:
-        """Whether a request may hold a grammar that the reply is to keep to."""
+        """True if a request may contain a grammar for the reply."""
 
     def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
         """Ask for the next message. `hear` gets the pieces of the text as they arrive.

@@ -1,4 +1,4 @@
-"""Finding the program in what a model says."""
+"""Finds the program in a model's reply."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class FoundProgram:
 
 
 def find_program(text: str, fences: Sequence[str], reads: Callable[[str], bool]) -> FoundProgram:
-    """The last fenced block: of those with one of the names `fences` if there is one, else of all.
+    """Returns the last fenced block: of those with one of the names `fences` if there is one, else of all.
 
     A reply without a fence may be a program itself, which `reads` tells. Thoughts between tags are no part of
     the reply, and a block that is not closed holds no whole program.

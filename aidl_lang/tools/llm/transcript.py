@@ -1,4 +1,4 @@
-"""A conversation as data: what was sent, what came back, what came of it."""
+"""A conversation as data: requests, replies and results."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from aidl_lang.tools.llm.messages import Message, Usage
 
 
 def to_dict(generation: Generation, provider: str, language: str) -> dict[str, Any]:
-    """The whole conversation for JSON; pictures are data URIs, and no key or address of a server is in it."""
+    """Returns the whole conversation for JSON; pictures are data URIs, and no key or address of a server is
+    in it.
+    """
     return {
         "aidl_transcript": 1,
         "provider": provider,

@@ -1,4 +1,4 @@
-"""Documentation made from the sources: the library's own comments, the sections on what is built in.
+"""Documentation generated from the sources: the library's own comments, the sections on built-ins.
 
 `collect` gathers, `signatures` reads definitions, `pages` and `guide` write Markdown.
 """

@@ -1,4 +1,4 @@
-"""`python -m aidl_lang.tools.reference ROOT`: write what is generated (`make reference`)."""
+"""`python -m aidl_lang.tools.reference ROOT`: writes what is generated (`make reference`)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""Every public name with what is said of it: the library's `///` comments, and `stdlib/docs/*.md` for what is
-built in and for the words of the language.
+"""Collects every public name with its description: from the library's `///` comments, and from
+`stdlib/docs/*.md` for built-ins and the words of the language.
 
 A name of the library is public if one of its definitions has a `///` comment. Its first sentence is the line
 that lists show; a fenced block is its example, a whole program. A definition below a plain `//` comment is a
@@ -26,12 +26,12 @@ _EXAMPLE = re.compile(r"^```aidl\n(.*?)^```$\n?", re.MULTILINE | re.DOTALL)
 _SENTENCE = re.compile(r"(.+?[.!?])(?=\s+[A-Z`(]|\s*$)", re.DOTALL)
 _NAME = re.compile(r"@?\w+")
 _ALL_BUT = 0.85
-"""Likeness from which a name is taken for a misspelling of another: one letter in six or so."""
+"""Least likeness of a misspelling and a name: one letter in six or so differs."""
 
 
 @record()
 class Doc:
-    """A comment taken apart: its first sentence, what else it says, and its program ("" for none)."""
+    """A comment in parts: its first sentence, the rest, and its program ("" for none)."""
 
     line: str
     text: str
@@ -40,8 +40,8 @@ class Doc:
 
 @record()
 class Overload:
-    """One form of a name: how it is written, what is said of this form, where it is defined, and its
-    definition in the library if it has one.
+    """One form of a name: its text, its description, its file, and its definition in the library if it has
+    one.
     """
 
     form: str
@@ -53,7 +53,7 @@ class Overload:
 @record()
 class Entry:
     """A public name. `sort` is `shape`, `relation` (of boxes), `constraint`, `function`, `template`,
-    `constant`, `builtin` or `word` (of the language); `topic` the name of the file it stands in.
+    `constant`, `builtin` or `word` (of the language); `topic` the name of its file.
     """
 
     name: str
@@ -69,13 +69,13 @@ class Entry:
 
     @property
     def nodes(self) -> tuple[ast.Callable, ...]:
-        """The definitions that can be called."""
+        """The callable definitions."""
         return tuple(o.node for o in self.overloads if o.node is not None and not isinstance(o.node, ast.Let))
 
 
 @record()
 class Topic:
-    """A file of the library or of `stdlib/docs`: its stem, and what is said at its head."""
+    """A file of the library or of `stdlib/docs`: its stem, and the comment at its head."""
 
     name: str
     title: str
@@ -94,19 +94,19 @@ class Reference:
         return [entry for entry in self.entries.values() if entry.topic == topic]
 
     def find(self, name: str) -> Entry | None:
-        """The entry that a name, a synonym or another spelling of either means; `color` finds `@color`."""
+        """Returns the entry of a name, a synonym or another spelling of either; `color` finds `@color`."""
         wanted = name.strip("`").removesuffix("()")
         known = names.find(wanted, self._known) or names.find(f"@{wanted}", self._known)
         return self.entries[self._known[known]] if known else None
 
     def misspelt(self, name: str) -> Entry | None:
-        """The entry whose name, or a synonym of it, is all but that of a name that there is not."""
+        """Returns the entry whose name or synonym an unknown name almost spells."""
         spelt = {names.fold(known): entry for known, entry in self._known.items()}
         near = get_close_matches(names.fold(name), spelt, n=1, cutoff=_ALL_BUT)
         return self.entries[spelt[near[0]]] if near else None
 
     def near(self, name: str) -> list[str]:
-        """Names that may have been meant: those that hold the word, then those that look like it."""
+        """Returns names that may have been meant: those that hold the word, then those that look like it."""
         wanted = names.fold(name)
         around = sorted(n for n in self._known if wanted and wanted in names.fold(n))
         return list(dict.fromkeys([*around, *names.nearest(name, self._known, 3)]))[:6]
@@ -128,7 +128,7 @@ TOPICS = (
 
 @functools.cache
 def reference() -> Reference:
-    """All that is public in this installation."""
+    """Returns all public names of this installation."""
     loaded = library.load()
     sections = list(_sections())
     found = {entry.name: entry for section in sections for entry in section.entries}
@@ -150,7 +150,7 @@ def reference() -> Reference:
 
 
 def _topics(sections: Iterable[_Section], sources: Iterable[SourceFile]) -> dict[str, Topic]:
-    """By their names, in the order in which they are read."""
+    """Returns topics by their names, in the order of reading."""
     topics = {section.topic.name: section.topic for section in sections}
     for source in sources:
         name = source.name.removeprefix("stdlib/").removesuffix(".aidl")
@@ -160,7 +160,7 @@ def _topics(sections: Iterable[_Section], sources: Iterable[SourceFile]) -> dict
 
 
 def _joined(described: Entry, defined: Entry) -> Entry:
-    """What is built in and what the library adds under the same name; a shape of its own leads."""
+    """Joins a built-in with what the library adds under its name; a shape of the library comes first."""
     if not isinstance(defined.overloads[0].node, ast.ShapeDefinition):
         return replace(described, overloads=(*described.overloads, *defined.overloads))
     own = (replace(overload, doc=described.doc) for overload in described.overloads)
@@ -168,7 +168,7 @@ def _joined(described: Entry, defined: Entry) -> Entry:
 
 
 def _target(alias: str, aliases: Mapping[str, str]) -> str:
-    """What a synonym stands for, through synonyms of synonyms."""
+    """Returns the meaning of a synonym, through synonyms of synonyms."""
     seen = {alias}
     while (alias := aliases[alias]) in aliases and alias not in seen:
         seen.add(alias)
@@ -194,7 +194,7 @@ def _start(entry: Entry) -> int:
 
 
 def _entry(name: str, nodes: Sequence[ast.Callable | ast.Let]) -> Entry | None:
-    """The entry of a name; None for one that is not public."""
+    """Returns the entry of a name; None for one that is not public."""
     overloads = [Overload(written(n), doc(n.doc or ""), _where(n), n) for n in nodes if not _is_helper(n)]
     leading = [o for o in overloads if o.doc.line]
     if not leading:
@@ -208,7 +208,7 @@ def _entry(name: str, nodes: Sequence[ast.Callable | ast.Let]) -> Entry | None:
 
 
 def _is_helper(node: ast.Callable | ast.Let) -> bool:
-    """Whether a definition is there for others: it refuses, or its paragraph has a plain comment as head."""
+    """Tells whether a definition is a helper: it refuses, or its paragraph has a plain comment as head."""
     if not isinstance(node, ast.Let) and is_refusal(node):
         return True
     paragraph = node.span.source.text[: node.span.start].rpartition("\n\n")[2]
@@ -234,7 +234,7 @@ def _where(node: ast.Node) -> str:
 
 
 def doc(comment: str) -> Doc:
-    """A comment, or a section of a page, taken apart."""
+    """Parses a comment, or a section of a page."""
     example = _EXAMPLE.search(comment)
     text = (comment[: example.start()] + comment[example.end() :] if example else comment).strip()
     paragraph = text.split("\n\n")[0]
@@ -244,7 +244,7 @@ def doc(comment: str) -> Doc:
 
 
 def _topic(name: str, source: str) -> Topic:
-    """The title is what the first comment of a file begins with, up to its first colon or full stop."""
+    """Returns a topic; its title is the first comment of the file, up to its first colon or full stop."""
     head = []
     for line in source.splitlines():
         if not line.startswith("//") or line.startswith("///"):
@@ -265,9 +265,9 @@ class _Section:
 
 
 def _sections() -> Iterator[_Section]:
-    """The pages of `stdlib/docs`: `# title`, a paragraph, and for each name one or more headings
-    `## name(parameters)`, its forms, with a comment as in the library below the last of them. Another name
-    among them is a synonym.
+    """Yields the sections of the pages of `stdlib/docs`: `# title`, a paragraph, and for each name one or
+    more headings `## name(parameters)`, its forms, with a comment as in the library below the last of them.
+    Another name among them is a synonym.
     """
     for path in sorted(resource("stdlib").glob("docs/*.md")):
         head, *parts = re.split(r"^(?=## )", path.read_text("utf-8"), flags=re.MULTILINE)

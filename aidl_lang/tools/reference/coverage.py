@@ -1,4 +1,4 @@
-"""What each constraint does with each pair of things: a table made by compiling a program for every cell.
+"""The table of each constraint with each pair of things, made by compiling a program for every cell.
 
 A cell works if the program solves and the constraint holds and relates both things; it is refused if the
 compiler says so; anything else is a fault, and the tests allow none.
@@ -26,7 +26,7 @@ KINDS: Mapping[str, str] = {
     "list": "for i in 0..1 {{ {n}[i] = circle(center: ({x} + 14 * i, {y} + i), radius: 4 + i) }}",
     "number": "var {n} = {x} + 5",
 }
-"""Kinds of things, and how one is written at a place."""
+"""Kinds of things, with the text of one at a place."""
 
 _PAIR = "{name}(a, b)"
 _ONE = "{name}(a)"
@@ -55,7 +55,7 @@ FORMS: dict[str, tuple[str, ...]] = {
     "spread": ("{name}([a, b], inside: box, axis: x)",),
     "at_corners": ("{name}([a, b, p, q], box)",),
 }
-"""How a constraint is called, where not as `name(a, b)`."""
+"""The calls of constraints that differ from `name(a, b)`."""
 
 _BESIDE = {
     "box": "box = rectangle(center: fixed((0, 0)), width: 90, height: 60)",
@@ -77,12 +77,12 @@ _ALSO = (
 """Measures, which constrain when compared."""
 
 _OF_ONE_SHAPE = ("meshes",)
-"""What relates things of one shape alone (gears) has no table."""
+"""Constraints between things of one shape only (gears), which have no table."""
 
 
 @record()
 class Cell:
-    """What a constraint does with things of two kinds; `second` is "" where it takes one.
+    """The result of a constraint on things of two kinds; `second` is "" for a single thing.
 
     outcome  `works`, `refused`, or what is wrong with it
     """
@@ -100,18 +100,18 @@ class Cell:
 
 
 _AT_ONCE = MOST_ERRORS // 2
-"""Cells in a program: so few that all errors are told if each of them is refused."""
+"""Cells in a program: few enough that all errors are reported if each of them is refused."""
 
 
 def constraints() -> list[str]:
-    """All that constrains, in the order of the reference."""
+    """Returns all constraints, in the order of the reference."""
     entries = collect.reference().entries.values()
     found = [e.name for e in entries if e.sort in ("constraint", "relation") or e.name in _ALSO]
     return [name for name in found if name not in _OF_ONE_SHAPE]
 
 
 def cells(name: str) -> Iterator[Cell]:
-    """All cells of a constraint: compiled many at once, and again those that were not refused."""
+    """Yields all cells of a constraint: compiled many at once, and those not refused again alone."""
     for form in FORMS.get(name, (_PAIR,)):
         yield from _cells(name, form)
 
@@ -136,7 +136,7 @@ def _cells(name: str, form: str) -> Iterator[Cell]:
 
 
 def program(cell: Cell) -> str:
-    """The program of one cell by itself."""
+    """Returns the program of one cell by itself."""
     return _whole([_program(cell.name, cell.form, cell.first, cell.second, 0)], [0])
 
 
@@ -172,7 +172,7 @@ def _judged(report: ConstraintReport | None, number: int, first: str, second: st
 
 
 def table(name: str, of: Iterable[Cell]) -> str:
-    """The cells of a constraint as Markdown: rows are the first thing, columns the second."""
+    """Returns the cells of a constraint as Markdown: rows are the first thing, columns the second."""
     found: dict[str, list[Cell]] = {}
     for cell in of:
         found.setdefault(cell.form, []).append(cell)
@@ -207,7 +207,7 @@ for all compound shapes, *structure* is a drawing with a curve in it, *list* two
 
 
 def page() -> str:
-    """All tables, made by as many processes as there are cores: they take minutes of a processor."""
+    """Returns all tables, made by as many processes as there are cores: they take minutes of a processor."""
     from concurrent.futures import ProcessPoolExecutor
 
     with ProcessPoolExecutor() as pool:
@@ -219,12 +219,12 @@ def _section(name: str) -> str:
 
 
 def headings(text: str) -> list[str]:
-    """Returns the constraints that a page has tables of."""
+    """Returns the constraints that have tables in a page."""
     return [name for name, _ in _sections(text)]
 
 
 def unshown(text: str) -> list[str]:
-    """Returns the constraints of which a page shows nothing that they take."""
+    """Returns the constraints whose tables in a page show nothing that they take."""
     shows = re.compile(r"●|^`[^`]+`: (?!nothing)", re.MULTILINE)
     return [name for name, section in _sections(text) if not shows.search(section)]
 

@@ -45,12 +45,14 @@ _WITHOUT: Mapping[Variant, type[ast.Callable]] = {
 """Definitions of the library that a variant cannot use."""
 
 _UNSAID: Mapping[Variant, tuple[str, ...]] = {Variant.NO_CONSTRAINTS: ("smooth", "rotatable")}
-"""Parameters that mean something to the solver alone."""
+"""Parameters with a meaning for the solver only."""
 
 
 @cache
 def guide(variant: Variant = Variant.FULL) -> str:
-    """The guide as Markdown. Raises KeyError for a placeholder, variant or topic that does not exist."""
+    """Returns the guide as Markdown. Raises KeyError for a placeholder, variant or topic that does not
+    exist.
+    """
     text = template()
     for block in _BLOCKS:
         text = block.sub(lambda m: m[2] if variant in _variants(m[1]) else "", text)
@@ -63,7 +65,7 @@ def _variants(names: str) -> list[Variant]:
 
 
 def full_guide() -> str:
-    """The guide and, after it, every entry of the reference, without pictures."""
+    """Returns the guide and, after it, every entry of the reference, without pictures."""
     blocks = [guide().strip(), "# Reference"]
     for topic in reference().topics:
         blocks.append(f"## {topic.title}")
@@ -77,7 +79,7 @@ def template() -> str:
 
 
 def _entries(variant: Variant, topics: tuple[str, ...]) -> list[Entry]:
-    """The names of topics, with the forms that there are in a variant."""
+    """Returns the names of topics, with their forms in a variant."""
     known = {topic.name for topic in reference().topics}
     if unknown := [topic for topic in topics if topic not in known]:
         raise KeyError(f"the guide asks for topics that do not exist: {', '.join(unknown)}")
@@ -85,7 +87,7 @@ def _entries(variant: Variant, topics: tuple[str, ...]) -> list[Entry]:
     entries = [entry for topic in topics for entry in reference().of_topic(topic)]
 
     def is_told(entry: Entry, node: object) -> bool:
-        # A cut is a hole or an outline by where it stands, and takes the same arguments.
+        # A cut is a hole or an outline by its place, and takes the same arguments.
         return not isinstance(node, absent) and not (entry.name in CUTS and isinstance(node, ast.Structure))
 
     kept = [tuple(o for o in entry.overloads if is_told(entry, o.node)) for entry in entries]
@@ -93,7 +95,7 @@ def _entries(variant: Variant, topics: tuple[str, ...]) -> list[Entry]:
 
 
 def _calls(variant: Variant, *topics: str) -> str:
-    """A line for each name, with its parts; those that an earlier shape has too are told by its name."""
+    """Returns a line for each name, with its parts; those shared with an earlier shape by that one's name."""
     lines, told = [], dict[str, set[str]]()
     for entry in _entries(variant, topics):
         named = list(dict.fromkeys(part.name for node in entry.nodes for part in parts(node)))
@@ -111,14 +113,14 @@ def _forms(variant: Variant, *topics: str) -> str:
 
 
 def _joined(lines: Sequence[tuple[str, str]]) -> str:
-    """Names that follow each other and are called alike stand in one line: `sin, cos(angle)`."""
+    """Joins adjacent names with the same call to one line: `sin, cos(angle)`."""
     groups = groupby(lines, key=lambda line: line[1])
     return "\n".join(", ".join(name for name, _ in group) + arguments for arguments, group in groups)
 
 
 def _arguments(variant: Variant, entry: Entry) -> str:
-    """The forms of a name without the name, as short as can be: `…` for the three arguments that most shapes
-    have, `a/…` for one of several names, and a measure to compare goes without saying where it can be set.
+    """Returns the forms of a name without the name, as short as possible: `…` for the three arguments that
+    most shapes have, `a/…` for one of several names, and a measure to compare without the option to set it.
     """
     calls = [call for call in short_calls(entry) if call.startswith(f"{entry.name}(")]
     forms = [call.removeprefix(entry.name) for call in calls]

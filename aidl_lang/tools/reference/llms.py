@@ -1,4 +1,4 @@
-"""`llms.txt`: where a language model finds what about this project (llmstxt.org)."""
+"""`llms.txt`: an index of this project for language models (llmstxt.org)."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ _FIRST = {
     "cli": "[Command line](docs/cli.md): every verb, its options and exit codes",
     "json": "[JSON](docs/json.md): the solved model as data",
 }
-"""What a reader who writes programs wants, in this order; other pages are optional."""
+"""Pages for readers who write programs, in this order; other pages are optional."""
 
 
 def llms(root: Path) -> str:
-    """The file for the checkout at `root`."""
+    """Returns the file for the checkout at `root`."""
     pages = {path.stem: path for path in sorted((root / "docs").glob("*.md"))}
     first = [f"- {link}" for link in _FIRST.values()]
     topics = [
@@ -49,7 +49,7 @@ _SIGNATURES = "- [Signatures](docs/reference/signatures.md): every call with its
 
 
 def _page(path: Path) -> str:
-    """A page by its title and the first sentence of its first paragraph of prose."""
+    """Returns the title of a page and the first sentence of its first paragraph of prose."""
     title, *rest = path.read_text("utf-8").split("\n\n")
     prose = next((p for p in rest if p[:1].isalnum()), "")
     about = doc(prose).line.rstrip(".")
@@ -57,7 +57,7 @@ def _page(path: Path) -> str:
 
 
 def _example(path: Path) -> str:
-    """An example by its name and the first sentence of the comment it begins with."""
+    """Returns the name of an example and the first sentence of the comment it begins with."""
     comment = takewhile(lambda line: line.startswith("//"), path.read_text("utf-8").splitlines())
     about = doc("\n".join(line.lstrip("/ ") for line in comment)).line.rstrip(".")
     return f"- [{path.stem}](examples/{path.name}): {about}"

@@ -14,7 +14,7 @@ MARK = "<!-- Made from the library by `make reference`. -->"
 
 _INDEX, _SIGNATURES, _IMAGES = "README.md", "signatures.md", "images"
 _WIDTH = 200
-"""Of a picture on a page, in pixels; it is never higher than that."""
+"""Width of a picture on a page, in pixels; it is never higher than that."""
 
 _INTRODUCTION = f"""\
 Every public name with its signature, an example and the picture that the example draws. `aidl doc NAME` shows
@@ -45,13 +45,13 @@ _GROUPS: Mapping[str, tuple[str, str]] = {
 
 
 def pages(reference: Reference) -> dict[str, str]:
-    """Every page by its path below `docs/reference`."""
+    """Returns every page by its path below `docs/reference`."""
     found = {f"{topic.name}.md": topic_page(reference, topic) for topic in reference.topics}
     return {_INDEX: _index(reference), _SIGNATURES: signature_page(reference), **found}
 
 
 def pictures(reference: Reference) -> dict[str, bytes]:
-    """The drawing of every example by its path below `docs/reference`."""
+    """Returns the drawing of every example by its path below `docs/reference`."""
     return {image(entry): picture(entry) for entry in reference.entries.values() if entry.doc.example}
 
 
@@ -60,7 +60,7 @@ def image(entry: Entry) -> str:
 
 
 def picture(entry: Entry) -> bytes:
-    """What the example of an entry draws, as SVG. Raises ValueError when it does not compile."""
+    """Returns the drawing of an entry's example as SVG. Raises ValueError if it does not compile."""
     from aidl_lang import pipeline  # a page in the terminal needs no solver
     from aidl_lang.common.render import render
     from aidl_lang.common.source import SourceFile
@@ -84,7 +84,7 @@ def topic_page(reference: Reference, topic: Topic) -> str:
 
 
 def entry_blocks(entry: Entry, level: str = "##") -> Iterator[str]:
-    """An entry in paragraphs, its picture last."""
+    """Yields an entry in paragraphs, its picture last."""
     yield f"{level} {entry.name}"
     yield "```text\n" + "\n".join(forms(entry)) + "\n```"
     yield entry.doc.line
@@ -97,7 +97,7 @@ def entry_blocks(entry: Entry, level: str = "##") -> Iterator[str]:
 
 
 def forms(entry: Entry) -> list[str]:
-    """Every form of a name, with what is said of it alone as a comment behind it."""
+    """Returns every form of a name, each with a comment on it alone after it."""
     lines: dict[str, str] = {}
     for overload in entry.overloads:
         own = overload.doc.line if overload.doc is not entry.doc else ""
@@ -106,7 +106,7 @@ def forms(entry: Entry) -> list[str]:
 
 
 def facts(entry: Entry) -> Iterator[str]:
-    """What the definitions tell of themselves, and the synonyms."""
+    """Yields facts read off the definitions, and the synonyms."""
     if named := _parts_of(entry):
         yield f"Parts: {', '.join(f'`{part}`' for part in named)}."
     placing = _placing(entry)
@@ -141,7 +141,7 @@ def _exactness_of(entry: Entry) -> dict[str, str]:
 
 
 def signature_page(reference: Reference) -> str:
-    """One table of everything that can be called."""
+    """Returns one table of everything that can be called."""
     blocks = ["# Signatures", "Everything that can be called, by what it is.", _TYPES]
     for sort, (title, text) in _GROUPS.items():
         entries = [e for e in reference.entries.values() if e.sort == sort]
@@ -181,12 +181,12 @@ def _index(reference: Reference) -> str:
 
 
 def _cell(text: str) -> str:
-    """Text that may stand in a table."""
+    """Returns text that may stand in a table."""
     return text.replace("|", "\\|")
 
 
 def anchor(entry: Entry) -> str:
-    """The anchor that Markdown renderers give to the heading of an entry."""
+    """Returns the anchor that Markdown renderers give to the heading of an entry."""
     return entry.name.removeprefix("@").lower()
 
 

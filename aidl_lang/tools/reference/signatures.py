@@ -1,5 +1,5 @@
-"""What a definition of the library asks and gives, read off its syntax tree: how it is called, its named
-parts, what a constraint holds, and whether a measure is exact or a least one.
+"""Facts read off the syntax tree of a library definition: its call, its named parts, the parameter a
+constraint holds, and whether a measure is exact or a least one.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ VALUE = "value"
 """The parameter that a measuring constraint sets: `distance(a, b, value)`."""
 
 _OPTIONS = (VALUE, "about", "axis", "margin", "inset", "by")
-"""Parameters that relate nothing even where they take a point or anything."""
+"""Parameters that are options even if they take a point or anything."""
 
 
 def written(node: ast.Callable | ast.Let) -> str:
-    """A definition's head in a line, as `ring(center: point = (0, 0), outer_radius: length)`."""
+    """Returns a definition's head in a line, as `ring(center: point = (0, 0), outer_radius: length)`."""
     if isinstance(node, ast.Let):
         return f"{node.name.text} = {node.value.span.one_line}"
     items = ", ".join(" ".join(p.span.text.split()) for p in node.parameters or ())
@@ -42,7 +42,7 @@ def written(node: ast.Callable | ast.Let) -> str:
 
 @record()
 class Part:
-    """A named part of a shape or a template: `edges[i]` for an array; `type` is "" where the tree does not
+    """A named part of a shape or a template: `edges[i]` for an array; `type` is "" if the tree does not
     tell.
     """
 
@@ -54,8 +54,8 @@ class Part:
 
 
 def parts(node: ast.Callable) -> list[Part]:
-    """What the body declares for its users: geometry and structures, and those `let`s that nothing in the
-    body uses, as they can be there for users only. What a function makes has the parts of that shape.
+    """Returns the declarations of a body for its users: geometry and structures, and `let`s that nothing in
+    the body uses. The result of a function has the parts of its shape.
     """
     if isinstance(node, ast.FunctionDefinition):
         made = made_shape(node)
@@ -81,7 +81,7 @@ def parts(node: ast.Callable) -> list[Part]:
 
 
 def _statements(block: ast.Block, in_loop: bool = False) -> Iterator[tuple[ast.Statement, bool]]:
-    """The statements of a body and of its loops and branches; whether a loop is around."""
+    """Yields the statements of a body and of its loops and branches, with True inside a loop."""
     for statement in block.statements:
         yield statement, in_loop
         match statement:
@@ -110,7 +110,7 @@ def _is_shape(name: str) -> bool:
 
 
 def made_shape(node: ast.FunctionDefinition) -> str | None:
-    """The shape or primitive that a function is another way to make; None for one that computes."""
+    """Returns the shape or primitive that a function is another way to make; None for one that computes."""
     match node.value:
         case ast.Call(callee, None) if _is_shape(callee.text):
             return callee.text
@@ -122,7 +122,7 @@ def made_shape(node: ast.FunctionDefinition) -> str | None:
 
 
 def things(node: ast.Callable) -> list[ast.Parameter]:
-    """The parameters that take what is related; the others are options, usually given by name."""
+    """Returns the parameters that take related things; the others are options, usually given by name."""
     return [p for p in node.parameters or () if not _is_option(p)]
 
 
@@ -136,13 +136,13 @@ def _is_option(parameter: ast.Parameter) -> bool:
 
 
 def gathers(node: ast.Callable) -> bool:
-    """Whether any number of things may be given, because the first parameter is a list."""
+    """True if any number of things may be given, because the first parameter is a list."""
     kind = node.parameters[0].type if node.parameters else None
     return kind is not None and PARAMETER_TYPES.get(fold(kind.text)) == PARAMETER_TYPES["list"]
 
 
 def held(node: ast.Callable, callables: Mapping[str, Sequence[Signature]]) -> str:
-    """What is held on the first try, in words; "" for what places nothing."""
+    """Returns in words what is held on the first try; "" for a definition that places nothing."""
     if not isinstance(node, ast.ConstraintDefinition):
         return ""
     if any(p.name.text == VALUE for p in node.parameters):
@@ -163,7 +163,7 @@ def _held_parameter(
     callables: Mapping[str, Sequence[Signature]],
     around: tuple[ast.ConstraintDefinition, ...],
 ) -> str | None:
-    """The last thing it takes; what only calls another constraint holds what that one does."""
+    """Returns the last thing a constraint takes; for one that only calls another, what that one holds."""
     call, related = _delegated(node), [p.name.text for p in things(node)]
     inner = _called(call, node, callables) if call is not None else None
     if call is not None and inner is not None and inner not in around:
@@ -177,7 +177,7 @@ def _held_parameter(
 
 
 def _delegated(node: ast.ConstraintDefinition) -> ast.Call | None:
-    """The call that a definition consists of: it then holds what that one holds."""
+    """Returns the call that a definition consists of: it then holds what that one holds."""
     match node.body.statements:
         case (ast.ExpressionStatement(value=ast.Call() as call),):
             return call
@@ -188,7 +188,9 @@ def _delegated(node: ast.ConstraintDefinition) -> ast.Call | None:
 def _called(
     call: ast.Call, caller: ast.ConstraintDefinition, callables: Mapping[str, Sequence[Signature]]
 ) -> ast.ConstraintDefinition | None:
-    """The constraint that a call means: the first but the caller that has all parameters named in it."""
+    """Returns the constraint that a call means: the first, except the caller, that has all parameters named
+    in it.
+    """
     named = {fold(a.name.text) for a in call.arguments if a.name is not None}
     for signature in callables.get(call.callee.text, ()):
         node = signature.node
@@ -199,15 +201,15 @@ def _called(
 
 
 def is_refusal(node: ast.Callable) -> bool:
-    """Whether a definition is there only to say why there is nothing to say."""
+    """True for a definition that exists only to refuse a call with a reason."""
     call = _delegated(node) if isinstance(node, ast.ConstraintDefinition) else None
     value = call if call is not None else node.value if isinstance(node, ast.FunctionDefinition) else None
     return isinstance(value, ast.Call) and value.callee.text == "refuse"
 
 
 def exactness(node: ast.Callable, callables: Mapping[str, Sequence[Signature]]) -> dict[str, str]:
-    """For the lengths and angles that a constraint takes: whether they are met `exactly`, or are bounds, `at
-    least` or, by their name, `at most`.
+    """Returns for each length and angle of a constraint whether it is met `exactly`, or is a bound, `at
+    least` or, by its name, `at most`.
     """
     if not isinstance(node, ast.ConstraintDefinition):
         return {}
@@ -249,8 +251,8 @@ def relates_boxes(
     callables: Mapping[str, Sequence[Signature]],
     around: tuple[ast.ConstraintDefinition, ...] = (),
 ) -> bool:
-    """Whether a constraint reads the boxes of its arguments rather than their curves, by itself or by the one
-    that it calls.
+    """True if a constraint, or one that it calls, reads the boxes of its arguments rather than their
+    curves.
     """
     calls = [n for n in ast.walk(node.body) if isinstance(n, ast.Call)]
     if _takes_box(node) or any(_reads_boxes(callables.get(call.callee.text, ())) for call in calls):
@@ -260,7 +262,7 @@ def relates_boxes(
 
 
 def _reads_boxes(overloads: Sequence[Signature]) -> bool:
-    """Whether a name is that of functions of boxes."""
+    """True for the name of functions of boxes."""
     nodes = [signature.node for signature in overloads]
     return bool(nodes) and all(isinstance(n, ast.FunctionDefinition) and _takes_box(n) for n in nodes)
 
@@ -276,8 +278,8 @@ _PARAMETER = re.compile(r"(\w+)(?:\s*:\s*\w+)?(\?|\s*=.*)?$")
 
 
 def short(form: str) -> str:
-    """A head without types and defaults: `ring(center?, outer_radius, inner_radius)`; words of the language
-    stay as they are.
+    """Returns a head without types and defaults: `ring(center?, outer_radius, inner_radius)`; words of the
+    language stay as they are.
     """
     name, bracket, inside = form.partition("(")
     if not bracket or not inside.endswith(")"):
@@ -290,7 +292,7 @@ def short(form: str) -> str:
 
 
 def split_items(text: str) -> list[str]:
-    """Items separated by commas outside of brackets."""
+    """Splits items at commas outside of brackets."""
     items, depth, start = [], 0, 0
     for place, char in enumerate(text):
         depth += (char in "([{") - (char in ")]}")
@@ -301,8 +303,9 @@ def split_items(text: str) -> list[str]:
 
 
 def short_forms(forms: Sequence[str], nodes: Sequence[ast.Callable]) -> list[str]:
-    """The calls of a name in as few short forms as tell them: constraints that differ in what they relate
-    or in one option are one, and so are functions that differ in types, or in the name of one argument.
+    """Returns the calls of a name in as few short forms as possible: constraints that differ in what they
+    relate or in one option share one, and so do functions that differ in types, or in the name of one
+    argument.
     """
     constraints = [n for n in nodes if isinstance(n, ast.ConstraintDefinition)]
     functions = [n for n in nodes if isinstance(n, ast.FunctionDefinition)]
@@ -320,7 +323,7 @@ class _Row:
     place: int | None = None
 
     def takes(self, kinds: tuple[str, ...], names: Sequence[str]) -> bool:
-        """Whether a form is told by this row: other types are not told apart."""
+        """True if this row covers a form: types are not distinguished."""
         if len(names) != len(self.names):
             return False
         differing = [i for i, name in enumerate(names) if name not in self.names[i].split("/")]

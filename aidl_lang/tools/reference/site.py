@@ -1,4 +1,4 @@
-"""What is generated in a checkout: the pages of `docs/reference`, their pictures, the guide, `llms.txt`."""
+"""The generated files of a checkout: the pages of `docs/reference`, their pictures, the guide, `llms.txt`."""
 
 from __future__ import annotations
 
@@ -15,18 +15,20 @@ COVERAGE = f"{_FOLDER}/coverage.md"
 
 
 def texts(root: Path) -> dict[str, str]:
-    """Every generated text by its path below the root of a checkout, but `COVERAGE`, which takes minutes."""
+    """Returns every generated text by its path below the root of a checkout, except `COVERAGE`, which takes
+    minutes.
+    """
     found = {f"{_FOLDER}/{path}": text for path, text in pages(reference()).items()}
     return {**found, "docs/guide.md": guide(), "llms.txt": llms(root)}
 
 
 def drawn() -> dict[str, bytes]:
-    """Every generated picture by its path below the root."""
+    """Returns every generated picture by its path below the root."""
     return {f"{_FOLDER}/{path}": data for path, data in pictures(reference()).items()}
 
 
 def strays(root: Path, known: set[str]) -> list[str]:
-    """Pages and pictures that were generated once and are not any more."""
+    """Returns pages and pictures that are no longer generated."""
     folder = root / _FOLDER
     files = [path for path in folder.glob("*.md") if path.read_text("utf-8").rstrip().endswith(MARK)]
     found = (path.relative_to(root).as_posix() for path in (*files, *folder.glob("images/*")))
@@ -34,7 +36,7 @@ def strays(root: Path, known: set[str]) -> list[str]:
 
 
 def write(root: Path) -> None:
-    """Bring the generated files up to date. A file that is right already is not touched."""
+    """Updates the generated files. A file that is right already is not touched."""
     current = {path: text.encode() for path, text in texts(root).items()} | drawn()
     current[COVERAGE] = coverage.page().encode()
     for path, data in current.items():

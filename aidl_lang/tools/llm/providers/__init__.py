@@ -1,4 +1,4 @@
-"""Who answers: a server that speaks OpenAI's protocol, Anthropic's, or a command."""
+"""Providers: servers that speak OpenAI's protocol, Anthropic's, or a command."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ __all__ = ["Closable", "Connection", "Price", "connect"]
 
 class Closable(Provider, Protocol):
     def close(self) -> None:
-        """Let go of connections; without it they go with the object."""
+        """Releases connections; without it they go with the object."""
 
 
 def connect(said: Connection, environment: Mapping[str, str] = os.environ) -> Closable:
-    """The provider that options and environment name; raises ProviderError when they name none.
+    """Returns the provider that options and environment name; raises ProviderError if they name none.
 
     Without a model a server of one's own is asked for its list, and its one model is taken; `name` tells it.
     """

@@ -11,7 +11,7 @@ from aidl_lang.tools.llm.providers.draft import Draft, count, dig, one_line, wor
 from aidl_lang.tools.llm.providers.server import Server
 
 MAX_TOKENS = 8192
-"""When nothing is said: the API wants a limit, and every model has at least this one."""
+"""The default limit: the API wants one, and every model allows at least this."""
 
 _FINISH = {"max_tokens": Finish.CUT, "model_context_window_exceeded": Finish.CUT, "refusal": Finish.REFUSED}
 _INPUT = ("input_tokens", "cache_read_input_tokens", "cache_creation_input_tokens")
@@ -85,7 +85,7 @@ class Anthropic(Server):
 
     @staticmethod
     def _count(usage: object, draft: Draft) -> None:
-        """The counts are running totals; an event tells those that have changed."""
+        """Adds the counts of an event, which are running totals of those that have changed."""
         read = [n for name in _INPUT if (n := count(dig(usage, name))) is not None]
         written = count(dig(usage, "output_tokens"))
         known = draft.usage

@@ -55,7 +55,7 @@ class Command:
 
     @contextmanager
     def _running(self, asked: IO[bytes]) -> Iterator[subprocess.Popen[bytes]]:
-        """The process, in a group of its own; if it does not come to its end all of the group is killed."""
+        """Runs the process in a group of its own; kills the whole group if it does not end."""
         pipe = subprocess.PIPE
         try:
             process = subprocess.Popen(
@@ -98,7 +98,7 @@ class Command:
         return self._finished(draft, hear)
 
     def _blocks(self, process: subprocess.Popen[bytes]) -> Iterator[tuple[bool, bytes]]:
-        """What arrives until standard output is closed, and whether it came from there."""
+        """Yields output until standard output is closed, with True for standard output."""
         total = 0
         with selectors.DefaultSelector() as pipes:
             for pipe in (process.stdout, process.stderr):
@@ -120,7 +120,7 @@ class Command:
             yield from ((False, os.read(key.fd, _BLOCK)) for key, _ in pipes.select(0))
 
     def _finished(self, draft: Draft, hear: Callable[[str], None]) -> Reply:
-        """The reply as it was written, or as a JSON object with `text` tells it."""
+        """Returns the reply as written, or the `text` of a JSON object."""
         document = _parsed(draft.text)
         if dig(document, "text") is None:
             if draft.text.lstrip().startswith("{"):
@@ -169,7 +169,7 @@ def _document(messages: Sequence[Message], sampling: Sampling, model: str) -> di
 
 
 def _unless_json(hear: Callable[[str], None]) -> Callable[[str], None]:
-    """Pass on what is heard, unless it starts like JSON: then its text is heard at the end."""
+    """Passes on text at once, unless it starts like JSON: then its text at the end."""
     first = ""
 
     def pass_on(piece: str) -> None:
@@ -193,6 +193,6 @@ def _ending(code: int) -> str:
 
 
 def _last(said: bytes) -> list[str]:
-    """The last lines of standard error."""
+    """Returns the last lines of standard error."""
     lines = [line for text in said.decode(errors="replace").splitlines() if (line := one_line(text))]
     return [f"it said: {line}" for line in lines[-_LINES:]]

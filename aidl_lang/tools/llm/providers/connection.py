@@ -1,4 +1,4 @@
-"""Which model is to be asked, and where: from options and the environment to one decision."""
+"""Chooses the model and its server from options and the environment."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Price:
 
     @classmethod
     def parse(cls, text: str) -> Price:
-        """From `IN/OUT`, as in `2.5/10`; raises ValueError."""
+        """Parses `IN/OUT`, as in `2.5/10`; raises ValueError."""
         numbers = [float(part.strip().removeprefix("$")) for part in text.split("/")]
         if len(numbers) != 2 or not all(0 <= number < math.inf for number in numbers):
             raise ValueError(f"expected dollars per million tokens in and out, as in 2.5/10, not `{text}`")
@@ -44,7 +44,7 @@ class Price:
 
 @record()
 class Connection:
-    """What was said about the model to ask; what is empty is left to the environment."""
+    """The options for a model; empty ones are left to the environment."""
 
     provider: str = ""
     """`openai` for every server that speaks OpenAI's protocol, `anthropic`, or `exec:COMMAND`."""
@@ -58,13 +58,13 @@ class Connection:
     """How often a request is repeated when the server is busy, fails, or loses the connection."""
 
     price: Price | None = None
-    """Used where the server does not say what a reply cost."""
+    """Used if the server does not report the cost of a reply."""
 
     key: str = ""
 
 
 def decide(said: Connection, environment: Mapping[str, str]) -> Connection:
-    """The connection with everything filled in that the environment tells; only `model` may stay empty."""
+    """Returns the connection completed from the environment; only `model` may stay empty."""
     provider = said.provider or environment.get("AIDL_PROVIDER", "") or _by_environment(said, environment)
     if not provider.startswith(EXEC) and provider not in DEFAULT_URL:
         raise ProviderError(
@@ -80,7 +80,7 @@ def decide(said: Connection, environment: Mapping[str, str]) -> Connection:
 
 
 def _by_environment(said: Connection, environment: Mapping[str, str]) -> str:
-    """The provider that a base URL or a key speaks for."""
+    """Returns the provider that a base URL or a key implies."""
     if said.base_url:
         return OPENAI
     found = [

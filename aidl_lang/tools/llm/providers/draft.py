@@ -11,7 +11,7 @@ from aidl_lang.tools.llm.messages import Finish, ProviderError, Reply, Usage
 from aidl_lang.tools.llm.providers.connection import Price
 
 MAX_TEXT = 1_000_000
-"""Characters; a program has thousands. A model that has lost itself would go on for ever."""
+"""Most characters; a program has thousands. A looping model would go on for ever."""
 
 _LINE = 300
 UNKNOWN = Usage(None, None, None)
@@ -19,14 +19,14 @@ UNKNOWN = Usage(None, None, None)
 
 @record(frozen=False)
 class Draft:
-    """What has come so far; `finish` stays None until the reply has said how it ended."""
+    """The reply so far; `finish` stays None until it has ended."""
 
     hear: Callable[[str], None]
     model: str
     usage: Usage = UNKNOWN
     finish: Finish | None = None
     started: bool = False
-    """Whether anything came that belongs to the protocol."""
+    """True once anything came that belongs to the protocol."""
 
     _pieces: list[str] = field(default_factory=list)
     _length: int = 0
@@ -45,7 +45,7 @@ class Draft:
         return "".join(self._pieces)
 
     def reply(self, price: Price | None) -> Reply:
-        """The reply, once it is whole."""
+        """Returns the complete reply."""
         usage = self.usage
         if usage.cost is None and price is not None:
             usage = replace(usage, cost=price.of(usage))
@@ -61,7 +61,7 @@ def too_long() -> ProviderError:
 
 
 def dig(value: object, *path: str | int) -> object:
-    """What stands at a place in a JSON document, or None when there is no such place."""
+    """Returns the value at a place in a JSON document; None without such a place."""
     for step in path:
         if isinstance(value, dict) and isinstance(step, str):
             value = value.get(step)
@@ -73,12 +73,12 @@ def dig(value: object, *path: str | int) -> object:
 
 
 def words(value: object) -> str:
-    """A text out of a document; nothing when it is none."""
+    """Returns a text of a document; "" for another value."""
     return value if isinstance(value, str) else ""
 
 
 def one_line(value: object, secret: str = "") -> str:
-    """A text from outside as a short line to show, without what controls a terminal and without the key."""
+    """Returns a text from outside as a short line to show, without control characters and without the key."""
     text = words(value)
     if secret:
         text = text.replace(secret, "…")
@@ -87,12 +87,12 @@ def one_line(value: object, secret: str = "") -> str:
 
 
 def count(value: object) -> int | None:
-    """A number of tokens, or None when it is none."""
+    """Returns a number of tokens; None for another value."""
     return value if isinstance(value, int) and not isinstance(value, bool) and value >= 0 else None
 
 
 def dollars(value: object) -> float | None:
-    """A sum of money, or None when it is none."""
+    """Returns a sum of money; None for another value."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return None
     return float(value) if 0 <= value < math.inf else None

@@ -1,4 +1,4 @@
-"""The HTTP client that both SDKs are given: it neither waits for hours nor repeats what was too slow."""
+"""The HTTP client for both SDKs: it neither waits for hours nor repeats requests that were too slow."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ _SILENT = {_AGAIN: "false", "x-aidl-silent": "true"}
 
 
 class Client(httpx2.Client):
-    """The SDKs would repeat what a server did not answer in time, which costs and changes nothing."""
+    """A client that does not repeat requests after a timeout, as the SDKs would at a cost and without
+    effect.
+    """
 
     def send(self, request: httpx2.Request, **options: Any) -> httpx2.Response:
         try:
@@ -27,25 +29,25 @@ class Client(httpx2.Client):
         return response
 
     def __del__(self) -> None:
-        """As the clients do that the SDKs make for themselves."""
+        """Closes the client, as those do that the SDKs make for themselves."""
         if not self.is_closed:
             self.close()
 
 
 def options(connection: Connection) -> dict[str, Any]:
-    """For the constructor of either SDK's client."""
+    """Returns arguments for the constructor of either SDK's client."""
     timeout = httpx2.Timeout(connection.timeout, connect=min(_CONNECT, connection.timeout))
     client = Client(timeout=timeout, follow_redirects=True)
     return {"timeout": timeout, "max_retries": connection.retries, "http_client": client}
 
 
 def is_silence(response: httpx2.Response) -> bool:
-    """Whether a response stands for none."""
+    """True for a response that stands for none."""
     return "x-aidl-silent" in response.headers
 
 
 def _is_soon(retry_after: str) -> bool:
-    """Whether it is a number of seconds worth waiting for; it may be a date too."""
+    """True for a number of seconds worth waiting for; it may be a date too."""
     try:
         return float(retry_after) <= _LONGEST_WAIT
     except ValueError:

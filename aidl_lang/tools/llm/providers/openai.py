@@ -63,7 +63,7 @@ class OpenAI(Server):
         return {name: value for name, value in options.items() if value is not None}
 
     def _adapt(self, said: str, sent: Mapping[str, object]) -> bool:
-        """Do without what a server refused, if it is a matter of the protocol. It is remembered."""
+        """Drops what a server refused from further requests, if it is a matter of the protocol."""
         if "stream_options" in said and "stream_options" in sent:
             self._tells_usage = False
             return True
@@ -98,7 +98,7 @@ class OpenAI(Server):
 
 
 def _content(message: Message) -> str | list[dict[str, object]]:
-    """Text alone as a string, which is all that some servers take."""
+    """Returns text alone as a string, which is all that some servers take."""
     if not message.images:
         return message.text
     pictures: list[dict[str, object]] = [
@@ -108,7 +108,7 @@ def _content(message: Message) -> str | list[dict[str, object]]:
 
 
 def _text(content: object) -> str:
-    """The text of a content that is a string, or a list of parts, of which some may be reasoning."""
+    """Returns the text of a content that is a string, or a list of parts, of which some may be reasoning."""
     if isinstance(content, list):
         return "".join(words(dig(part, "text")) for part in content if dig(part, "type") == "text")
     return words(content)

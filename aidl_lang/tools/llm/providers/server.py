@@ -1,4 +1,4 @@
-"""What providers behind a server share: streams are read, asked for again when they break, and failures told.
+"""Common to providers behind a server: reads streams, retries broken ones, and reports failures.
 
 The SDKs of OpenAI and Anthropic have the same errors under the same names; `sdk` is either.
 """
@@ -26,7 +26,7 @@ _TOO_LONG = ("context length", "context window", "context size", "context_length
 
 
 class _BrokenOffError(Exception):
-    """The stream ended before the reply did."""
+    """Raised if the stream ended before the reply did."""
 
 
 class Server(ABC):
@@ -49,11 +49,13 @@ class Server(ABC):
         return f"{self.kind}:{self._model}"
 
     def close(self) -> None:
-        """Let go of the connections; without it they go with the object."""
+        """Releases the connections; without it they go with the object."""
         self._client.close()
 
     def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
-        """Ask, and ask again when the stream breaks off; what a broken one cost is unknown, so is the sum."""
+        """Returns a reply, retrying when the stream breaks off; the cost of a broken one, and so the sum, is
+        unknown.
+        """
         spent = Usage()
         for _ in range(self._connection.retries + 1):
             draft = Draft(hear, self._model)
@@ -74,11 +76,11 @@ class Server(ABC):
 
     @abstractmethod
     def _send(self, messages: Sequence[Message], sampling: Sampling) -> Any:
-        """Send the request and give the SDK's stream; raises the SDK's errors."""
+        """Sends the request and returns the SDK's stream; raises the SDK's errors."""
 
     @abstractmethod
     def _read(self, document: object, draft: Draft) -> None:
-        """Take in one event of the stream, or the one document of a server that does not stream."""
+        """Reads one event of the stream, or the one document of a server that does not stream."""
 
     def _receive(self, stream: Any, draft: Draft) -> None:
         with stream:
@@ -91,7 +93,7 @@ class Server(ABC):
             raise _BrokenOffError
 
     def _documents(self, stream: Any) -> Iterator[object]:
-        """The events of a stream as JSON, with every mishap of reading them told."""
+        """Yields the events of a stream as JSON; reports all errors of reading them."""
         with self._failures():
             try:
                 yield from _events(stream)
@@ -103,13 +105,13 @@ class Server(ABC):
                 raise self._not_protocol(stream) from None
 
     def _refuse_error(self, document: object) -> None:
-        """Some servers tell an error in place of a reply, or in its middle."""
+        """Raises the error that some servers send in place of a reply, or in its middle."""
         if error := dig(document, "error"):
             raise self._out_of_order(self._words(error))
 
     @contextmanager
     def _failures(self) -> Iterator[None]:
-        """The SDK's errors as errors of the provider."""
+        """Raises the SDK's errors as errors of the provider."""
         sdk = self._sdk
         try:
             yield
@@ -129,7 +131,7 @@ class Server(ABC):
             raise ProviderError("E0935", "the messages hold characters that are not Unicode text") from None
 
     def _refusal(self, error: Any) -> ProviderError:
-        """What an HTTP status means."""
+        """Returns the error for an HTTP status."""
         status: int = error.status_code
         said = self._words(error.body)
         because = f" ({status}): {said}" if said else f" ({status})"
@@ -153,7 +155,7 @@ class Server(ABC):
         return ProviderError("E0935", f"the request was refused{because}", *_remedies(said.lower()))
 
     def _models_hint(self) -> Iterator[str]:
-        """What there is instead; a server that has no list has an address that is wrong."""
+        """Yields the available models; a server without a list probably has a wrong address."""
         try:
             known = self._models()
         except self._sdk.APIError:
@@ -165,7 +167,7 @@ class Server(ABC):
         yield f"the server has {_few(near, known)}"
 
     def _models(self) -> list[str]:
-        """The server's list of models; raises the SDK's errors."""
+        """Returns the server's list of models; raises the SDK's errors."""
         try:
             listed = dig(self._client.models.list().model_dump(warnings=False), "data")
         except (ValueError, AttributeError):  # something else than a list came
@@ -174,7 +176,7 @@ class Server(ABC):
         return sorted(name for name in ids if name)
 
     def _only_model(self) -> str:
-        """The model of a server of one's own that has exactly one."""
+        """Returns the model of a private server that has exactly one."""
         known: list[str] = []
         if self._connection.base_url != DEFAULT_URL[self.kind]:
             with self._failures(), suppress(self._sdk.NotFoundError):
@@ -205,7 +207,7 @@ class Server(ABC):
         )
 
     def _words(self, error: object) -> str:
-        """What a server said, in one line without what controls a terminal, and without the key."""
+        """Returns a server's message in one line, without control characters, and without the key."""
         places = (("error", "message"), ("message",), ("detail",), ("error",))
         said = words(error) or next((text for place in places if (text := words(dig(error, *place)))), "")
         if said.lstrip().startswith("<"):
@@ -214,7 +216,7 @@ class Server(ABC):
 
 
 def _events(stream: Any) -> Iterator[object]:
-    """What a stream brings, or the one document of a server that does not stream."""
+    """Yields the events of a stream, or the one document of a server that does not stream."""
     if "json" in stream.response.headers.get("content-type", ""):
         stream.response.read()
         yield stream.response.json()
@@ -225,13 +227,13 @@ def _events(stream: Any) -> Iterator[object]:
 
 
 def _few(names: list[str], known: list[str]) -> str:
-    """Names out of those known, not too many."""
+    """Returns some of the known names."""
     shown = names[:_SHOWN]
     return ", ".join([*shown, "…"] if len(shown) < len(known) else shown)
 
 
 def _remedies(said: str) -> Iterator[str]:
-    """What to do about a request that was refused, where the words tell the reason."""
+    """Yields remedies for a refused request, if its words tell the reason."""
     if any(sign in said for sign in _TOO_LONG):
         yield "guide and conversation are longer than the model reads: take one that reads more"
         yield "servers of your own: OLLAMA_CONTEXT_LENGTH=16384, llama-server -c, vllm --max-model-len"
