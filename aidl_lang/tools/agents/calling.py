@@ -1,4 +1,4 @@
-"""Calling a tool by its name with arguments that came as JSON, from whatever protocol."""
+"""Calls a tool by its name with arguments from JSON, whatever the protocol."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from aidl_lang.tools.agents.tools import Tools
 from aidl_lang.tools.agents.workspace import RefusalError, refusal
 
 _SHOWN = 60
-"""Characters of a value that a message quotes."""
+"""Most characters of a value that a message quotes."""
 _PAIR = {"name", "value"}
 
 
 @record()
 class Answer:
-    """What goes back to the model: a text, the same as data, and pictures (PNG). `is_error` where the call
-    was refused; a program that is wrong is no error.
+    """The answer to the model: a text, the same as data, and pictures (PNG). `is_error` for a refused call; a
+    program that is wrong is no error.
     """
 
     text: str
@@ -33,7 +33,7 @@ class Answer:
 
 
 def answer(workshop: Tools, name: str, arguments: Mapping[str, object]) -> Answer:
-    """The answer of a tool; a call that is refused is answered too."""
+    """Returns the answer of a tool, also for a refused call."""
     try:
         result = call(workshop, name, arguments)
     except RefusalError as error:
@@ -43,14 +43,14 @@ def answer(workshop: Tools, name: str, arguments: Mapping[str, object]) -> Answe
 
 
 def call(workshop: Tools, name: str, arguments: Mapping[str, object]) -> Result:
-    """Call a tool. An argument that is null is one that was left out. Raises RefusalError."""
+    """Calls a tool. An argument that is null counts as left out. Raises RefusalError."""
     tool = find(name)
     result: Result = getattr(workshop, tool.name)(**bound(tool, arguments))
     return result
 
 
 def find(name: str) -> Tool:
-    """The tool of a name. Raises RefusalError."""
+    """Returns the tool of a name. Raises RefusalError."""
     known = {tool.name: tool for tool in tools()}
     if name not in known:
         near = [f"did you mean `{n}`?" for n in nearest(name[:_SHOWN], known)]
@@ -59,7 +59,7 @@ def find(name: str) -> Tool:
 
 
 def bound(tool: Tool, arguments: Mapping[str, object]) -> dict[str, object]:
-    """The arguments as the function takes them. Raises RefusalError for any that does not fit."""
+    """Returns the arguments as the function takes them. Raises RefusalError for any that does not fit."""
     given = {name: value for name, value in arguments.items() if value is not None}
     known = {parameter.name: parameter for parameter in tool.parameters}
     for name in given:
@@ -89,7 +89,7 @@ class _MisfitError(Exception):
 
 
 def _converted(value: object, kind: Any) -> object:
-    """A value from JSON as a type of Python. Raises _MisfitError."""
+    """Converts a value from JSON to a type of Python. Raises _MisfitError."""
     origin, arguments = get_origin(kind), get_args(kind)
     if origin is Literal:
         if value not in arguments:
@@ -117,7 +117,9 @@ def _of_union(value: object, kinds: Sequence[Any]) -> object:
 
 
 def _pairs(value: object) -> list[tuple[object, object]]:
-    """A mapping, or a list of pairs of a name and a value as strict schemas have them."""
+    """Returns the items of a mapping, or of a list of pairs of a name and a value as strict schemas have
+    them.
+    """
     if isinstance(value, Mapping):
         return list(value.items())
     if not isinstance(value, list) or not all(isinstance(v, Mapping) and set(v) == _PAIR for v in value):
@@ -157,6 +159,6 @@ def _text(value: object) -> str:
 
 
 def _shown(value: object) -> str:
-    """A value in a message, as it came."""
+    """Returns a value as it came, for a message."""
     text = json.dumps(value)
     return f"`{text if len(text) <= _SHOWN else text[: _SHOWN - 1] + '…'}`"

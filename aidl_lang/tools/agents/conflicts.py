@@ -1,4 +1,6 @@
-"""Why a program does not solve: who is in conflict, what each would need, and whether that would do."""
+"""Conflicts of a program: the constraints in them, the change that each would need, and whether that
+helps.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ from aidl_lang.pipeline import Settings
 from aidl_lang.tools.agents.results import Conflict, Given, Party, Replacement, place, repair
 
 CODES = ("E0601", "E0602", "E0603", "E0605")
-"""Of the diagnostics that conflicts are told by."""
+"""Codes of the diagnostics about conflicts."""
 Params: TypeAlias = Mapping[str, float | str | bool] | None
 _OUTCOMES = {
     True: ", and the program solves",
@@ -24,7 +26,7 @@ _OUTCOMES = {
     None: "",
 }
 _MOST_TRIED = 12
-"""Remedies that are tried: each is a program to be solved."""
+"""Most remedies that are tried: each is a program to be solved."""
 
 
 class Remedies:
@@ -59,7 +61,7 @@ class Remedies:
         )
 
     def _solves(self, fix: Fix) -> bool | None:
-        """Whether the program solves with an edit; None if that was not tried."""
+        """True if the program solves with an edit; None if that was not tried."""
         if self.tried == _MOST_TRIED:
             return None
         self.tried += 1
@@ -71,7 +73,7 @@ class Remedies:
 
 
 def told(conflict: Conflict) -> str:
-    """In lines."""
+    """Returns a conflict in lines."""
     lead = "without any one of these the others hold" if conflict.is_minimal else "these do not hold"
     told = [line for p in conflict.parties for line in _told(p)]
     return "\n".join([f"{conflict.headline}; {lead}:", *told, *map(_exact, conflict.givens)])

@@ -1,4 +1,4 @@
-"""What a compiled program is as a result: status, bodies, contacts, motions, and the files made of it."""
+"""The result of a compiled program: status, bodies, contacts, motions, and files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from aidl_lang.tools.agents.workspace import Limits, refusal
 from aidl_lang.tools.discretion import Reader
 
 MOST_LISTED = 40
-"""Bodies, contacts, parameters and motions that are listed."""
+"""Most bodies, contacts, parameters and motions that are listed."""
 _TEXTS = ("svg", "dxf")
 """Formats that are text."""
 
@@ -34,7 +34,7 @@ def drawn(
     *,
     dimensioned: bool,
 ) -> Drawn:
-    """The result of a program in some formats, for its reader. Raises RefusalError where there is nothing at
+    """Returns the result of a program in some formats, for its reader. Raises RefusalError for an unknown
     `path`.
     """
     making = _Making(compiled, limits, dimensioned)
@@ -76,7 +76,7 @@ def drawn(
 
 
 class _Making:
-    """Makes the files; what stands against one is a note."""
+    """Makes the files; a note gives the reason for a missing one."""
 
     def __init__(self, compiled: Compiled, limits: Limits, dimensioned: bool) -> None:
         self.compiled, self.limits, self.dimensioned = compiled, limits, dimensioned
@@ -105,11 +105,11 @@ class _Making:
         raise refusal("E0919", message, *near, f"there is {some_of(known)}")
 
     def png(self) -> bytes | None:
-        """The picture; of a program that did not solve, how far it came."""
+        """Returns the picture; of a program that did not solve, its last state."""
         return self._made("png") if self.compiled.drawing is not None else None
 
     def export(self, name: str) -> Export | None:
-        """A file of a program that is right."""
+        """Returns a file of a program that is right."""
         content = self._made(name) if self.compiled.ok else None
         if content is None:
             return None
@@ -153,7 +153,7 @@ def _headline(compiled: Compiled, has_picture: bool) -> str:
 
 
 def freedom(compiled: Compiled) -> str:
-    """Degrees of freedom and what they are, in lines; nothing for a program that was not solved."""
+    """Returns degrees of freedom and their motions, in lines; "" for a program that was not solved."""
     if compiled.model is None:
         return ""
     degrees = compiled.model.degrees
@@ -162,7 +162,7 @@ def freedom(compiled: Compiled) -> str:
 
 
 def motions(compiled: Compiled) -> list[str]:
-    """What can still move, a sentence each."""
+    """Returns the remaining motions, a sentence each."""
     from aidl_lang.geometry.freedom import report
 
     return [] if compiled.model is None else report(compiled.model, MOST_LISTED)
@@ -202,7 +202,7 @@ def contact(pair: Contact) -> str:
 
 
 def _file(export: Export) -> str:
-    """A file for a reader, to whom bytes say nothing."""
+    """Returns a file as text for a reader, to whom bytes say nothing."""
     if export.encoding == "base64":
         return f"{export.format}: made, {len(export.content)} characters in base64, which only the data has"
     return f"{export.format}:\n{export.content}"
@@ -219,12 +219,12 @@ def _left_out(compiled: Compiled) -> list[str]:
 
 
 def left_out(what: str, count: int) -> str:
-    """Said where a list is cut."""
+    """Returns the note at the end of a shortened list."""
     return f"{count} more {what} are not listed" if count > 0 else ""
 
 
 def measured(part: Part) -> str:
-    """A part in a line."""
+    """Returns a part in a line."""
     left, bottom, right, top = part.box
     facts = [
         f"area {short(part.area)} mm²",

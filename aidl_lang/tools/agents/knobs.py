@@ -1,4 +1,4 @@
-"""Changing the default of a `param` in the text of a program, and nothing else of it."""
+"""Changes the default of a `param` in the text of a program, and nothing else of it."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from aidl_lang.syntax.expression_printer import string_text
 from aidl_lang.tools.agents.workspace import RefusalError, refusal
 
 _OUTSIDE = "E0505"
-"""What is said of a `param` whose default lies outside its own range."""
+"""Code for a `param` whose default lies outside its own range."""
 _LARGEST = 1e9
 _QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-z]*)")
 _NAMED = 12
 
 
 def edit_of(knob: Knob, source: SourceFile, value: float | str | bool) -> Edit:
-    """The edit that makes a value the default. Raises RefusalError where it cannot be one."""
+    """Returns the edit that makes a value the default. Raises RefusalError for an invalid one."""
     return edit_at(knob, _declaration(knob, source), value)
 
 
 def edit_at(knob: Knob, declared: ast.Param, value: float | str | bool) -> Edit:
-    """The same where the declaration is at hand."""
+    """Does the same for a known declaration."""
     return Edit(declared.value.span, _written(knob, declared.value, value))
 
 
 def find(known: tuple[Knob, ...], name: str) -> Knob:
-    """The knob that a name or path means, with or without that of the root. Raises RefusalError."""
+    """Returns the knob of a name or path, with or without that of the root. Raises RefusalError."""
     by_path = {knob.path: knob for knob in known}
     for wanted in (name, name.partition(".")[2]):
         if (path := names.find(wanted, by_path)) is not None:
@@ -50,7 +50,7 @@ def find(known: tuple[Knob, ...], name: str) -> Knob:
 
 
 def require_in_range(compiled: Compiled, span: Span) -> None:
-    """Raises RefusalError where a new default, at a place in the changed program, lies outside its range."""
+    """Raises RefusalError if a new default, at a place in the changed program, lies outside its range."""
     for d in compiled.diagnostics:
         at = d.span
         if d.code == _OUTSIDE and at and at.source is span.source and at.start == span.start:
@@ -70,7 +70,7 @@ def _declaration(knob: Knob, source: SourceFile) -> ast.Param:
 
 
 def _written(knob: Knob, now: ast.Expression, value: float | str | bool) -> str:
-    """The value as the program writes it: a number in the unit that stands there now."""
+    """Returns the value as the program writes it: a number in the unit that stands there now."""
     if isinstance(knob.value, bool):
         if not isinstance(value, bool):
             raise _misfit(knob, value, "true or false")
@@ -91,7 +91,7 @@ def _written(knob: Knob, now: ast.Expression, value: float | str | bool) -> str:
 
 
 def _quantity(knob: Knob, value: str) -> str:
-    """A number that came as a text, as `20cm`."""
+    """Parses a number given as text, as `20cm`."""
     found = _QUANTITY.fullmatch(value.strip())
     if found is None or (found[2] and found[2] not in UNITS) or not abs(float(found[1])) <= _LARGEST:
         raise _misfit(knob, value, f"a number, with a unit or without: {', '.join(UNITS)}")

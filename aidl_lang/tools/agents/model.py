@@ -1,5 +1,4 @@
-"""The solved model as JSON in a size that a language model can read: one structure of it, without what is
-long.
+"""The solved model as JSON in a size that a language model can read: one structure of it, without long parts.
 
 Every form is one that `docs/model.schema.json` allows.
 """
@@ -14,7 +13,7 @@ Json = dict[str, Any]
 
 
 def restricted(document: Json, path: str) -> Json:
-    """The document with the structure at a path as its root, and only what concerns that. Raises KeyError."""
+    """Returns the document with the structure at a path as its root, and only its data. Raises KeyError."""
     root = next((s for s in _walk(document["root"]) if s["path"] == path), None)
     if root is None:
         raise KeyError(path)
@@ -37,12 +36,13 @@ def restricted(document: Json, path: str) -> Json:
 
 
 def paths(document: Json) -> list[str]:
-    """Of all structures, in order of writing."""
+    """Returns the paths of all structures, in order of writing."""
     return [s["path"] for s in _walk(document["root"])]
 
 
 def shortened(document: Json, most: int) -> tuple[Json, str | None]:
-    """The document in at most `most` characters, and what was left out for that; None if nothing was.
+    """Returns the document in at most `most` characters, and a list of what was left out; None if nothing
+    was.
 
     What can be worked out from the rest, or asked for by a path, goes first.
     """
@@ -64,7 +64,7 @@ def shortened(document: Json, most: int) -> tuple[Json, str | None]:
 
 
 def text(document: Json) -> str:
-    """As it is sent."""
+    """Returns the document as it is sent."""
     return json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
 
 

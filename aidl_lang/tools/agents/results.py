@@ -16,7 +16,7 @@ from aidl_lang.common.source import Span
 MOST_FINDINGS = 50
 Status: TypeAlias = Literal["solved", "partial", "failed", "wrong"]
 _LONGEST = 2_000
-"""Characters of a message: names in a program may be of any length."""
+"""Most characters of a message: names in a program may be of any length."""
 
 
 @record()
@@ -103,7 +103,9 @@ class Reported(Result):
 
 
 def data(result: object) -> Any:
-    """A result as dictionaries, lists, numbers and texts, for JSON; numbers that are not finite are null."""
+    """Returns a result as dictionaries, lists, numbers and texts, for JSON; numbers that are not finite are
+    null.
+    """
     return rounded(_plain(result))
 
 
@@ -118,7 +120,7 @@ def _plain(value: object) -> Any:
 
 
 def shown_fields(kind: type) -> Iterator[dataclasses.Field[Any]]:
-    """The fields of a dataclass that are part of its data: not those of which the `repr` says nothing."""
+    """Yields the fields of a dataclass that are part of its data: those in its `repr`."""
     return (f for f in dataclasses.fields(kind) if f.repr)
 
 
@@ -126,7 +128,7 @@ def shown_fields(kind: type) -> Iterator[dataclasses.Field[Any]]:
 
 
 def findings(diagnostics: Sequence[Diagnostic]) -> Findings:
-    """Errors first."""
+    """Returns diagnostics as findings, errors first."""
     ranked = sorted(diagnostics, key=lambda d: "EWN".index(d.code[0]))
     listed = [_finding(d) for d in ranked[:MOST_FINDINGS]]
     return Findings(listed, len(ranked) - len(listed))
@@ -167,7 +169,7 @@ def _cut(text: str) -> str:
 
 
 def joined(blocks: Iterable[str]) -> str:
-    """Paragraphs that are not empty, with an empty line between two."""
+    """Joins paragraphs that are not empty, with an empty line between two."""
     return "\n\n".join(filter(None, (block.rstrip() for block in blocks)))
 
 

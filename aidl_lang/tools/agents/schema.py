@@ -66,7 +66,7 @@ class Tool:
 
     @cached_property
     def result(self) -> Json:
-        """What the data of the result looks like; what occurs in it more than once stands under `$defs`."""
+        """The schema of the result's data; types that occur in it more than once stand under `$defs`."""
         made: dict[str, Json] = {}
         kind = get_type_hints(self.function)["return"]
         schema = _object(kind, made)
@@ -84,13 +84,13 @@ class Tool:
 
 
 def tools() -> tuple[Tool, ...]:
-    """In the order in which they are defined."""
+    """Returns the tools in the order in which they are defined."""
     functions = (f for name, f in vars(Tools).items() if inspect.isfunction(f) and name[0] != "_")
     return tuple(map(Tool, functions))
 
 
 def for_openai() -> list[Json]:
-    """As `tools` of a request to the Chat Completions API and to the servers that speak like it."""
+    """Returns the `tools` of a request to the Chat Completions API and to servers that speak like it."""
     return [
         {
             "type": "function",
@@ -106,7 +106,7 @@ def for_openai() -> list[Json]:
 
 
 def for_anthropic() -> list[Json]:
-    """As `tools` of a request to the Messages API."""
+    """Returns the `tools` of a request to the Messages API."""
     return [
         {"name": tool.name, "description": tool.description, "input_schema": tool.arguments()}
         for tool in tools()
@@ -114,7 +114,7 @@ def for_anthropic() -> list[Json]:
 
 
 def for_mcp() -> list[Json]:
-    """As a server of the Model Context Protocol lists them."""
+    """Returns the list of tools of a server of the Model Context Protocol."""
     return [
         {
             "name": tool.name,
@@ -141,7 +141,7 @@ STYLES: Mapping[str, Callable[[], list[Json]]] = {
 
 
 def _object(kind: type, made: dict[str, Json]) -> Json:
-    """The schema of a dataclass of a result; those in it are put into `made`, by their names."""
+    """Returns the schema of a dataclass of a result; those in it are put into `made`, by their names."""
     hints = get_type_hints(kind)
     names = [field.name for field in shown_fields(kind)]
     return {
@@ -154,7 +154,7 @@ def _object(kind: type, made: dict[str, Json]) -> Json:
 
 
 def _given(kind: Any, made: dict[str, Json]) -> Json:
-    """The schema of what a result holds. A number that is not finite comes as null."""
+    """Returns the schema of a result's value. A number that is not finite comes as null."""
     if dataclasses.is_dataclass(kind) and isinstance(kind, type):
         if kind.__name__ not in made:
             made[kind.__name__] = _object(kind, made)
@@ -200,7 +200,7 @@ def _strict(kind: Any) -> Json:
 
 
 def _schema(kind: Any, inner: Callable[[Any], Json]) -> Json:
-    """The schema of a type, of whose parts `inner` makes theirs."""
+    """Returns the schema of a type; `inner` makes those of its parts."""
     origin, arguments = get_origin(kind), get_args(kind)
     if kind is Any:
         return {}

@@ -1,4 +1,4 @@
-"""Finding what fits a query among the names of the library and the pages on diagnostics.
+"""Searches the names of the library and the pages on diagnostics.
 
 A document counts for the words of the query that it has: more in its name than in its text, and more for
 words that few documents have (the inverse document frequency of text retrieval), and more if it has all of
@@ -23,7 +23,7 @@ _WORD = re.compile(r"[^\W_]+")
 _MENDED = re.compile(r"^## Mended\n+```aidl[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _ENDINGS = ("ings", "ing", "ies", "es", "ed", "s", "ly", "y")
 _SHORTEST = 3
-"""Letters of a word that are left when its ending goes."""
+"""Least letters of a word without its ending."""
 _NAME, _SUMMARY, _TEXT = 6.0, 3.0, 1.0
 _IS_THE_NAME = 40.0
 _MOST_FORMS = 4
@@ -38,7 +38,7 @@ _STOP = frozenset(
 
 @record()
 class _Document:
-    """What is searched, and how much each of its words counts."""
+    """A searchable text, with the weight of each of its words."""
 
     hit: Hit
     names: frozenset[str]
@@ -46,7 +46,7 @@ class _Document:
 
 
 def search(query: str, most: int) -> list[Hit]:
-    """The best fits, best first; documents that fit alike in their order."""
+    """Returns the best hits, best first; equal ones in the order of the documents."""
     words = list(dict.fromkeys(_stems(query)))
     documents = _documents()
     wanted = "".join(_WORD.findall(query)).casefold()
@@ -102,7 +102,9 @@ def _of_code(code: str) -> _Document:
 
 
 def _weighed(*parts: tuple[float, str]) -> dict[str, float]:
-    """The words of some texts, each with the weight of the text that counts most; repetition adds little."""
+    """Returns the words of some texts, each with the weight of its most important text; repetition adds
+    little.
+    """
     weights: dict[str, float] = {}
     for weight, text in parts:
         for word, times in Counter(_stems(text)).items():
@@ -111,7 +113,7 @@ def _weighed(*parts: tuple[float, str]) -> dict[str, float]:
 
 
 def _stems(text: str) -> Iterator[str]:
-    """The words of a text, folded, without their endings."""
+    """Yields the words of a text, folded, without their endings."""
     for word in _WORD.findall(text.casefold()):
         if word in _STOP:
             continue

@@ -1,4 +1,4 @@
-"""The tools served over the Model Context Protocol, with guide, examples and reference as resources."""
+"""Serves the tools over the Model Context Protocol, with guide, examples and reference as resources."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def _add_prompts(server: Server) -> None:
 
 
 def serve(root: Path | None = None, listener: socket | None = None) -> None:
-    """Serve until the client goes: over standard input and output, or over HTTP on a socket that is bound."""
+    """Serves until the client goes: over standard input and output, or over HTTP on a bound socket."""
     workers = Workers(Tools(Workspace(root)))
     server = Server(workers)
     try:

@@ -264,7 +264,7 @@ class Tools:
         )
 
     def _compiled(self, program: str, params: Params, files: Files) -> tuple[SourceFile, Compiled, Reader]:
-        """What came of a program, as far as whoever sent it may see that."""
+        """Returns the outcome of a program, as far as its sender may see it."""
         source, world = self.workspace.open(program, files)
         reader = world.reader(source)
         compiled = pipeline.compile(source, world, params, self.workspace.limits.settings)

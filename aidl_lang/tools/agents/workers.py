@@ -1,4 +1,4 @@
-"""Calls in processes of their own, so that a program that hangs, crashes or devours memory harms nothing
+"""Runs calls in processes of their own: a program that hangs, crashes or devours memory harms nothing
 else.
 """
 
@@ -14,7 +14,7 @@ from aidl_lang.tools.agents.calling import Answer, answer
 from aidl_lang.tools.agents.tools import Tools
 
 SECONDS = 45.0
-"""A call may take; clients wait for a minute."""
+"""Most seconds of a call; clients wait for a minute."""
 _WORKERS = 2
 
 
@@ -26,7 +26,7 @@ class Workers:
         self._pool = Guarded(_WORKERS, "aidl_lang.tools.agents.calling")
 
     async def answer(self, name: str, arguments: Mapping[str, object]) -> Answer:
-        """The answer of a tool. Cancelling this ends the process that works on it."""
+        """Returns the answer of a tool. Cancelling this ends the process that works on it."""
         future = self._pool.submit(self.seconds, answer, self.workshop, name, arguments)
         try:
             return await asyncio.wrap_future(future)

@@ -1,4 +1,4 @@
-"""What a program given as text may see and cost: the files it may import, and limits on size and time."""
+"""The files that a program given as text may import, and limits on its size and time."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from aidl_lang.solver.problem import Settings as SolverSettings
 from aidl_lang.tools.discretion import Programs, Reader
 
 PROGRAM = "program.aidl"
-"""The name that the program goes by in diagnostics."""
+"""The name of the program in diagnostics."""
 
 
 class RefusalError(Exception):
-    """A call that cannot be answered; the diagnostics say why, and what to do."""
+    """Raised for a call that cannot be answered; the diagnostics give the reason and a remedy."""
 
     def __init__(self, *diagnostics: Diagnostic) -> None:
         super().__init__("; ".join(d.message for d in diagnostics))
@@ -35,7 +35,7 @@ def refusal(code: str, message: str, *hints: str) -> RefusalError:
 
 @record()
 class Limits:
-    """For programs that nobody has read.
+    """Limits for programs that nobody has read.
 
     characters  of the program and of all files given with it
     files       given with it
@@ -69,9 +69,7 @@ class Limits:
 
 @record()
 class Surroundings:
-    """What a program sees: the files given with it, and where there is none of a name, the programs below a
-    folder.
-    """
+    """The files visible to a program: those given with it, then the programs below a folder."""
 
     given: MemoryWorld
     disk: World | None = None
@@ -85,19 +83,19 @@ class Surroundings:
         return self.disk.read(path)
 
     def reader(self, source: SourceFile) -> Reader:
-        """Whoever sent the program and the files that were given with it."""
+        """Returns the author of the program and of the files given with it."""
         return Reader({**self.given.files, source.name: source.text})
 
 
 @record()
 class Workspace:
-    """`root` is the folder whose files may be imported; without one, only files that are given can be."""
+    """`root` is the folder whose files may be imported; without one, only given files can be."""
 
     root: Path | None = None
     limits: Limits = field(default_factory=Limits)
 
     def open(self, program: str, files: Mapping[str, str] | None) -> tuple[SourceFile, Surroundings]:
-        """The program as a source, and what it sees. Raises RefusalError."""
+        """Returns the program as a source, with its surroundings. Raises RefusalError."""
         files = files or {}
         self._measure(program, files)
         try:

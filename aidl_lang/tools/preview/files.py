@@ -17,12 +17,12 @@ Write = Callable[[Path, bytes], None]
 
 
 def text_of(path: Path) -> str:
-    """Returns what a file says. Raises CannotError."""
+    """Returns the text of a file. Raises CannotError."""
     return _text(_read(path))
 
 
 def rewritten(file: Path, known: SourceFile, edits: Sequence[Edit]) -> bytes:
-    """Returns the content of a file after edits of the text that is known of it. Raises CannotError."""
+    """Returns the content of a file after edits of its known text. Raises CannotError."""
     data = _read(file)
     text = _text(data)
     mark = BOM_UTF8 if data.startswith(BOM_UTF8) else b""

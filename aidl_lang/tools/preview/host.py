@@ -33,18 +33,18 @@ from aidl_lang.tools.preview import files
 Json: TypeAlias = dict[str, Any]
 
 LONGEST = 65_536
-"""Bytes of a message of a page."""
+"""Most bytes of a page's message."""
 MOST_ORDERS = 8
-"""Of one page, that wait."""
+"""Most waiting orders of one page."""
 MOST_UNTAKEN = 16
-"""Messages that wait for a page before it is heard again."""
+"""Messages waiting for a page above which it is not heard."""
 BUSY_AFTER = 0.15
 """Seconds of a run after which the pages are told."""
 
 _ATTEMPT = "aidl/try"
 _EDITS = frozenset({"aidl/setKnob", "aidl/drag", "aidl/fix"})
 _METHODS = _EDITS | {_ATTEMPT, "aidl/preview", "aidl/export"}
-"""What a page may ask of the server."""
+"""Requests that a page may send to the server."""
 _TOO_MUCH = "this page asks for more than can be done at once: what it asked for last was left out"
 _CLIENT: Json = {
     "general": {"positionEncodings": ["utf-16"]},
@@ -54,7 +54,7 @@ _CLIENT: Json = {
 
 @frozen(kw_only=True)
 class Request:
-    """What a page asks; `id` is its own."""
+    """A request of a page; `id` is its own."""
 
     id: int
     method: str
@@ -62,7 +62,7 @@ class Request:
 
 
 class Page:
-    """One page that is open. What it has not taken yet waits; of pictures the newest, of equals one."""
+    """One open page. Messages wait until it takes them; of pictures only the newest, of equals one."""
 
     def __init__(self, name: str = "") -> None:
         self.name = name
@@ -78,7 +78,7 @@ class Page:
 
     @property
     def is_behind(self) -> bool:
-        """Whether it asks for more than it takes."""
+        """True if it asks for more than it takes."""
         return len(self._waiting) >= MOST_UNTAKEN
 
     def post(self, message: Json, *, is_picture: bool = False) -> None:
@@ -90,7 +90,7 @@ class Page:
         self._news.set()
 
     def tell(self, message: str) -> None:
-        """What people are to know."""
+        """Sends a message for people."""
         params = {"type": MessageType.Error.value, "message": message}
         self.post({"method": "window/showMessage", "params": params})
 
@@ -98,13 +98,13 @@ class Page:
         self.post({"id": request.id, "error": {"code": code, "message": message}})
 
     def hold_up(self) -> None:
-        """Leave out what it asks for; that is told once."""
+        """Ignores its requests; it is told so once."""
         if not self._is_held_up:
             self._is_held_up = True
             self.tell(_TOO_MUCH)
 
     async def next(self) -> str:
-        """The next message for it."""
+        """Returns the next message for it."""
         while not self._waiting:
             self._news.clear()
             await self._news.wait()
@@ -138,14 +138,14 @@ class Host:
         self.look()
 
     def close(self) -> None:
-        """Gives up what is being worked on."""
+        """Cancels the work under way."""
         self._rested()
         self.server.close()
 
     # --- The text
 
     def changed(self, paths: Iterable[Path] = ()) -> None:
-        """Files have changed, or may have; the program's own is looked at in any case."""
+        """Takes note of files that have, or may have changed; the program's own is read in any case."""
         others = [{"uri": path.as_uri(), "type": 2} for path in paths if path != self.path]
         if others:
             self._say("workspace/didChangeWatchedFiles", {"changes": others})
@@ -159,7 +159,7 @@ class Host:
             self._renew(text)
 
     def look(self) -> None:
-        """Any file of the program may have changed before anybody saw to it."""
+        """Reads the program's files again: any may have changed before anybody watched it."""
         self.changed(self._sources())
 
     def _renew(self, text: str) -> None:
@@ -179,7 +179,7 @@ class Host:
             self._busy = None
 
     def _tell_trouble(self, message: str) -> None:
-        """That the file cannot be read is told once, not at each look at it."""
+        """Tells once that the file cannot be read, not at each reading."""
         if message and message != self._trouble:
             for page in self.pages:
                 page.tell(message)
@@ -190,7 +190,7 @@ class Host:
             page.post(message)
 
     def _sources(self) -> dict[Path, SourceFile]:
-        """The files that the program is made of, as they were run last."""
+        """Returns the files of the program, as they were run last."""
         document: Document | None = self.server.documents.get(self.uri)
         if document is None or document.ran is None:
             return {}
@@ -206,7 +206,7 @@ class Host:
         return page
 
     def leave(self, page: Page) -> None:
-        """The page has gone: of its orders the edits are carried out."""
+        """Closes a page; edits among its orders are still carried out."""
         self.pages.remove(page)
         for request in page.orders:
             if request.method in _EDITS and len(self._gone.orders) < MOST_ORDERS:
@@ -217,7 +217,7 @@ class Host:
         self._ask("aidl/previewClose", {"uri": self.uri, "viewer": page.name}, _ignore)
 
     def hear(self, page: Page, text: str) -> None:
-        """Takes a message; the answer comes when there is one. What is no request is passed over."""
+        """Takes a message; the answer comes when there is one. Skips what is no request."""
         if page.is_behind:
             page.hold_up()
             return
@@ -311,7 +311,7 @@ class Host:
         return {"applied": True}
 
     def _edit(self, changes: list[Json]) -> None:
-        """Each file as a whole or not at all. Raises CannotError."""
+        """Edits each file as a whole or not at all. Raises CannotError."""
         known = {
             self.server.documents.uri_of(path): (path, source) for path, source in self._sources().items()
         }
@@ -339,4 +339,4 @@ def _edits(source: SourceFile, edits: Iterable[Json]) -> list[Edit]:
 
 
 def _ignore(message: Json) -> None:
-    """Nobody waits for it."""
+    """Ignores an answer that nobody waits for."""

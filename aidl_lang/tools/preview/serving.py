@@ -14,13 +14,15 @@ from aidl_lang.tools.preview.host import LONGEST, Host
 from aidl_lang.tools.preview.site import MOST_PAGES, site
 
 _CONNECTIONS = 8 * MOST_PAGES
-"""A browser opens some more for the files of a page; beyond these it is answered that there are too many."""
+"""Most connections. A browser opens some more for the files of a page; others are told that there are too
+many.
+"""
 _GRACE = 1
 """Seconds that pages have to say goodbye."""
 
 
 class Served:
-    """A program that can be looked at, at `url`, while `run` runs."""
+    """A program shown at `url` while `run` runs."""
 
     def __init__(self, path: Path, write: Write, listener: socket) -> None:
         self._listener = listener
@@ -34,7 +36,7 @@ class Served:
         return f"http://{self._name}:{self._port}/{self._token}/"
 
     def run(self) -> None:
-        """Until it is interrupted."""
+        """Serves until it is interrupted."""
         make_room()
         names = {self._name, "localhost", "127.0.0.1", "[::1]"}
         config = uvicorn.Config(

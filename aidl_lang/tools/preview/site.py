@@ -1,4 +1,4 @@
-"""The pages of the preview and their WebSocket, for this machine and for who knows the token alone.
+"""The pages of the preview and their WebSocket, for this machine and for holders of the token only.
 
 A page of the web that the user has open elsewhere can send requests to localhost, too. It does not know the
 token that all addresses begin with, its requests name another `Host` once its own name is made to mean this
@@ -27,7 +27,7 @@ from aidl_lang.tools.preview.watching import watch
 
 PANE = Path(__file__).parent / "pane"
 MOST_PAGES = 16
-"""Pages that are served at once."""
+"""Most pages that are served at once."""
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; "
     "font-src 'self'"
@@ -47,7 +47,9 @@ _TOO_BIG = 1009
 
 
 def site(host: Host, token: str, addresses: Collection[str]) -> ASGIApp:
-    """The application. `addresses` are the values of `Host` by which it may be called, as `localhost:80`."""
+    """Returns the application. `addresses` are the values of `Host` by which it may be called, as
+    `localhost:80`.
+    """
     routes = [
         Route("/{token}/", _index),
         Route("/{token}/pane/{name}", _file),
@@ -60,7 +62,7 @@ def site(host: Host, token: str, addresses: Collection[str]) -> ASGIApp:
 
 @asynccontextmanager
 async def _working(app: Starlette) -> AsyncIterator[None]:
-    """The host works, and its files are watched, while the application runs."""
+    """Runs the host, and watches its files, while the application runs."""
     host: Host = app.state.host
     host.start()
     watching = asyncio.create_task(watch(host.path, host.changed, host.look))
@@ -73,7 +75,7 @@ async def _working(app: Starlette) -> AsyncIterator[None]:
 
 
 class _Guard:
-    """Lets through who asks for this machine by its own name and knows the token."""
+    """Admits requests that call this machine by its own name and know the token."""
 
     def __init__(self, app: ASGIApp, addresses: Collection[str], token: str) -> None:
         self._app, self._addresses, self._token = app, addresses, token
@@ -112,7 +114,7 @@ async def _index(request: Request) -> Response:
 
 @cache
 def _files() -> dict[str, Path]:
-    """The files of the pane that pages may ask for, by name."""
+    """Returns the files of the pane that pages may ask for, by name."""
     return {file.name: file for file in PANE.iterdir() if file.suffix in _KINDS}
 
 
@@ -147,7 +149,7 @@ async def _send(socket: WebSocket, page: Page) -> None:
 
 
 async def _listen(socket: WebSocket, host: Host, page: Page) -> None:
-    """Until the page goes, or sends what no page sends."""
+    """Listens until the page goes, or sends an invalid message."""
     while (message := await socket.receive())["type"] == "websocket.receive":
         text = message.get("text")
         if text is None:

@@ -1,4 +1,4 @@
-"""Looking out for changes of a program, and of what it may import."""
+"""Watches for changes of a program, and of the files that it may import."""
 
 from __future__ import annotations
 

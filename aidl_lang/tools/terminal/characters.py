@@ -1,4 +1,4 @@
-"""From pixels to characters: half blocks in colour, dots of braille, and ASCII by shape."""
+"""Turns pixels into characters: half blocks in colour, dots of braille, and ASCII by shape."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from aidl_lang.tools.terminal.letters import Cell, Grid
 
 PIXELS = {"blocks": (1, 2), "braille": (2, 4), "ascii": (4, 8)}
-"""Of a cell, across and down."""
+"""Pixels of a cell, across and down."""
 
 _DARK = 150
 """Grey below which a dot of braille is set."""
@@ -56,13 +56,13 @@ _STROKES: tuple[tuple[str, tuple[tuple[float, ...], ...]], ...] = (
 character stands for several places of its strokes, as it is the only one of its kind.
 """
 _SOFT = 0.8
-"""Standard deviation of the pen, and of the blur that what is compared has."""
+"""Standard deviation of the pen, and of the blur of the compared picture."""
 _DARKEST = 0.5
-"""Of a line one pixel wide after the blur."""
+"""Darkness of a line one pixel wide after the blur."""
 
 
 def cells(protocol: str, png: bytes, columns: int, rows: int) -> Grid:
-    """The picture stretched over a grid. For braille and ASCII it is black lines on white."""
+    """Returns the picture stretched over a grid. For braille and ASCII it is black lines on white."""
     from PIL import Image
 
     across, down = PIXELS[protocol]
@@ -93,7 +93,7 @@ def _braille(image: Any) -> Grid:
 
 
 def _ascii(image: Any) -> Grid:
-    """Each cell is the character that looks most like it."""
+    """Returns for each cell the character that looks most like it."""
     import numpy as np
     from PIL import ImageFilter
 
@@ -105,14 +105,14 @@ def _ascii(image: Any) -> Grid:
 
 
 def _tiles(pixels: Any, across: int, down: int) -> Any:
-    """Pixels by row and column of the cell, then by row and column within it."""
+    """Returns pixels by row and column of the cell, then by row and column within it."""
     height, width = pixels.shape
     return pixels.reshape(height // down, down, width // across, across).swapaxes(1, 2)
 
 
 @cache
 def _shapes() -> tuple[str, Any]:
-    """The characters, and how dark each makes the pixels of its cell."""
+    """Returns the characters, and the darkness of each in the pixels of its cell."""
     import numpy as np
 
     y, x = np.mgrid[0.5:8, 0.5:4]
@@ -125,7 +125,7 @@ def _shapes() -> tuple[str, Any]:
 
 
 def _distance(x: Any, y: Any, x0: float, y0: float, x1: float, y1: float) -> Any:
-    """From each pixel to a stroke."""
+    """Returns the distance of each pixel from a stroke."""
     import numpy as np
 
     dx, dy = x1 - x0, y1 - y0

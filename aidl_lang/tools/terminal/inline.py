@@ -11,8 +11,8 @@ _CHUNK = 4096
 
 
 def kitty(png: bytes, columns: int, rows: int) -> str:
-    """The picture over so many cells, in chunks. A terminal answers unless told not to (`q=2`), and the shell
-    would take the answer for typing.
+    """Returns the picture over so many cells, in chunks. A terminal answers unless told not to (`q=2`), and
+    the shell would take the answer for typing.
     """
     text = standard_b64encode(png).decode()
     chunks = [text[k : k + _CHUNK] for k in range(0, len(text), _CHUNK)]
@@ -24,6 +24,6 @@ def kitty(png: bytes, columns: int, rows: int) -> str:
 
 
 def iterm(png: bytes, columns: int, rows: int) -> str:
-    """The picture within so many cells."""
+    """Returns the picture within so many cells."""
     head = f"inline=1;size={len(png)};width={columns};height={rows};preserveAspectRatio=1"
     return f"\x1b]1337;File={head}:{standard_b64encode(png).decode()}\x07"

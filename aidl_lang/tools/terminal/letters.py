@@ -40,7 +40,7 @@ class Label:
 
 
 def written(grid: Grid, labels: Iterable[Label], *, only_ascii: bool = False) -> Grid:
-    """The grid with labels in it. One that would touch an earlier one, or leave the grid, is left out."""
+    """Returns the grid with labels in it, except those that would touch an earlier one, or leave the grid."""
     rows = [list(row) for row in grid]
     taken: set[tuple[int, int]] = set()
     for label in labels:
@@ -61,7 +61,7 @@ def written(grid: Grid, labels: Iterable[Label], *, only_ascii: bool = False) ->
 
 
 def _characters(text: str, only_ascii: bool) -> list[str]:
-    """One for each column; a wide one is followed by an empty one."""
+    """Returns one character for each column; a wide one is followed by an empty one."""
     if only_ascii:
         text = "".join(_ASCII.get(c, c if c.isascii() else "?") for c in text)
     found: list[str] = []
@@ -75,7 +75,7 @@ def _characters(text: str, only_ascii: bool) -> list[str]:
 
 
 def text(grid: Grid, *, true_colour: bool = True) -> str:
-    """The grid as lines. Colours end with each, so that none runs into the margin."""
+    """Returns the grid as lines. Colours end with each, so that none runs into the margin."""
     return "".join(f"{_line(row, true_colour)}\n" for row in grid)
 
 
@@ -101,7 +101,9 @@ def _code(colour: Colour, true_colour: bool) -> str:
 
 
 def nearest(colour: Colour) -> int:
-    """The number of the nearest of the 256 colours of xterm, the first 16 aside: themes change those."""
+    """Returns the number of the nearest of the 256 colours of xterm, without the first 16, which themes
+    change.
+    """
     cube = [min(range(6), key=lambda k: abs(_LEVELS[k] - part)) for part in colour]
     grey = min(max(round((sum(colour) / 3 - 8) / 10), 0), 23)
     choices = [

@@ -41,7 +41,7 @@ _TRUE_COLOUR = ("truecolor", "24bit")
 
 
 def protocol(environment: Mapping[str, str], encoding: str, *, is_terminal: bool, has_colour: bool) -> str:
-    """The best of `PROTOCOLS` for standard output.
+    """Returns the best of `PROTOCOLS` for standard output.
 
     `has_colour` is false where colour is not wanted (NO_COLOR, TERM=dumb); escape codes are not wanted then.
     """
@@ -52,7 +52,7 @@ def protocol(environment: Mapping[str, str], encoding: str, *, is_terminal: bool
 
 
 def has_true_colour(environment: Mapping[str, str]) -> bool:
-    """Whether colours may be given as red, green and blue; else they are of the 256 of xterm."""
+    """True if colours may be given as red, green and blue; else they are of the 256 of xterm."""
     if environment.get("STY"):
         return False  # GNU screen shows other colours then, whatever the terminal around it says
     return environment.get("COLORTERM") in _TRUE_COLOUR or bool(environment.get("WT_SESSION"))

@@ -1,4 +1,4 @@
-"""How large a terminal is, and a picture in it."""
+"""The size of a terminal, and of a picture in it."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import sys
 from aidl_lang.common.records import record
 
 CELL = (8, 16)
-"""Pixels of a cell where the terminal does not tell: rather few, so that nothing outgrows the screen."""
+"""Pixels of a cell if the terminal does not tell: rather few, so that nothing outgrows the screen."""
 _PLAUSIBLE = (1.4, 3.0)
-"""Height of a cell relative to its width; terminals that do not know tell anything."""
+"""Plausible heights of a cell relative to its width; some terminals report arbitrary sizes."""
 
 
 @record()

@@ -1,4 +1,4 @@
-"""What a conversation meant and lost: noticed, named, and put back where it fits."""
+"""The intents of a conversation: what got lost is noticed, named, and put back if it fits."""
 
 from aidl_lang.tools.llm.intent.inventory import Kind
 from aidl_lang.tools.llm.intent.ledger import Ledger, Restored

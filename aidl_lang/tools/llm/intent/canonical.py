@@ -1,4 +1,4 @@
-"""Statements in a form in which those that ask the same are equal, however they are spelled.
+"""Canonical keys of statements: equal for statements of the same meaning, however they are spelled.
 
 A key is a nested tuple. References are resolved to whole paths, names to what they are synonyms of, methods
 to calls and units to millimetres and degrees; operands stand in a fixed order where order does not matter.
@@ -28,12 +28,12 @@ _TURNED = {">=": "<=", ">": "<"}
 
 
 def index_of(node: ast.Expression) -> str | None:
-    """The component of a path that a written index is; None for one that is worked out."""
+    """Returns the component of a path for a written index; None for a computed one."""
     return f"[{node.text}]" if isinstance(node, ast.Number) else None
 
 
 def own_path(name: ast.Identifier, indices: Collection[ast.Expression]) -> Path:
-    """The last components of the path of what is declared as `name[indices]`."""
+    """Returns the last components of the path declared by `name[indices]`."""
     written = [index_of(i) for i in indices]
     return (name.text, *(i for i in written if i is not None)) if all(written) else (name.text,)
 
@@ -57,14 +57,14 @@ class Reader:
         return self.names.get(node, node.text)
 
     def found(self, name: str) -> Path | None:
-        """The thing that a name means here, the nearest first."""
+        """Returns the thing that a name means here, the nearest first."""
         if name == "self":
             return self.home
         paths = ((*self.home[:k], name) for k in range(len(self.home), -1, -1))
         return next((path for path in paths if path in self.things), None)
 
     def reference(self, node: ast.Expression) -> tuple[Path, Path] | None:
-        """The thing that an expression speaks of, and which field or turn of it."""
+        """Returns the thing that an expression refers to, and its field or index."""
         match node:
             case ast.Name():
                 thing = None if node.text in self.loops else self.found(self.spelled(node))
@@ -114,7 +114,7 @@ class Reader:
         return (type(node).__name__, *plain, *map(self.key, ast.children(node)))
 
     def inside(self, variables: Collection[ast.Identifier]) -> Reader:
-        """The reader of what stands in a loop."""
+        """Returns the reader for the body of a loop."""
         loops = dict(self.loops)
         loops.update((variable.text, len(self.loops) + i) for i, variable in enumerate(variables))
         return Reader(self.home, self.things, self.names, loops)
@@ -137,12 +137,12 @@ class Reader:
 
 
 def ordered(keys: list[Key]) -> list[Key]:
-    """Keys in an order that numbers come last in deciding."""
+    """Orders keys so that numbers decide last."""
     return sorted(keys, key=lambda key: (repr(shape(key)), repr(key)))
 
 
 def _replaced(key: Key, replace: Callable[[Key], Key | None]) -> Key:
-    """A key with parts of it exchanged, from the outside inwards."""
+    """Returns a key with parts of it replaced, from the outside inwards."""
     other = replace(key)
     if other is not None:
         return other
@@ -150,7 +150,7 @@ def _replaced(key: Key, replace: Callable[[Key], Key | None]) -> Key:
 
 
 def shape(key: Key) -> Key:
-    """A key without its numbers; what they are added to stays."""
+    """Returns a key without its numbers; what they are added to stays."""
     return _replaced(key, _without_numbers)
 
 
@@ -166,7 +166,7 @@ def _is_number(key: Key) -> bool:
 
 
 def translated(key: Key, paths: Mapping[Path, Path]) -> Key:
-    """A key in which things go by other paths."""
+    """Returns a key with things at other paths."""
 
     def other(part: Key) -> Key | None:
         if part[:1] != ("ref",) or len(part) != 3:
@@ -178,7 +178,7 @@ def translated(key: Key, paths: Mapping[Path, Path]) -> Key:
 
 
 def things_in(key: Key) -> Iterator[Path]:
-    """The things that a key speaks of."""
+    """Yields the things in a key."""
     if key[:1] == ("ref",) and len(key) == 3:
         yield key[1]  # type: ignore[misc]
         return
@@ -188,7 +188,7 @@ def things_in(key: Key) -> Iterator[Path]:
 
 
 def names_in(key: Key) -> frozenset[str]:
-    """The names of parameters and other values that a key speaks of."""
+    """Returns the names of parameters and other values in a key."""
     if key[:1] == ("name",) and len(key) == 2 and isinstance(key[1], str):
         return frozenset([key[1]])
     return frozenset().union(*(names_in(part) for part in key if isinstance(part, tuple)))

@@ -1,4 +1,4 @@
-"""What became of everything one program meant to have in another that followed it."""
+"""Compares two programs: the fate of each item of the earlier one in the later one."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from aidl_lang.tools.llm.intent.matching import match_things
 
 class Fate(StrEnum):
     SAME = "same"
-    CHANGED = "changed"  # another number, another way to make it, or around it another loop
+    CHANGED = "changed"  # another number, another maker, or another loop around it
     REWRITTEN = "rewritten"  # another statement about the same things
     MOVED = "moved"  # the same name in another structure
     RENAMED = "renamed"
@@ -37,7 +37,7 @@ class Changes:
 
 
 def compare(before: Inventory, after: Inventory) -> Changes:
-    """Pair what one program meant to have with what the next one means to have."""
+    """Pairs the items of one program with those of the next."""
     paths = match_things(before, after)
     statements = _Statements(before, after, paths)
     statements.pair()
@@ -71,7 +71,7 @@ def _of_thing(
 
 
 def _are_fewer(item: Item, before: Inventory, other: Item, after: Inventory) -> bool:
-    """Whether there are fewer of something in each of what holds it, and no param decides over that."""
+    """True if the number of something per holder has shrunk, and no param decides over it."""
     many, few = before.counts[unnumbered(item.thing)], after.counts[unnumbered(other.thing)]
     if not 0 < few < many or item.thing[-1].startswith("["):
         return False
@@ -80,7 +80,7 @@ def _are_fewer(item: Item, before: Inventory, other: Item, after: Inventory) -> 
 
 
 def _decides(item: Item) -> frozenset[str]:
-    """The names in what decides how many there are of something."""
+    """Returns the names in what decides the number of something."""
     made: Key = ()
     match item.node:
         case ast.Assign(indices=(), value=ast.Comprehension()):
@@ -91,7 +91,9 @@ def _decides(item: Item) -> frozenset[str]:
 
 
 def _of_param(item: Item, after: Inventory, paths: Mapping[Path, Path]) -> tuple[Fate, Item | None]:
-    """A parameter keeps its name; under a new one it is known by its words, wherever it stands."""
+    """Returns the fate of a param: it keeps its name; a new one is recognised by its words, wherever it
+    stands.
+    """
     params = [i for i in after.items if i.kind is Kind.PARAM]
     path = (*paths.get(item.home, item.home), item.thing[-1])
     for other in params:
@@ -133,8 +135,8 @@ _Marks = Callable[[Item | _Read], Iterable[object]]
 
 
 class _Statements:
-    """Pairs statements, the surest pairs first. Each is taken once, but that a relation may stand for several
-    equations on the same things.
+    """Pairs statements, the surest pairs first. Each is taken once, except that a relation may stand for
+    several equations on the same things.
     """
 
     def __init__(self, before: Inventory, after: Inventory, paths: Mapping[Path, Path]) -> None:
@@ -157,7 +159,7 @@ class _Statements:
         self._phase(Fate.WEAKENED, _weaker, lambda one: one.things, _says_instead)
 
     def _phase(self, fate: Fate, strength: _Test, marks: _Marks, fits: _Test = lambda *_: True) -> None:
-        """Pair what has a mark in common, and fits."""
+        """Pairs items that share a mark, and fit."""
         marked: dict[object, list[Item]] = {}
         for other in self.free:
             for mark in marks(other):
@@ -178,7 +180,7 @@ class _Statements:
 
 
 def strength(item: Item) -> int:
-    """What must hold is stronger than what is wished for, and that than what is only checked."""
+    """Returns the strength of an item: constraints over wishes over asserts."""
     return 0 if item.kind is Kind.ASSERT else 1 if item.wish else 2
 
 
@@ -202,7 +204,7 @@ _STRENGTHS = ((_as_strong, None), (_weaker, Fate.WEAKENED), (_stronger, None))
 
 
 def _says_instead(read: _Read, other: Item) -> bool:
-    """Whether a new statement speaks of the same things, from the same structure or one around it. A
+    """True if a new statement refers to the same things, from the same structure or one around it. A
     statement that was wrong may be replaced by one about any of them; a turn is replaced by a turn.
     """
     if read.item.kind is Kind.ASSERT:

@@ -1,4 +1,4 @@
-"""What a program means to have: its structures, geometry, constraints, rotations, asserts and parameters."""
+"""The intents of a program: its structures, geometry, constraints, rotations, asserts and parameters."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Kind(StrEnum):
 
 
 STATED = frozenset({Kind.CONSTRAINT, Kind.ROTATION, Kind.OPERATION, Kind.ASSERT})
-"""What says something of things; the others are things, and parameters."""
+"""Kinds that state something of things; the others are things, and parameters."""
 
 
 @record(eq=False)
@@ -79,7 +79,7 @@ class Item:
 
     @cached_property
     def things(self) -> frozenset[Path]:
-        """The paths of what it speaks of."""
+        """The paths of the things in it."""
         return frozenset(things_in(self.key))
 
     @cached_property
@@ -120,7 +120,7 @@ class Inventory:
         return self.resolution.main.source
 
     def inside(self, path: Path) -> Iterator[Item]:
-        """The items in a structure, at any depth."""
+        """Yields the items in a structure, at any depth."""
         return (item for item in self.items if item.home[: len(path)] == path)
 
 

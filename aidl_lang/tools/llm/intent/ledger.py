@@ -1,4 +1,4 @@
-"""What the programs of a conversation meant, one after another, and what was lost on the way."""
+"""The intents of the programs of a conversation, one after another, and those lost on the way."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from aidl_lang.tools.llm.intent.taking import inventory
 from aidl_lang.tools.llm.intent.wording import named
 
 _PROBES = 12
-"""Times that a program is compiled to try what it lost."""
+"""Most compiles of a program to try its losses."""
 _RESTORING = 30
 """The same for putting back what fits."""
 _THINGS = frozenset({Kind.STRUCTURE, Kind.GEOMETRY})
 _UNREAD = ("E01", "E08")
 """Errors after which a part of a program may not have been read."""
 _ORDER = tuple(Kind)
-"""In which losses are put back: what is spoken of before what speaks of it."""
+"""The order in which losses are put back: things before their mentions."""
 
 
 @record()
 class Restored:
-    """A program with what fits back into it, and the phrases of what was put back."""
+    """A program with everything put back that fits, and the phrases of that."""
 
     text: str
     items: tuple[str, ...]
@@ -38,8 +38,8 @@ class Restored:
 
 @record(eq=False)
 class _Noted:
-    """A program of the conversation, and the items for which it is the last that had them; for each, what
-    stood in its place in the next program, if anything did.
+    """A program of the conversation, and the items that no later one has; for each, its replacement in the
+    next program, if any.
     """
 
     inventory: Inventory
@@ -62,11 +62,11 @@ class Ledger:
 
     @property
     def missing(self) -> tuple[Loss, ...]:
-        """What is lost now, in the order of the programs and of writing."""
+        """The present losses, in the order of the programs and of writing."""
         return tuple(loss for loss in self._known if _counts(loss))
 
     def note(self, source: SourceFile, compiled: Compiled | None) -> None:
-        """Take down a program, and what came of it (None if it was not compiled)."""
+        """Notes a program, and its outcome (None if it was not compiled)."""
         here = self.inventory(source, compiled)
         prober = self._prober(source, _PROBES)
         self._known = tuple(_probed(loss, c, prober, compiled) for loss, c in self.losses(here, compiled))
@@ -82,8 +82,8 @@ class Ledger:
         self._noted.append(_Noted(here, dict.fromkeys(here.items)))
 
     def restore(self, source: SourceFile) -> Restored:
-        """Put back what an earlier program had and this one lacks, as far as it fits with everything: one
-        after another, each kept only if the program still solves, without new errors or failed asserts.
+        """Puts back what an earlier program had and this one lacks: one after another, each kept only if the
+        program still solves, without new errors or failed asserts.
         """
         settled = (State.IMPLIED, State.CONFLICTS, State.MENDED)
         known = self._known if source.text == self._text else ()
@@ -94,14 +94,14 @@ class Ledger:
         return Prober(source.name, self._world, self._settings, most, self._clashed)
 
     def inventory(self, source: SourceFile, compiled: Compiled | None) -> Inventory:
-        """What a program means to have."""
+        """Returns the intents of a program."""
         program, found = front(source, self._world, self._settings)
         if compiled is None:
             return inventory(program.resolution, found)
         return inventory(program.resolution, compiled.diagnostics, compiled.model)
 
     def losses(self, here: Inventory, compiled: Compiled | None) -> Iterator[tuple[Loss, Changes]]:
-        """What noted programs had and another lacks, with the changes since."""
+        """Yields items of noted programs that another lacks, with the changes since."""
         reports: list[tuple[Loss, Changes]] = []
         for noted in self._noted:
             changes = compare(noted.inventory, here)
@@ -117,8 +117,8 @@ class Ledger:
 
 
 def _losses(noted: _Noted, changes: Changes) -> Iterator[Loss]:
-    """What another program lacks of what one was the last to have. What goes with a structure, or with what
-    it speaks of, is told with that.
+    """Yields the items that a program was the last to have. Losses that follow from that of a structure, or
+    of a thing they mention, are reported with it.
     """
     lost = [i for i in noted.last if _is_missing(i, *changes.fates[i])]
     gone = {i.thing: i for i in lost if i.kind in _THINGS and changes.fates[i][0] is Fate.GONE}
@@ -127,7 +127,7 @@ def _losses(noted: _Noted, changes: Changes) -> Iterator[Loss]:
     told: list[Item] = []
 
     def taken_along(path: Path) -> Item | None:
-        """The outermost that is gone of what holds a thing, and of the thing itself."""
+        """Returns the outermost lost holder of a thing, or the thing itself."""
         return next((gone[path[:k]] for k in range(1, len(path) + 1) if path[:k] in gone), None)
 
     for item in lost:
@@ -158,13 +158,15 @@ def _count(inventory: Inventory, item: Item | None) -> int:
 
 
 def _lesser(item: Item, heir: Item) -> Item:
-    """Which of a statement and what it became is not told when both are lost: the older, but for a wish."""
+    """Returns which of a statement and its replacement is left out when both are lost: the older, except for
+    a wish.
+    """
     return heir if strength(heir) < strength(item) else item
 
 
 def _is_missing(item: Item, fate: Fate, now: Item | None) -> bool:
-    """Whether something is to be told, or to be tried: a statement that was right may not have been rewritten
-    to one that says less. What a diagnostic offered is no loss.
+    """True for a loss to report, or to try: a right statement may have been rewritten to one that says less.
+    Offers of diagnostics are no losses.
     """
     match fate:
         case Fate.GONE:
@@ -177,21 +179,21 @@ def _is_missing(item: Item, fate: Fate, now: Item | None) -> bool:
 
 
 def _is_there(item: Item, fate: Fate, accepted: set[Item]) -> bool:
-    """Whether what an item meant need not be looked for any more."""
+    """True if the meaning of an item need not be looked for any more."""
     if fate is Fate.REWRITTEN:
         return item.wrong or item in accepted or item.kind is not Kind.CONSTRAINT
     return fate not in (Fate.GONE, Fate.WEAKENED, Fate.FEWER)
 
 
 def _counts(loss: Loss) -> bool:
-    """A loss, and not what other words may say as well."""
+    """True for a loss, and not for a meaning that other words may have."""
     if loss.fate is Fate.REWRITTEN:
         return loss.finding.state in (State.FITS, State.CONFLICTS)
     return loss.finding.state is not State.IMPLIED
 
 
 def _probed(loss: Loss, changes: Changes, prober: Prober, base: Compiled | None) -> Loss:
-    """A loss with what comes of putting it back, unless something may stand in its place."""
+    """Returns a loss with the result of putting it back, unless it may have been replaced."""
     if loss.kind is Kind.PARAM or not _has_room(loss, changes):
         return loss
     trial = prober.tried(loss.item, changes, base, is_first=bool(loss.dependents))
@@ -199,12 +201,12 @@ def _probed(loss: Loss, changes: Changes, prober: Prober, base: Compiled | None)
 
 
 def _squeezed(text: str) -> str:
-    """A program without comments and white space."""
+    """Returns a program without comments and white space."""
     return "".join("".join(line.split("//")[0].split()) for line in text.splitlines())
 
 
 def _mark(item: Item) -> str:
-    """What an item leaves in a text that could not be read."""
+    """Returns the trace of an item in a text that could not be read."""
     node = item.node
     if item.kind is Kind.STRUCTURE:
         return "".join(item.span.text.split("{")[0].split())
@@ -232,7 +234,7 @@ class _Restoring:
         return Restored(self.source.text, tuple(self.done))
 
     def _put(self, item: Item, inventory: Inventory, is_first: bool = False) -> bool:
-        """Whether an item could be put back."""
+        """Puts back an item; returns False if that fails."""
         trial = self.prober.tried(item, compare(inventory, self.here), self.base, is_first)
         if trial.compiled is None or trial.finding.state is not State.FITS:
             return False
@@ -241,9 +243,8 @@ class _Restoring:
         return True
 
     def _put_thing(self, loss: Loss) -> None:
-        """Put back a structure, geometry or parameter, and what spoke of it; alone it makes no sense if
-        anything did, and a parameter never does. Of statements that did not hold together nobody knows which
-        one was right.
+        """Puts back a structure, geometry or parameter, with its mentions; alone it makes no sense if there
+        were any, and a parameter never does. Of conflicting statements nobody knows which one was right.
         """
         before = self.source, self.base, self.here
         clear = [item for item in loss.dependents if not item.clashes]
@@ -258,8 +259,8 @@ class _Restoring:
 
 
 def _has_room(loss: Loss, changes: Changes) -> bool:
-    """Whether something can be put back as it was: it is not there at all, and where a structure or geometry
-    was stands nothing new, perhaps in its place.
+    """True if something can be put back as it was: it is gone, and at the place of a structure or geometry
+    stands nothing new, perhaps its replacement.
     """
     if loss.fate is Fate.FEWER or loss.kind not in _THINGS:
         return loss.fate is not Fate.FEWER

@@ -1,4 +1,4 @@
-"""Something a conversation lost."""
+"""A loss of a conversation."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from aidl_lang.tools.llm.intent.probing import UNTRIED, Finding
 
 @record(eq=False)
 class Loss:
-    """Something that an earlier program meant to have and the present one lacks.
+    """An intent of an earlier program that the present one lacks.
 
     item        what it was, and `inventory` that of the program that had it
     fate        gone, fewer, weakened to a wish or a check, or rewritten to something that says less
@@ -35,22 +35,22 @@ class Loss:
 
     @property
     def is_doubtful(self) -> bool:
-        """It may well be meant: asking for it once is enough."""
+        """True if it may well be meant: asking for it once is enough."""
         return self.fate is Fate.FEWER
 
     @property
     def path(self) -> str:
-        """The dotted path of the structure that held it; empty for a structure that held all."""
+        """The dotted path of the structure that held it; "" for the outermost."""
         return dotted(self.item.home)
 
     @property
     def text(self) -> str:
-        """The author's words, on one line; of a structure its name."""
+        """The author's words, on one line; for a structure its name."""
         return self.item.text
 
     @property
     def phrase(self) -> str:
-        """What is said of it."""
+        """The loss in words."""
         from aidl_lang.tools.llm.intent.wording import phrase
 
         return phrase(self)

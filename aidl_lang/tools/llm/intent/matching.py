@@ -1,4 +1,4 @@
-"""Which structure or geometry of one program is which of another: by path, by name elsewhere, by content."""
+"""Matches the structures and geometries of two programs: by path, by name elsewhere, by content."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from aidl_lang.tools.llm.intent.canonical import Path, shape, translated
 from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind
 
 _MOST = 50
-"""New structures among which one is looked for that has another name now."""
+"""Most new structures compared with one that may have been renamed."""
 _ALIKE = 0.5
-"""Part of its content that a structure under another name has to share."""
+"""Share of content that a renamed structure has to keep."""
 
 
 def match_things(before: Inventory, after: Inventory) -> dict[Path, Path]:
-    """Paths of things → the paths under which they are found; what is not found is left out."""
+    """Returns the new path of each thing that is found again."""
     return _Matching(before, after).run()
 
 
@@ -50,11 +50,13 @@ class _Matching:
         self.taken.add(other.thing)
 
     def _home(self, item: Item) -> Path | None:
-        """Where the structure that holds a thing is now."""
+        """Returns the present path of the structure that holds a thing."""
         return self.found.get(item.home) if item.home in self.before.things else item.home
 
     def _in_place(self, item: Item) -> Item | None:
-        """Under the same name in the same structure; an index may have come or gone with a loop."""
+        """Returns the thing of the same name in the same structure; an index may have come or gone with a
+        loop.
+        """
         home = self._home(item)
         if home is None:
             return None
@@ -64,7 +66,9 @@ class _Matching:
         return things.get(path) or things.get(name) or self.turns.get(name)
 
     def _elsewhere(self, item: Item) -> Item | None:
-        """Under the same name in another structure, where there was none; geometry also has to be alike."""
+        """Returns the thing of the same name in another structure, if that is new there; geometry also has to
+        be alike.
+        """
         name = item.thing[len(item.home) :]
         candidates = self._free(item, self.by_name.get(name, ()))
         if item.kind is Kind.GEOMETRY:
@@ -72,7 +76,7 @@ class _Matching:
         return next(iter(candidates), None)
 
     def _renamed(self, item: Item) -> Item | None:
-        """Under another name in the same structure, with like content."""
+        """Returns the thing with like content under another name in the same structure."""
         home = self._home(item)
         siblings = self._free(item, self.by_home.get(home, ()) if home is not None else ())
         new = [o for o in siblings if o.word == item.word and not self._has_counterpart(o, item.home)]
@@ -87,7 +91,7 @@ class _Matching:
         return (o for o in others if o.thing not in self.taken and o.kind is item.kind)
 
     def _has_counterpart(self, other: Item, home: Path) -> bool:
-        """Whether a thing of the later program has its name from one of the earlier."""
+        """True if a thing of the later program has its name from one of the earlier."""
         return (*home, *other.thing[len(other.home) :]) in self.before.things
 
     def _unfound(self, home: Path) -> Iterable[Item]:
@@ -98,7 +102,7 @@ class _Matching:
         return shape(translated(item.key, self.found))
 
     def _likeness(self, item: Item, other: Item) -> float:
-        """How much of what two structures hold is the same, from 0 to 1."""
+        """Returns the common share of two structures' contents, from 0 to 1."""
         a, b = self.contents[0][item.thing], self.contents[1][other.thing]
         return (a & b).total() / max(1, (a | b).total())
 
@@ -109,7 +113,7 @@ def _best(items: list[Item], likeness: Callable[[Item], float]) -> Item | None:
 
 
 def _root(inventory: Inventory) -> Item | None:
-    """The structure that is drawn: the last outermost one that is no template."""
+    """Returns the structure that is drawn: the last outermost one that is no template."""
     return next(
         (
             i
@@ -121,7 +125,9 @@ def _root(inventory: Inventory) -> Item | None:
 
 
 def _contents(inventory: Inventory) -> dict[Path, Counter[object]]:
-    """What each structure holds, in words that do not depend on the names in it, and these names."""
+    """Returns the content of each structure, in words that do not depend on the names in it, and these
+    names.
+    """
     contents = {item.thing: Counter[object]() for item in inventory.things.values()}
     for item in inventory.items:
         for path in (item.home[:k] for k in range(1, len(item.home) + 1)):

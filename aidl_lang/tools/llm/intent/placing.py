@@ -1,4 +1,4 @@
-"""Putting something lost back into a program: the text with it, where it was or as near as may be."""
+"""Puts something lost back into the text of a program, at its old place or as near as possible."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _INDENT = "    "
 
 @record()
 class PutBack:
-    """The text with something in it again, which stands at `start:end`."""
+    """The text with something restored, which stands at `start:end`."""
 
     text: str
     start: int
@@ -25,7 +25,7 @@ class PutBack:
 
 
 def put_back(item: Item, changes: Changes) -> PutBack | None:
-    """The later program with a lost item; None where there is no place for it any more."""
+    """Returns the later program with a lost item; None if it has no place for it any more."""
     if isinstance(item.node, ast.Placement | ast.Argument):
         return _turned(item, changes)
     home = changes.paths.get(item.home, item.home)
@@ -43,7 +43,7 @@ def put_back(item: Item, changes: Changes) -> PutBack | None:
 
 
 def _instead(wish: Item, words: str) -> PutBack:
-    """In the place of a wish."""
+    """Replaces a wish."""
     is_bare = any(step.key == CONSTRAIN for step in wish.steps)
     words = words if is_bare else f"constrain {words}"
     text = wish.span.source.text
@@ -54,7 +54,7 @@ def _instead(wish: Item, words: str) -> PutBack:
 
 
 def _words(item: Item, changes: Changes, home: Path) -> str:
-    """The statement in its author's words, with names as they are now."""
+    """Returns the statement in its author's words, with present names."""
     if item.kind is Kind.STRUCTURE:
         return item.span.text
     names = dict(_new_names(item, changes, home))
@@ -70,7 +70,7 @@ def _words(item: Item, changes: Changes, home: Path) -> str:
 
 
 def _exchanged(span: Span, names: Mapping[ast.Node, str]) -> str:
-    """The text of a statement with names in it exchanged."""
+    """Returns the text of a statement with names in it replaced."""
     text = span.text
     for node in sorted(names, key=lambda node: -node.span.start):
         start, end = node.span.start - span.start, node.span.end - span.start
@@ -79,7 +79,7 @@ def _exchanged(span: Span, names: Mapping[ast.Node, str]) -> str:
 
 
 def _new_names(item: Item, changes: Changes, home: Path) -> Iterator[tuple[ast.Node, str]]:
-    """The names in an item of things that go by another path now."""
+    """Yields the names in an item of things whose path has changed."""
     reader = changes.before.readers[item.home]
     for node in ast.walk(item.node):
         if not isinstance(node, ast.Name | ast.Member):
@@ -98,7 +98,7 @@ def _new_names(item: Item, changes: Changes, home: Path) -> Iterator[tuple[ast.N
 
 
 def _seen_from(path: Path, home: Path) -> str:
-    """The shortest way to speak of a thing in a structure."""
+    """Returns the shortest way to refer to a thing in a structure."""
     common = 0
     while common < min(len(path) - 1, len(home)) and path[common] == home[common]:
         common += 1
@@ -106,7 +106,7 @@ def _seen_from(path: Path, home: Path) -> str:
 
 
 def dotted(path: Path) -> str:
-    """A path as it is written: `dial.finger[3].rim`."""
+    """Returns a path as it is written: `dial.finger[3].rim`."""
     return "".join(p if p.startswith("[") or not i else f".{p}" for i, p in enumerate(path))
 
 
@@ -114,7 +114,7 @@ def dotted(path: Path) -> str:
 
 
 def _found(body: ast.Block, steps: Sequence[Step], changes: Changes) -> tuple[ast.Block, Sequence[Step]]:
-    """The innermost block around an item that is still there, and the blocks inside it that are not."""
+    """Returns the innermost block around an item that still exists, and the missing blocks inside it."""
     keys = {s.block: s.key for i in changes.after.items for s in i.steps}
     for n, step in enumerate(steps):
         inner = [block for block, key in _blocks_in(body) if keys.get(block, key) == step.key]
@@ -125,7 +125,7 @@ def _found(body: ast.Block, steps: Sequence[Step], changes: Changes) -> tuple[as
 
 
 def _blocks_in(body: ast.Block) -> Iterator[tuple[ast.Block, Key]]:
-    """The blocks with braces directly in a block, and what is known of one that is empty."""
+    """Yields the blocks with braces directly in a block, each with its key."""
     for statement in body.statements:
         match statement:
             case ast.Constrain(items, braces) if braces:
@@ -146,7 +146,7 @@ def _wrapped(text: str, steps: Sequence[Step]) -> str:
 
 
 def _at_end(body: ast.Block, words: str) -> PutBack:
-    """Before the brace that ends a block, on a line of its own where the brace has one."""
+    """Inserts before the brace that ends a block, on a line of its own if the brace has one."""
     text, brace = body.span.source.text, body.span.end - 1
     line = text.rfind("\n", 0, brace) + 1
     margin = text[line:brace]
@@ -162,7 +162,9 @@ def _inserted(before: str, added: str, after: str, words: str) -> PutBack:
 
 
 def _after_sibling(item: Item, changes: Changes, body: ast.Block, words: str) -> PutBack:
-    """Behind the nearest thing that stood above it and is still there; else where the block begins."""
+    """Inserts after the nearest thing that stood above it and still exists; else at the beginning of the
+    block.
+    """
     above = 0
     for other in changes.before.items:
         if other is item:
@@ -183,7 +185,7 @@ def _after_sibling(item: Item, changes: Changes, body: ast.Block, words: str) ->
 
 
 def _turned(item: Item, changes: Changes) -> PutBack | None:
-    """The later program with the rotation of a thing in its head, or among its arguments."""
+    """Returns the later program with the rotation of a thing in its head, or among its arguments."""
     path = changes.paths.get(item.thing)
     owner = changes.after.things[path].node if path is not None else None
     if not isinstance(owner, ast.Structure | ast.Assign):
@@ -207,7 +209,7 @@ def _turned(item: Item, changes: Changes) -> PutBack | None:
 
 
 def _level(item: Item, owner: ast.Structure | ast.Assign, changes: Changes) -> ast.Expression | None:
-    """What stands where the rotation was."""
+    """Returns the expression at the place of the rotation."""
     if isinstance(item.node, ast.Placement):
         return owner.placement.rotated if owner.placement is not None else None
     if not isinstance(owner, ast.Assign) or not isinstance(owner.value, ast.Call):

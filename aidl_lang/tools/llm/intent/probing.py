@@ -1,4 +1,4 @@
-"""Trying whether what was lost still fits: it is put back, and the program is compiled."""
+"""Tries whether losses still fit: puts each back, and compiles the program."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind
 from aidl_lang.tools.llm.intent.placing import put_back
 
 _SECONDS = 5.0
-"""For solving once with something put back."""
+"""Seconds for solving once with something put back."""
 _PATIENCE = 30.0
 """Seconds of processor time after which nothing more is tried."""
 _FAILED, _TIMED_OUT = "E0604", "E0603"
 _UNSOLVED = frozenset({"E0601", "E0602", "E0605"})
 CONTACTS = frozenset({"W0705", "W0712", "W0736"})
-"""Remarks on parts that touch nothing; what brings them about does not fit."""
+"""Remarks on parts that touch nothing; whatever causes one does not fit."""
 
 
 class State(StrEnum):
-    """What is known of something lost."""
+    """The state of a loss."""
 
     UNTRIED = "untried"  # the program has errors, or there was too much to try
     HOMELESS = "homeless"  # what it speaks of, or the place for it, is not there any more
     IMPLIED = "implied"  # other words say it
     FITS = "fits"
     CONFLICTS = "conflicts"
-    MENDED = "mended"  # it was in a conflict, and what is in its place was changed to hold
+    MENDED = "mended"  # it was in a conflict, and its replacement was changed to hold
 
 
 @record()
@@ -66,7 +66,7 @@ class Trial:
 
 class Prober:
     """Tries losses in one program: at most so many times, and no more after some time. `clashed` are items
-    that a conflict has been about.
+    that were in a conflict.
     """
 
     def __init__(
@@ -78,13 +78,13 @@ class Prober:
         self.settings = replace(settings, solving=replace(settings.solving, seconds=seconds))
 
     def compiled(self, source: SourceFile) -> Compiled:
-        """A compilation that counts."""
+        """Compiles, and counts it."""
         self.left -= 1
         return Reader.of(source).compiled(compile(source, self.world, settings=self.settings))
 
     def tried(self, item: Item, changes: Changes, base: Compiled | None, is_first: bool = False) -> Trial:
-        """What comes of putting an item back into the later program, which came out as `base`. If more is to
-        follow, as constraints of a structure, it may touch nothing yet.
+        """Puts an item back into the later program, whose outcome is `base`. If more is to follow, as
+        constraints of a structure, it may touch nothing yet.
         """
         here = changes.after.source
         is_over = self.left <= 0 or time.thread_time() > self.end
@@ -120,15 +120,15 @@ class Prober:
 
 
 def stands(compiled: Compiled | None) -> bool:
-    """Whether a program solves; an assert of it may fail."""
+    """True for a program that solves; an assert of it may fail."""
     if compiled is None or compiled.model is None or compiled.status != "solved":
         return False
     return not any(d.is_error and d.code != _FAILED for d in compiled.diagnostics)
 
 
 def new_errors(before: Inventory, base: Compiled, result: Compiled) -> Iterator[Diagnostic]:
-    """Errors of a result that its base did not have, and parts that touch nothing, but for those that touched
-    nothing `before` either.
+    """Yields errors of a result that its base did not have, and parts that touch nothing, except those that
+    touched nothing `before` either.
     """
     contacts = (d for d in before.diagnostics if d.code in CONTACTS)
     known = Counter(_mark(d) for d in (*base.diagnostics, *contacts))
@@ -141,12 +141,12 @@ def new_errors(before: Inventory, base: Compiled, result: Compiled) -> Iterator[
 
 
 def _mark(d: Diagnostic) -> tuple[str, str]:
-    """What a diagnostic says; of contacts, of which part, as the distance may change."""
+    """Returns a key of a diagnostic; for contacts the part only, as the distance may change."""
     return d.code, d.message.split("`")[1] if d.code in CONTACTS else d.message
 
 
 def _parties(errors: list[Diagnostic], own: Span, result: Compiled) -> Iterable[str]:
-    """The constraints named in a conflict as they are written, but for the one that was put back."""
+    """Returns the constraints in a conflict as they are written, except the one that was put back."""
     spans = [span for d in errors for span in (d.span, *(label.span for label in d.secondary)) if span]
     others = (span for span in spans if not span.overlaps(own) and _stated_in(result, span))
     return dict.fromkeys(span.one_line for span in sorted(others, key=lambda span: span.start))
@@ -155,8 +155,8 @@ def _parties(errors: list[Diagnostic], own: Span, result: Compiled) -> Iterable[
 def _is_implied(
     stated: Sequence[ConstraintReport], item: Item, fate: Fate, own: Span, result: Compiled
 ) -> bool:
-    """Whether the program says as much without an item. An inequality that is simply gone counts as lost even
-    if sizes and parameters happen to keep it now; what came in its place may say more.
+    """True if the program says as much without an item. An inequality that is simply gone counts as lost even
+    if sizes and parameters happen to keep it now; its replacement may say more.
     """
     if item.kind is not Kind.CONSTRAINT and not (item.kind is Kind.ROTATION and stated):
         return False
@@ -164,8 +164,8 @@ def _is_implied(
 
 
 def _is_mended(stated: Sequence[ConstraintReport], now: Item, parties: Sequence[str], base: Compiled) -> bool:
-    """Whether what came in the place of something that was in a conflict asks for as much: an equation for
-    an equation, or what is no opposite for an inequality.
+    """True if the replacement of a conflicting statement asks for as much: an equation for an equation, or
+    anything but the opposite of an inequality.
     """
     heirs = _stated_in(base, now.span)
     if _is_exact(stated):

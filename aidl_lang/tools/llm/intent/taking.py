@@ -1,4 +1,4 @@
-"""Takes down what a program means to have: from its syntax tree, what was said of it, and what came of it.
+"""Takes the inventory of a program from its syntax tree, its diagnostics and its model.
 
 It is read off the tree, so that a program with errors has an inventory as well: of what could be read. What
 stands in a loop or a branch counts once.
@@ -24,7 +24,7 @@ from aidl_lang.tools.llm.intent.inventory import CONSTRAIN, Inventory, Item, Kin
 
 _OPERATIONS = frozenset({"rotate", "move", "translate", "scale", "fillet", "chamfer"})
 _WRONG = ("E01", "E02", "E03", "E04", "E05")
-"""Errors for which a statement is to be replaced by another."""
+"""Errors that require another statement in place of the wrong one."""
 _CONFLICT = "E0601"
 _INDEX = re.compile(r"\[[^\]]*\]")
 
@@ -32,7 +32,7 @@ _INDEX = re.compile(r"\[[^\]]*\]")
 def inventory(
     resolution: Resolution, diagnostics: Sequence[Diagnostic] = (), model: SolvedModel | None = None
 ) -> Inventory:
-    """What a program means to have; `diagnostics` are what was said of it, `model` what came of it."""
+    """Returns the intents of a program, with its `diagnostics` and its `model`."""
     taker = _Taker(resolution)
     taker.statements(resolution.main.statements, _Place((), (), {}))
     items = (item for record in taker.records for item in taker.items_of(record))
@@ -56,7 +56,7 @@ def _counts(model: SolvedModel) -> Counter[Path]:
 
 
 def _marked(item: Item, diagnostics: Sequence[Diagnostic], clashing: Sequence[Span]) -> Item:
-    """An item with what diagnostics said of its place, and of places of which some are `clashing`."""
+    """Returns an item with the diagnostics at its place, and with its part in conflicts (`clashing`)."""
     if item.kind in (Kind.STRUCTURE, Kind.GEOMETRY, Kind.PARAM):
         return item
     start, end, text = item.span.start, item.span.end, item.span.source.text
@@ -76,7 +76,7 @@ def _marked(item: Item, diagnostics: Sequence[Diagnostic], clashing: Sequence[Sp
 
 @record()
 class _Place:
-    """Where a statement stands; `loops` are the variables around it, and how deep each is."""
+    """The place of a statement; `loops` are the variables around it, and how deep each is."""
 
     home: Path
     steps: tuple[Step, ...]
@@ -88,7 +88,7 @@ class _Place:
 
 
 class _Taker:
-    """Goes through a file twice: first all things are collected, then keys are made that refer to them."""
+    """Goes through a file twice: first collects all things, then makes keys that refer to them."""
 
     def __init__(self, resolution: Resolution) -> None:
         self.uses, self.names = resolution.uses, resolution.canonical
@@ -135,7 +135,7 @@ class _Taker:
                 self.records.append((node, place))
 
     def _raw(self, node: ast.Expression) -> Key:
-        """The key of what decides over a loop or branch, which speaks of numbers only."""
+        """Returns the key of the head of a loop or branch, which contains numbers only."""
         return Reader((), (), self.names).key(node)
 
     def _body(self, path: Path, body: ast.Block, loops: dict[str, int], steps: tuple[Step, ...] = ()) -> None:
@@ -150,14 +150,14 @@ class _Taker:
         self.statements(block.statements, inner)
 
     def _kind(self, node: ast.Assign) -> Kind | None:
-        """Whether an assignment makes a structure or geometry; None where it only names a value."""
+        """Returns the kind of thing that an assignment makes; None if it only names a value."""
         symbol = self.uses.get(node.name)
         if symbol is None:
             return Kind.GEOMETRY if isinstance(node.value, ast.Call | ast.Point) else None
         return {SymbolKind.STRUCTURE: Kind.STRUCTURE, SymbolKind.GEOMETRY: Kind.GEOMETRY}.get(symbol.kind)
 
     def knobs(self) -> frozenset[str]:
-        """Names of params, and of values worked out from them."""
+        """Returns the names of params, and of values computed from them."""
         found: set[str] = set()
         for node, place in self.records:
             match node:
@@ -249,7 +249,7 @@ class _Taker:
     def _conditions(
         self, node: ast.Expression | ast.Equation, statement: ast.Statement, place: _Place, wish: bool
     ) -> Iterator[Item]:
-        """One for each part of a chain or of what `and` joins; a wish has one weight and stays whole."""
+        """Yields an item for each part of a chain or of an `and`; a wish has one weight and stays whole."""
         reader = self.reader(place)
         for part in [node] if wish else _parts(node):
             if isinstance(part, ast.Equation):
@@ -278,7 +278,7 @@ def _is_level(angle: ast.Expression) -> bool:
 
 
 def _turns(key: Key) -> bool:
-    """Whether a condition is about an angle: `angle(a, b, 30deg)`, `hand.angle == 30deg`."""
+    """True for a condition on an angle: `angle(a, b, 30deg)`, `hand.angle == 30deg`."""
     if key[:2] == ("call", "angle"):
         return True
     sides = [part for part in key if isinstance(part, tuple)]

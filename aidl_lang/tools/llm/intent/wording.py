@@ -1,4 +1,4 @@
-"""What is said of something lost, to a language model and in reports."""
+"""Losses in words, for a language model and for reports."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from aidl_lang.tools.llm.intent.placing import dotted
 from aidl_lang.tools.llm.intent.probing import State
 
 _QUOTED = 100
-"""Characters of a statement that are quoted."""
+"""Most characters of a statement that are quoted."""
 _NAMED = 3
-"""Things that a list names."""
+"""Most things that a list names."""
 _TOLD = 12
-"""Losses that a request names one by one."""
+"""Most losses that a request names one by one."""
 
 
 def phrase(loss: Loss) -> str:
-    """One loss in a sentence without its full stop."""
+    """Returns one loss in a sentence without its full stop."""
     if loss.fate is Fate.FEWER:
         many, few = loss.counts
         return f"{many} `{dotted(loss.item.thing)}` became {few}: unless fewer are meant, make as many again"
@@ -33,7 +33,7 @@ def phrase(loss: Loss) -> str:
 
 
 def request(losses: Sequence[Loss]) -> str:
-    """A paragraph that asks to bring losses back; empty without any."""
+    """Returns a paragraph that asks to bring losses back; "" without any."""
     if not losses:
         return ""
     lines = [f"- {phrase(loss)}" for loss in losses[:_TOLD]]
@@ -50,12 +50,12 @@ def request(losses: Sequence[Loss]) -> str:
 
 
 def quoted(text: str) -> str:
-    """A statement between backticks, shortened."""
+    """Returns a statement between backticks, shortened."""
     return f"`{text if len(text) <= _QUOTED else text[: _QUOTED - 1] + '…'}`"
 
 
 def named(item: Item, inventory: Inventory) -> str:
-    """What something is and where it was."""
+    """Returns the name and the former place of an item."""
     where = f" (in `{dotted(item.home)}`)" if item.home else ""
     match item.kind:
         case Kind.STRUCTURE:
@@ -69,7 +69,7 @@ def named(item: Item, inventory: Inventory) -> str:
 
 
 def _content(inventory: Inventory, item: Item) -> str:
-    """`solid, 3 geometries, 2 constraints`"""
+    """Returns `solid, 3 geometries, 2 constraints`."""
     counts = Counter(i.kind for i in inventory.inside(item.thing))
     parts = [
         counted(counts[kind], one, many)
