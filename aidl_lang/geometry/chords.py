@@ -124,7 +124,9 @@ def _come_near(a: Floats, b: Floats, reach: float) -> NDArray[np.bool_]:
 
 
 def _between_lines(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:
-    """Parallel lines that face each other, at the middle of where they do."""
+    """Returns chords between parallel lines that face each other, at the middle of the stretch in which they
+    do.
+    """
     u = o.way[i]
     offset = o.start[j] - o.start[i]
     far = offset + o.way[j] * o.length[j][:, None]
@@ -185,7 +187,9 @@ def _between_rounds(o: Skeleton, i: Ints, j: Ints, least: float) -> Chords:
 def _on_centers(
     o: Skeleton, i: Ints, j: Ints, distance: Floats, angle: Floats, way: int, least: float
 ) -> Chords:
-    """Chords along the line through the centers, which has this angle: walls this way, or gaps the other."""
+    """Returns chords along the line through the centres, which has this angle: walls this way, or gaps the
+    other.
+    """
     p, q = i - o.straight, j - o.straight
     one, other = -way * o.side[p], way * o.side[q]
     start, end = one * o.radius[p], distance + other * o.radius[q]

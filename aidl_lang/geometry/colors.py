@@ -60,7 +60,7 @@ def css_color(values: Sequence[object]) -> str | None:
 
 
 def similar_colors(name: str) -> list[str]:
-    """Known names that a misspelt one may have meant, the likeliest first."""
+    """Returns known names that a misspelt one may have meant, the likeliest first."""
     from difflib import get_close_matches
 
     return get_close_matches(name.strip().lower(), sorted(COLOR_NAMES), n=3)

@@ -53,7 +53,9 @@ def _to(curve: Piece, p: Vec) -> Closest:
 
 
 def _candidates(a: Piece, b: Piece) -> list[Vec]:
-    """Points of a from which the way to b may be the shortest: its ends and where the normals agree."""
+    """Returns points of `a` from which the way to `b` may be the shortest: its ends and those where the
+    normals agree.
+    """
     if not isinstance(a, Line | Arc | Circle) or not isinstance(b, Line | Arc | Circle):
         return _sampled_candidates(a, b)
     spots = [] if is_closed(a) else list(ends(a))

@@ -18,7 +18,14 @@ from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.gaps import Gap, effective, open_gaps, welded_gaps, without_gaps
-from aidl_lang.geometry.legibility import COVERED, Ground, Lying, covered_note, lettering_note, unseen_note
+from aidl_lang.geometry.legibility import (
+    COVERED,
+    Ground,
+    StackedBody,
+    covered_note,
+    lettering_note,
+    unseen_note,
+)
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.notes import color_note, detached_notes, finding_note, gap_note, unusable_note
@@ -143,7 +150,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     )
     order = {structure.path: place for place, structure in enumerate(model.root.walk())}
     lying = [
-        Lying(b.path, order[b.path], b.style.color, m.section, b.box)
+        StackedBody(b.path, order[b.path], b.style.color, m.section, b.box)
         for b, m in zip(bodies, masses, strict=True)
     ]
     drawings = [s.path for s in model.root.walk() if s.kind == "drawing"]
@@ -385,7 +392,7 @@ def _styled(style: Style, geometry: SolvedGeometry, notes: list[Diagnostic]) -> 
 
 
 def _colored_drawings(root: SolvedStructure) -> set[str]:
-    """Paths of the drawings that have a colour of their own, or from a drawing around them."""
+    """Returns the paths of drawings with a colour of their own, or from a drawing around them."""
     return {
         below.path
         for s in root.walk()

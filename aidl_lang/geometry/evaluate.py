@@ -53,7 +53,7 @@ def is_closed(curve: Piece) -> bool:
 
 
 def round_range(curve: Arc | Circle | Ellipse | EllipseArc) -> tuple[float, float]:
-    """First angle (eccentric anomaly for ellipses) and sweep, in radians."""
+    """Returns the first angle (eccentric anomaly for ellipses) and the sweep, in radians."""
     if isinstance(curve, Arc):
         return curve.start_angle, curve.sweep
     if isinstance(curve, EllipseArc):
@@ -108,7 +108,7 @@ _WEIGHTS = _weights(_SAMPLED)
 
 
 def points(curve: Piece, t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Points at many parameters, shape (n, 2)."""
+    """Returns the points at many parameters, shape (n, 2)."""
     if isinstance(curve, Line):
         start, end = np.array(curve.start), np.array(curve.end)
         straight: NDArray[np.float64] = start + np.multiply.outer(t, end - start)
@@ -168,7 +168,7 @@ def _bezier_derivative(curve: Bezier, t: float) -> Vec:
 
 
 def ends(curve: Piece) -> tuple[Vec, Vec]:
-    """Start and end; for a closed curve twice the point where its parameter begins."""
+    """Returns start and end; for a closed curve twice the point where its parameter begins."""
     if isinstance(curve, Line | Arc | EllipseArc):
         return curve.start, curve.end
     if isinstance(curve, Bezier):
@@ -317,8 +317,8 @@ def _nearest_on_round(curve: Arc | Circle, p: Vec) -> float:
 
 
 def _polish_nearest(curve: Piece, p: Vec, t: float) -> float:
-    """Newton on the slope of the squared distance, (C(t) - p)·C'(t) = 0, kept between the samples around
-    t.
+    """Solves (C(t) - p)·C'(t) = 0, the slope of the squared distance, by Newton kept between the samples
+    around t.
     """
     wraps = is_closed(curve)
     low, high = t - 1 / _SAMPLES, t + 1 / _SAMPLES

@@ -126,7 +126,7 @@ def _alternating(network: Network, uses: list[Use]) -> Section:
 
 
 def _loops(network: Network, uses: list[Use]) -> list[list[Use]]:
-    """Closed walks that use every edge once; every node has an even degree."""
+    """Returns closed walks that use every edge once; every node has an even degree."""
     ways: dict[int, list[Use]] = defaultdict(list)
     for edge, forward in reversed(uses):
         ways[_start(network, (edge, forward))].append((edge, forward))

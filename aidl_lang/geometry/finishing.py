@@ -312,7 +312,9 @@ def _foot(curve: Line | Arc, p: Vec) -> float | None:
 
 
 def _round_by_newton(a: Piece, b: Piece, side: float, radius: float) -> tuple[float, float, Vec] | None:
-    """Follow the touching points from the corner as the radius grows; None once one leaves its arm."""
+    """Follows the touching points from the corner as the radius grows; returns None once one leaves its
+    arm.
+    """
 
     def gap(u: float, v: float, r: float) -> Vec:
         p, q = _beside(a, u, side * r), _beside(b, v, -side * r)

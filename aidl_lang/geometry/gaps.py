@@ -1,4 +1,5 @@
-"""Outlines that all but close: open ends of curves that lie close together become one, and each gap is told.
+"""Closes outlines with small gaps: open ends of curves that lie close together become one, and each gap is
+reported.
 
 Numbers written by hand have two or three decimals, so the ends of two curves that are meant to meet may be a
 hundredth of a millimetre apart. One of them is moved onto the other, and its curve changes as little as that
@@ -138,7 +139,7 @@ def _open_ends(network: Network, shapes: Sequence[Shape]) -> list[End]:
 
 
 def _nearest_first(found: Sequence[End], widest: float) -> Iterator[tuple[End, End]]:
-    """Ends by twos, each once, the nearest before others, the one written earlier first."""
+    """Yields pairs of ends, each end once, the nearest pair first, in each the one written earlier first."""
     boxes = [(*end.at, *end.at) for end in found]
     pairs = sorted((math.dist(found[i].at, found[j].at), i, j) for i, j in near_pairs(boxes, widest))
     taken: set[int] = set()

@@ -73,7 +73,7 @@ def _line_line(a: Line, b: Line, tolerance: float) -> list[Crossing]:
 
 
 def _round_candidates(a: Line | Arc | Circle, b: Line | Arc | Circle, tolerance: float) -> list[Vec]:
-    """Meeting points of the endless lines and whole circles that carry the two curves."""
+    """Returns meeting points of the endless lines and whole circles that carry the two curves."""
     if isinstance(a, Line):
         assert not isinstance(b, Line)
         return line_circle(a, b, tolerance)
@@ -269,6 +269,6 @@ def self_crossing(curve: Bezier) -> tuple[float, float] | None:
 
 
 def sorted_cuts(cuts: list[tuple[float, int]]) -> list[tuple[float, int]]:
-    """Cuts in order of their parameter, a node that follows itself kept once."""
+    """Returns cuts in order of their parameter, a node that follows itself kept once."""
     cuts = sorted(cuts)
     return cuts[:1] + [b for a, b in pairwise(cuts) if b[1] != a[1]]

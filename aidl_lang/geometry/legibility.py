@@ -32,8 +32,8 @@ _WHOLE = 0.995
 
 
 @record()
-class Lying:
-    """A body: its path, its place in the order of drawing, and its colour, if it has one."""
+class StackedBody:
+    """A body with its path, its place in the order of drawing, and its colour, if it has one."""
 
     path: str
     place: int
@@ -47,7 +47,7 @@ class Ground:
     """The bodies that strokes lie on, or under, from back to front. `inked` are the curves of all strokes."""
 
     network: Network
-    bodies: Sequence[Lying]
+    bodies: Sequence[StackedBody]
     inked: Sequence[int]
 
     def hides(self, color: str | None, curves: Sequence[int], place: int) -> list[bool]:

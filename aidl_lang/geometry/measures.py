@@ -37,7 +37,7 @@ class Measures:
 
 @cache
 def gauss(count: int) -> tuple[tuple[float, float], ...]:
-    """Nodes and weights of Gauss-Legendre quadrature over 0..1."""
+    """Returns nodes and weights of Gauss-Legendre quadrature over 0..1."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return tuple((float(x + 1) / 2, float(w) / 2) for x, w in zip(nodes, weights, strict=True))
 
@@ -70,12 +70,12 @@ def perimeter(region: Region) -> float:
 
 
 def loop_area(loop: Loop) -> float:
-    """Positive counter-clockwise."""
+    """Returns the area of a loop, positive counter-clockwise."""
     return loop_moments(loop)[0]
 
 
 def loop_moments(loop: Loop) -> Moments:
-    """Area and first moments."""
+    """Returns area and first moments of a loop."""
     (x, y), (a, mx, my) = moments_about_start(loop)
     return a, mx + a * x, my + a * y
 
@@ -143,7 +143,7 @@ def _bezier_moments(piece: Bezier, origin: Vec) -> Moments:
 
 
 def length(piece: Piece) -> float:
-    """Arc length; of ellipses and Bézier curves by quadrature to about nine digits."""
+    """Returns the arc length; of ellipses and Bézier curves by quadrature to about nine digits."""
     if isinstance(piece, Line):
         return math.dist(piece.start, piece.end)
     if isinstance(piece, Arc | Circle):

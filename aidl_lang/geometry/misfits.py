@@ -177,7 +177,7 @@ class _Fault:
         return Fix(title, tuple(edits.values()))
 
 
-def in_one(found: Sequence[Misfit]) -> list[Diagnostic]:
+def merged_notes(found: Sequence[Misfit]) -> list[Diagnostic]:
     """Returns one note for each set of statements: that of the smallest size that fits, which fits
     everywhere.
     """

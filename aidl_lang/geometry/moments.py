@@ -58,7 +58,7 @@ class Inertia:
 
 
 def inertia(region: Region, centroid: Vec) -> Inertia:
-    """Second moments of a region about its centroid."""
+    """Returns the second moments of a region about its centroid."""
     xx = yy = xy = 0.0
     for loop in region.loops:
         sign = -1 if loop.reversed else 1

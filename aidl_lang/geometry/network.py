@@ -68,7 +68,7 @@ class Edge:
 
 
 class TooCoarse(Exception):  # noqa: N818 (not an error of ours: what is under way begins again)
-    """A result has vertices that no curve owns, and finer chords would help."""
+    """Raised if a result has vertices that no curve owns, and finer chords would help."""
 
 
 class Weld:
@@ -150,7 +150,7 @@ class Network:
     def _cut_pair(
         self, i: int, j: int, cuts: list[list[tuple[float, int]]], own_ends: list[tuple[int, int]]
     ) -> None:
-        """Place the ends of each of two curves on the other, then cut both where they meet."""
+        """Places the ends of each of two curves on the other, then cuts both where they meet."""
         if self.curves[i] == self.curves[j]:
             return  # one curve twice: its edges are shared
         for one, other in ((i, j), (j, i)):
@@ -202,7 +202,7 @@ class Network:
     # -- polylines and the way back ------------------------------------------------------------------------
 
     def _draw_polylines(self) -> None:
-        """Give each edge its inner points, then index all."""
+        """Gives each edge its inner points, then indexes all."""
         edges, curves = self.edges, self.curves
         chords = [self.size * (FINE_CHORD if e.curve in self._fine else CHORD) for e in edges]
         counts = [
@@ -251,7 +251,7 @@ class Network:
         yield from zip(numbers, grids, strict=True)
 
     def refine(self) -> None:
-        """Cut the curves finer whose chords crossed."""
+        """Cuts the curves finer whose chords crossed."""
         self._fine |= self.blurred
         self.blurred = set()
         self._draw_polylines()
@@ -367,7 +367,7 @@ def pack(grid: Ints) -> Ints:
 
 
 def _segments(curve: Piece, share: float, chord: float) -> int:
-    """Into how many chords a part is cut: at least two, so that a curved edge owns a vertex."""
+    """Returns the number of chords of a part: at least two, so that a curved edge owns a vertex."""
     if isinstance(curve, Line):
         return 1
     if isinstance(curve, Bezier):

@@ -82,7 +82,9 @@ def _words(text: str) -> Counter[str]:
 
 
 def _wrap_fix(structure: SolvedStructure, geometries: Sequence[SolvedGeometry]) -> Fix | None:
-    """Wrap the definition into a hole, where nothing else in the program speaks of it."""
+    """Returns the fix that wraps the definition into a hole; None if something else in the program refers to
+    it.
+    """
     geometry = geometries[0]
     span = geometry.span
     if span is None or not re.fullmatch(rf"{re.escape(geometry.name)}\s*=\s*\w+\(.*\)", span.text, re.DOTALL):
@@ -328,7 +330,7 @@ def detached_notes(root: SolvedStructure, paths: Sequence[str], contacts: Contac
 
 
 def marked_detached(root: SolvedStructure) -> set[str]:
-    """Paths of the structures that are, or lie in one that is, `@detached`."""
+    """Returns the paths of structures that are `@detached`, or lie in one that is."""
     return {
         below.path
         for s in root.walk()

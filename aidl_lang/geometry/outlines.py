@@ -18,7 +18,7 @@ from aidl_lang.geometry.faces import Shape, own_faces, union_of
 from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish
 from aidl_lang.geometry.hulls import hull
 from aidl_lang.geometry.measures import area, length
-from aidl_lang.geometry.misfits import Misfit, in_one, misfits
+from aidl_lang.geometry.misfits import Misfit, merged_notes, misfits
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.offsets import NEAR, offset, thick
 from aidl_lang.geometry.region import Region
@@ -38,7 +38,7 @@ def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
     index = {g.path: g for g in model.root.walk_geometry()}
     outliner = _Outliner(tuple(f for s in model.root.walk() for f in s.finishes), index)
     root = outliner.structure(model.root)
-    return replace(model, root=root), list(dict.fromkeys([*outliner.notes, *in_one(outliner.misfits)]))
+    return replace(model, root=root), list(dict.fromkeys([*outliner.notes, *merged_notes(outliner.misfits)]))
 
 
 def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:

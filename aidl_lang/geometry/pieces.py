@@ -1,4 +1,4 @@
-"""Solids that fall into pieces which nothing joins, and pieces that a hole cut free all around.
+"""Warns of solids that fall into pieces which nothing joins, and of pieces that a hole cuts free all around.
 
 Where no hole is between them, pieces that are alike are a pattern and meant, as are letters, and what a
 single geometry consists of.
@@ -122,7 +122,7 @@ def _area(section: Section) -> str:
 def _groups(
     pieces: Sequence[_Piece], own: Solid, known: dict[str, Solid], pairs: Sequence[Contact]
 ) -> list[list[_Piece]]:
-    """Pieces that hold together, directly or by other bodies; the largest group first."""
+    """Returns groups of pieces that hold together, directly or by other bodies; the largest group first."""
     joined = _Joined()
     for contact in pairs:
         if contact.is_close:

@@ -99,7 +99,7 @@ def _elevation(s: SolvedStructure) -> float:
 
 
 def thickness_of(body: Body, default: float | None) -> float | None:
-    """mm; None for a body that stays flat."""
+    """Returns the thickness in mm; None for a body that stays flat."""
     return default if body.style.thickness is None else body.style.thickness
 
 
@@ -109,7 +109,7 @@ def placement_notes(root: SolvedStructure, drawing: Drawing) -> list[Diagnostic]
 
 
 def _in_turned(s: SolvedStructure, turn: Matrix) -> Iterator[Diagnostic]:
-    """Structures with an orientation of their own in one that is turned, by a matrix."""
+    """Yields notes on structures with an orientation of their own in one that is turned, by a matrix."""
     for child in s.structures:
         if child.orientation != s.orientation and np.abs(turn - np.eye(2)).max() > 1e-9:
             yield Diagnostic(
@@ -126,7 +126,9 @@ def _in_turned(s: SolvedStructure, turn: Matrix) -> Iterator[Diagnostic]:
 
 
 def _united(root: SolvedStructure, drawing: Drawing) -> Iterator[Diagnostic]:
-    """Structures inside a body, or cutting it, that say something else than the body."""
+    """Yields notes on structures inside a body, or cutting it, whose attributes differ from those of the
+    body.
+    """
     bodies = {body.path for body in drawing.bodies}
 
     def visit(s: SolvedStructure, body: SolvedStructure | None) -> Iterator[Diagnostic]:

@@ -30,7 +30,7 @@ def visible_seams(
 
 
 def _merged(network: Network, edges: list[int]) -> Iterator[Piece]:
-    """Edges that follow each other on one curve as one piece."""
+    """Yields edges that follow each other on one curve as one piece."""
     start = None
     for number, after in zip(edges, [*edges[1:], None], strict=True):
         edge, start = network.edges[number], network.edges[number] if start is None else start

@@ -156,9 +156,9 @@ def survey(
     paths: Sequence[str] = (),
     own_densities: Mapping[str, float] | None = None,
 ) -> Survey:
-    """Measure the whole, and the parts at some paths or else each body.
+    """Measures the whole, and the parts at some paths or else each body.
 
-    Raises NothingThereError for a path at which there is nothing that covers an area.
+    Raises NothingThereError for a path at which nothing covers an area.
     """
     surveyor = _Surveyor(model, drawing, own_densities or {})
     parts = [surveyor.part(path) for path in paths]
@@ -238,7 +238,7 @@ class _Surveyor:
         return self._bodies[body.path]
 
     def of_bodies(self, path: str, bodies: Sequence[Body]) -> Part:
-        """Several bodies as one; where they overlap, both count."""
+        """Returns several bodies as one part; where they overlap, both count."""
         if len(bodies) == 1 and bodies[0].path == path:
             return self.body(bodies[0])
         parts = [self.body(b) for b in bodies]

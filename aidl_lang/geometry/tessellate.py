@@ -68,13 +68,15 @@ def piece_points(piece: Piece, tolerance: float) -> Polygon:
 
 
 def polygon_area(polygon: Polygon) -> float:
-    """Positive counter-clockwise; about the first vertex, so that far away nothing cancels."""
+    """Returns the area, positive counter-clockwise; about the first vertex, so that far away nothing
+    cancels.
+    """
     x, y = (polygon - polygon[0]).T
     return float(x[:-1] @ y[1:] - y[:-1] @ x[1:]) / 2
 
 
 def _from_start(piece: Piece, tolerance: float) -> Polygon:
-    """Points along a piece without its end."""
+    """Returns the points along a piece without its end."""
     count = _chords(piece, tolerance)
     found = points(piece, np.arange(count) / count)
     found[0] = ends(piece)[0]

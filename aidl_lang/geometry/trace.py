@@ -72,7 +72,7 @@ def trace(network: Network, section: Section) -> Traced:
 
 
 def trace_all(network: Network, sections: Sequence[Section]) -> list[Traced]:
-    """Many regions at once, which spares most of the table look-ups."""
+    """Traces many regions at once, which spares most of the table look-ups."""
     faces = [[c.to_polygons() for c in _components(section)] for section in sections]
     sides = _sides(network, [polygon for section in faces for face in section for polygon in face])
     number = 0
@@ -97,7 +97,9 @@ def _components(section: Section) -> list[Section]:
 
 
 def _faces(loops: list[tuple[float, Loop]]) -> list[Face]:
-    """Outer loops with the holes that lie in them: one, or several that touch in a point."""
+    """Returns faces: outer loops with the holes that lie in them, one loop or several that touch in a
+    point.
+    """
     outers = [loop for _, loop in sorted(loops, key=lambda pair: pair[0]) if _ > 0]
     inner = [loop for area, loop in loops if area < 0 and outers]
     holes: list[list[Loop]] = [[] for _ in outers]
@@ -128,7 +130,7 @@ def _first_point(loop: Loop) -> Vec:
 
 
 def _sides(network: Network, polygons: list[NDArray[np.float64]]) -> Sides:
-    """Look up all vertices, then find the edge from each to the next one of its polygon."""
+    """Looks up all vertices, then finds the edge from each to the next one of its polygon."""
     bounds = [0, *accumulate(len(p) for p in polygons)]
     vertices = np.concatenate(polygons) if polygons else np.zeros((0, 2))
     after = np.arange(1, len(vertices) + 1)

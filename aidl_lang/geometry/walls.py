@@ -199,7 +199,7 @@ class _End:
 
 
 def _polish(one: _End, other: _End) -> bool:
-    """Newton's method for a chord at right angles to both curves; whether it came to one."""
+    """Moves a chord by Newton's method to right angles to both curves; returns whether it arrived."""
     for _ in range(30):
         x, y = one.at[0] - other.at[0], one.at[1] - other.at[1]
         (p, pp), (q, qq) = one.slopes(), other.slopes()
@@ -229,7 +229,7 @@ def _polish(one: _End, other: _End) -> bool:
 
 
 def _tapers(o: Skeleton) -> Iterator[tuple[int, Chord]]:
-    """Ends towards which a part, or an opening, gets narrower (see above)."""
+    """Yields ends towards which a part, or an opening, gets narrower (see above)."""
     for k, piece in enumerate(o.pieces):
         if is_closed(piece):
             continue

@@ -132,7 +132,7 @@ class ArrayFreezing:
         self._values = np.append(self._values, values[:, 0] - values[:, 1])
 
     def _find_varying(self) -> Bools:
-        """Nodes that depend on a free unknown through active branches."""
+        """Returns the mask of nodes that depend on a free unknown through active branches."""
         count = len(self._values)
         found = np.zeros(count + 1, dtype=np.bool_)  # the last one is what missing operands refer to
         schedule = self._schedule
@@ -170,7 +170,9 @@ class ArrayFreezing:
     # -- programs
 
     def pattern(self, roots: Ints) -> tuple[Ints, Ints]:
-        """Row and unknown (e,) of each entry of the Jacobian of these nodes (r,), each of which varies."""
+        """Returns row and unknown (e,) of each entry of the Jacobian of these nodes (r,), each of which
+        varies.
+        """
         layout = self._lay_out(roots)
         return layout.row, layout.unknown
 

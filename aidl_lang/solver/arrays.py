@@ -35,7 +35,7 @@ def partials(op: int, operands: tuple[Floats, ...], value: Floats) -> tuple[Floa
 
 
 def whole_turns(a: Floats, b: Floats) -> Floats:
-    """floor(a / b), NaN where that has no meaning."""
+    """Returns floor(a / b), NaN if the quotient is not finite."""
     quotient = a / b
     return np.where(np.isfinite(quotient), np.floor(quotient), np.nan)
 
@@ -45,7 +45,7 @@ def _finite(slope: Floats) -> Floats:
 
 
 def _clamped(a: Floats) -> Floats:
-    """`a` within [-1, 1], NaN where it is outside by more than rounding."""
+    """Returns `a` within [-1, 1], NaN where it is outside by more than rounding."""
     return np.where(np.abs(a) <= 1.0 + ROUNDING, np.clip(a, -1.0, 1.0), np.nan)
 
 

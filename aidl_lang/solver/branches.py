@@ -44,7 +44,8 @@ SHARE = 1e-7
 
 @record()
 class Task:
-    """
+    """The rows and unknowns of an attempt.
+
     rows     the rows to satisfy
     softness unit of a slack for each row, 0 where the row is hard
     free     the unknowns that may move

@@ -188,7 +188,9 @@ class _ConflictSearch:
         return best
 
     def _starts(self, free: Sequence[int]) -> Iterator[dict[int, float]]:
-        """Places about the first guesses: directions anywhere, sizes between a third and three times."""
+        """Yields places about the first guesses: directions anywhere, sizes between a third and three
+        times.
+        """
         problem, random = self.hierarchy.problem, np.random.default_rng(SEED)
         size = float(problem.rows.scale.max(initial=1.0))
         for turn in range(STARTS):

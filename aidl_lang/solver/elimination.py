@@ -6,7 +6,7 @@ Markowitz, little fill first, among entries that are not small in their row (Duf
 Direct Methods for Sparse Matrices, chapters 7 and 10); conflicts are settled as in Luby's search for
 independent sets. What remains is decided by QR with pivoting.
 
-This module is the only one of the solver that needs scipy; it is imported for large models alone.
+This module needs scipy; it is imported for large models alone.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ TRIES = 3
 
 
 class UndecidedError(Exception):
-    """The rank could not be told: too close to call, or too large for the budget."""
+    """Raised if the rank is undecided: too close to call, or too large for the budget."""
 
 
 def as_csr(matrix: Sparse, width: int) -> scipy.sparse.csr_array:
@@ -92,7 +92,9 @@ class NullSpace:
         self._solve = gram_solver(self._rows)
 
     def sample(self, matrix: Sparse, count: int) -> Floats:
-        """Random combinations of the rows of `matrix`, taken to the null space: (width, count)."""
+        """Returns random combinations of the rows of `matrix`, projected onto the null space: (width,
+        count).
+        """
         rows = as_csr(matrix, self._rows.shape[1])
         found: Floats = rows.T @ np.random.default_rng(0).standard_normal((len(matrix), count))
         for _ in range(2):  # the second time for the digits that the square in `gram_solver` costs
@@ -135,7 +137,7 @@ def _without_zeros(rest: scipy.sparse.csr_array, names: Ints) -> tuple[scipy.spa
 
 
 def _pivots(rest: scipy.sparse.csr_array) -> tuple[Ints, Ints]:
-    """Rows and columns of entries that can be eliminated at the same time; at least one."""
+    """Returns rows and columns of entries that can be eliminated at the same time; at least one."""
     starts, columns, sizes = rest.indptr[:-1], rest.indices, np.abs(rest.data)
     lengths = np.diff(rest.indptr)
     rows = np.repeat(np.arange(len(lengths)), lengths)

@@ -172,11 +172,11 @@ class TapeBuilder:
         return self._extremum(self._maximum_of_two, args)
 
     def mod(self, a: int, b: int) -> int:
-        """Returns the remainder a - b floor(a / b), which has the sign of `b`."""
+        """Returns the node of the remainder a - b floor(a / b), which has the sign of `b`."""
         return self._node(Op.MOD, a, b)
 
     def select(self, condition: int, a: int, b: int) -> int:
-        """`a` where `condition` >= 0, else `b`."""
+        """Returns the node of `a` where `condition` >= 0, else `b`."""
         if a == b:
             return a
         if self._ops[condition] == Op.CONSTANT:
@@ -184,7 +184,9 @@ class TapeBuilder:
         return self._node(Op.SELECT, condition, a, b)
 
     def cubic_max(self, p0: int, p1: int, p2: int, p3: int) -> int:
-        """Returns the greatest value over t in [0, 1] of the cubic with these Bernstein coefficients."""
+        """Returns the node of the greatest value over t in [0, 1] of the cubic with these Bernstein
+        coefficients.
+        """
         return self._node(Op.CUBIC_MAX, p0, p1, p2, p3)
 
     def finish(self) -> Tape:
@@ -217,7 +219,7 @@ class TapeBuilder:
         return level[0]
 
     def _of_two(self, op: int, a: int, b: int) -> int:
-        """Returns the node of an operation on two, the kind that most are."""
+        """Returns the node of an operation on two operands, the most common kind."""
         key = (op, a, b)
         node = self._known.get(key)
         if node is not None:

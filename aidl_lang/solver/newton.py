@@ -385,7 +385,8 @@ class _Newton:
         return None
 
     def _leap(self, z: Floats, step: Floats, merit: float) -> tuple[Floats, Floats] | None:
-        """Full steps, although the residuals grow for a while, to the first point where they are smaller.
+        """Takes full steps, although the residuals grow for a while, to the first point where they are
+        smaller.
 
         In a long chain of parts a step turns what is far down the chain, which stretches it; the steps after
         that mend it, while damped ones would creep. (The watchdog technique; Nocedal and Wright, chapter 15.)

@@ -33,8 +33,8 @@ class Nearest:
     """
     point       (n,) the nearest point; in the sense of least squares if there is none
     multipliers (m,) point == -J.T @ multipliers; not negative for inequalities
-    feasible    whether the rows can hold together
-    unique      whether there is no other point at which they do, beyond doubt
+    feasible    True if the rows can hold together
+    unique      True if there is no other point at which they do, beyond doubt
     contradiction (m,) where they cannot: factors, the greatest of them 1 or -1 and none of an inequality
                 negative, with which the rows add up to `0 = c` or `0 <= c` for a c that is not; None if not
                 known

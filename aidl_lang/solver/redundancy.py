@@ -1,4 +1,4 @@
-"""Constraints that say nothing new, each with those that it follows from.
+"""Constraints that follow from others, each with those that it follows from.
 
 Gradients tell what happens near by to the first order only: `distance(a, b) == 10` has the gradient of
 `b.x - a.x == 10` where both hold, and yet says more. So whatever depends on others by its gradient is tried:
@@ -83,7 +83,7 @@ def redundancies(
 
 
 class _ImplicationTest:
-    """Tries rows away from the solution."""
+    """Tests away from the solution whether rows follow from others."""
 
     def __init__(self, problem: Problem, values: Floats, equations: Equations, dependent: set[int]) -> None:
         self.problem, self.values, self.equations = problem, values, equations

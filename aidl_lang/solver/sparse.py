@@ -1,4 +1,4 @@
-"""Sparse linear algebra: the functions of `dense` for matrices too large for it. It alone imports scipy.
+"""Sparse linear algebra: the functions of `dense` for matrices too large for it. Needs scipy.
 
 A square matrix is factorised as it is (SuperLU). Any other, and a singular one, by way of
 

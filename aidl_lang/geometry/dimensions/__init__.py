@@ -83,7 +83,7 @@ def _spans(circle: Circle | Arc, whole: Dimension, tolerance: float) -> bool:
 
 
 def overall(drawing: Drawing) -> Iterator[Length]:
-    """Width and height of all that is drawn."""
+    """Yields width and height of all that is drawn."""
     curves = [p for b in drawing.bodies for loop in b.region.loops for p in loop.pieces]
     curves += [p for stroke in drawing.strokes for p in stroke.pieces]
     if curves:

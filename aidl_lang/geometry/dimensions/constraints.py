@@ -28,7 +28,7 @@ from aidl_lang.geometry.dimensions.features import (
     length_between,
     length_of_line,
 )
-from aidl_lang.geometry.dimensions.fields import Sized, level_angle, round_dimension
+from aidl_lang.geometry.dimensions.fields import SizedGeometry, level_angle, round_dimension
 from aidl_lang.geometry.solved import (
     Dimension,
     Length,
@@ -207,7 +207,7 @@ class _Statement:
         elif isinstance(curve, Line) and name == "angle":
             yield from level_angle(curve, self._turned())
         elif solved is not None and isinstance(thing, Geometry) and thing.is_compound and name != "angle":
-            sized = Sized(thing, solved, self._turned(), self.scene.evaluate, self.scene.names)
+            sized = SizedGeometry(thing, solved, self._turned(), self.scene.evaluate, self.scene.names)
             yield from list(sized.length(name, value))[:1]
         elif name in ("width", "height") and (curves := self.scene.curves(thing)):
             yield length_along(curves, self._way(int(name == "height")))
@@ -215,7 +215,9 @@ class _Statement:
     # --- Offsets -----------------------------------------------------------------------------------
 
     def _offset(self, left: ast.Expression, right: ast.Expression) -> Iterator[tuple[Dimension, Num]]:
-        """`a.left == b.right + 5`, `a.center == b.center + (3, 4)`: from one place to another."""
+        """Yields the lengths from one place to another in `a.left == b.right + 5` or `a.center == b.center +
+        (3, 4)`.
+        """
         terms = [*self._terms(left, 1), *self._terms(right, -1)]
         places = [(sign, node) for sign, node, value in terms if value is None]
         if len(places) != 2 or places[0][0] == places[1][0]:

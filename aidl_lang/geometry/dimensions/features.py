@@ -42,7 +42,7 @@ def extreme(curves: Iterable[Piece | Vec], u: Vec) -> tuple[Vec, ...]:
 
 
 def _spots(curve: Piece | Vec, u: Vec) -> Sequence[Vec]:
-    """Points of a curve of which one is the furthest in a direction."""
+    """Returns points of a curve of which one is the furthest in a direction."""
     if isinstance(curve, tuple):
         return [curve]
     own = [] if is_closed(curve) else list(ends(curve))

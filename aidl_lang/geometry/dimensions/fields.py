@@ -53,7 +53,7 @@ def field_sizes(
         known = {g.path: g for g in read.geometry}
         for geometry in structure.own():
             if not geometry.construction and geometry.path in known:
-                sized = Sized(original(geometry), known[geometry.path], turned, evaluate, names)
+                sized = SizedGeometry(original(geometry), known[geometry.path], turned, evaluate, names)
                 is_copy = geometry.source is not None
                 yield from (d for d in sized.dimensions() if not is_copy or isinstance(d, Roundness))
         yield from _fillets(structure, read, names)
@@ -80,7 +80,7 @@ def origin_of(value: Num, holder: Geometry | None = None) -> str | None:
 
 
 @record()
-class Sized:
+class SizedGeometry:
     """A geometry as it was built (or the source of a copy) and as it was solved."""
 
     built: Geometry

@@ -37,9 +37,7 @@ POSSIBLE = 1e-6
 
 @record(frozen=False)
 class Reach:
-    """The velocities that are possible for a part; `taken` are those that were told or are known, in the
-    space of all.
-    """
+    """The velocities possible for a part; `taken` are those reported or known, in the space of all."""
 
     scene: Scene
     part: Part
@@ -120,7 +118,7 @@ class Reach:
         return self.scene.bending.goes_on(self.part, self._rates(velocity), wanted)
 
     def _rates(self, velocity: Floats) -> Floats:
-        """(k,) how fast the unknowns of the part change in a possible motion."""
+        """Returns the rates (k,) of the unknowns of the part in a possible motion."""
         found: Floats = self.part.basis @ np.linalg.solve(self.triangle, self.reach.T @ velocity)
         return found
 

@@ -44,10 +44,9 @@ _LEAVING = {"slide": "slide along a curve that begins along {}", "turn": "{} at 
 
 
 def motions(model: Model, lowered: Lowered, solution: Solution, freedom: Freedom) -> tuple[Motion, ...]:
-    """Independent motions of a model, the most interesting first; last those of the whole drawing.
-
-    Structures come before geometry, that before points and numbers; of these the large before the small, and
-    equals in the order of the text.
+    """Returns independent motions of a model, the most interesting first, those of the whole drawing last.
+    Structures come before geometry, geometry before points and numbers; of these the large before the small,
+    and equals in the order of the text.
     """
     if not freedom.motions.found:
         return ()
@@ -244,7 +243,7 @@ class _Telling(Reach):
         yield from self._told(velocity * DEGREE, "turn", [thing.path], words, spin=DEGREE)
 
     def _changes(self) -> Iterator[_Told]:
-        """Single parameters that can change while nothing else does."""
+        """Yields single parameters that can change while nothing else does."""
         basis = self.part.basis
         inverse = np.linalg.pinv(basis)
         for i, u in enumerate(self.part.unknowns.tolist()):
