@@ -84,9 +84,9 @@ class ExportError(ValueError):
 class Format:
     """A writer. `extra` names the optional extra of the package that installs the module it needs.
 
-    `label` says in menus what comes of it; what has none is asked for by its suffix alone.
-    `cuts` says whether it holds outlines for a cutter, `tiles` whether it can be printed over several pages.
-    What takes several sheets goes to as many files, unless `write_all` puts them into one.
+    `label` describes the file in menus; a format without one is asked for by its suffix alone.
+    `cuts` tells whether it holds outlines for a cutter, `tiles` whether it can be printed over several pages.
+    Several sheets go to as many files, unless `write_all` puts them into one.
     """
 
     write: Callable[[Job], Exported]

@@ -156,9 +156,6 @@ class _File:
 
     A text is written as a number that `data` replaces, since Open CASCADE leaves non-ASCII text as it is and
     breaks long texts anywhere.
-
-    A text stands in it as its number, since Open CASCADE writes what is not ASCII as it is and breaks long
-    texts anywhere; `data` puts the texts in.
     """
 
     def __init__(self, root: str, parts: Sequence[_Part]) -> None:
@@ -189,9 +186,6 @@ class _File:
 
         Its own controller leaves out the repair of shapes that Open CASCADE begins with otherwise: there is
         nothing to repair, and it takes a time that grows with the square of the edges of a face.
-
-        A controller of its own does without the repair of shapes that Open CASCADE begins with otherwise:
-        there is nothing to repair, and it takes a time that grows with the square of the edges of a face.
         """
         writer = STEPCAFControl_Writer()
         writer.SetColorMode(False)

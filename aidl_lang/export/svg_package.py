@@ -15,9 +15,6 @@ def svgwrite() -> Any:
 
     It imports the protocols of the web, to embed fonts and style sheets by their address, and a parser that
     checks the values of attributes (`debug=True`); both are loaded if they are ever called.
-
-    It imports the protocols of the web, to embed fonts and style sheets by their address, and a parser that
-    checks the values of attributes (`debug=True`); both are loaded if they are ever called.
     """
     if "svgwrite" not in sys.modules:
         values = ("is_valid_transferlist", "is_valid_pathdata", "is_valid_animation_timing")

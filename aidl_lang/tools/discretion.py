@@ -1,9 +1,9 @@
 """Hides from a language model the texts of files that it did not write.
 
-A program that nobody has read may import the AIDL programs below a folder, and use what they define; the
-text of these is not for the one who wrote it. So nothing is imported that is no whole program (`Programs`),
-and what is told of a program quotes only what its author wrote (`Reader`): of a mistake in an imported file
-the code and the line.
+An unread program may import the AIDL programs below a folder, and use their definitions, but its author must
+not see their texts. So only whole programs are imported (`Programs`), and messages quote only the author's
+own
+text (`Reader`): for a mistake in an imported file they give the code and the line.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ _ESCAPED = re.compile(r"\\(.)")
 
 @record()
 class Snippet:
-    """`prefix` is what is typed to get it; `place` where it may stand: `file`, `block` (of a structure, or of
+    """`prefix` is the text to type for it; `place` where it may stand: `file`, `block` (of a structure, or of
     the file), `constraints` or `attribute` (before a definition).
     """
 
@@ -35,7 +35,7 @@ class Snippet:
 
 
 def expanded(body: str) -> str:
-    """The text with what is suggested at its places, the same at those of one number."""
+    """Returns the text with all placeholders filled with their proposals, equal numbers alike."""
     given: dict[str, str] = {}
     for match in _PLACE.finditer(body):
         text = match[3] if match[3] is not None else match[4]

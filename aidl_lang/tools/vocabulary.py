@@ -1,4 +1,4 @@
-"""All the words of the language by what they are: for whatever colours programs or completes them.
+"""All the words of the language by class, for colouring and completion.
 
 Each list comes from where its words are defined: the grammar, the kinds, the units, what is built in and the
 library. What is said here is only to which class a word of the grammar belongs; `unclaimed` names the words

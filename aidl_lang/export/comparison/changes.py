@@ -50,7 +50,7 @@ class StructureChange:
 
     path      after; before for one that vanished
     was       its path before, if it was found by its shape under another name or elsewhere in the tree
-    move      where it went as a whole; None if it stayed, or went with what is around it
+    move      its motion as a whole; None if it stayed, or went with its parent
     middle    the middle of its box before; after for one that appeared
     sizes     width and height of its box; area, perimeter and centroid of its region
     settings  attributes as `@name`, finished corners as `fillet of NAME`, and `kind`

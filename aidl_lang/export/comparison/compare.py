@@ -100,8 +100,6 @@ class _Walk:
         """Yields the changes of a structure and of all in it.
 
         `expected` is the motion of its parent; `settled` says that all in it is known to have moved so.
-
-        `expected` is where what is around it went; `settled` says that all in it is known to have gone there.
         """
         checkpoint()
         whole = expected if settled else pair.pose.move(expected)

@@ -15,7 +15,9 @@ Json = dict[str, Any]
 
 
 def to_dict(comparison: Comparison) -> Json:
-    """In every list of two, the first is from before, the second from after; numbers have 12 digits."""
+    """Returns a comparison as plain data. In every pair, the first value is from before, the second from
+    after; numbers have 12 digits.
+    """
     document: Json = {
         "aidl_diff": VERSION,
         "units": "mm",

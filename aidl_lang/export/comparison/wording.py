@@ -29,11 +29,11 @@ _WIDEST = 32
 """Columns that paths get at most."""
 _MOST_CONTACTS = 12
 _MOST = 6
-"""Fields of one geometry, and names of a list, that are told."""
+"""Most fields of one geometry, and most names of a list, that are reported."""
 _DIGITS = (5, 7, 9, 12)
 _ROUNDING, _NOTHING, _HARDLY = 1e-7, 1e-9, 1e-6
-"""What is shown as 0: of a point relative to its larger coordinate, of any number, of a shift relative to the
-drawing.
+"""Bounds of values shown as 0: of a point relative to its larger coordinate, of any number, of a shift
+relative to the drawing.
 """
 _MAIN_SIZES = ("width", "height", "area")
 _MEMBER = re.compile(r"(.*)\[(-?\d+)\]")

@@ -44,7 +44,7 @@ def shortened(document: Json, most: int) -> tuple[Json, str | None]:
     """Returns the document in at most `most` characters, and a list of what was left out; None if nothing
     was.
 
-    What can be worked out from the rest, or asked for by a path, goes first.
+    Data that follow from the rest, or can be asked for by a path, go first.
     """
     left_out: list[str] = []
     for words, shorten in _WAYS:

@@ -1,4 +1,4 @@
-"""What the tools return: plain data, and a text that tells the same to a language model in few words."""
+"""The results of the tools: plain data, and the same as text for a language model in few words."""
 
 from __future__ import annotations
 

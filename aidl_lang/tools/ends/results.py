@@ -9,10 +9,10 @@ from aidl_lang.tools.ends.values import Value
 
 @record()
 class Fault:
-    """Something that a compile found: a diagnostic without its sources.
+    """A diagnostic of a compile without its sources.
 
-    text   what is written in its place, in one line
-    file   where that is, with its line; None for what has no place
+    text   the source text at its place, in one line
+    file   the file of its place, with its line; None without a place
     """
 
     code: str
@@ -46,8 +46,8 @@ class Tried:
 class Turned:
     """A param at one end of its range, or with another choice.
 
-    works     the last value on the way there with which all was well, compiled as it is told here
-    beyond    the next value, and what is wrong with it; None for what has no values in between
+    works     the last good value on the way there
+    beyond    the next value, with its result; None if there are no values in between
     """
 
     knob: Knob

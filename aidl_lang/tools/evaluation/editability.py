@@ -79,8 +79,6 @@ def of_openscad(program: str) -> Edits:
 def turned(knob: Knob) -> tuple[list[Value], int]:
     """Returns the values to try, and how many of the intended ones the range, the step or the choices cut
     short. A text without choices has none.
-
-    Of a text without choices there is nothing to try.
     """
     if knob.choices:
         others: list[Value] = [choice for choice in knob.choices if choice != knob.value][: len(SHARES)]

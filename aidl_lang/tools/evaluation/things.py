@@ -34,10 +34,10 @@ _SAME = 1e-6
 
 @record()
 class Thing:
-    """Parts in groups: what is in one group is drawn as one, and groups only lie together.
+    """Parts in groups: those in one group are drawn as one, and groups only lie together.
 
-    is_buried  the material of its structure is all around it, so that nothing of it is to be seen
-    spans      where its curves enclose nothing, it is what lies between them (the roof of a `house(…)`)
+    is_buried  the material of its structure is all around it and hides it
+    spans      if its curves enclose nothing, it is the area between them (the roof of a `house(…)`)
     """
 
     groups: tuple[Group, ...]
@@ -190,11 +190,11 @@ def drawn(structure: SolvedStructure) -> tuple[SolvedGeometry, ...]:
 
 @record()
 class Outline:
-    """Geometry that is drawn, or that such an outline is made of: it still is that part or opening of it.
+    """Geometry that is drawn, or an operand of such an outline, of which it still is a part or an opening.
 
-    known    what it has its name from: itself, or what it is a copy of
-    around   the paths of what is made of it
-    copy_in  the path of what was copied as a whole, for what was copied with it
+    known    the geometry that names it: itself, or the original of a copy
+    around   the paths of the outlines made of it
+    copy_in  the path of the original copied as a whole, for its parts
     """
 
     shown: SolvedGeometry

@@ -14,7 +14,7 @@ _SIGNS = {(0, 1): "?", (0, None): "*", (1, None): "+"}
 
 @record()
 class Notation:
-    """How one format writes the parts of a grammar. `counted` writes the bounds of a repetition."""
+    """The notation of one format. `counted` writes the bounds of a repetition."""
 
     defines: str
     between: str  # alternatives that are too long for one line

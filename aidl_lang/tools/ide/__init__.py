@@ -2,7 +2,4 @@
 
 Each answer is a pure function of a `View`: one text of a program with all that is known of it. Places are
 offsets in code points and spans; protocols convert them.
-
-Every answer is a pure function of a `View`: one text of a program with all that is known of it. Places are
-offsets in code points and spans; what a protocol makes of them is not decided here.
 """

@@ -20,9 +20,10 @@ _GATHERED = 1
 
 @record()
 class Reading:
-    """
-    taken  for each argument, the receiver first, the parameter that gets it; None where there is none
-    cost   how far the arguments are from what the overload wants
+    """An overload with the arguments of a call.
+
+    taken  the parameter of each argument, the receiver first; None without one
+    cost   distance of the arguments from the overload's types
     """
 
     signature: Signature

@@ -40,8 +40,8 @@ class Where(Enum):
 class Spot:
     """The text that an offset lies in or at the end of: a comment, string or number, or code.
 
-    start, end  what a word written here replaces: the word that is there (for a string what is in it, for a
-                number its unit), or nothing
+    start, end  the range that a new word replaces: the word there (of a string its contents, of a number its
+                unit), or nothing
     token       the string or number
     before      the last token that ends before `start`
     """
@@ -119,11 +119,12 @@ def _number(token: Token, before: Token | None, offset: int) -> Spot:
 
 @record(eq=False)
 class EditSite:
-    """
+    """A place under editing in its program.
+
     original   the text as it is
     spot       the place in it
-    automaton  what has been read before the place: what the grammar takes there
-    view       the program with the placeholder; None where no program has a name there
+    automaton  the state of the grammar before the place
+    view       the program with the placeholder; None if no name is possible there
     path       the nodes around the placeholder, outermost first; it is the last
     """
 

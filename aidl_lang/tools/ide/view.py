@@ -26,7 +26,9 @@ SETTINGS = Settings()
 
 @record(eq=False)
 class View:
-    """path      of the file, absolute
+    """A text of a program, checked and perhaps run.
+
+    path      of the file, absolute
     program   the text as checked, however broken
     found     diagnostics of checking it, without building and solving
     outcome   the result of this very text; None until it was run

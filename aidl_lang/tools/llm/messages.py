@@ -100,7 +100,7 @@ class Provider(Protocol):
 
     @property
     def name(self) -> str:
-        """As it is shown and recorded: `openai:gpt-5`, `exec:./reply.py`; holds no key."""
+        """Its name for people and records: `openai:gpt-5`, `exec:./reply.py`; without any key."""
 
     @property
     def takes_seeds(self) -> bool:

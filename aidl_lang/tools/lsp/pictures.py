@@ -30,11 +30,12 @@ _PLAIN: Look = (frozenset(), False)
 
 @record(frozen=False, eq=False)
 class _Shown:
-    """
-    viewers  who sees a document, each with what is wanted
-    handles  what could be dragged when that was looked into last
-    made     the pictures that were made last, each of a run
-    text     the source that was coloured last, as the pane reads it
+    """A document that is shown.
+
+    viewers  those who see a document, each with the wanted layers
+    handles  the draggable points found last
+    made     the pictures made last, each of a run
+    text     the source coloured last, as the pane reads it
     """
 
     viewers: dict[str, Look] = field(default_factory=dict)

@@ -84,7 +84,7 @@ _OF_ONE_SHAPE = ("meshes",)
 class Cell:
     """The result of a constraint on things of two kinds; `second` is "" for a single thing.
 
-    outcome  `works`, `refused`, or what is wrong with it
+    outcome  `works`, `refused`, or the fault
     """
 
     name: str

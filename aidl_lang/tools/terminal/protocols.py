@@ -1,4 +1,4 @@
-"""What a terminal can show, told by its environment.
+"""The picture protocols of a terminal, chosen by its environment.
 
 A terminal that is taken for another fills the screen with garbage, so a protocol is chosen only where a
 terminal names itself and nothing speaks against it. Variables are inherited: in a multiplexer, or in a

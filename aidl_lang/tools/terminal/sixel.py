@@ -33,7 +33,7 @@ def sixel(png: bytes) -> str:
 
 
 def _layers(band: Any) -> Iterator[str]:
-    """For each colour of a band its columns, a bit for each row."""
+    """Yields for each colour of a band its columns, a bit for each row."""
     import numpy as np
 
     weights = (1 << np.arange(len(band), dtype=np.uint8))[:, None]

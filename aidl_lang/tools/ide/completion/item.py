@@ -22,16 +22,16 @@ def nothing() -> str:
 
 @record()
 class Completion:
-    """
-    label    what is shown, and what is compared with what has been typed
-    kind     what it is: `keyword`, `kind`, `snippet`, `unit`, `attribute`, `color`, `type`, `file`, `word`,
-             `argument`, `field`, `method`, or a `SymbolKind` in its words
-    detail   its type, or how it is called, in a few words
-    text     what is written in the place of `span`; as a snippet it has places to fill in: `${1:name}`,
-             `${1|a,b|}`, `$0`
+    """A completion entry.
+
+    label    the text shown, and compared with the typed text
+    kind     `keyword`, `kind`, `snippet`, `unit`, `attribute`, `color`, `type`, `file`, `word`, `argument`,
+             `field`, `method`, or a `SymbolKind` in its words
+    detail   its type, or its call, in a few words
+    text     the replacement of `span`; a snippet has placeholders: `${1:name}`, `${1|a,b|}`, `$0`
     rank     its place in the list, 0 for the best
     extra    edits elsewhere that it needs, as an import
-    describe makes its documentation in Markdown; not cheap for a whole list
+    describe makes its documentation in Markdown; too slow for a whole list
     """
 
     label: str

@@ -52,7 +52,7 @@ CONDITION = Wanted((TruthType(),))
 
 @record()
 class Around:
-    """`argument` returns what is wanted of an argument of the call around."""
+    """The nodes around a place; `argument` returns the types wanted of an argument."""
 
     check: Inference
     argument: Callable[[], Wanted]

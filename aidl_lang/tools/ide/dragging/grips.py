@@ -25,8 +25,8 @@ MOST_PARTS = 16
 class Grip:
     """A point of a model.
 
-    id     by which it is found again, in a later model too
-    path   of what it is a point of, `name` what it is there (`top.start`); empty for the thing itself
+    id     its key, also in a later model
+    path   of its thing, `name` its name there (`top.start`); empty for the thing itself
     x, y   in the frame of the root
     thing  the outermost geometry, or the structure that the point stands for
     depth  how deep inside shapes and structures it lies
@@ -42,7 +42,7 @@ class Grip:
 
     @property
     def is_frame(self) -> bool:
-        """Whether it stands for a structure, which goes where its frame goes."""
+        """True for the grip of a structure, which goes where its frame goes."""
         return isinstance(self.thing, Structure)
 
     @property

@@ -1,7 +1,8 @@
 """The movable points of a solved model and the numbers that move them: linear algebra at the solution.
 
-A small motion is possible where no equation that holds minds it. The motions of positions alone say where a
-first guess moves a point; those of positions and sizes together, where a size would.
+A small motion is possible if it changes no equation that holds. The motions of positions alone show the
+points
+that a first guess moves; those of positions and sizes together, the points that a size moves.
 """
 
 from __future__ import annotations
@@ -55,7 +56,9 @@ class Way:
 
 @record()
 class Ways:
-    """own    points that a first guess moves against others
+    """The ways of points, by their ids.
+
+    own    points that a first guess moves against others
     sizes  points that a kept size of their own moves
     whole  points that move with the whole drawing, by first guesses too
     """
@@ -100,8 +103,8 @@ def ways(
 
 
 def movable(model: Model, evaluate: Evaluator, written: AbstractSet[Unknown]) -> frozenset[Unknown]:
-    """The unknowns that may move: what numbers of the text say, and of the others those that a run of the
-    changed text moves after them. Those are frames, where a constraint mentions them, and positions that the
+    """Returns the unknowns that may move: those with a number in the text, and of the others those that a run
+    of the changed text moves after them. Those are frames mentioned in a constraint, and positions that the
     structure itself constrains; from outside, a structure is moved as a whole.
     """
     found = set(written)
@@ -226,8 +229,6 @@ class _Part:
 
 class _World:
     """The largest set of points that keep together in all motions: it stays while others are dragged.
-
-    velocity (2, d) of them all; `member` is one of them, if they move
 
     velocity (2, d) of them all; `member` is one of them, if they move
     """

@@ -30,7 +30,9 @@ _SETTINGS = Settings(tolerance=1e-10, seconds=1.0, explain=False)
 
 @record()
 class Pull:
-    """way      how the point can go, and `pin` the point that stays meanwhile
+    """The drag of one point, and the numbers that may change by it.
+
+    way      how the point can go, and `pin` the point that stays meanwhile
     written  numbers in the text; `movable` those and what follows them
     sizes    kept sizes that are to change; positions then only follow
     """

@@ -19,9 +19,8 @@ LAYERS = ("names", "points", "bbox", "constraints", "dof", "plan", "dimensions")
 class Element:
     """A drawn thing; its number in the picture is its index.
 
-    kind  `structure` or `geometry`; `type` says which of them
-    span  where it is written in the text as it is now; for what the library makes, where it is asked for.
-          None where an edit has taken that away
+    kind  `structure` or `geometry`; `type` tells which of them
+    span  its place in the present text; for a thing made by the library, the call. None if an edit removed it
     hint  a line about it
     """
 
@@ -109,12 +108,13 @@ class Way:
 
 @record()
 class Preview:
-    """
-    status  `solved`, `partial`, `failed` or `wrong`: of the text as it is now, as are knobs and problems
-    stale   whether the picture is that of an earlier text, since this one does not draw
-    tried   whether it is of values that the text does not say
-    handles what can be dragged, as far as it is known
-    svg     None where nothing was ever drawn, or painting it takes too long
+    """A picture of a program with the data beside it.
+
+    status  `solved`, `partial`, `failed` or `wrong`, of the present text, as are knobs and problems
+    stale   True for the picture of an earlier text, since this one does not draw
+    tried   True for a picture with other values than the text has
+    handles the draggable points, as far as known
+    svg     None if nothing was ever drawn, or painting it takes too long
     box     of the drawing
     """
 

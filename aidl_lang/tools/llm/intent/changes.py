@@ -25,9 +25,10 @@ class Fate(StrEnum):
 
 @record()
 class Changes:
-    """
-    paths  things of the earlier program → where they are in the later one
-    fates  items of the earlier program → what became of them, and the item of the later one (None if gone)
+    """The changes from one program to the next.
+
+    paths  things of the earlier program → their paths in the later one
+    fates  items of the earlier program → their fates, and their counterparts in the later one (None if gone)
     """
 
     before: Inventory

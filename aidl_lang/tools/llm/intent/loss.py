@@ -13,12 +13,12 @@ from aidl_lang.tools.llm.intent.probing import UNTRIED, Finding
 class Loss:
     """An intent of an earlier program that the present one lacks.
 
-    item        what it was, and `inventory` that of the program that had it
+    item        the lost item, and `inventory` that of its program
     fate        gone, fewer, weakened to a wish or a check, or rewritten to something that says less
-    now         what stands in its place, if anything does
-    finding     whether it would fit again, and with what it conflicts
-    dependents  for structures and geometry: what spoke of them and went with them
-    counts      of what is fewer now: how many there were, and how many there are
+    now         its replacement, if any
+    finding     whether it would fit again, and its conflicts
+    dependents  for structures and geometry: the items that mentioned them and went with them
+    counts      for something that is fewer now: the former and the present number
     """
 
     item: Item

@@ -42,9 +42,10 @@ class State(StrEnum):
 
 @record()
 class Finding:
-    """
-    parties  the statements that something lost conflicts with, as they are written
-    reason   what is said of the program with it, where it is no conflict of statements
+    """The result of trying a loss.
+
+    parties  the statements that a loss conflicts with, as they are written
+    reason   the message about the program with it, if it is no conflict of statements
     """
 
     state: State

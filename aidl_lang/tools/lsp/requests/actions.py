@@ -41,7 +41,7 @@ def register(server: Server) -> None:
 
     @server.command("aidl.applyFixes")
     async def apply_fixes(*arguments: Any) -> bool:
-        """For clients that have commands and no code actions; the argument is the document."""
+        """Applies the fixes of a document, for clients that have commands and no code actions."""
         document = server.documents.get(arguments[0]) if arguments and isinstance(arguments[0], str) else None
         asked = await server.asked(document) if document is not None else None
         if asked is None:
