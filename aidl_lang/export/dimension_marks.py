@@ -32,7 +32,7 @@ DIGIT = 0.64
 
 
 @record()
-class Placed:
+class PlacedDimension:
     """A dimension at its place: lines with arrowheads (tip and direction), extension lines, the value,
     crosses (centre and length of arms) at ends off any outline, a circle through centres.
     """
@@ -124,7 +124,7 @@ class Pen:
     def text(self, words: str, middle: Vec, angle: float = 0.0) -> Text:
         return Text(middle, words, self.font, palette.DIMENSION, "middle", angle=angle)
 
-    def marks(self, placed: Placed) -> Iterator[Mark]:
+    def marks(self, placed: PlacedDimension) -> Iterator[Mark]:
         ink = Ink(palette.DIMENSION, LINE * self.mm)
         for role, segments in (("extension", placed.extensions), ("dimension", placed.lines)):
             if segments:
@@ -142,7 +142,7 @@ class Pen:
             yield Area(face, palette.DIMENSION, None, "arrow")
         yield placed.text
 
-    def box_of(self, placed: Placed) -> Bounds:
+    def box_of(self, placed: PlacedDimension) -> Bounds:
         segments = [*placed.lines, *placed.extensions]
         boxes = [(min(a[0], b[0]), min(a[1], b[1]), max(a[0], b[0]), max(a[1], b[1])) for a, b in segments]
         return union_bounds(
@@ -151,7 +151,7 @@ class Pen:
 
     # --- Kinds -------------------------------------------------------------------------------------
 
-    def straight(self, of: Length, words: str, level: float, after: bool) -> Placed:
+    def straight(self, of: Length, words: str, level: float, after: bool) -> PlacedDimension:
         """Places a length with its line at `level` across its direction. A value without room between the
         ends stands after the second, or before the first.
         """
@@ -188,9 +188,9 @@ class Pen:
                 )
         line = at(first, level), at(last, level)
         heads = (at(low, level), ways[0]), (at(high, level), ways[1])
-        return Placed((line,), tuple(extensions), heads, text)
+        return PlacedDimension((line,), tuple(extensions), heads, text)
 
-    def leader(self, tip: Vec, way: Vec, reach: float, to_right: bool, words: str) -> Placed:
+    def leader(self, tip: Vec, way: Vec, reach: float, to_right: bool, words: str) -> PlacedDimension:
         """Places a leader from a round outline along `way`, with the value on its shoulder."""
         mm, width = self.mm, self.width(words)
         elbow = tip[0] + reach * way[0], tip[1] + reach * way[1]
@@ -198,9 +198,9 @@ class Pen:
         end = elbow[0] + side * (width + mm), elbow[1]
         text = self.text(words, ((elbow[0] + end[0]) / 2, elbow[1] + RAISED * mm))
         head = tip, (-way[0], -way[1])
-        return Placed(((tip, elbow), (elbow, end)), (), (head,), text)
+        return PlacedDimension(((tip, elbow), (elbow, end)), (), (head,), text)
 
-    def angle(self, of: Opening, words: str, radius: float) -> Placed:
+    def angle(self, of: Opening, words: str, radius: float) -> PlacedDimension:
         """Places an angle as an arc between its two arms."""
         mm, corner = self.mm, of.corner
         first, last = math.radians(of.first), math.radians(of.first + of.value)
@@ -227,7 +227,9 @@ class Pen:
                 extensions.append((at(angle, max(far, 0.0) + GAP * mm), at(angle, radius + BEYOND * mm)))
             elif near > radius + GAP * mm:
                 extensions.append((at(angle, near - GAP * mm), at(angle, radius - BEYOND * mm)))
-        return Placed((), tuple(extensions), tuple(heads), self.text(words, (x, y - HEIGHT * mm / 2)), arc)
+        return PlacedDimension(
+            (), tuple(extensions), tuple(heads), self.text(words, (x, y - HEIGHT * mm / 2)), arc
+        )
 
 
 def words_of(of: Dimension, count: int = 1) -> str:

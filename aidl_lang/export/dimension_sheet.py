@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.cancelling import checkpoint
-from aidl_lang.export.dimension_marks import Block, Pen, Placed, Segment, arc_segments
+from aidl_lang.export.dimension_marks import Block, Pen, PlacedDimension, Segment, arc_segments
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import Bounds, ends, points
@@ -45,14 +45,14 @@ class Sheet:
         self._extensions: list[Segment] = []
         self.lines = self.extensions = np.empty((0, 4))
 
-    def add(self, placed: Placed) -> None:
+    def add(self, placed: PlacedDimension) -> None:
         self.texts.append(self.pen.block(placed.text))
         self.heads += map(self.pen.head_block, placed.heads)
         self._lines += _all_lines(placed)
         self._extensions += placed.extensions
         self.lines, self.extensions = _array(self._lines), _array(self._extensions)
 
-    def is_free(self, placed: Placed) -> bool:
+    def is_free(self, placed: PlacedDimension) -> bool:
         """True if its value keeps clear of others' values, arrowheads and lines, and theirs of its own."""
         text = self.pen.block(placed.text)
         heads = list(map(self.pen.head_block, placed.heads))
@@ -63,7 +63,7 @@ class Sheet:
         lines = _array(_all_lines(placed))
         return not any(crossings(lines, other) for other in self.texts)
 
-    def harm(self, placed: Placed) -> float:
+    def harm(self, placed: PlacedDimension) -> float:
         """Returns the cost of a place: what its value covers and its lines cross."""
         checkpoint()
         text, lines = self.pen.block(placed.text, CLEAR), _array(_all_lines(placed))
@@ -84,7 +84,7 @@ class Sheet:
         angle = math.degrees(math.atan2(y1 - y0, x1 - x0))
         return Block((x0, y0), angle, (short, -across, math.hypot(x1 - x0, y1 - y0) - short, across))
 
-    def covers_material(self, placed: Placed) -> bool:
+    def covers_material(self, placed: PlacedDimension) -> bool:
         left, bottom, right, top = self.pen.block(placed.text).box
         return self.is_material(((left + right) / 2, (bottom + top) / 2))
 
@@ -222,7 +222,7 @@ def _chords(pieces: Sequence[Piece]) -> Segments:
     return np.concatenate(found)
 
 
-def _all_lines(placed: Placed) -> list[Segment]:
+def _all_lines(placed: PlacedDimension) -> list[Segment]:
     return [*placed.lines, *(arc_segments(placed.arc) if placed.arc is not None else ())]
 
 

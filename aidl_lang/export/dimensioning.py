@@ -13,7 +13,7 @@ from dataclasses import field, replace
 from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
 from aidl_lang.export import palette
-from aidl_lang.export.dimension_marks import HEIGHT, Pen, Placed, words_of
+from aidl_lang.export.dimension_marks import HEIGHT, Pen, PlacedDimension, words_of
 from aidl_lang.export.dimension_sheet import Sheet, broken
 from aidl_lang.export.marks import Group, Text
 from aidl_lang.geometry.curves import Arc, Circle, Vec
@@ -94,7 +94,7 @@ class _Layout:
         self.sheet = Sheet(self.drawing, self.pen)
 
     def make(self, wanted: Sequence[tuple[Dimension, ...]]) -> tuple[Bounds, tuple[Group, ...]]:
-        placed: dict[int, Placed] = {}
+        placed: dict[int, PlacedDimension] = {}
         for index in sorted(range(min(len(wanted), MOST)), key=lambda i: _turn(wanted[i][0])):
             found = self.place(wanted[index])
             if found is not None:
@@ -108,7 +108,7 @@ class _Layout:
             boxes.append(note.box)
         return union_bounds(boxes), tuple(groups)
 
-    def _group(self, number: int, wanted: tuple[Dimension, ...], placed: Placed) -> Group:
+    def _group(self, number: int, wanted: tuple[Dimension, ...], placed: PlacedDimension) -> Group:
         first = wanted[0]
         own = self.pen.block(placed.text)
         others = [block for block in self.sheet.texts if block != own]
@@ -130,7 +130,7 @@ class _Layout:
         size = 0.8 * self.pen.font
         return Text((box[0], box[1] - 1.6 * size), words, size, palette.DIMENSION)
 
-    def place(self, wanted: tuple[Dimension, ...]) -> Placed | None:
+    def place(self, wanted: tuple[Dimension, ...]) -> PlacedDimension | None:
         words = words_of(wanted[0], len(wanted))
         match wanted[0]:
             case Length() as length:
@@ -146,7 +146,7 @@ class _Layout:
                 ring = curves[0] if wanted[0].origin == "pattern" else None
                 return replace(found, crosses=tuple(centers), ring=ring)
 
-    def _length(self, of: Length, words: str) -> Placed | None:
+    def _length(self, of: Length, words: str) -> PlacedDimension | None:
         """Places a length, measured from a visible point if there is one; a cross marks an end that is
         not.
         """
@@ -158,7 +158,7 @@ class _Layout:
         crosses = tuple((p, CROSS * self.pen.mm) for p in unseen)
         return replace(placed, crosses=crosses) if placed is not None else None
 
-    def _best(self, candidates: Iterator[tuple[float, Placed]]) -> Placed | None:
+    def _best(self, candidates: Iterator[tuple[float, PlacedDimension]]) -> PlacedDimension | None:
         """Returns the cheapest candidate that keeps clear of all values."""
         best, least = None, math.inf
         for cost, candidate in sorted(candidates, key=lambda c: c[0]):
@@ -170,8 +170,8 @@ class _Layout:
 
     # --- Along the axes ----------------------------------------------------------------------------
 
-    def _in_row(self, of: Length, words: str) -> Placed | None:
-        best: tuple[float, Placed, _Row | None] | None = None
+    def _in_row(self, of: Length, words: str) -> PlacedDimension | None:
+        best: tuple[float, PlacedDimension, _Row | None] | None = None
         for side in (-1, 1):
             for after in (True, False):
                 found = self._row(of, words, side, after)
@@ -193,11 +193,11 @@ class _Layout:
             self.rows.append(best[2])
         return best[1]
 
-    def _stretch(self, placed: Placed) -> float:
+    def _stretch(self, placed: PlacedDimension) -> float:
         """Returns the cost of long extension lines."""
         return sum(math.dist(*e) for e in placed.extensions) / (20 * self.pen.mm)
 
-    def _row(self, of: Length, words: str, side: int, after: bool) -> tuple[Placed, _Row] | None:
+    def _row(self, of: Length, words: str, side: int, after: bool) -> tuple[PlacedDimension, _Row] | None:
         """Returns the first free row on a side of the drawing, beyond those of shorter lengths there."""
         mm, axis = self.pen.mm, int(of.along == X_AXIS)
         # Across a vertical length is towards the left.
@@ -216,7 +216,7 @@ class _Layout:
                 return placed, _Row(key, low, high, row)
         return None
 
-    def _near(self, of: Length, words: str) -> Iterator[tuple[float, Placed]]:
+    def _near(self, of: Length, words: str) -> Iterator[tuple[float, PlacedDimension]]:
         """Yields places right beside what is measured, in free space within the drawing."""
         mm, axis = self.pen.mm, int(of.along == X_AXIS)
         if of.value > 0.999 * (self.box[3 - axis] - self.box[1 - axis]):
@@ -234,7 +234,7 @@ class _Layout:
 
     # --- Free places -------------------------------------------------------------------------------
 
-    def _beside(self, of: Length, words: str) -> Iterator[tuple[float, Placed]]:
+    def _beside(self, of: Length, words: str) -> Iterator[tuple[float, PlacedDimension]]:
         """Yields places of a slanted length beside what it measures, preferably outside."""
         u, v = of.along
         mm, n = self.pen.mm, (-v, u)
@@ -246,12 +246,12 @@ class _Layout:
                     inside = self.sheet.covers_material(placed)
                     yield 0.7 * k + 2.0 * self._stretch(placed) + 3.0 * inside + 0.1 * (not after), placed
 
-    def _arcs(self, of: Opening, words: str) -> Iterator[tuple[float, Placed]]:
+    def _arcs(self, of: Opening, words: str) -> Iterator[tuple[float, PlacedDimension]]:
         for k in range(24):
             placed = self.pen.angle(of, words, (12 + 4 * k) * self.pen.mm)
             yield 0.6 * k + 1.0 * self.sheet.covers_material(placed), placed
 
-    def _leaders(self, curves: Sequence[Circle | Arc], words: str) -> Iterator[tuple[float, Placed]]:
+    def _leaders(self, curves: Sequence[Circle | Arc], words: str) -> Iterator[tuple[float, PlacedDimension]]:
         mm = self.pen.mm
         step = max(1, len(curves) // 8)
         for curve in curves[::step]:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.export import ExportError, Job
-from aidl_lang.export.solids import Placed, thick_bodies
+from aidl_lang.export.solids import PlacedBody, thick_bodies
 from aidl_lang.geometry.drawing import Body
 from aidl_lang.geometry.placement import placement_notes
 from aidl_lang.geometry.tessellate import face_polygons
@@ -60,7 +60,7 @@ def printable(name: str) -> str:
     return "".join(c if c.isprintable() else "_" for c in name)
 
 
-def _mesh(placed: Placed) -> Mesh:
+def _mesh(placed: PlacedBody) -> Mesh:
     body, thickness = placed.body, placed.thickness
     assert thickness is not None
     left, bottom, right, top = body.box

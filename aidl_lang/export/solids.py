@@ -20,7 +20,7 @@ _NAMED = 6
 
 
 @record()
-class Placed:
+class PlacedBody:
     """A body, its plane, and its thickness in mm; None if it stays flat."""
 
     body: Body
@@ -28,7 +28,7 @@ class Placed:
     thickness: float | None
 
 
-def placed_bodies(job: Job) -> list[Placed]:
+def placed_bodies(job: Job) -> list[PlacedBody]:
     """Returns the bodies in order of drawing. Raises ExportError for one that cannot be made a solid."""
     stand = planes(job.model.root)
     found = []
@@ -36,7 +36,7 @@ def placed_bodies(job: Job) -> list[Placed]:
         thickness = thickness_of(body, job.options.thickness)
         _require_size(body, thickness)
         _require_place(body.path, stand[body.path])
-        found.append(Placed(body, stand[body.path], thickness))
+        found.append(PlacedBody(body, stand[body.path], thickness))
     return found
 
 
@@ -48,7 +48,7 @@ def placed_strokes(job: Job) -> list[tuple[Stroke, Plane]]:
     return [(stroke, stand[stroke.path]) for stroke in job.drawing.strokes]
 
 
-def thick_bodies(job: Job) -> tuple[list[Placed], tuple[Diagnostic, ...]]:
+def thick_bodies(job: Job) -> tuple[list[PlacedBody], tuple[Diagnostic, ...]]:
     """Returns the bodies that have a thickness, and a warning that names the others."""
     bodies = placed_bodies(job)
     thick = [p for p in bodies if p.thickness is not None]

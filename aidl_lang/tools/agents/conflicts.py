@@ -72,7 +72,7 @@ class Remedies:
         return pipeline.compile(changed, self.world, self.params, self.settings).status == "solved"
 
 
-def told(conflict: Conflict) -> str:
+def in_lines(conflict: Conflict) -> str:
     """Returns a conflict in lines."""
     lead = "without any one of these the others hold" if conflict.is_minimal else "these do not hold"
     told = [line for p in conflict.parties for line in _told(p)]

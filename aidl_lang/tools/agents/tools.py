@@ -251,7 +251,7 @@ class Tools:
         remedies = conflicts.Remedies(source, world, params, settings)
         found = [remedies.conflict(conflict) for conflict in compiled.conflicts()]
         others = [d for d in compiled.diagnostics if not (found and d.code in conflicts.CODES)]
-        blocks = [*map(conflicts.told, found), drawing.freedom(compiled), compact(others)]
+        blocks = [*map(conflicts.in_lines, found), drawing.freedom(compiled), compact(others)]
         if not found:
             blocks.insert(0, _WITHOUT_CONFLICT.get(compiled.status, "no conflict could be told apart"))
         return Conflicts(

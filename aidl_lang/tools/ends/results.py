@@ -63,11 +63,12 @@ class Turned:
 
 @record()
 class Sweep:
-    """
+    """The results at the ends of all params.
+
     turned     in the order of the params, the lower end before the upper
-    rangeless  params without a range or choices, of which nothing can be tried
+    rangeless  params without a range or choices, which have nothing to try
     left       ends that were not tried, for want of time or because there are too many
-    compiled   programs that were compiled for it
+    compiled   number of programs compiled for it
     """
 
     turned: tuple[Turned, ...]

@@ -21,7 +21,7 @@ OPENSCAD = "openscad"
 
 
 @record()
-class Drawn:
+class DrawnProgram:
     """`numbers` holds measures of the language's programs only; `requirements` is empty if none are
     examined.
     """
@@ -31,12 +31,12 @@ class Drawn:
     requirements: tuple[Result, ...] = ()
 
 
-def draw(variant: str, program: str, prompt: Prompt) -> Drawn:
+def draw(variant: str, program: str, prompt: Prompt) -> DrawnProgram:
     """Draws and measures a valid program."""
     return _draw_openscad(program) if variant == OPENSCAD else _draw_aidl(program, prompt)
 
 
-def _draw_aidl(program: str, prompt: Prompt) -> Drawn:
+def _draw_aidl(program: str, prompt: Prompt) -> DrawnProgram:
     source = SourceFile("part.aidl", program)
     compiled = pipeline.compile(source)
     model, drawing = compiled.model, compiled.drawing
@@ -44,13 +44,13 @@ def _draw_aidl(program: str, prompt: Prompt) -> Drawn:
         raise ValueError("the program was judged valid, and is not")
     numbers = counted(model) | {"detached": _detached(united(*(body.region for body in drawing.bodies)))}
     png = compiled.export(".png", Options(pixels=shapes.PIXELS))
-    return Drawn(png, numbers, examine(prompt, source, compiled))
+    return DrawnProgram(png, numbers, examine(prompt, source, compiled))
 
 
-def _draw_openscad(program: str) -> Drawn:
+def _draw_openscad(program: str) -> DrawnProgram:
     drawn = shapes.region(openscad.render(program).outlines)
     numbers = {"structures": float(openscad.structures(program)), "detached": _detached(drawn)}
-    return Drawn(shapes.png(drawn), numbers)
+    return DrawnProgram(shapes.png(drawn), numbers)
 
 
 def _detached(drawn: Region) -> float:

@@ -39,14 +39,15 @@ class VersionedView:
 
 @record(frozen=False, eq=False)
 class Document:
-    """
+    """An open document.
+
     uri       as the client writes it
     version   as the client counts it
     serial    grows with every change of the text, and of a text that it stands on
     newest    the newest view that was made
     ran       the newest view with an outcome
-    seen      the serial of what was looked at last, be it that looking failed
-    solved    the serial of what was run last
+    seen      the serial of the last checked text, even if checking failed
+    solved    the serial of the last run text
     memory    of the solver, from run to run
     editing   held by an edit that is asked for beside the text
     """

@@ -23,9 +23,10 @@ _LONGEST = 8_000
 
 @frozen(kw_only=True)
 class OfDocument:
-    """
-    uri     of an open document
-    viewer  which of those who see the document asks, as the client calls it
+    """Parameters about an open document.
+
+    uri     of the document
+    viewer  the asking viewer of the document, as the client calls it
     """
 
     uri: str
@@ -34,7 +35,8 @@ class OfDocument:
 
 @frozen(kw_only=True)
 class Show(OfDocument):
-    """
+    """The picture to show.
+
     show    the layers over the drawing
     source  whether the text is wanted, too
     """

@@ -12,8 +12,9 @@ LONGEST_DELAY = 5_000
 
 @record()
 class Settings:
-    """
-    solved_values  inlay hints for what first guesses were solved to
+    """The settings of a user.
+
+    solved_values  inlay hints for the solved values of first guesses
     readings       inlay hints for chosen readings of ambiguous constraints
     lenses         code lenses on structures
     delay          seconds after a change before the program is run

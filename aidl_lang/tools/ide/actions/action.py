@@ -14,9 +14,10 @@ from aidl_lang.tools.ide.view import View
 
 @record()
 class Action:
-    """
+    """A code action.
+
     kind    `quickfix`, `refactor.extract`, `refactor.rewrite` or `source.fixAll`, as editors sort them
-    make    the edits; raises CannotError
+    make    returns the edits; raises CannotError
     mends   the diagnostic that it is for
     """
 

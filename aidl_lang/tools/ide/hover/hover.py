@@ -24,7 +24,7 @@ from aidl_lang.tools.ide.describing import (
 from aidl_lang.tools.ide.hover.solved_values import solved_of
 from aidl_lang.tools.ide.hover.telling import lines
 from aidl_lang.tools.ide.hover.values import failed, listed, not_solved, stated_at
-from aidl_lang.tools.ide.hover.words import Told, of_attribute, of_number, of_word
+from aidl_lang.tools.ide.hover.words import Description, of_attribute, of_number, of_word
 from aidl_lang.tools.ide.meaning import Mention, chosen, mention_at, parameter_node
 from aidl_lang.tools.ide.nodes import around, token_at
 from aidl_lang.tools.ide.site import Where, spot_at
@@ -74,7 +74,7 @@ def hover(view: View, offset: int, end: int | None = None) -> Hover | None:
 # --- Names -----------------------------------------------------------------------------------------
 
 
-def _of_name_at(view: View, offset: int) -> Told | None:
+def _of_name_at(view: View, offset: int) -> Description | None:
     mention = mention_at(view, offset)
     if mention is None:
         return None

@@ -23,10 +23,10 @@ from aidl_lang.tools.reference.collect import Entry, reference
 from aidl_lang.tools.vocabulary import vocabulary
 
 _GUIDE = "`aidl guide` tells the language in a few pages."
-Told = tuple[str, Span]
+Description = tuple[str, Span]
 
 
-def of_word(view: View, offset: int) -> Told | None:
+def of_word(view: View, offset: int) -> Description | None:
     """Describes a keyword, a kind, or the sign of a comparison."""
     token = token_at(view, offset)
     if token is None:
@@ -63,7 +63,7 @@ def _compared(view: View, token: Token) -> str:
     return joined([stated_at(view, node, path), listed(compared(solved, sides))])
 
 
-def of_attribute(view: View, offset: int) -> Told | None:
+def of_attribute(view: View, offset: int) -> Description | None:
     """Describes the attribute after an `@`."""
     node = next((n for n in reversed(around(view.module, offset)) if isinstance(n, ast.Attribute)), None)
     if node is None or offset > node.name.span.end:
@@ -73,7 +73,7 @@ def of_attribute(view: View, offset: int) -> Told | None:
     return (_keyword(entry), view.span(node.span.start, node.name.span.end)) if entry is not None else None
 
 
-def of_number(view: View, start: int) -> Told | None:
+def of_number(view: View, start: int) -> Description | None:
     """Describes a number in mm or degrees, with its solved value."""
     path = around(view.module, start)
     node = path[-1]

@@ -22,7 +22,7 @@ MOST_PARTS = 40
 
 
 @record()
-class Drawn:
+class DrawnElement:
     """An element, its counterpart in the model, and its structure."""
 
     element: Element
@@ -33,7 +33,7 @@ class Drawn:
 class Elements:
     """The elements of a picture in order of writing: a structure before its contents."""
 
-    def __init__(self, drawn: Iterable[Drawn]) -> None:
+    def __init__(self, drawn: Iterable[DrawnElement]) -> None:
         self.drawn = tuple(drawn)
         self.values = tuple(each.element for each in self.drawn)
         self.number: Mapping[str, int] = {
@@ -81,13 +81,13 @@ class _Reading:
     def __init__(self, view: View) -> None:
         self.places = Places(view)
 
-    def all(self, model: SolvedModel) -> Iterator[Drawn]:
+    def all(self, model: SolvedModel) -> Iterator[DrawnElement]:
         return self._structure(model.root, None)
 
-    def _structure(self, structure: SolvedStructure, around: Span | None) -> Iterator[Drawn]:
+    def _structure(self, structure: SolvedStructure, around: Span | None) -> Iterator[DrawnElement]:
         span = self.places.now(structure.span) or around
         element = Element(structure.path, "structure", structure.kind, span, _of_structure(structure))
-        yield Drawn(element, structure, structure)
+        yield DrawnElement(element, structure, structure)
         for geometry in structure.drawn:
             yield from self._geometry(geometry, structure, span)
         for child in structure.structures:
@@ -95,21 +95,23 @@ class _Reading:
 
     def _geometry(
         self, geometry: SolvedGeometry, owner: SolvedStructure, around: Span | None
-    ) -> Iterator[Drawn]:
+    ) -> Iterator[DrawnElement]:
         span = self.places.now(geometry.span) or around
         element = Element(geometry.path, "geometry", geometry.type, span, _of_geometry(geometry))
-        yield Drawn(element, geometry, owner)
+        yield DrawnElement(element, geometry, owner)
         if geometry.type == "glyphs" or sum(1 for _ in geometry.walk()) > MOST_PARTS + 1:
             return
         for part in geometry.parts:
             yield from self._part(part, owner, span)
 
-    def _part(self, part: SolvedGeometry, owner: SolvedStructure, around: Span | None) -> Iterator[Drawn]:
+    def _part(
+        self, part: SolvedGeometry, owner: SolvedStructure, around: Span | None
+    ) -> Iterator[DrawnElement]:
         span = self.places.now(part.span)
         if span is None or (around is not None and _is_value_of(span, around)):
             span = around  # the statement, in place of the call in it
         element = Element(part.path, "geometry", part.type, span, _of_geometry(part))
-        yield Drawn(element, part, owner)
+        yield DrawnElement(element, part, owner)
         for inner in part.parts:
             yield from self._part(inner, owner, span)
 

@@ -23,7 +23,7 @@ from aidl_lang.geometry.evaluate import bounds, is_finite
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled
-from aidl_lang.tools.ide.preview.elements import Drawn, Elements, curves_of, point_of
+from aidl_lang.tools.ide.preview.elements import DrawnElement, Elements, curves_of, point_of
 
 POINT = 0.006
 """Radius of what stands for a point, relative to the drawing."""
@@ -54,7 +54,7 @@ def _numbered(group: Group, elements: Elements) -> Group:
 
 
 @record()
-class Hit:
+class PointedShape:
     """A shape by which an element is pointed at: `path` is SVG path data, `extent` the larger side."""
 
     element: int
@@ -69,10 +69,10 @@ class Hit:
         return f'<path class="{kind}" data-element="{self.element}" fill="none"{rule} d="{self.path}"/>\n'
 
 
-def hits(drawing: Drawing, elements: Elements) -> Iterator[Hit]:
+def hits(drawing: Drawing, elements: Elements) -> Iterator[PointedShape]:
     """Yields the shapes to point at, body by body, those that belong to no body last."""
     bodies = {body.path: k for k, body in enumerate(drawing.bodies)}
-    of_body: list[list[tuple[int, Drawn]]] = [[] for _ in range(len(bodies) + 1)]
+    of_body: list[list[tuple[int, DrawnElement]]] = [[] for _ in range(len(bodies) + 1)]
     for number, drawn in enumerate(elements.drawn):
         checkpoint()
         of_body[_body_of(drawn, bodies)].append((number, drawn))
@@ -82,7 +82,7 @@ def hits(drawing: Drawing, elements: Elements) -> Iterator[Hit]:
         yield from _large_first(members, lambda k, drawn: _dot(k, drawn, POINT * drawing.size))
 
 
-def _body_of(drawn: Drawn, bodies: Mapping[str, int]) -> int:
+def _body_of(drawn: DrawnElement, bodies: Mapping[str, int]) -> int:
     """Returns the index of an element's body; the last for drawings, which are painted last."""
     path = drawn.owner.path
     while drawn.owner.kind != "drawing" and path:
@@ -93,23 +93,23 @@ def _body_of(drawn: Drawn, bodies: Mapping[str, int]) -> int:
 
 
 def _large_first(
-    members: Iterable[tuple[int, Drawn]], shape: Callable[[int, Drawn], Hit | None]
-) -> list[Hit]:
+    members: Iterable[tuple[int, DrawnElement]], shape: Callable[[int, DrawnElement], PointedShape | None]
+) -> list[PointedShape]:
     found = (hit for number, drawn in members if (hit := shape(number, drawn)) is not None)
     return sorted(found, key=lambda hit: -hit.extent)
 
 
-def _area(number: int, drawn: Drawn, drawing: Drawing) -> Hit | None:
+def _area(number: int, drawn: DrawnElement, drawing: Drawing) -> PointedShape | None:
     """Returns the area that a structure covers."""
     is_structure = isinstance(drawn.model, SolvedStructure)
     region = drawing.regions.get(drawn.element.path) if is_structure else None
     if not region:
         return None
     extent = _extent(piece for face in region.faces for piece in face.outer.pieces)
-    return Hit(number, "".join(map(face_path, region.faces)), extent, is_area=True)
+    return PointedShape(number, "".join(map(face_path, region.faces)), extent, is_area=True)
 
 
-def _lines(number: int, drawn: Drawn, elements: Elements) -> Hit | None:
+def _lines(number: int, drawn: DrawnElement, elements: Elements) -> PointedShape | None:
     """Returns the curves of a geometry, unless they are elements of their own."""
     geometry = drawn.model
     if isinstance(geometry, SolvedStructure):
@@ -117,13 +117,13 @@ def _lines(number: int, drawn: Drawn, elements: Elements) -> Hit | None:
     if any(part.path in elements.number for part in geometry.parts):
         return None
     pieces = [piece for piece in curves_of(geometry) if is_finite(piece)]
-    return Hit(number, open_path(pieces), _extent(pieces)) if pieces else None
+    return PointedShape(number, open_path(pieces), _extent(pieces)) if pieces else None
 
 
-def _dot(number: int, drawn: Drawn, radius: float) -> Hit | None:
+def _dot(number: int, drawn: DrawnElement, radius: float) -> PointedShape | None:
     """Returns the dot of a point."""
     at = point_of(drawn.model) if isinstance(drawn.model, SolvedGeometry) else None
-    return None if at is None else Hit(number, open_path([Circle(at, radius)]), radius)
+    return None if at is None else PointedShape(number, open_path([Circle(at, radius)]), radius)
 
 
 def _extent(pieces: Iterable[Piece]) -> float:

@@ -97,11 +97,12 @@ CONSTRAIN: Key = ("constrain",)
 
 @record(eq=False)
 class Inventory:
-    """
-    diagnostics  what was said of places in the program
+    """The intents of a program.
+
+    diagnostics  the diagnostics with a place in the program
     things       the items of structures and geometry by path; of several with one path, the first
     bodies       the blocks of structures and definitions by path
-    readers      what makes keys of the expressions in a structure
+    readers      the reader of the expressions in each structure
     knobs        names of params, and of values worked out from them
     counts       how many there are in the model by path without indices; empty if there is no model
     """
