@@ -4,7 +4,7 @@ Running means: constants are computed, loops and branches taken, geometry made w
 arithmetic over unknowns kept as an expression. An error is reported and yields `NOTHING`, which everything it
 touches passes on in silence, so that one run reports all errors and still yields what can be drawn.
 
-The work is told in `building/`: `modules` (files and roots), `structures`, `statements`, `evaluate`
+The work is done in `building/`: `modules` (files and roots), `structures`, `statements`, `evaluate`
 (expressions), `overloads` and `calls` (definitions), `construct` (geometry and the exactness of its numbers),
 `constraints` and `impose` (constraints), `placing` and `anchors` (what they move first).
 """

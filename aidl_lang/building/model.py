@@ -86,19 +86,19 @@ class Frame:
 class Geometry:
     """A primitive (see `checking.registry`) or a compound shape.
 
-    fields     what defines a primitive
+    fields     the numbers and points that define a primitive
     scope      names of a compound shape: its parts, arguments and lets (see scopes)
     arguments  names of the arguments of a compound shape
     parts      named geometry inside a compound shape, in order of writing
-    clockwise  for an arc; for anything else, that it is turned over: a text reads in a mirror
-    source     what it is a copy of
-    known_as   of what is copied and has no name itself, the copy
-    reach      of what is derived of geometry outside of its owner, the structure that holds both
+    clockwise  the sense of an arc; any other curve is turned over: a text reads in a mirror
+    source     the geometry it is a copy of
+    known_as   the copy of a nameless geometry, by which it is known
+    reach      the structure that holds both, if it is derived of geometry outside of its owner
     glyphs     for a text, its characters in units of its height
-    recipe     how its curves come from other outlines after solving
+    recipe     the way its curves come from other outlines after solving
     finishes   sizes of the fillets and chamfers of its corners: `fillet` of a point or a whole outline,
                `end.fillet` of the end of a curve
-    attributes  what is said of it alone: `note`, and in a drawing `color`
+    attributes  its own: `note`, and in a drawing `color`
     """
 
     type: str

@@ -13,7 +13,7 @@ from aidl_lang.building.expression import Unknown
 from aidl_lang.building.model import Assertion, Comparison, Constraint, Geometry, Knob, Literal, Structure
 from aidl_lang.building.scopes import Scope
 from aidl_lang.building.values import ListVal, Num, PointVal, RecordVal, TextVal, Value
-from aidl_lang.checking.rules import Misfit
+from aidl_lang.checking.rules import TypeMisfit
 from aidl_lang.checking.types import Binding, Signature
 from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
 from aidl_lang.common.cancelling import OutOfTime, checkpoint
@@ -175,7 +175,7 @@ class Interpreter:
         if self.errors > MOST_ERRORS:
             raise Stop
 
-    def misfit(self, found: Misfit, node: ast.Node, fix: Fix | None = None) -> None:
+    def misfit(self, found: TypeMisfit, node: ast.Node, fix: Fix | None = None) -> None:
         """Reports a value that does not fit its place."""
         self.report(found.code, found.message, node, found.label, found.hints, fix)
 

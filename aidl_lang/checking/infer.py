@@ -13,7 +13,7 @@ from aidl_lang.checking import calls, members, named, operators, rules, units
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, joined
 from aidl_lang.checking.resolving.resolution import Resolution
 from aidl_lang.checking.resolving.symbols import Symbol
-from aidl_lang.checking.rules import Misfit
+from aidl_lang.checking.rules import TypeMisfit
 from aidl_lang.checking.types import (
     ANY,
     AnyType,
@@ -79,7 +79,7 @@ class Inference:
             self._errors += found.is_error
         return UNKNOWN
 
-    def refuse(self, misfit: Misfit, node: ast.Node, fix: Fix | None = None) -> Fact:
+    def refuse(self, misfit: TypeMisfit, node: ast.Node, fix: Fix | None = None) -> Fact:
         """Reports an expression that does not fit its place. Returns the fact of an unknown result."""
         return self.report(misfit.code, misfit.message, node, misfit.label, misfit.hints, fix=fix)
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from aidl_lang.checking.facts import NOTHING_READ
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.named import of_symbol
-from aidl_lang.checking.resolving.symbols import Scope, Symbol, SymbolKind
+from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
@@ -149,7 +149,7 @@ class Relocation:
         found = self.scope.value(node.text)
         return node.text if found is not None and found.node is symbol.node else None
 
-    def _from_below(self, node: ast.Name, symbol: Symbol, scope: Scope, home: ast.Node) -> str | None:
+    def _from_below(self, node: ast.Name, symbol: Symbol, scope: SymbolScope, home: ast.Node) -> str | None:
         """Returns the path of a name declared by a structure between the two; the expression itself if the
         name stands for one over unknowns, or belongs to a turn of a loop.
         """

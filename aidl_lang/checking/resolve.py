@@ -27,7 +27,7 @@ from aidl_lang.checking.resolving.declare import Declarer, is_definition, made_b
 from aidl_lang.checking.resolving.foreign import without_idle
 from aidl_lang.checking.resolving.imports import ImportedModules, load_imports, with_inner_imports
 from aidl_lang.checking.resolving.resolution import Resolution, library_scope
-from aidl_lang.checking.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind, word_meant
+from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope, word_meant
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Fix, Label, ordered
 from aidl_lang.common.names import nearest
@@ -75,15 +75,15 @@ class Resolver:
 
     def module(self, module: ast.Module, loaded: ImportedModules) -> None:
         self.hole_calls = hole_calls(module)
-        scope = Scope(module, self._imported(module, loaded), (module,))
+        scope = SymbolScope(module, self._imported(module, loaded), (module,))
         self.resolution.scopes[module] = scope
         self._declare(scope, module.statements)
         self._statements(module.statements, scope)
         complaints.check_aliases(self, scope)
 
-    def _imported(self, module: ast.Module, loaded: ImportedModules) -> Scope:
+    def _imported(self, module: ast.Module, loaded: ImportedModules) -> SymbolScope:
         """Returns the scope of the names that a file imports, which its own definitions hide."""
-        scope = Scope(module, self.resolution.library_scope)
+        scope = SymbolScope(module, self.resolution.library_scope)
         for statement in module.statements:
             if not isinstance(statement, ast.Import):
                 continue
@@ -101,7 +101,7 @@ class Resolver:
             _bring(source, scope, self._wanted(statement, source, scope) if statement.names else None)
         return scope
 
-    def _wanted(self, statement: ast.Import, source: Scope, scope: Scope) -> set[str]:
+    def _wanted(self, statement: ast.Import, source: SymbolScope, scope: SymbolScope) -> set[str]:
         """Returns the names that `import a, b from …` asks for; reports unknown ones."""
         known = [*source.values, *source.callables, *source.aliases]
         for identifier in statement.names:
@@ -124,13 +124,13 @@ class Resolver:
         """Resolves a definition of the library; its mistakes are not reported to the program."""
         self.definition(node, self.resolution.library_scope)
 
-    def definition(self, node: ast.Node, scope: Scope) -> None:
+    def definition(self, node: ast.Node, scope: SymbolScope) -> None:
         """Resolves the body of a structure, template, shape, constraint or function."""
         assert isinstance(
             node, ast.Structure | ast.ShapeDefinition | ast.ConstraintDefinition | ast.FunctionDefinition
         )
         homes = (*scope.homes, node)
-        inner = Scope(node, scope, homes)
+        inner = SymbolScope(node, scope, homes)
         self.resolution.scopes[node] = inner
         for parameter in node.parameters or ():
             self._parameter(parameter, node, inner)
@@ -148,7 +148,7 @@ class Resolver:
             complaints.check_aliases(self, inner)
         self.is_ordered = before
 
-    def _parameter(self, parameter: ast.Parameter, node: ast.Node, scope: Scope) -> None:
+    def _parameter(self, parameter: ast.Parameter, node: ast.Node, scope: SymbolScope) -> None:
         if (earlier := scope.values.get(parameter.name.text)) is not None:
             complaints.declared_twice(self, parameter.name, earlier)
             return
@@ -157,16 +157,16 @@ class Resolver:
         if parameter.default is not None:
             self.expression(parameter.default, scope)
 
-    def _declare(self, scope: Scope, statements: Sequence[ast.Statement]) -> None:
+    def _declare(self, scope: SymbolScope, statements: Sequence[ast.Statement]) -> None:
         Declarer(self, scope).run(statements)
 
     # --- Statements ----------------------------------------------------------------------------
 
-    def _statements(self, statements: Sequence[ast.Statement], scope: Scope) -> None:
+    def _statements(self, statements: Sequence[ast.Statement], scope: SymbolScope) -> None:
         for statement in statements:
             self._statement(statement, scope)
 
-    def _statement(self, node: ast.Statement, scope: Scope) -> None:
+    def _statement(self, node: ast.Statement, scope: SymbolScope) -> None:
         match node:
             case (
                 ast.Structure()
@@ -201,30 +201,30 @@ class Resolver:
             case _:  # constants and conditions are not bound by order
                 self._unordered(scope, *ast.children(node))
 
-    def _definition_statement(self, node: ast.Callable, scope: Scope) -> None:
+    def _definition_statement(self, node: ast.Callable, scope: SymbolScope) -> None:
         if isinstance(node, ast.Structure):
             self._indices(node.indices, scope)
             self._placement(node.placement, scope)
             self._attributes(node.attributes, scope)
         self.definition(node, scope)
 
-    def _for(self, node: ast.For, scope: Scope) -> None:
+    def _for(self, node: ast.For, scope: SymbolScope) -> None:
         self.expression(node.iterable, scope)
         inner = self._loop(node, node.variables, scope)
         self._declare(inner, node.body.statements)
         self._statements(node.body.statements, inner)
 
-    def _loop(self, node: ast.Node, variables: Sequence[ast.Identifier], scope: Scope) -> Scope:
-        inner = Scope(node, scope, scope.homes)
+    def _loop(self, node: ast.Node, variables: Sequence[ast.Identifier], scope: SymbolScope) -> SymbolScope:
+        inner = SymbolScope(node, scope, scope.homes)
         self.resolution.scopes[node] = inner
         for variable in variables:
             inner.values[variable.text] = self.enter(inner, variable, SymbolKind.LOOP, node)
         return inner
 
-    def _later(self, block: ast.Block, scope: Scope) -> None:
+    def _later(self, block: ast.Block, scope: SymbolScope) -> None:
         """Resolves statements that are read after the whole structure. Their declarations are their own."""
         before, self.is_ordered = self.is_ordered, False
-        inner = Scope(block, scope, scope.homes)
+        inner = SymbolScope(block, scope, scope.homes)
         self.resolution.scopes[block] = inner
         for item in block.statements:
             if isinstance(item, ast.Let):
@@ -232,23 +232,23 @@ class Resolver:
         self._statements(block.statements, inner)
         self.is_ordered = before
 
-    def _unordered(self, scope: Scope, *expressions: ast.Node) -> None:
+    def _unordered(self, scope: SymbolScope, *expressions: ast.Node) -> None:
         before, self.is_ordered = self.is_ordered, False
         for expression in expressions:
             self.expression(expression, scope)
         self.is_ordered = before
 
-    def _indices(self, indices: Sequence[ast.Expression], scope: Scope) -> None:
+    def _indices(self, indices: Sequence[ast.Expression], scope: SymbolScope) -> None:
         for index in indices:
             self.expression(index, scope)
 
-    def _placement(self, placement: ast.Placement | None, scope: Scope) -> None:
+    def _placement(self, placement: ast.Placement | None, scope: SymbolScope) -> None:
         if placement is not None:
             for part in (placement.at, placement.rotated):
                 if part is not None:
                     self.expression(part, scope)
 
-    def _attributes(self, attributes: Sequence[ast.Attribute], scope: Scope) -> None:
+    def _attributes(self, attributes: Sequence[ast.Attribute], scope: SymbolScope) -> None:
         for attribute in attributes:
             name = attribute.name.text
             if word_meant(name, ATTRIBUTES) is None:
@@ -273,7 +273,7 @@ class Resolver:
 
     # --- Expressions ---------------------------------------------------------------------------
 
-    def expression(self, node: ast.Node, scope: Scope) -> None:
+    def expression(self, node: ast.Node, scope: SymbolScope) -> None:
         match node:
             case ast.Number() | ast.String() | ast.Boolean() | ast.Identifier():
                 pass
@@ -291,7 +291,7 @@ class Resolver:
                 for child in ast.children(node):
                     self.expression(child, scope)
 
-    def _name(self, node: ast.Name, scope: Scope) -> None:
+    def _name(self, node: ast.Name, scope: SymbolScope) -> None:
         symbol = scope.value(node.text)
         if symbol is None:
             complaints.unknown_name(self, node, scope)
@@ -302,7 +302,7 @@ class Resolver:
         if self.is_ordered:
             complaints.check_order(self, node, symbol, scope)
 
-    def _call(self, node: ast.Call, scope: Scope) -> None:
+    def _call(self, node: ast.Call, scope: SymbolScope) -> None:
         callee = node.callee
         where = scope
         if node.receiver is not None:
@@ -330,7 +330,7 @@ class Resolver:
                 self.expression(argument.value, scope)
         self.argument = before
 
-    def _is_in_reach(self, node: ast.Expression, scope: Scope) -> bool:
+    def _is_in_reach(self, node: ast.Expression, scope: SymbolScope) -> bool:
         """Tells whether a word for an option is here a name that the program declares."""
         if self.is_library or not isinstance(node, ast.Name):
             return False
@@ -353,7 +353,7 @@ class Resolver:
 
     # --- Declarations --------------------------------------------------------------------------
 
-    def enter(self, scope: Scope, name: ast.Identifier, kind: SymbolKind, node: ast.Node) -> Symbol:
+    def enter(self, scope: SymbolScope, name: ast.Identifier, kind: SymbolKind, node: ast.Node) -> Symbol:
         """Makes a symbol; the caller puts it into the table it belongs to."""
         symbol = Symbol(name.text, kind, node, scope.owner, [name], [node], scope=scope)
         self.resolution.uses[name] = symbol
@@ -385,7 +385,7 @@ class Resolver:
         return self.resolution.errors > MOST_ERRORS
 
 
-def _note_missing(statement: ast.Import, scope: Scope) -> None:
+def _note_missing(statement: ast.Import, scope: SymbolScope) -> None:
     """Notes the names that a failed import would have brought, so that they are not reported once more."""
     lost = {identifier.text for identifier in statement.names}
     if statement.alias is not None:
@@ -393,7 +393,7 @@ def _note_missing(statement: ast.Import, scope: Scope) -> None:
     scope.missing = scope.missing | lost if lost and scope.missing is not None else None
 
 
-def _bring(source: Scope, scope: Scope, names: set[str] | None) -> None:
+def _bring(source: SymbolScope, scope: SymbolScope, names: set[str] | None) -> None:
     """Enters the file-level definitions of an imported file, all or some of them."""
     for name, symbol in source.values.items():
         if (names is None or name in names) and symbol.kind in (SymbolKind.PARAM, SymbolKind.LET):

@@ -17,7 +17,7 @@ FOUND = "depends on unknowns"
 
 
 @record()
-class Misfit:
+class TypeMisfit:
     """The diagnostic for an expression that does not fit its place."""
 
     code: str
@@ -26,104 +26,104 @@ class Misfit:
     label: str = ""
 
 
-def needed(what: str, kind: Type) -> Misfit:
+def needed(what: str, kind: Type) -> TypeMisfit:
     """Refuses an expression of another type than its place needs."""
-    return Misfit("E0302", f"{what} is needed here, and this is {a(kind)}")
+    return TypeMisfit("E0302", f"{what} is needed here, and this is {a(kind)}")
 
 
-def unwanted(what: str, wanted: Type, kind: Type, text: str) -> Misfit:
+def unwanted(what: str, wanted: Type, kind: Type, text: str) -> TypeMisfit:
     """Refuses an expression of another type than a word such as `at` or `rotated` wants."""
     hints: tuple[str, ...] = ()
     if isinstance(wanted, PointType) and isinstance(kind, NumberType):
         hints = (f"as in `at ({text}, 0)`",)
     elif isinstance(kind, GeometryType):
         hints = (f"name a part of it: `{text}.center`",)
-    return Misfit("E0302", f"{what} wants {a(wanted)}, and this is {a(kind)}", hints)
+    return TypeMisfit("E0302", f"{what} wants {a(wanted)}, and this is {a(kind)}", hints)
 
 
-def no_coordinate(text: str, kind: Type) -> Misfit:
+def no_coordinate(text: str, kind: Type) -> TypeMisfit:
     """Refuses a coordinate that is no length."""
-    return Misfit("E0301", f"a coordinate must be a length, and `{text}` is {a(kind)}")
+    return TypeMisfit("E0301", f"a coordinate must be a length, and `{text}` is {a(kind)}")
 
 
-def no_run(kind: Type) -> Misfit:
+def no_run(kind: Type) -> TypeMisfit:
     """Refuses a `for` over something without members."""
     hint = "as in `for i in 0..9 { … }` or `for s in [-1, 1] { … }`"
-    return Misfit("E0304", f"`for` runs through a range or a list, and this is {a(kind)}", (hint,))
+    return TypeMisfit("E0304", f"`for` runs through a range or a list, and this is {a(kind)}", (hint,))
 
 
-def no_members(text: str, kind: Type) -> Misfit:
+def no_members(text: str, kind: Type) -> TypeMisfit:
     """Refuses an index behind something without numbered members."""
-    return Misfit("E0305", f"`{text}` is {a(kind)} and has no members by number")
+    return TypeMisfit("E0305", f"`{text}` is {a(kind)} and has no members by number")
 
 
-def no_whole_number(what: str, kind: Type) -> Misfit:
+def no_whole_number(what: str, kind: Type) -> TypeMisfit:
     """Refuses another value in place of a whole number."""
-    return Misfit("E0302", f"{what} must be a whole number, not {a(kind)}")
+    return TypeMisfit("E0302", f"{what} must be a whole number, not {a(kind)}")
 
 
-def fraction(what: str, text: str) -> Misfit:
+def fraction(what: str, text: str) -> TypeMisfit:
     """Refuses a number that is not whole."""
-    return Misfit("E0306", f"{what} must be a whole number, and this is `{text}`")
+    return TypeMisfit("E0306", f"{what} must be a whole number, and this is `{text}`")
 
 
-def no_vectors(operator: str, left: Type, right: Type) -> Misfit:
+def no_vectors(operator: str, left: Type, right: Type) -> TypeMisfit:
     """Refuses an operator between points, or a point and a number, that has no meaning there."""
     hint = "points take `+` and `-` with points, `*` and `/` with numbers; see also `dot` and `cross`"
     if operator in "+-" and (isinstance(left, NumberType) or isinstance(right, NumberType)):
         hint = "to move a point, add a point: `p + (dx, dy)`"
-    return Misfit("E0307", f"`{operator}` does not work on {a(left)} and {a(right)}", (hint,))
+    return TypeMisfit("E0307", f"`{operator}` does not work on {a(left)} and {a(right)}", (hint,))
 
 
-def unequal(what: str, left: MaybeDimension, right: MaybeDimension) -> Misfit:
+def unequal(what: str, left: MaybeDimension, right: MaybeDimension) -> TypeMisfit:
     """Refuses two numbers of different dimensions, as `length + angle`, for the operation `what`."""
     hint = "both sides need the same dimension; units are written as in `30deg`, `4mm`"
     if {left, right} == {LENGTH, units.multiply(LENGTH, ANGLE)}:  # as the length of an arc is often written
         hint = "an angle times a radius is no length: an arc is `radians(angle) * radius` long"
-    return Misfit("E0308", f"{what} {a(NumberType(left))} and {a(NumberType(right))}", (hint,))
+    return TypeMisfit("E0308", f"{what} {a(NumberType(left))} and {a(NumberType(right))}", (hint,))
 
 
-def no_comparison(relation: str, left: Type, right: Type, left_text: str, right_text: str) -> Misfit:
+def no_comparison(relation: str, left: Type, right: Type, left_text: str, right_text: str) -> TypeMisfit:
     """Refuses a comparison of two things that cannot be compared."""
     hint = comparison_hint(left, right, left_text, right_text)
-    return Misfit("E0309", f"`{relation}` does not compare {a(left)} with {a(right)}", (hint,))
+    return TypeMisfit("E0309", f"`{relation}` does not compare {a(left)} with {a(right)}", (hint,))
 
 
-def no_order(relation: str) -> Misfit:
+def no_order(relation: str) -> TypeMisfit:
     """Refuses a comparison of points by size."""
     message = f"points have no order, so `{relation}` does not compare them"
-    return Misfit("E0309", message, ("compare coordinates, as in `a.x <= b.x`",))
+    return TypeMisfit("E0309", message, ("compare coordinates, as in `a.x <= b.x`",))
 
 
-def no_condition(text: str, kind: Type) -> Misfit:
+def no_condition(text: str, kind: Type) -> TypeMisfit:
     """Refuses an expression in place of a constraint."""
     hint = f"compare it with something: `{text} == …`"
     if isinstance(kind, NumberType):
         hint = f"say what it shall be: `{text} == …` or `{text} <= …`"
     elif isinstance(kind, GeometryType | StructureType | PointType):
         hint = f"say what about it, as in `fixed({text})`, `horizontal({text})` or `{text}.center == …`"
-    return Misfit("E0321", f"`{text}` is {a(kind)} and constrains nothing", (hint,))
+    return TypeMisfit("E0321", f"`{text}` is {a(kind)} and constrains nothing", (hint,))
 
 
-def no_equation(word: str, hint: str) -> Misfit:
+def no_equation(word: str, hint: str) -> TypeMisfit:
     """Refuses `or`, `not` and `!=` as constraints."""
-    return Misfit("E0322", f"`{word}` does not constrain: there are many ways to satisfy it", (hint,))
+    return TypeMisfit("E0322", f"`{word}` does not constrain: there are many ways to satisfy it", (hint,))
 
 
-def no_domain(kind: Type) -> Misfit:
+def no_domain(kind: Type) -> TypeMisfit:
     """Refuses a value behind `in` of a param that is no range of values."""
     message = f"the range of a `param` is as `20..200` or a list of choices, not {a(kind)}"
-    return Misfit("E0314", message)
+    return TypeMisfit("E0314", message)
 
 
-def unknown_yet(what: str, text: str) -> Misfit:
+def unknown_yet(what: str, text: str) -> TypeMisfit:
     """Refuses a value that the solver finds, but which is needed while building."""
     message = f"{what} must be known before solving, and `{text}` is found by the solver"
-    return Misfit("E0501", message, (CONSTANTS,), FOUND)
+    return TypeMisfit("E0501", message, (CONSTANTS,), FOUND)
 
 
-def undecided(text: str) -> Misfit:
+def undecided(text: str) -> TypeMisfit:
     """Refuses a condition that the solver decides, but which chooses what is built."""
     hint = "compare `param`s and constants, or use `written(…)` for the value as written"
     message = f"`{text}` is decided by the solver, so it cannot choose what is built"
-    return Misfit("E0502", message, (hint,), FOUND)
+    return TypeMisfit("E0502", message, (hint,), FOUND)

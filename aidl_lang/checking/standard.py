@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from aidl_lang.checking.facts import Fact
 from aidl_lang.checking.library import Library
 from aidl_lang.checking.named import of_symbol
-from aidl_lang.checking.resolving.symbols import Scope
+from aidl_lang.checking.resolving.symbols import SymbolScope
 from aidl_lang.common.names import fold
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
@@ -23,7 +23,7 @@ CONSTANT = frozenset({"len", "written"})
 _EMPTY = ast.Module(SourceFile("empty", ""), (), (), span=Span(SourceFile("empty", ""), 0, 0))
 
 
-def body_of(check: Inference, definition: ast.Node) -> Scope:
+def body_of(check: Inference, definition: ast.Node) -> SymbolScope:
     """Returns the scope of the body of a structure or a definition."""
     if check.is_standard(definition):
         return _body(check.resolution.library, definition)
@@ -65,7 +65,7 @@ def _reads_arguments(definition: ast.FunctionDefinition) -> bool:
 
 
 @lru_cache(maxsize=1024)
-def _body(library: Library, definition: ast.Node) -> Scope:
+def _body(library: Library, definition: ast.Node) -> SymbolScope:
     with _ONE_AT_A_TIME:
         return body_of(_alone(library, definition), definition)
 

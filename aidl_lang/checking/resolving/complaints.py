@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.checking.builtins import WORDS
 from aidl_lang.checking.resolving.foreign import call_answer, value_hint
-from aidl_lang.checking.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind, word_meant
+from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope, word_meant
 from aidl_lang.checking.synonyms import FIELDS, PARAMETERS
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import Edit, Fix, Label
@@ -33,7 +33,7 @@ def no_declaration(resolver: Resolver, name: ast.Name, is_value: bool) -> None:
     )
 
 
-def unknown_name(resolver: Resolver, node: ast.Name, scope: Scope) -> None:
+def unknown_name(resolver: Resolver, node: ast.Name, scope: SymbolScope) -> None:
     """Reports a bare name that no scope has as a value."""
     name = node.text
     if scope.may_be_missing(name) or resolver.has_said_enough:
@@ -72,7 +72,7 @@ def unknown_name(resolver: Resolver, node: ast.Name, scope: Scope) -> None:
     )
 
 
-def unknown_callable(resolver: Resolver, node: ast.Call, scope: Scope) -> None:
+def unknown_callable(resolver: Resolver, node: ast.Call, scope: SymbolScope) -> None:
     name = node.callee.text
     if scope.may_be_missing(name) or resolver.has_said_enough:
         return
@@ -118,7 +118,7 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: Scope) -> None:
     )
 
 
-def _is_spelled_right(name: str, meant: str, scope: Scope) -> bool:
+def _is_spelled_right(name: str, meant: str, scope: SymbolScope) -> bool:
     """Tells whether a word in which two names differ is a known one: `same_side` is no slip for
     `same_size`.
     """
@@ -128,7 +128,7 @@ def _is_spelled_right(name: str, meant: str, scope: Scope) -> bool:
     return any(w in known for w, other in zip(words, others, strict=False) if w != other)
 
 
-def _only_holds(scope: Scope, name: str) -> bool:
+def _only_holds(scope: SymbolScope, name: str) -> bool:
     """Tells whether a callable is a constraint and nothing else: it makes nothing."""
     found = scope.called(name)
     return found is not None and all(kind_of(s) is SymbolKind.CONSTRAINT for s in found[1])
@@ -140,7 +140,7 @@ _RELATIONS = (
 )
 
 
-def _may_hold(scope: Scope, name: str) -> bool:
+def _may_hold(scope: SymbolScope, name: str) -> bool:
     """Tells whether a callable may be a condition: shapes and templates are none."""
     found = scope.called(name)
     made = (SymbolKind.SHAPE, SymbolKind.TEMPLATE)
@@ -176,7 +176,7 @@ def declared_twice(resolver: Resolver, name: ast.Identifier, earlier: Symbol) ->
     )
 
 
-def check_aliases(resolver: Resolver, scope: Scope) -> None:
+def check_aliases(resolver: Resolver, scope: SymbolScope) -> None:
     """Reports aliases that lead to nothing that can be called."""
     for symbol in scope.aliases.values():
         assert isinstance(symbol.node, ast.Alias)
@@ -205,7 +205,7 @@ def check_aliases(resolver: Resolver, scope: Scope) -> None:
         )
 
 
-def is_below(node: ast.Name, symbol: Symbol, scope: Scope) -> bool:
+def is_below(node: ast.Name, symbol: Symbol, scope: SymbolScope) -> bool:
     """Tells whether a name stands above the line that makes what it means."""
     if symbol.kind not in UNKNOWNS or symbol.node is None or symbol.is_array:
         return False
@@ -215,7 +215,7 @@ def is_below(node: ast.Name, symbol: Symbol, scope: Scope) -> bool:
     return here.source is place.source and here.start < place.end
 
 
-def check_order(resolver: Resolver, node: ast.Name, symbol: Symbol, scope: Scope) -> None:
+def check_order(resolver: Resolver, node: ast.Name, symbol: Symbol, scope: SymbolScope) -> None:
     """Reports geometry and unknowns used above their line; those of other structures are judged by
     validity.
     """

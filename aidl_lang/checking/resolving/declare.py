@@ -9,7 +9,7 @@ from aidl_lang.checking.builtins import DERIVING, EVERYWHERE, PATTERNS
 from aidl_lang.checking.library import signature
 from aidl_lang.checking.registry import PUBLIC
 from aidl_lang.checking.resolving import complaints
-from aidl_lang.checking.resolving.symbols import UNKNOWNS, Scope, SymbolKind
+from aidl_lang.checking.resolving.symbols import UNKNOWNS, SymbolKind, SymbolScope
 from aidl_lang.checking.types import PARAMETER_TYPES, Signature
 from aidl_lang.common.diagnostics import Edit, Fix
 from aidl_lang.common.names import fold, nearest
@@ -33,7 +33,7 @@ def is_definition(node: ast.Node) -> bool:
     return isinstance(node, ast.FunctionDefinition | ast.ShapeDefinition | ast.ConstraintDefinition)
 
 
-def made_by(value: ast.Expression, scope: Scope) -> SymbolKind:
+def made_by(value: ast.Expression, scope: SymbolScope) -> SymbolKind:
     """Returns the kind of symbol that `name = value` declares: geometry, a structure, or only an
     expression.
     """
@@ -64,7 +64,7 @@ def made_by(value: ast.Expression, scope: Scope) -> SymbolKind:
 class Declarer:
     """Enters the declarations of one block: those of its `if`s too, and the indexed ones of its `for`s."""
 
-    def __init__(self, resolver: Resolver, scope: Scope) -> None:
+    def __init__(self, resolver: Resolver, scope: SymbolScope) -> None:
         self.resolver = resolver
         self.scope = scope
         self.branches: dict[str, list[tuple[Branch, tuple[float, ...] | None]]] = {}

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 from aidl_lang.checking.builtins import EVERYWHERE, MATH, SIGNATURES
 from aidl_lang.checking.library import Library
-from aidl_lang.checking.resolving.symbols import Scope, Symbol, SymbolKind
+from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.types import Signature
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
@@ -43,14 +43,14 @@ class Resolution:
     candidates: dict[ast.Call, tuple[Signature, ...]] = field(default_factory=dict)
     symbols: list[Symbol] = field(default_factory=list)
     canonical: dict[ast.Node, str] = field(default_factory=dict)
-    scopes: dict[ast.Node, Scope] = field(default_factory=dict)
+    scopes: dict[ast.Node, SymbolScope] = field(default_factory=dict)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     errors: int = 0
     of_definition: dict[ast.Node, Symbol] = field(default_factory=dict)
-    library_scope: Scope = field(default_factory=lambda: Scope(_NOWHERE))
+    library_scope: SymbolScope = field(default_factory=lambda: SymbolScope(_NOWHERE))
     enter_library: Callable[[ast.Node], None] = lambda _: None
 
-    def scope_of(self, definition: ast.Node) -> Scope:
+    def scope_of(self, definition: ast.Node) -> SymbolScope:
         """Returns the scope of a definition's body; one of the library is resolved when it is first
         needed.
         """
@@ -60,11 +60,11 @@ class Resolution:
 
 
 @lru_cache(maxsize=4)
-def library_scope(library: Library) -> Scope:
+def library_scope(library: Library) -> SymbolScope:
     """Returns the outermost scope: built-in names and those of the library. Nothing declares anything in it,
     so one serves all programs.
     """
-    scope = Scope(_NOWHERE)
+    scope = SymbolScope(_NOWHERE)
     scope.callables = _Joined(SIGNATURES, library.callables)
     for name, target in library.aliases.items():
         identifier = ast.Identifier(target, span=_NOWHERE.span)

@@ -64,11 +64,11 @@ class Symbol:
     declarations: list[ast.Identifier] = field(default_factory=list)
     nodes: list[ast.Node] = field(default_factory=list)
     is_array: bool = False
-    scope: Scope | None = None
+    scope: SymbolScope | None = None
 
 
 @record(frozen=False, eq=False)
-class Scope:
+class SymbolScope:
     """The names declared in one body.
 
     owner      the node that opens it
@@ -80,12 +80,12 @@ class Scope:
     """
 
     owner: ast.Node
-    parent: Scope | None = None
+    parent: SymbolScope | None = None
     homes: tuple[ast.Node, ...] = ()
     values: dict[str, Symbol] = field(default_factory=dict)
     callables: dict[str, list[Signature]] = field(default_factory=dict)
     aliases: dict[str, Symbol] = field(default_factory=dict)
-    spaces: dict[str, Scope] = field(default_factory=dict)
+    spaces: dict[str, SymbolScope] = field(default_factory=dict)
     own_name: Symbol | None = None
     missing: set[str] | None = field(default_factory=set)
     _spellings: dict[str, Spellings] = field(default_factory=dict, repr=False)
@@ -98,8 +98,8 @@ class Scope:
             known = self._spellings[kind] = Spellings(getattr(self, kind))
         return known.find(name)
 
-    def chain(self) -> Iterator[Scope]:
-        scope: Scope | None = self
+    def chain(self) -> Iterator[SymbolScope]:
+        scope: SymbolScope | None = self
         while scope is not None:
             yield scope
             scope = scope.parent
@@ -118,7 +118,7 @@ class Scope:
                 return scope.own_name
         return None
 
-    def container(self) -> Scope:
+    def container(self) -> SymbolScope:
         """Returns the scope whose members the declarations here become: that of the structure or definition
         around.
         """

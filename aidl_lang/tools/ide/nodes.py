@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from aidl_lang.checking.resolving.symbols import Scope
+from aidl_lang.checking.resolving.symbols import SymbolScope
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.tokens import Token
 from aidl_lang.tools.ide.view import View
@@ -29,7 +29,7 @@ def _child_at(node: ast.Node, offset: int) -> ast.Node | None:
     return touching
 
 
-def scope_at(view: View, offset: int) -> Scope:
+def scope_at(view: View, offset: int) -> SymbolScope:
     """Returns the innermost scope around an offset."""
     scopes = view.resolution.scopes
     path = around(view.module, offset)

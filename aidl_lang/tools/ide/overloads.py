@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from aidl_lang.checking.calls import arguments
-from aidl_lang.checking.resolving.symbols import Scope
+from aidl_lang.checking.resolving.symbols import SymbolScope
 from aidl_lang.checking.synonyms import PAIRS, PARAMETERS
 from aidl_lang.checking.types import ListType, NumberType, PointType, Signature, Type, accepts
 from aidl_lang.common.names import fold
@@ -44,7 +44,7 @@ class Reading:
         return [p for p in self.signature.parameters if p[0] not in self.taken]
 
 
-def readings(program: Program, scope: Scope, call: ast.Call) -> list[Reading]:
+def readings(program: Program, scope: SymbolScope, call: ast.Call) -> list[Reading]:
     """Returns the readings of a call: those that fit, the nearest first; else all as they are defined."""
     candidates = program.resolution.candidates.get(call)
     if candidates is None:

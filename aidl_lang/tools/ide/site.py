@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from enum import Enum
 from functools import cached_property
 
-from aidl_lang.checking.resolving.symbols import Scope
+from aidl_lang.checking.resolving.symbols import SymbolScope
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.parser import parse, standing_before
@@ -154,7 +154,7 @@ class EditSite:
         return self.original.source.text[self.spot.end :]
 
     @cached_property
-    def scope(self) -> Scope | None:
+    def scope(self) -> SymbolScope | None:
         """The names visible at the place."""
         return None if self.view is None else scope_at(self.view, self.spot.start + 1)
 

@@ -9,7 +9,7 @@ from functools import cached_property
 from aidl_lang.checking.builtins import COPYING, DERIVING, MATH, PATTERNS
 from aidl_lang.checking.facts import Fact, ReadPlace
 from aidl_lang.checking.named import of_symbol
-from aidl_lang.checking.resolving.symbols import UNKNOWNS, Scope, Symbol, SymbolKind
+from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.types import ANY, ListType, NumberType, TextType, Type
 from aidl_lang.checking.units import LENGTH
 from aidl_lang.common.records import record
@@ -52,7 +52,7 @@ class Context:
 
     site: EditSite
     view: View
-    scope: Scope
+    scope: SymbolScope
     path: tuple[ast.Node, ...]
     call: tuple[ast.Call, int] | None
 

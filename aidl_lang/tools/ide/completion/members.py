@@ -11,7 +11,7 @@ from aidl_lang.checking.builtins import EDITS
 from aidl_lang.checking.facts import Fact
 from aidl_lang.checking.members import member_of
 from aidl_lang.checking.named import of_symbol
-from aidl_lang.checking.resolving.symbols import Scope, Symbol, SymbolKind
+from aidl_lang.checking.resolving.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.standard import body_of
 from aidl_lang.checking.types import (
     AnyType,
@@ -63,7 +63,7 @@ def members(context: Context, value: ast.Expression) -> Iterator[Draft]:
     yield from _methods(context, fact)
 
 
-def _of_file(context: Context, scope: Scope | None) -> Iterator[Draft]:
+def _of_file(context: Context, scope: SymbolScope | None) -> Iterator[Draft]:
     """Yields the names of `import … as`."""
     if scope is None:
         return
@@ -117,7 +117,7 @@ def _plain(found: Iterable[str], tier: float) -> _Named:
         yield tier, name, None
 
 
-def _declared(scope: Scope, node: ast.Node) -> _Named:
+def _declared(scope: SymbolScope, node: ast.Node) -> _Named:
     for name, symbol in scope.values.items():
         if symbol.kind in _SEEN:
             yield _OWN + 0.5 * (symbol.kind in (SymbolKind.LET, SymbolKind.ARGUMENT)), name, symbol
