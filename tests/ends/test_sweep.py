@@ -13,7 +13,7 @@ from aidl_lang.building.state import BuildingLimits
 from aidl_lang.common.cancelling import Cancelled, cancelled_when
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.tools.ends import Job, Sweep, searching, sentence, sweep
+from aidl_lang.tools.ends import Sweep, SweepJob, searching, sentence, sweep
 from aidl_lang.tools.ends.results import Tried
 
 PLATE = """\
@@ -38,7 +38,7 @@ solid plate {
 
 
 def swept(text: str, files: dict[str, str] | None = None, **limits: object) -> Sweep:
-    job = Job("plate.aidl", text, MemoryWorld(files or {}), replace(pipeline.Settings(), **limits))
+    job = SweepJob("plate.aidl", text, MemoryWorld(files or {}), replace(pipeline.Settings(), **limits))
     compiled = pipeline.compile(SourceFile("plate.aidl", text), job.world)
     assert compiled.ok, compiled.diagnostics
     return sweep(job, compiled.knobs, compiled.diagnostics)
@@ -165,7 +165,7 @@ def test_process_that_breaks_is_a_result(
     monkeypatch: pytest.MonkeyPatch, breaking: object, said: str
 ) -> None:
     monkeypatch.setattr(searching, "tried", breaking)
-    monkeypatch.setattr(Job, "seconds", 3.0)
+    monkeypatch.setattr(SweepJob, "seconds", 3.0)
     turned = swept("solid a { param r = 2 in 1..3; b = circle(center: origin, radius: r) }").turned
     assert [sentence(each, "plate.aidl") for each in turned] == [f"at `r = {r}` {said}" for r in (1, 3)]
 
@@ -174,7 +174,7 @@ def test_time_for_all_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(searching, "tried", _hangs)
     text = "solid a { param r = 2 in 1..3; b = circle(center: origin, radius: r) }"
     knobs, _ = pipeline.knobs(SourceFile("a.aidl", text))
-    found = sweep(Job("a.aidl", text), knobs, (), seconds=0.5)
+    found = sweep(SweepJob("a.aidl", text), knobs, (), seconds=0.5)
     assert (found.turned, found.left, found.ok) == ((), 2, False)
 
 
@@ -184,4 +184,4 @@ def test_sweep_that_nobody_waits_for_is_given_up(monkeypatch: pytest.MonkeyPatch
     knobs, _ = pipeline.knobs(SourceFile("a.aidl", text))
     asked: list[int] = []
     with pytest.raises(Cancelled), cancelled_when(lambda: asked.append(1) or len(asked) > 3):  # type: ignore[func-returns-value]
-        sweep(Job("a.aidl", text), knobs, ())
+        sweep(SweepJob("a.aidl", text), knobs, ())

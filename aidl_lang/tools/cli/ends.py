@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 def swept(source: SourceFile, world: World, settings: Settings, compiled: Compiled) -> Sweep:
     """Tries a working program at the ends of its params, with progress on a terminal."""
-    from aidl_lang.tools.ends import Job, sweep
+    from aidl_lang.tools.ends import SweepJob, sweep
 
-    job = Job(source.name, source.text, world, settings)
+    job = SweepJob(source.name, source.text, world, settings)
     try:
         return sweep(job, compiled.knobs, compiled.diagnostics, _progress)
     finally:

@@ -2,8 +2,8 @@
 
 from aidl_lang.tools.ends.results import Sweep, Turned
 from aidl_lang.tools.ends.searching import sweep
-from aidl_lang.tools.ends.trying import Job
+from aidl_lang.tools.ends.trying import SweepJob
 from aidl_lang.tools.ends.values import has_range
 from aidl_lang.tools.ends.wording import described, sentence
 
-__all__ = ["Job", "Sweep", "Turned", "described", "has_range", "sentence", "sweep"]
+__all__ = ["Sweep", "SweepJob", "Turned", "described", "has_range", "sentence", "sweep"]

@@ -13,7 +13,7 @@ from aidl_lang.common.cancelling import checkpoint
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.processes import Guarded, Limit, count, limit_met
 from aidl_lang.tools.ends.results import Fault, Sweep, Tried, Turned
-from aidl_lang.tools.ends.trying import Job, fault, tried
+from aidl_lang.tools.ends.trying import SweepJob, fault, tried
 from aidl_lang.tools.ends.values import Value, ends, limit
 
 LONGEST = 300.0
@@ -30,7 +30,7 @@ Course: TypeAlias = Generator[Asking, Tried, Turned]
 
 
 def sweep(
-    job: Job,
+    job: SweepJob,
     knobs: Sequence[Knob],
     known: Sequence[Diagnostic],
     progress: Callable[[int, int], None] = lambda done, count: None,
@@ -87,7 +87,7 @@ class _Run:
 
     def __init__(
         self,
-        job: Job,
+        job: SweepJob,
         knobs: Sequence[Knob],
         courses: Sequence[Course],
         progress: Callable[[int, int], None],

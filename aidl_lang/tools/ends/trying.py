@@ -19,7 +19,7 @@ _SPARE = 10.0
 
 
 @record()
-class Job:
+class SweepJob:
     """A program as passed to another process."""
 
     name: str
@@ -34,11 +34,11 @@ class Job:
         return limits.building.seconds + limits.solving.seconds + limits.drawing + _SPARE
 
 
-_known: dict[Job, Front] = {}
+_known: dict[SweepJob, Front] = {}
 """The program that this process has checked already: it is the same over and over."""
 
 
-def tried(job: Job, path: str, value: Value, explained: bool) -> Tried:
+def tried(job: SweepJob, path: str, value: Value, explained: bool) -> Tried:
     """Returns the result of a value. Conflicts are looked into only if `explained`."""
     start = time.perf_counter()
     settings = replace(job.settings, solving=replace(job.settings.solving, explain=explained))

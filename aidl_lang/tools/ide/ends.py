@@ -26,7 +26,7 @@ def tried(view: View, settings: Settings, progress: Callable[[int, int], None], 
     """
     if view.outcome is None or not can_be_tried(view):
         raise ValueError("the program has to work as it is written, and have a param with a range")
-    job = ends.Job(view.source.name, view.source.text, view.world, settings)
+    job = ends.SweepJob(view.source.name, view.source.text, view.world, settings)
     return ends.sweep(job, view.outcome.knobs, view.outcome.diagnostics, progress, seconds)
 
 

@@ -56,7 +56,7 @@ class Reader:
     def spelled(self, node: ast.Identifier | ast.Name) -> str:
         return self.names.get(node, node.text)
 
-    def found(self, name: str) -> Path | None:
+    def thing_named(self, name: str) -> Path | None:
         """Returns the thing that a name means here, the nearest first."""
         if name == "self":
             return self.home
@@ -67,7 +67,7 @@ class Reader:
         """Returns the thing that an expression refers to, and its field or index."""
         match node:
             case ast.Name():
-                thing = None if node.text in self.loops else self.found(self.spelled(node))
+                thing = None if node.text in self.loops else self.thing_named(self.spelled(node))
                 return None if thing is None else (thing, ())
             case ast.Member(value, name):
                 return self._further(value, self.spelled(name))
