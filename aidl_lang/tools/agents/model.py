@@ -41,7 +41,7 @@ def paths(document: Json) -> list[str]:
 
 
 def shortened(document: Json, most: int) -> tuple[Json, str | None]:
-    """Returns the document in at most `most` characters, and a list of what was left out; None if nothing
+    """Returns the document in at most `most` characters, and a note on what was left out; None if nothing
     was.
 
     Data that follow from the rest, or can be asked for by a path, go first.

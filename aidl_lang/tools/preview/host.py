@@ -98,7 +98,7 @@ class Page:
         self.post({"id": request.id, "error": {"code": code, "message": message}})
 
     def hold_up(self) -> None:
-        """Ignores its requests; it is told so once."""
+        """Tells it once that its requests are left out."""
         if not self._is_held_up:
             self._is_held_up = True
             self.tell(_TOO_MUCH)
