@@ -250,12 +250,12 @@ def _holes(root: SolvedStructure, masses: Sequence[Mass]) -> dict[str, list[Solv
     found: dict[str, list[SolvedStructure]] = {mass.structure.path: [] for mass in masses}
 
     def visit(structure: SolvedStructure, around: Sequence[SolvedStructure]) -> None:
-        own = [child for child in structure.structures if child.kind == "hole"]
+        within = [*around, *(child for child in structure.structures if child.kind == "hole")]
         if structure.path in found:
-            inside = (s for s in structure.walk() if s.kind == "hole" and s not in own)
-            found[structure.path] = [*around, *own, *inside]
+            deeper = (inner for child in structure.structures for inner in child.structures)
+            found[structure.path] = [*within, *(s for d in deeper for s in d.walk() if s.kind == "hole")]
         for child in structure.structures:
-            visit(child, [*around, *own])
+            visit(child, within)
 
     visit(root, [])
     return found
