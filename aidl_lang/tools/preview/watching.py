@@ -11,13 +11,15 @@ from aidl_lang.checking.resolving.imports import SUFFIX
 
 _DEBOUNCE = 30
 """Milliseconds in which several changes count as one."""
-_SETTLED = 500
-"""Milliseconds after which the system has begun to watch, if nothing has shown that before."""
+_QUIET = 500
+"""Milliseconds without a change after which the file is read all the same: the system may have begun to watch
+only now, and not all of them tell of every change.
+"""
 
 
 async def watch(file: Path, changed: Callable[[Iterable[Path]], None], begun: Callable[[], None]) -> None:
-    """Calls back with the paths whenever a file, or programs beside it or below its folder, have changed, and
-    once when it has begun to see that; until it is cancelled.
+    """Calls back whenever a file, or programs beside it or below its folder, have changed, with the paths;
+    after a quiet while, without any; and once when it has begun to see changes. Goes on until it is cancelled.
     """
     try:
         await _watch(file, changed, begun, polling=None)
@@ -38,11 +40,11 @@ async def _watch(
         debounce=_DEBOUNCE,
         step=10,
         force_polling=polling,
-        rust_timeout=_SETTLED,
+        rust_timeout=_QUIET,
         yield_on_timeout=True,
     ):
-        if changes:
+        if changes or has_begun:
             changed({Path(path) for _, path in changes})
-        elif not has_begun:
+        else:
             begun()
         has_begun = True
