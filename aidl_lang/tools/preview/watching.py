@@ -19,7 +19,7 @@ only now, and not all of them tell of every change.
 
 async def watch(file: Path, changed: Callable[[Iterable[Path]], None], begun: Callable[[], None]) -> None:
     """Calls back whenever a file, or programs beside it or below its folder, have changed, with the paths;
-    after a quiet while, without any; and once when it has begun to see changes. Goes on until it is cancelled.
+    after a quiet while, without any; once when it has begun to see changes. Goes on until it is cancelled.
     """
     try:
         await _watch(file, changed, begun, polling=None)
