@@ -57,7 +57,6 @@ def interpret(
     """
     it = Interpreter(program, overrides or {}, limits, EXECUTORS, evaluate, call)
     it.turned = turned or {}
-    it.rejected = program.rejected
     it.states_constants = states_constants
     it.frames_turn = any(map(_speaks_of_rotation, program.resolution.modules))
     it.watched = frozenset(node for violation in program.violations for node in violation.nodes)

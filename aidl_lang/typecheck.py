@@ -245,7 +245,7 @@ class Checker:
     def _wanted(self, node: ast.Expression, what: str, wanted: Type) -> None:
         fact = self.infer.fact(node)
         if accepts(wanted, fact.type) is None:
-            self.infer.refuse(rules.unwanted(what, wanted, fact.type, shown(node)), node)
+            self.infer.misfit(rules.unwanted(what, wanted, fact.type, shown(node)), node)
         elif isinstance(wanted, NumberType):
             self.infer.serves(fact, wanted.dimension, node)
 
@@ -281,7 +281,7 @@ class Checker:
             case RangeType() | ListType() | AnyType():
                 pass
             case kind:
-                infer.refuse(rules.no_domain(kind), domain)
+                infer.misfit(rules.no_domain(kind), domain)
         infer.known(domain, "the range of a `param`")
 
     def _assert(self, test: ast.Expression, message: ast.Expression | None) -> None:

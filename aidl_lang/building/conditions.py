@@ -53,8 +53,8 @@ def compare(
     if isinstance(left, TextVal | bool) or isinstance(right, TextVal | bool):
         if relation not in ("==", "!=") or type(left) is not type(right):
             return _incomparable(it, relation, left, right, node, left_node, right_node)
-        both = (side.value if isinstance(side, TextVal) else side for side in (left, right))
-        return (next(both) == next(both)) == (relation == "==")
+        one, other = (side.value if isinstance(side, TextVal) else side for side in (left, right))
+        return (one == other) == (relation == "==")
     a, b = as_point(it, left, left_node, env), as_point(it, right, right_node, env)
     if a is not None and b is not None:
         return _compare_points(it, relation, a, b, node)

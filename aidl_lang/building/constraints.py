@@ -60,7 +60,7 @@ def _read_items(it: Interpreter, statements: Sequence[ast.Statement], scope: Sco
                     _read_items(it, chosen.statements if chosen else (), scope, here)
             case ast.Equation():
                 it.report("N0501", "`=` inside `constrain` is read as `==`", node)
-                if node not in it.rejected:
+                if node not in it.program.rejected:
                     impose(it, node.meant, env)
             case ast.Assign():
                 scope.values[node.name.text] = LetBinding(node.value, scope)

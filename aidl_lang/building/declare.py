@@ -28,7 +28,7 @@ def declare(
 ) -> None:
     """Gives a value a name in the structure or shape whose body this is."""
     target = scope.declaring()
-    if name in it.rejected:
+    if name in it.program.rejected:
         return
     if not indices:
         if scope.turn and name.text in target.values and not isinstance(target.values[name.text], LetBinding):

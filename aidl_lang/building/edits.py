@@ -214,7 +214,7 @@ def _step(it: Interpreter, edit: EditCall, thing: Value, centre: Place, here: St
     candidates = edit.scope.candidates(it.spelled(node.callee))
     chosen = select([c.signature for c in candidates], given)
     if isinstance(chosen, list):
-        if node not in it.rejected:
+        if node not in it.program.rejected:
             it.report("E0311", f"`{node.callee.text}` {chosen[0].reason}", node)
         return None
     taken, places = arranged(chosen, values, nodes)
@@ -342,7 +342,7 @@ def frame_edited(
 
 def check_edit(it: Interpreter, call: ast.Call, env: Env) -> None:
     """Reports an edit that nothing was made with."""
-    if (call, env.scope.labels) in it.edited or call in it.watched or call in it.rejected:
+    if (call, env.scope.labels) in it.edited or call in it.watched or call in it.program.rejected:
         return
     target = _target(call)
     assert target is not None

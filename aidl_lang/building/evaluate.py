@@ -38,7 +38,7 @@ from aidl_lang.syntax import ast
 
 def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
     """Returns the value of an expression; NOTHING after an error, which has been reported."""
-    if node in it.rejected:
+    if node in it.program.rejected:
         return NOTHING
     value = _EVALUATE[type(node)](it, node, env)
     if type(value) in _UNBOUNDED:

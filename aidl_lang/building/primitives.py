@@ -22,7 +22,7 @@ from aidl_lang.building.model import (
 )
 from aidl_lang.building.values import Num, PointVal, point
 from aidl_lang.checking.registry import fields_of
-from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.checking.units import ANGLE
 from aidl_lang.common.lettering import Vec
 
 if TYPE_CHECKING:
@@ -133,7 +133,3 @@ def defining(geometry: Geometry, here: Structure) -> list[Expression]:
     for part in own_geometry(geometry.parts, geometry):
         found += defining(part, here)
     return found
-
-
-def length_of(value: Num) -> Num:
-    return Num(value.expression, value.dimension or LENGTH, value.status)

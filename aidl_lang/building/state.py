@@ -110,8 +110,6 @@ class Interpreter:
     pending: dict[Structure, list[tuple[ast.Statement, Scope]]] = field(default_factory=dict)
     written: dict[ast.Node, tuple[float, float] | float] = field(default_factory=dict)
     watched: frozenset[ast.Node] = frozenset()
-    rejected: frozenset[ast.Node] = frozenset()
-    """nodes with errors that the checker has reported"""
     used_overrides: set[str] = field(default_factory=set)
     call_sites: list[ast.Node] = field(default_factory=list)
     hidden: list[tuple[Geometry, tuple[Comparison, ...]]] = field(default_factory=list)

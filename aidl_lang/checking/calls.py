@@ -58,7 +58,6 @@ def call(check: Inference, node: ast.Call) -> Fact:
     if not fits:
         from aidl_lang.checking.misfits import no_overload
 
-        check.rejected.append(node)
         no_overload(check, node, nodes, given, [o for o in found if isinstance(o, Mismatch)])
         return UNKNOWN
     fits.sort(key=lambda b: b.cost)

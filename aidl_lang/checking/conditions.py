@@ -78,7 +78,7 @@ def check_condition(infer: Inference, node: ast.Expression, may_make: bool = Tru
             return
     if isinstance(fact.type, AnyType):
         return
-    infer.refuse(rules.no_condition(shown(node), fact.type), node)
+    infer.misfit(rules.no_condition(shown(node), fact.type), node)
 
 
 def _needs_name(infer: Inference, node: ast.Call, may_make: bool) -> None:
@@ -129,4 +129,4 @@ def _check_logic(infer: Inference, node: ast.Expression) -> None:
 
 
 def _cannot(infer: Inference, node: ast.Expression, word: str, hint: str, fix: Fix | None = None) -> None:
-    infer.refuse(rules.no_equation(word, hint), node, fix)
+    infer.misfit(rules.no_equation(word, hint), node, fix)

@@ -49,7 +49,6 @@ class Inference:
         self.resolution = resolution
         self.facts: dict[ast.Node, Fact] = {}
         self.diagnostics: list[Diagnostic] = []
-        self.rejected: list[ast.Call] = []
         self.fits: dict[ast.Call, list[Binding]] = {}
         self.homes: tuple[ast.Node, ...] = (resolution.main,)
         self._standard = frozenset(resolution.library.sources if standard is None else standard)
@@ -79,9 +78,9 @@ class Inference:
             self._errors += found.is_error
         return UNKNOWN
 
-    def refuse(self, misfit: TypeMisfit, node: ast.Node, fix: Fix | None = None) -> Fact:
+    def misfit(self, found: TypeMisfit, node: ast.Node, fix: Fix | None = None) -> Fact:
         """Reports an expression that does not fit its place. Returns the fact of an unknown result."""
-        return self.report(misfit.code, misfit.message, node, misfit.label, misfit.hints, fix=fix)
+        return self.report(found.code, found.message, node, found.label, found.hints, fix=fix)
 
     def is_standard(self, node: ast.Node) -> bool:
         return node.span.source in self._standard
@@ -91,7 +90,7 @@ class Inference:
         fact = self.fact(node)
         if isinstance(fact.type, (AnyType, *allowed)):
             return fact
-        return self.refuse(rules.needed(what, fact.type), node)
+        return self.misfit(rules.needed(what, fact.type), node)
 
     def known(self, node: ast.Expression, what: str) -> bool:
         """Reports an expression whose value the solver finds, but which is needed while building. Returns
@@ -99,14 +98,14 @@ class Inference:
         """
         if not self.fact(node).reads:
             return True
-        self.refuse(rules.unknown_yet(what, shown(node)), node)
+        self.misfit(rules.unknown_yet(what, shown(node)), node)
         return False
 
     def test(self, node: ast.Expression) -> None:
         """Checks a condition that chooses what is built."""
         fact = self.wants(node, "a condition", TruthType)
         if fact.reads:
-            self.refuse(rules.undecided(shown(node)), node)
+            self.misfit(rules.undecided(shown(node)), node)
 
     # --- Expressions ---------------------------------------------------------------------------
 
@@ -138,7 +137,7 @@ class Inference:
             if isinstance(fact.type, NumberType):
                 self.serves(fact, LENGTH, part)
                 if fact.type.dimension not in (None, PLAIN, LENGTH):
-                    self.refuse(rules.no_coordinate(shown(part), fact.type), part)
+                    self.misfit(rules.no_coordinate(shown(part), fact.type), part)
         return Fact(PointType(), reads)
 
     def numeric(self, node: ast.Expression) -> Fact:
@@ -150,7 +149,7 @@ class Inference:
             case GeometryType("line"):
                 return Fact(NumberType(LENGTH), fact.reads)
             case _:
-                return self.refuse(rules.needed("a number", fact.type), node)
+                return self.misfit(rules.needed("a number", fact.type), node)
 
     def _list(self, node: ast.List) -> Fact:
         facts = [self.fact(item) for item in node.items]
@@ -185,9 +184,9 @@ class Inference:
                 fix = None
                 if isinstance(node, ast.Name | ast.Number | ast.Member | ast.Call):
                     fix = Fix(f"write `{counted}`", (Edit(_at(node), "0..<"),), is_sure=True)
-                return self.refuse(misfit, node, fix)
+                return self.misfit(misfit, node, fix)
             case _:
-                return self.refuse(rules.no_run(fact.type), node)
+                return self.misfit(rules.no_run(fact.type), node)
 
     def _range(self, node: ast.Range) -> Fact:
         start, end = self.numeric(node.start), self.numeric(node.end)
@@ -217,7 +216,7 @@ class Inference:
             case AnyType():
                 return Fact(ANY, fact.reads)
             case _:
-                return self.refuse(rules.no_members(shown(node.value), fact.type), node)
+                return self.misfit(rules.no_members(shown(node.value), fact.type), node)
 
     def whole(self, node: ast.Expression, what: str) -> None:
         """Reports an expression that is no whole number known while building."""
@@ -228,11 +227,11 @@ class Inference:
             case NumberType(dimension):
                 is_fraction = isinstance(node, ast.Number) and not node.value.is_integer()
                 if dimension not in (None, units.PLAIN) or is_fraction:
-                    self.refuse(rules.fraction(what, shown(node)), node)
+                    self.misfit(rules.fraction(what, shown(node)), node)
                 else:
                     self.known(node, what)
             case _:
-                self.refuse(rules.no_whole_number(what, fact.type), node)
+                self.misfit(rules.no_whole_number(what, fact.type), node)
 
     # --- Numbers ---
 
@@ -244,7 +243,7 @@ class Inference:
         try:
             common = units.add(x, y)
         except ValueError:
-            self.refuse(rules.unequal(what, x, y), node)
+            self.misfit(rules.unequal(what, x, y), node)
             return None
         for side in (left, right):
             self.serves(side, common, node)

@@ -57,7 +57,7 @@ def _vector(check: Inference, node: ast.Binary, left: Fact, right: Fact) -> Fact
         or (numbers[0] and op == "*")
     ):
         return Fact(PointType(), left.reads | right.reads)
-    return check.refuse(rules.no_vectors(op, left.type, right.type), node)
+    return check.misfit(rules.no_vectors(op, left.type, right.type), node)
 
 
 def _arithmetic(
@@ -106,13 +106,13 @@ def compare(
         return
     if is_point(x.type) and is_point(y.type):
         if operator not in ("==", "!="):
-            check.refuse(rules.no_order(operator), node)
+            check.misfit(rules.no_order(operator), node)
         return
     if isinstance(x.type, ListType) or isinstance(y.type, ListType):
         return
     if type(x.type) is type(y.type) and isinstance(x.type, TextType | TruthType) and operator in ("==", "!="):
         return
-    check.refuse(rules.no_comparison(operator, x.type, y.type, shown(left), shown(right)), node)
+    check.misfit(rules.no_comparison(operator, x.type, y.type, shown(left), shown(right)), node)
 
 
 def membership(check: Inference, node: ast.Membership) -> Fact:

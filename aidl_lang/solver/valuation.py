@@ -30,7 +30,7 @@ class Valuation:
     def __init__(self, tape: Tape, initial: Sequence[float], kept: frozenset[int] = frozenset()) -> None:
         self.tape, self.kept = tape, kept
         self.unknowns = [float(value) for value in initial]
-        self.nodes = [float(value) for value in tape.constants]
+        self.nodes: list[float] = tape.constants.tolist()
         self._code: list[Compiled | None] = [None] * len(tape)
         self._fresh: set[int] = set()
         """Nodes that are up to date, with everything below them."""
