@@ -32,7 +32,7 @@ ENTRIES = list(reference().entries.values())
 NOT_WORDS = frozenset({"comprehension"})
 """Sections on the language that are not headed by a word of it, a kind or an attribute."""
 
-TOKENS = 7000
+TOKENS = 8000
 """What the guide may take of a model's attention."""
 
 
