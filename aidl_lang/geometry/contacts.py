@@ -10,7 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import cached_property
 from itertools import combinations
+from operator import itemgetter
 from typing import Literal
+
+import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.geometry.distance import region_distance
@@ -77,6 +80,23 @@ class Contacts:
         if len(self.bodies) > ALL_PAIRS:
             pairs = sorted(near_pairs([box for _, _, box in self.bodies], NEAR * self.size))
         return tuple(self._pair(i, j, known) for i, j in pairs)
+
+    def nearest(self, path: str) -> tuple[float, str] | None:
+        """Returns the distance (mm) from a body to the nearest other, and the path of that; None if it is alone."""
+        boxes = np.array([box for _, _, box in self.bodies])
+        number = next(i for i, (name, _, _) in enumerate(self.bodies) if name == path)
+        apart = np.maximum(boxes[number, :2] - boxes[:, 2:], boxes[:, :2] - boxes[number, 2:])
+        away = np.hypot(*np.maximum(apart, 0.0).T)
+        best: tuple[float, str] | None = None
+        for other in np.argsort(away, kind="stable").tolist():
+            if best is not None and away[other] >= best[0]:
+                break
+            if other != number:
+                name, theirs, _ = self.bodies[other]
+                pair = _apart(path, self.bodies[number][1], name, theirs, self.tolerance)
+                found = pair.gap or 0.0, name
+                best = found if best is None else min(best, found, key=itemgetter(0))
+        return best
 
     def _pair(self, i: int, j: int, known: dict[tuple[str, str], Contact]) -> Contact:
         (a, ours, _), (b, theirs, _) = self.bodies[i], self.bodies[j]

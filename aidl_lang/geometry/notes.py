@@ -312,21 +312,17 @@ def _covered_holes(finding: CoveredHoles) -> Diagnostic:
 
 
 def detached_notes(root: SolvedStructure, paths: Sequence[str], contacts: Contacts) -> list[Diagnostic]:
-    """Returns a warning for each body that touches and overlaps none of the others."""
+    """Returns a warning for each statement with bodies that touch and overlap none of the others."""
     free = marked_detached(root)
     if sum(path not in free for path in paths) < 2:
         return []  # there is nothing that a part could touch
     held = {path for pair in contacts.near if pair.is_close for path in (pair.a, pair.b)}
-    lonely = [p for p in paths if p not in held and p not in free]
-    if not lonely:
-        return []
-    nearest: dict[str, tuple[float, str]] = {}
-    for pair in contacts.all:
-        for one, other in ((pair.a, pair.b), (pair.b, pair.a)):
-            candidate = (pair.gap or 0.0, other)
-            nearest[one] = min(nearest.get(one, candidate), candidate, key=lambda c: c[0])
     structures = {s.path: s for s in root.walk()}
-    return [_detached(structures[p], nearest.get(p)) for p in lonely]
+    lonely: dict[object, list[SolvedStructure]] = {}
+    for path in paths:
+        if path not in held and path not in free:
+            lonely.setdefault(structures[path].span or path, []).append(structures[path])
+    return [_detached(alike, contacts.nearest(alike[0].path)) for alike in lonely.values()]
 
 
 def marked_detached(root: SolvedStructure) -> set[str]:
@@ -339,17 +335,21 @@ def marked_detached(root: SolvedStructure) -> set[str]:
     }
 
 
-def _detached(structure: SolvedStructure, nearest: tuple[float, str] | None) -> Diagnostic:
-    message = f"`{structure.path}` touches no other part"
+def _detached(structures: Sequence[SolvedStructure], nearest: tuple[float, str] | None) -> Diagnostic:
+    """Returns the warning about the bodies of one statement; `nearest` is what is nearest to the first."""
+    structure, is_one = structures[0], len(structures) == 1
+    message = f"{named(s.path for s in structures)} {'touches' if is_one else 'touch'} no other part"
     hints = ["if that is meant, say so: `@detached` before its definition"]
     if nearest is not None:
         gap, other = nearest
-        message += f"; the nearest, `{other}`, is {rough(gap)} mm away"
+        to = "" if is_one else f" to `{structure.path}`"
+        message += f"; the nearest{to}, `{other}`, is {rough(gap)} mm away"
         hints.insert(0, "to join them, let their borders meet: `gap: 0`, `touching(…)` or `on_top_of(…)`")
     span, fix = structure.span, None
     if span and re.match(r"(@|[a-z]+\s+\w+\s*(\[|\(|\{|at\b|rotated\b))", span.text):
         fix = Fix("say that it is meant", (Edit(Span(span.source, span.start, span.start), "@detached "),))
-    return Diagnostic("W0705", message, span, "stands by itself", hints=tuple(hints), fix=fix)
+    label = "stands by itself" if is_one else "each stands by itself"
+    return Diagnostic("W0705", message, span, label, hints=tuple(hints), fix=fix)
 
 
 def unusable_note(structure: SolvedStructure, leaf: SolvedGeometry, whole: SolvedGeometry) -> Diagnostic:

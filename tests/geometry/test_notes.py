@@ -138,6 +138,18 @@ def test_a_detached_part():
     )
 
 
+def test_detached_parts_of_one_statement_are_one_note():
+    source = SourceFile("x.aidl", "solid dot[i] { … }")
+    span = Span(source, 0, len(source.text))
+    dots = [structure("solid", f"d{i}", circle("c", 9 * i, 0, 1), span=span) for i in range(6)]
+    note = only(structure("assembly", "all", *dots))
+    assert (note.code, note.message) == (
+        "W0705",
+        "`all.d0`, `all.d1`, `all.d2` and 3 more touch no other part; "
+        "the nearest to `all.d0`, `all.d1`, is 7 mm away",
+    )
+
+
 def test_detached_on_purpose():
     a = structure("solid", "a", circle("c", 0, 0, 1))
     b = structure("solid", "b", circle("c", 9, 0, 1), detached=())
