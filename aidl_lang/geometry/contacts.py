@@ -82,7 +82,7 @@ class Contacts:
         return tuple(self._pair(i, j, known) for i, j in pairs)
 
     def nearest(self, path: str) -> tuple[float, str] | None:
-        """Returns the distance (mm) from a body to the nearest other, and the path of that; None if it is alone."""
+        """Returns the distance (mm) from a body to the nearest other, and its path; None if it is alone."""
         boxes = np.array([box for _, _, box in self.bodies])
         number = next(i for i, (name, _, _) in enumerate(self.bodies) if name == path)
         apart = np.maximum(boxes[number, :2] - boxes[:, 2:], boxes[:, :2] - boxes[number, 2:])
