@@ -162,13 +162,23 @@ def test_doc_finds_synonyms_and_mends_slips(aidl: Aidl) -> None:
 
 
 def test_doc_of_an_unknown_name(aidl: Aidl) -> None:
-    unknown = aidl("doc", "top_left_of_it_all")
+    unknown = aidl("doc", "an_elephant")
     assert (unknown.code, unknown.out) == (2, "")
-    assert unknown.err.startswith("error[E0912]: there is no `top_left_of_it_all` to tell about\n")
+    assert unknown.err.startswith("error[E0912]: there is no `an_elephant` to tell about\n")
     part_of_one = aidl("doc", "circ")
     assert part_of_one.code == 2
     assert "did you mean " in part_of_one.err
     assert "`circle`" in part_of_one.err
+
+
+def test_doc_finds_names_by_what_they_speak_of(aidl: Aidl) -> None:
+    found = aidl("doc", "finger", "joint")
+    assert (found.code, found.err) == (0, "")
+    assert found.out.startswith("`finger joint` is no name. These speak of it:\n\n  finger_panel  A panel")
+    assert aidl("doc", "finger joint").out == found.out
+    assert "  living_hinge  " in aidl("doc", "kerf").out  # the name of an argument
+    assert json.loads(aidl("doc", "kerf", "--json").out)[0]["name"] == "living_hinge"
+    assert "E0912" in aidl("doc", "kerf", "--picture", "-").err
 
 
 def test_doc_lists_all_names_by_topic(aidl: Aidl) -> None:
@@ -196,6 +206,19 @@ def test_doc_draws_the_example(aidl: Aidl, folder: Path) -> None:
     assert aidl("doc", "ring", "--picture", "-").out == (folder / "ring.svg").read_text()
     assert "E0912" in aidl("doc", "--picture", "all.svg").err
     assert "E0904" in aidl("doc", "ring", "--picture", "absent/ring.svg").err
+
+
+def test_guide_with_some_topics(aidl: Aidl) -> None:
+    some = aidl("guide", "--with", "joints, gear").out
+    assert some.startswith(aidl("guide").out.rstrip())
+    assert "\n### finger_panel\n" in some
+    assert "\n### gear\n" in some
+    assert "\n### fillet\n" not in some
+    unknown = aidl("guide", "--with", "joint")
+    assert unknown.code == 2
+    assert unknown.err.startswith(
+        "error[E0912]: the reference has no topic `joint`\n  = hint: did you mean `joints`"
+    )
 
 
 def test_guide(aidl: Aidl) -> None:

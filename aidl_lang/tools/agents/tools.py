@@ -22,7 +22,7 @@ from aidl_lang.common.render import compact
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.export import OFFERED
 from aidl_lang.pipeline import Compiled
-from aidl_lang.tools.agents import conflicts, drawing, knobs, searching
+from aidl_lang.tools.agents import conflicts, drawing, hits, knobs
 from aidl_lang.tools.agents.results import (
     Checked,
     Conflicts,
@@ -145,7 +145,7 @@ class Tools:
         """Find names of the AIDL library (shapes, constraints, functions, words of the language) and codes of
         diagnostics by what they are about, each with its forms and an example.
         """
-        return Hits(searching.search(query[:1_000], max(1, min(limit, 50))))
+        return Hits(hits.hits(query[:1_000], max(1, min(limit, 50))))
 
     def explain(
         self, name: Annotated[str, "A name of the library, a word of the language, or a code as E0301."]

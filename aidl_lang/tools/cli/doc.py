@@ -1,4 +1,6 @@
-"""`aidl doc`: what a name of the library or a word of the language is, with its signature and an example."""
+"""`aidl doc`: what a name of the library or a word of the language is, with its signature and an example.
+Other words list the names that speak of them.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,7 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from aidl_lang.common.prose import did_you_mean
+from aidl_lang.common.prose import did_you_mean, listed, ticked
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.report import UseError, say
 
@@ -16,8 +18,18 @@ if TYPE_CHECKING:
     from aidl_lang.tools.reference.collect import Entry, Reference
 
 
+_FEW = 3
+"""Names that a message lists."""
+
+
 def register(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("name", nargs="?", metavar="NAME", help="as rectangle; without it, all are listed")
+    parser.add_argument(
+        "name",
+        nargs="*",
+        metavar="NAME",
+        help="as rectangle; other words, as finger joint, list the names that speak of them; without it, all "
+        "are listed",
+    )
     parser.add_argument("--json", action="store_true", help="print as JSON")
     parser.add_argument("--picture", metavar="OUT.svg", help="draw the example of NAME; - is standard output")
     parser.set_defaults(run=run)
@@ -26,43 +38,59 @@ def register(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     from aidl_lang.common.render import TerminalStyle, wants_colour
     from aidl_lang.tools.reference.collect import reference
+    from aidl_lang.tools.reference.data import to_dict
 
-    known = reference()
-    if arguments.name is None and arguments.picture:
+    known, words = reference(), " ".join(arguments.name)
+    if not words and arguments.picture:
         raise UseError("E0912", "`--picture` draws the example of one name", "`aidl doc` lists all names")
     style = TerminalStyle(wants_colour(sys.stdout, os.environ))
-    entries = [_found(known, arguments.name)] if arguments.name is not None else list(known.entries.values())
-    if arguments.picture:
-        return _draw(entries[0], arguments.picture)
-    if arguments.json:
-        _print_json(entries, single=arguments.name is not None)
-    elif arguments.name is None:
-        _list(known, style)
+    found = _found(known, words) if words else list(known.entries.values())
+    if isinstance(found, list):
+        if arguments.picture:
+            names = ticked(entry.name for entry in found[:_FEW])
+            raise UseError("E0912", f"`{words}` is no name; `--picture` draws one of these: {listed(names)}")
+        if arguments.json:
+            _print_json([to_dict(entry) for entry in found])
+        elif words:
+            print(f"`{words}` is no name. These speak of it:\n")
+            _list(found, style)
+        else:
+            _list_all(known, style)
+    elif arguments.picture:
+        return _draw(found, arguments.picture)
+    elif arguments.json:
+        _print_json(to_dict(found))
     else:
-        _show(entries[0], known, arguments.name, style)
+        _show(found, known, words, style)
     return 0
 
 
-def _found(known: Reference, name: str) -> Entry:
-    """Returns the entry of a name, or, with a note, of the one that it seems to misspell."""
-    if (entry := known.find(name)) is not None:
+def _found(known: Reference, words: str) -> Entry | list[Entry]:
+    """Returns the entry of a name, else all that speak of the words, else, with a note, the one misspelt."""
+    if (entry := known.find(words)) is not None:
         return entry
     from aidl_lang.common.render import escape
+    from aidl_lang.tools.reference.searching import speaking_of
 
-    if (entry := known.misspelt(name)) is not None:
-        say(f"there is no `{escape(name)}`; this is `{entry.name}`")
+    if found := speaking_of(words):
+        return found
+    if (entry := known.misspelt(words)) is not None:
+        say(f"there is no `{escape(words)}`; this is `{entry.name}`")
         return entry
-    hints = did_you_mean(known.near(name))
-    raise UseError("E0912", f"there is no `{name}` to tell about", *hints, "`aidl doc` lists all names")
+    hints = did_you_mean(known.near(words))
+    raise UseError("E0912", f"there is no `{words}` to tell about", *hints, "`aidl doc` lists all names")
 
 
-def _list(known: Reference, style: TerminalStyle) -> None:
+def _list_all(known: Reference, style: TerminalStyle) -> None:
     for number, topic in enumerate(known.topics):
-        entries = known.of_topic(topic.name)
-        width = max(len(entry.name) for entry in entries)
         print(("\n" if number else "") + style.strong(topic.title))
-        for entry in entries:
-            print(f"  {style.gutter(entry.name)}{' ' * (width - len(entry.name))}  {entry.doc.line}")
+        _list(known.of_topic(topic.name), style)
+
+
+def _list(entries: list[Entry], style: TerminalStyle) -> None:
+    width = max(len(entry.name) for entry in entries)
+    for entry in entries:
+        print(f"  {style.gutter(entry.name)}{' ' * (width - len(entry.name))}  {entry.doc.line}")
 
 
 def _show(entry: Entry, known: Reference, asked: str, style: TerminalStyle) -> None:
@@ -82,13 +110,10 @@ def _show(entry: Entry, known: Reference, asked: str, style: TerminalStyle) -> N
     print(f"\n{style.gutter('Defined in')} {entry.where}")
 
 
-def _print_json(entries: list[Entry], *, single: bool) -> None:
+def _print_json(found: object) -> None:
     import json
 
-    from aidl_lang.tools.reference.data import to_dict
-
-    found = [to_dict(entry) for entry in entries]
-    print(json.dumps(found[0] if single else found, indent=2, ensure_ascii=False))
+    print(json.dumps(found, indent=2, ensure_ascii=False))
 
 
 def _draw(entry: Entry, output: str) -> int:

@@ -64,14 +64,22 @@ def _variants(names: str) -> list[Variant]:
     return [known[name] for name in names.split()]
 
 
-def full_guide() -> str:
-    """Returns the guide and, after it, every entry of the reference, without pictures."""
+def guide_with(topics: Sequence[str]) -> str:
+    """Returns the guide and, after it, the entries of the reference on some topics, without pictures. Raises
+    KeyError for a topic that does not exist.
+    """
+    known = {topic.name: topic for topic in reference().topics}
     blocks = [guide().strip(), "# Reference"]
-    for topic in reference().topics:
-        blocks.append(f"## {topic.title}")
-        for entry in reference().of_topic(topic.name):
+    for name in topics:
+        blocks.append(f"## {known[name].title}")
+        for entry in reference().of_topic(name):
             blocks += [block for block in entry_blocks(entry, "###") if not block.startswith("<img")]
     return "\n\n".join(blocks) + "\n"
+
+
+def full_guide() -> str:
+    """Returns the guide with the whole reference."""
+    return guide_with([topic.name for topic in reference().topics])
 
 
 def template() -> str:

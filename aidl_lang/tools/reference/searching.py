@@ -15,19 +15,14 @@ from functools import cache
 
 from aidl_lang.common import pages
 from aidl_lang.common.records import record
-from aidl_lang.tools.agents.results import Hit
 from aidl_lang.tools.reference.collect import Entry, reference
-from aidl_lang.tools.reference.pages import forms
 
 _WORD = re.compile(r"[^\W_]+")
-_MENDED = re.compile(r"^## Mended\n+```aidl[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _ENDINGS = ("ings", "ing", "ies", "es", "ed", "s", "ly", "y")
 _SHORTEST = 3
 """Least letters of a word without its ending."""
 _NAME, _SUMMARY, _TEXT = 6.0, 3.0, 1.0
 _IS_THE_NAME = 40.0
-_MOST_FORMS = 4
-_LONGEST_EXAMPLE = 1_200
 _STOP = frozenset(
     _WORD.findall(
         "a an and another are as at be by can do each for from how i in is it make of on one or other put "
@@ -38,33 +33,41 @@ _STOP = frozenset(
 
 @record()
 class _Document:
-    """A searchable text, with the weight of each of its words."""
+    """An entry, or the code of a diagnostic, with the weight of each of its words."""
 
-    hit: Hit
+    about: Entry | str
     names: frozenset[str]
     weights: Mapping[str, float]
 
 
-def search(query: str, most: int) -> list[Hit]:
-    """Returns the best hits, best first; equal ones in the order of the documents."""
+def search(query: str, most: int) -> list[Entry | str]:
+    """Returns the entries and codes that fit a query best, best first."""
+    found = [about for about, _ in _scored(query)][:most]
+    return found or [entry for entry in [reference().misspelt(query.strip())] if entry is not None]
+
+
+def speaking_of(query: str) -> list[Entry]:
+    """Returns the entries that have every word of a query, best first."""
+    return [about for about, share in _scored(query) if share == 1.0 and isinstance(about, Entry)]
+
+
+def _scored(query: str) -> list[tuple[Entry | str, float]]:
+    """Returns what fits a query, best first, each with its share of the words; equal ones in the order of the
+    reference.
+    """
     words = list(dict.fromkeys(_stems(query)))
     documents = _documents()
     wanted = "".join(_WORD.findall(query)).casefold()
     scored = []
     for number, document in enumerate(documents):
         score = sum(_rarity(word) * document.weights.get(word, 0.0) for word in words)
-        score *= sum(word in document.weights for word in words) / max(1, len(words))
+        share = sum(word in document.weights for word in words) / max(1, len(words))
+        score *= share
         if wanted in document.names:
             score += _IS_THE_NAME
         if score:
-            scored.append((-score, number))
-    found = [documents[number].hit for _, number in sorted(scored)[:most]]
-    return found or _misspelt(query)
-
-
-def _misspelt(query: str) -> list[Hit]:
-    entry = reference().misspelt(query.strip())
-    return [_hit(entry)] if entry is not None else []
+            scored.append((-score, number, share))
+    return [(documents[number].about, share) for _, number, share in sorted(scored)]
 
 
 @cache
@@ -83,22 +86,16 @@ def _of_entry(entry: Entry) -> _Document:
     weights = _weighed(
         *((_NAME / len(list(_stems(name)) or "1"), name) for name in (entry.name, *entry.synonyms)),
         (_SUMMARY, f"{entry.doc.line} {entry.topic}"),
-        (_TEXT, f"{entry.doc.text} {' '.join(overload.doc.line for overload in entry.overloads)}"),
+        (_TEXT, " ".join([entry.doc.text, *(f"{o.form} {o.doc.line}" for o in entry.overloads)])),
     )
     names = {"".join(_WORD.findall(name)).casefold() for name in (entry.name, *entry.synonyms)}
-    return _Document(_hit(entry), frozenset(names), weights)
-
-
-def _hit(entry: Entry) -> Hit:
-    return Hit(entry.name, entry.sort, entry.doc.line, forms(entry)[:_MOST_FORMS], _short(entry.doc.example))
+    return _Document(entry, frozenset(names), weights)
 
 
 def _of_code(code: str) -> _Document:
     title, page = pages.title(code), pages.page(code)
-    mended = _MENDED.search(page)
     prose = page.partition("\n## ")[0].partition("\n")[2]
-    hit = Hit(code, "diagnostic", title, [], _short(mended[1] if mended else ""))
-    return _Document(hit, frozenset({code.casefold()}), _weighed((_SUMMARY, title), (_TEXT, prose)))
+    return _Document(code, frozenset({code.casefold()}), _weighed((_SUMMARY, title), (_TEXT, prose)))
 
 
 def _weighed(*parts: tuple[float, str]) -> dict[str, float]:
@@ -119,9 +116,3 @@ def _stems(text: str) -> Iterator[str]:
             continue
         ending = next((e for e in _ENDINGS if word.endswith(e) and len(word) - len(e) >= _SHORTEST), "")
         yield word.removesuffix(ending)
-
-
-def _short(example: str) -> str:
-    if len(example) <= _LONGEST_EXAMPLE:
-        return example
-    return example[:_LONGEST_EXAMPLE].rpartition("\n")[0] + "\n// … `explain` has the rest\n"
