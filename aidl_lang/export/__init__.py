@@ -33,6 +33,7 @@ class Options:
     kerf       width of the cut, mm: outlines grow by half of it
     tile       width and height in mm of the pages that a picture is printed over, 1:1
     overlap    of neighbouring pages, mm
+    theme      the look of a picture as a whole, one of `themes.THEMES`
     """
 
     show: frozenset[str] = field(default_factory=frozenset)
@@ -46,11 +47,12 @@ class Options:
     kerf: float = 0.0
     tile: tuple[float, float] | None = None
     overlap: float = 10.0
+    theme: str = "colour"
 
     @property
     def for_cutter(self) -> bool:
         """True if only outlines are wanted."""
-        return self.cut or self.sheet is not None or self.kerf > 0
+        return self.cut or self.sheet is not None or self.kerf > 0 or self.theme == "cutter"
 
 
 @record()
@@ -115,6 +117,13 @@ def export(job: Job, suffix: str) -> Exported:
     _refuse(suffix, "--sheet", options.sheet is not None and not wanted.cuts)
     _refuse(suffix, "--kerf", options.kerf > 0 and not wanted.cuts)
     _refuse(suffix, "--tile", options.tile is not None and not wanted.tiles)
+    _refuse(suffix, "--theme", options.theme != "colour" and suffix not in PICTURES)
+    if options.theme not in ("colour", "cutter") and options.for_cutter:
+        raise ExportError(
+            "E0924",
+            f"`--theme {options.theme}` colours a picture, and a cutter goes by colours of its own",
+            "write it to a file of its own, without `--cut`, `--sheet` and `--kerf`",
+        )
     if options.dimension and options.for_cutter and wanted.cuts:
         raise ExportError(
             "E0924",
@@ -142,7 +151,9 @@ def _emptiness(job: Job) -> list[Diagnostic]:
 
 def _refuse(suffix: str, option: str, is_refused: bool) -> None:
     if is_refused:
-        able = sorted(s for s, f in FORMATS.items() if (f.tiles if option == "--tile" else f.cuts))
+        able = sorted(
+            s for s, f in FORMATS.items() if (f.cuts if option in ("--sheet", "--kerf") else f.tiles)
+        )
         raise ExportError(
             "E0924", f"`{option}` has no meaning for `{suffix}`", f"formats for it: {', '.join(able)}"
         )

@@ -14,11 +14,10 @@ from typing import TypeAlias
 from aidl_lang.common.numbers import fixed
 from aidl_lang.common.records import record
 from aidl_lang.export import palette
-from aidl_lang.export.marks import Area, Curves, Ink, Mark, Text
+from aidl_lang.export.marks import Area, Curves, Ink, Mark, Text, polygon
 from aidl_lang.geometry.curves import Arc, Circle, Line, Vec
 from aidl_lang.geometry.evaluate import Bounds, point
 from aidl_lang.geometry.network import union_bounds
-from aidl_lang.geometry.region import Face, Loop
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 
 Segment: TypeAlias = tuple[Vec, Vec]
@@ -137,9 +136,7 @@ class Pen:
         if placed.arc is not None:
             yield Curves((placed.arc,), ink, "dimension")
         for head in placed.heads:
-            a, b, c = self._triangle(*head)
-            face = Face(Loop((Line(a, b), Line(b, c), Line(c, a))))
-            yield Area(face, palette.DIMENSION, None, "arrow")
+            yield Area(polygon(*self._triangle(*head)), palette.DIMENSION, None, "arrow")
         yield placed.text
 
     def box_of(self, placed: PlacedDimension) -> Bounds:

@@ -7,9 +7,9 @@ from dataclasses import field
 from typing import TypeAlias
 
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import Piece, Vec
+from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.evaluate import Bounds
-from aidl_lang.geometry.region import Face
+from aidl_lang.geometry.region import Face, Loop
 
 CHARACTER = 0.6
 """Mean width of a character of the font, relative to its size."""
@@ -34,6 +34,11 @@ class Area:
     fill: str | None
     ink: Ink | None
     role: str = ""
+
+
+def polygon(*corners: Vec) -> Face:
+    """Returns the face with these corners, counter-clockwise."""
+    return Face(Loop(tuple(Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True))))
 
 
 @record()

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator
 from aidl_lang.export import Job, palette
 from aidl_lang.export.marks import CHARACTER, Area, Curves, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.overlay import explain
+from aidl_lang.export.themes import themed
 from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.network import union_bounds
@@ -28,9 +29,11 @@ NAME_SIZE = 5.0
 
 def picture(job: Job) -> Picture:
     """Returns the drawing as a picture by the options."""
+    return themed(_sheet(job) if job.options.sheet is not None else _whole(job), job.options.theme)
+
+
+def _whole(job: Job) -> Picture:
     options = job.options
-    if options.sheet is not None:
-        return _sheet(job)
     box = _picture_box(job.model, job.drawing, options.show)
     size = max(box[2] - box[0], box[3] - box[1]) or 1.0
     seen, dimensions = box, tuple[Group, ...]()

@@ -12,14 +12,14 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from aidl_lang.export.comparison.changes import Comparison, StructureChange, Version
-from aidl_lang.export.marks import Area, Curves, Frame, Group, Ink, Mark, Picture, Text
+from aidl_lang.export.marks import Area, Curves, Frame, Group, Ink, Mark, Picture, Text, polygon
 from aidl_lang.geometry.boolean import section_of
 from aidl_lang.geometry.curves import Line, Piece, Vec
 from aidl_lang.geometry.drawing import Stroke
 from aidl_lang.geometry.evaluate import Bounds, point
 from aidl_lang.geometry.measures import area, measure
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
-from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.region import Face, Region
 from aidl_lang.geometry.sections import difference, intersection, union
 from aidl_lang.geometry.tessellate import face_polygons
 from aidl_lang.geometry.trace import trace_all
@@ -171,12 +171,7 @@ def _arrow(at: Vec, to: Vec, size: float) -> Iterator[Mark]:
     sides = (neck[0] - half * y, neck[1] + half * x), (neck[0] + half * y, neck[1] - half * x)
     ink = Ink(INKS["after"], LINE * size, is_round=True)
     yield Curves((Line(at, neck),), ink, "move")
-    yield Area(_polygon(to, *sides), ink.color, None, "move")
-
-
-def _polygon(*corners: Vec) -> Face:
-    """Returns the face with these corners, counter-clockwise."""
-    return Face(Loop(tuple(Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True))))
+    yield Area(polygon(to, *sides), ink.color, None, "move")
 
 
 def _legend(regions: dict[str, Region], box: Bounds, size: float) -> tuple[tuple[Mark, ...], Bounds]:
@@ -188,7 +183,7 @@ def _legend(regions: dict[str, Region], box: Bounds, size: float) -> tuple[tuple
     for name, region in regions.items():
         if not region:
             continue
-        swatch = _polygon(
+        swatch = polygon(
             (left, top - text), (left + 2 * text, top - text), (left + 2 * text, top), (left, top)
         )
         marks += _filled(name, Region((swatch,)), size)

@@ -111,6 +111,7 @@ def _options(arguments: argparse.Namespace, compiled: Compiled) -> Options:
         kerf=arguments.kerf,
         tile=arguments.tile,
         overlap=arguments.overlap,
+        theme=arguments.theme,
     )
 
 

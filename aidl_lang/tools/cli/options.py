@@ -68,6 +68,12 @@ def add_look(parser: argparse.ArgumentParser) -> None:
         "--cut", action="store_true", help="the outlines alone, as hairlines: what a cutter follows"
     )
     parser.add_argument(
+        "--theme",
+        choices=("colour", "blueprint", "ink", "cutter"),
+        default="colour",
+        help="the look of all of it: as coloured (the default), white on blue, black on white, or as --cut",
+    )
+    parser.add_argument(
         "--best-effort", action="store_true", help="draw how far the solver came even if it did not solve"
     )
 

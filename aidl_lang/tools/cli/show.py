@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     show(compiled.diagnostics)
     may_be_shown = compiled.ok or arguments.best_effort
     if may_be_shown and compiled.model is not None and compiled.drawing is not None:
-        options = Options(show=arguments.show, dimension=arguments.dimension, cut=arguments.cut)
+        options = Options(arguments.show, arguments.dimension, arguments.cut, theme=arguments.theme)
         drawn = picture(Job(compiled.model, compiled.drawing, tuple(compiled.diagnostics), options))
         name = _protocol() if arguments.protocol == "auto" else arguments.protocol
         files.write(files.STANDARD, _shown(drawn, name, _screen(arguments.width)))

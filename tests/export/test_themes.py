@@ -1,0 +1,72 @@
+"""Themes: the look of a picture as a whole."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from aidl_lang.export import ExportError, Options
+from aidl_lang.export.themes import REDUCED, THEMES
+from tests.compiled import compiled
+
+PROGRAM = """
+assembly lamp {
+    @color("gold") solid shade { cone = trapezoid(bottom_width: 40, top_width: 20, height: 20) }
+    solid foot { plate = rectangle(center: (0, -14), width: 30, height: 8) }
+    @color("crimson") drawing mark { cut = line((0, 0), (5, 0)) }
+    constrain foot.below(shade, gap: 0)
+}
+"""
+
+
+def svg(**options: object) -> str:
+    return compiled(PROGRAM).export(".svg", Options(**options)).decode()  # type: ignore[arg-type]
+
+
+def colours(text: str) -> set[str]:
+    return set(re.findall(r'(?:fill|stroke)="(#\w+|[a-z]+)"', text)) - {"none"}
+
+
+@pytest.mark.parametrize("name", REDUCED)
+def test_a_reduced_picture_has_three_colours(name: str) -> None:
+    theme = REDUCED[name]
+    assert colours(svg(theme=name)) == {theme.paper, theme.fill, theme.line}
+    assert {"gold", "crimson"} <= colours(svg())
+
+
+@pytest.mark.parametrize("name", REDUCED)
+def test_the_shapes_are_the_same(name: str) -> None:
+    paths = re.findall(r' d="([^"]*)"', svg(theme=name))
+    assert paths[1:] == re.findall(r' d="([^"]*)"', svg())  # the first is the paper
+
+
+@pytest.mark.parametrize("name", REDUCED)
+def test_dimensions_and_names_are_in_the_theme(name: str) -> None:
+    theme = REDUCED[name]
+    shown = svg(theme=name, dimension=True, show=frozenset({"names", "points", "bbox"}))
+    assert colours(shown) <= {theme.paper, theme.fill, theme.line, "#ffffff"}  # dots have a white rim
+
+
+def test_the_theme_of_a_cutter_is_what_a_cutter_follows() -> None:
+    assert svg(theme="cutter") == svg(cut=True)
+
+
+@pytest.mark.parametrize("suffix", [".png", ".pdf"])
+def test_every_picture_has_every_theme(suffix: str) -> None:
+    made = {compiled(PROGRAM).export(suffix, Options(theme=name, pixels=100)) for name in THEMES}
+    assert len(made) == len(THEMES)
+
+
+def test_a_model_has_no_theme() -> None:
+    with pytest.raises(ExportError) as caught:
+        compiled(PROGRAM).export(".dxf", Options(theme="ink"))
+    assert caught.value.diagnostic.message == "`--theme` has no meaning for `.dxf`"
+    assert caught.value.diagnostic.hints == ("formats for it: .pdf, .png, .svg",)
+
+
+def test_what_a_cutter_follows_has_no_theme() -> None:
+    with pytest.raises(ExportError) as caught:
+        svg(theme="blueprint", kerf=0.2)
+    assert caught.value.diagnostic.code == "E0924"
+    assert caught.value.diagnostic.message.startswith("`--theme blueprint` colours a picture")
