@@ -5,7 +5,8 @@ constraint holds, and whether a measure is exact or a least one.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TypeAlias
 
 from aidl_lang.checking import library
 from aidl_lang.checking.registry import PUBLIC
@@ -303,9 +304,8 @@ def split_items(text: str) -> list[str]:
 
 
 def short_forms(forms: Sequence[str], nodes: Sequence[ast.Callable]) -> list[str]:
-    """Returns the calls of a name in as few short forms as possible: constraints that differ in what they
-    relate or in one option share one, and so do functions that differ in types, or in the name of one
-    argument.
+    """Returns the calls of a name in as few short forms as possible: constraints that differ in the types of
+    what they relate share one, and so do functions that differ in types, or in the name of one argument.
     """
     constraints = [n for n in nodes if isinstance(n, ast.ConstraintDefinition)]
     functions = [n for n in nodes if isinstance(n, ast.FunctionDefinition)]
@@ -352,17 +352,63 @@ def _merged_forms(constraints: Sequence[ast.ConstraintDefinition]) -> list[str]:
         groups.setdefault("list" if gathers(node) else len(things(node)), []).append(node)
     if "list" in groups:
         groups.pop(2, None)
-    return [_merged(group) for group in groups.values()]
+    return [form for group in groups.values() for form in _merged(group)]
 
 
-def _merged(group: Sequence[ast.ConstraintDefinition]) -> str:
+def _merged(group: Sequence[ast.ConstraintDefinition]) -> list[str]:
+    """Returns the calls of constraints that relate as many things, in as few forms as say it exactly.
+
+    An option that may be left out has a `?`; one that stands for another is joined to it by `/`.
+    """
     related = [p.name.text for p in things(group[0])]
     if gathers(group[0]) and "b" not in related:
         related[0] = "a, b, …"
-    options: dict[str, int] = {}
-    for node in group:
-        for p in node.parameters:
-            if _is_option(p):
-                options[p.name.text] = options.get(p.name.text, 0) + (p.default is None)
-    words = [option + ("" if count == len(group) else "?") for option, count in options.items()]
-    return f"{group[0].name.text}({', '.join([*related, *words])})"
+    options = [[p for p in node.parameters if _is_option(p)] for node in group]
+    rows = list(dict.fromkeys(tuple((p.name.text, p.default is None) for p in each) for each in options))
+    for join in (_of_the_same, _with_optional, _with_alternative):
+        rows = _joined(rows, join)
+    words = [[name if needed else f"{name}?" for name, needed in row] for row in rows]
+    return [f"{group[0].name.text}({', '.join([*related, *row])})" for row in words]
+
+
+_Options: TypeAlias = tuple[tuple[str, bool], ...]
+"""Names of options in their order, each with whether it is needed."""
+_Join: TypeAlias = Callable[[_Options, _Options], _Options | None]
+
+
+def _joined(rows: Sequence[_Options], join: _Join) -> list[_Options]:
+    """Returns the rows with each two that can be joined as one."""
+    done: list[_Options] = []
+    for row in rows:
+        for number, other in enumerate(done):
+            if (both := join(other, row)) is not None:
+                done[number] = both
+                break
+        else:
+            done.append(row)
+    return done if len(done) == len(rows) else _joined(done, join)
+
+
+def _of_the_same(one: _Options, other: _Options) -> _Options | None:
+    """Joins two rows of the same options, some of them needed in one row alone."""
+    if [name for name, _ in one] != [name for name, _ in other]:
+        return None
+    return tuple((name, needed and also) for (name, needed), (_, also) in zip(one, other, strict=True))
+
+
+def _with_optional(one: _Options, other: _Options) -> _Options | None:
+    """Joins two rows of which one has an option more."""
+    short, long = sorted((one, other), key=len)
+    more = [word for word in long if word not in short]
+    if len(long) != len(short) + 1 or len(more) != 1:
+        return None
+    return tuple((name, needed and (name, needed) != more[0]) for name, needed in long)
+
+
+def _with_alternative(one: _Options, other: _Options) -> _Options | None:
+    """Joins two rows that differ in the name of one option."""
+    differing = [i for i, (a, b) in enumerate(zip(one, other, strict=False)) if a != b]
+    if len(one) != len(other) or len(differing) != 1 or one[differing[0]][1] != other[differing[0]][1]:
+        return None
+    (k,) = differing
+    return (*one[:k], (f"{one[k][0]}/{other[k][0]}", one[k][1]), *one[k + 1 :])
