@@ -4,9 +4,10 @@
 /// An outline drawn step by step: `segment[i]` runs from `corner[i]` to `corner[i + 1]`.
 ///
 /// Steps are `line_to`, `line_by`, `up`, `down`, `left`, `right`, `forward`, `horizontal_to`, `vertical_to`, `arc_to`,
-/// `arc_by`, `tangent_arc_to`, `bezier_to`, `quadratic_to`, `polyline_to` and `close`; a plain point is a `line_to`.
-/// `smooth: true` on a step makes its segment go on in the direction of the one before. A path that ends where it
-/// starts is closed; `close()` closes one that does not with a line. `heading` is the direction before the first step.
+/// `arc_by`, `tangent_arc_to`, `bezier_to`, `quadratic_to`, `polyline_to`, `close` and `mirrored`; a plain point is a
+/// `line_to`. `smooth: true` on a step makes its segment go on in the direction of the one before. A path that ends
+/// where it starts is closed; `close()` closes one that does not with a line, `mirrored()` with its own mirror image.
+/// `heading` is the direction before the first step.
 ///
 /// ```aidl
 /// solid tag {
@@ -20,12 +21,16 @@
 /// }
 /// ```
 shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false) {
-    let drawn = [as_step(s) for s in steps if as_step(s).kind != "close"]
-    let closes = closed or len(drawn) < len(steps)
+    let drawn = [as_step(s) for s in steps if as_step(s).kind not in last_kinds]
     assert len(drawn) >= 1, "a path has at least one step that draws"
-    if len(drawn) < len(steps) {
-        assert len(drawn) == len(steps) - 1 and as_step(steps[-1]).kind == "close",
-            "`close()` is the last step"
+    let endings = [as_step(s) for s in steps if as_step(s).kind in last_kinds]
+    let ending = if len(endings) > 0 then endings[0] else record(kind: "none")
+    let closes = closed or ending.kind == "close"
+    if ending.kind == "mirrored" {
+        let is_last = len(endings) == 1 or len(endings) == 2 and endings[1].kind == "close"
+        assert is_last and as_step(steps[len(drawn)]).kind == "mirrored", "`mirrored()` is the last step"
+    } else if len(endings) > 0 {
+        assert len(endings) == 1 and as_step(steps[-1]).kind == "close", "`close()` is the last step"
     }
     corner[0] = from
     for i in 0..<len(drawn) {
@@ -81,15 +86,49 @@ shape path(steps: list, from: point, heading: turn = 0deg, closed: bool = false)
         if not is_home { corner[i + 1] = to }
         if move.smooth and i > 0 { constrain smoothly(segment[i - 1], segment[i]) }
     }
-    let end = segment[len(drawn) - 1].end
-    if len(drawn) > 0 and closes and not meets(end, from) {
-        segment[len(drawn)] = line(corner[len(drawn)], from)
-        if len(drawn) < len(steps) and as_step(steps[-1]).smooth {
-            constrain smoothly(segment[len(drawn) - 1], segment[len(drawn)])
+    let half = len(drawn)
+    if half > 0 and closes and ending.kind != "mirrored" and not meets(segment[-1].end, from) {
+        segment[half] = line(corner[half], from)
+        if ending.kind == "close" and ending.smooth {
+            constrain smoothly(segment[half - 1], segment[half])
         }
     }
-    if len(drawn) > 0 and drawn[0].smooth {
-        assert closes or meets(end, from),
+    if half > 0 and ending.kind == "mirrored" and meets(segment[-1].end, from) {
+        assert false, "the half that `mirrored()` completes does not end where it starts"
+    } else if half > 0 and ending.kind == "mirrored" {
+        let far = segment[half - 1].end
+        let axis = if ending.is_told then ending.about else line(from, far)
+        let starts_there = meets(from, mirror(from, about: axis))
+        let turns_there = meets(far, mirror(far, about: axis))
+        if ending.is_told {
+            if starts_there { constrain offset_from(from, axis) == 0 }
+            if turns_there { constrain offset_from(far, axis) == 0 }
+        } else if abs(written(far.x - from.x)) < 0.000001 {
+            constrain far.x == from.x
+        } else if abs(written(far.y - from.y)) < 0.000001 {
+            constrain far.y == from.y
+        }
+        if not turns_there {
+            corner[half + 1] = mirror(far, about: axis)
+            segment[half] = line(far, corner[half + 1])
+        }
+        let joint = len(segment)
+        for i in 0..<half {
+            let j = half - 1 - i
+            if j > 0 {
+                corner[joint + i + 1] = mirror(corner[j], about: axis)
+            } else if not starts_there {
+                corner[joint + i + 1] = mirror(from, about: axis)
+            }
+            let home = if j == 0 and starts_there then from else corner[joint + i + 1]
+            segment[joint + i] = mirrored_back(segment[j], axis, corner[joint + i], home)
+        }
+        if ending.smooth { constrain squarely(segment[half - 1], axis) }
+        if ending.closed and not starts_there { segment[joint + half] = line(corner[joint + half], from) }
+    }
+    let end = segment[-1].end
+    if half > 0 and drawn[0].smooth {
+        assert meets(end, from),
             "the first step of an open path has nothing to go on from smoothly"
         constrain smoothly(segment[-1], segment[0])
     }
@@ -108,11 +147,24 @@ let placed_kinds = [
     "line_to", "bezier_to", "quadratic_to", "arc_radius", "arc_center", "arc_through", "arc_tangent"
 ]
 
+let last_kinds = ["close", "mirrored"]
+
 fn as_step(move: record) = move
 fn as_step(p: point) = line_to(p)
 
 // Whether two points are one as they were written.
 fn meets(a: point, b: point) = norm(written(a - b)) < 0.000001
+
+// The mirror image of a segment, which runs the other way.
+fn mirrored_back(l: line, axis: line, start: point, end: point) = line(start, end)
+fn mirrored_back(a: arc, axis: line, start: point, end: point) = arc(
+    center: mirror(a.center, about: axis),
+    start: start,
+    end: end,
+    clockwise: is_clockwise(a)
+)
+fn mirrored_back(b: bezier, axis: line, start: point, end: point) =
+    bezier(start, mirror(b.p2, about: axis), mirror(b.p1, about: axis), end)
 
 // Where a step that begins at `pen` in the direction `way` ends.
 fn step_end(
@@ -157,6 +209,11 @@ fn quarter_of(a: arc) =
 
 constraint smoothly(a, b) {
     cross(leaving(a), entering(b)) / norm(leaving(a)) / norm(entering(b)) == 0
+}
+
+// A segment ends square to the axis, so that it goes on without a corner into its mirror image.
+constraint squarely(a, axis: line) {
+    dot(leaving(a), axis.end - axis.start) / norm(leaving(a)) / axis.length == 0
 }
 
 // --- Steps ---------------------------------------------------------------------------------------
@@ -314,6 +371,25 @@ fn quadratic_to(by: point, to: point, smooth: bool = false) =
 /// solid sail { edge = path(from: (0, 0), right(25), line_to((0, 60)), close()) }
 /// ```
 fn close(smooth: bool = false) = record(kind: "close", smooth: smooth)
+
+/// The last step of a path: back to where it starts as the mirror image of all steps before it.
+///
+/// The axis is the line through both ends of the half, which stays level or upright if it is written so, or `about` a
+/// line, `x` or `y`. Ends that are written on the axis stay on it; others are joined with their images by lines, at the
+/// start unless `closed: false`. `smooth: true` leaves no corner where the image begins.
+///
+/// ```aidl
+/// solid vase {
+///     body = path(from: (0, 0), right(15), arc_to((8, 40), radius: 30), line_to((12, 50)), mirrored(about: y_axis))
+/// }
+/// ```
+fn mirrored(closed: bool = true, smooth: bool = false) =
+    record(kind: "mirrored", about: "y", is_told: false, closed: closed, smooth: smooth)
+fn mirrored(about: line, closed: bool = true, smooth: bool = false) =
+    record(kind: "mirrored", about: about, is_told: true, closed: closed, smooth: smooth)
+fn mirrored(about: text, closed: bool = true, smooth: bool = false) =
+    record(kind: "mirrored", about: axis_of(about), is_told: true, closed: closed, smooth: smooth)
+alias close_mirrored = mirrored
 
 /// The start of a path, as its first argument.
 ///

@@ -47,9 +47,9 @@ fn level_through(p: point) = line(fixed(p), fixed(p + (1, 0)))
 fn upright_through(p: point) = line(fixed(p), fixed(p + (0, 1)))
 
 // The mirror image of a point, and how far another is from it as written.
-fn mirrored(p: point, about: line) = p - across(about) * (2 * offset_from(p, about))
+fn image_of(p: point, about: line) = p - across(about) * (2 * offset_from(p, about))
 fn across(l: line) = turned(l.end - l.start, 90deg) / l.length
-fn mirror_error(a: point, b: point, about: line) = norm(written(mirrored(a, about) - b))
+fn mirror_error(a: point, b: point, about: line) = norm(written(image_of(a, about) - b))
 
 // Whether two curves are images from start to start, as written, rather than from start to end.
 fn keeps_sense(a, b, about: line) = mirror_error(a.start, b.start, about) + mirror_error(
