@@ -28,6 +28,7 @@ FOR_THE_LIBRARY = {
     "sizes",
     "convex_corners",
     "refuse",
+    "channels",
     "outline_clearance",
 }
 """Builtins that only the library's own definitions use: they have no section in `stdlib/docs`."""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
+from aidl_lang.building.coerce import constant
+from aidl_lang.building.colors import color_of
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.scopes import Scope
@@ -109,26 +111,62 @@ def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attrib
     """Tells whether an attribute has fitting arguments, and corrects the spelling of an orientation."""
     if any(isinstance(value, Nothing) for value in values):
         return False
-    wanted = ""
-    match name, *values:
-        case ("orientation", TextVal(word)) if (meant := find(word, dict.fromkeys(ORIENTATIONS))) is not None:
-            values[:] = [TextVal(meant)]
-        case ("orientation", *_):
-            wanted = "one of `top`, `front` and `side`, as in `@orientation(front)`"
-        case ("thickness", Num() as thickness) if thickness.dimension in (None, units.LENGTH):
-            wanted = "" if thickness.value > 0 else "a thickness above 0"
-        case ("thickness", *_):
-            wanted = "a length above 0, as in `@thickness(3mm)`"
-        case ("elevation", Num() as elevation) if elevation.dimension in (None, units.LENGTH):
-            pass
-        case ("elevation", *_):
-            wanted = "a length, as in `@elevation(18mm)` or `@elevation(-3)`"
-        case ("layer" | "material" | "note", TextVal()) | ("detached",) | ("detached", bool()):
-            pass
-        case ("layer" | "material" | "note", *_):
-            wanted = f'a text, as in `@{name}("…")`'
-        case ("detached", *_):
-            wanted = "nothing, or true or false"
-    if wanted:
+    if name == "color":
+        return color_of(it, values, attribute) is not None
+    what = f"the argument of `@{attribute.name.text}`"
+    if any(constant(it, value, attribute, what) is None for value in values if isinstance(value, Num)):
+        return False
+    if wanted := _WANTED[name](values):
         it.report("E0517", f"`@{attribute.name.text}` takes {wanted}", attribute)
     return not wanted
+
+
+def _orientation(values: list[Value]) -> str:
+    word = values[0] if len(values) == 1 else None
+    meant = find(word.value, dict.fromkeys(ORIENTATIONS)) if isinstance(word, TextVal) else None
+    if meant is None:
+        return "one of `top`, `front` and `side`, as in `@orientation(front)`"
+    values[:] = [TextVal(meant)]
+    return ""
+
+
+def _thickness(values: list[Value]) -> str:
+    if (lengths := _numbers(values, units.LENGTH)) is None or len(lengths) != 1:
+        return "a length above 0, as in `@thickness(3mm)`"
+    return "" if lengths[0] > 0 else "a thickness above 0"
+
+
+def _elevation(values: list[Value]) -> str:
+    lengths = _numbers(values, units.LENGTH)
+    is_one = lengths is not None and len(lengths) == 1
+    return "" if is_one else "a length, as in `@elevation(18mm)` or `@elevation(-3)`"
+
+
+def _text(name: str) -> Callable[[list[Value]], str]:
+    def rule(values: list[Value]) -> str:
+        is_text = len(values) == 1 and isinstance(values[0], TextVal)
+        return "" if is_text else f'a text, as in `@{name}("…")`'
+
+    return rule
+
+
+def _detached(values: list[Value]) -> str:
+    return "" if not values or [type(v) for v in values] == [bool] else "nothing, or true or false"
+
+
+def _numbers(values: list[Value], dimension: units.Dimension) -> list[float] | None:
+    """Returns numbers of a dimension, or without one; None if there is anything else among the values."""
+    found = [v.value for v in values if isinstance(v, Num) and v.dimension in (None, dimension)]
+    return found if len(found) == len(values) else None
+
+
+_WANTED: Mapping[str, Callable[[list[Value]], str]] = {
+    "orientation": _orientation,
+    "thickness": _thickness,
+    "elevation": _elevation,
+    "layer": _text("layer"),
+    "material": _text("material"),
+    "note": _text("note"),
+    "detached": _detached,
+}
+"""What is said of an attribute whose arguments do not fit; "" if they do."""

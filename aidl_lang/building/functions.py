@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from aidl_lang.building import copies, lists, patterns, shapes
+from aidl_lang.building import colors, copies, lists, patterns, shapes
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_point, as_written, constant, numeric
@@ -349,6 +349,7 @@ FUNCTIONS: dict[str, Function] = {
     "len": _len,
     **lists.FUNCTIONS,
     "choice": _choice,
+    **colors.FUNCTIONS,
     "ink": ink,
     "fixed": _mark(Exactness.FIXED),
     "guess": _mark(Exactness.GUESS),

@@ -160,7 +160,7 @@ class Interpreter:
         span = self.place(node)
         written = node.span if isinstance(node, ast.Node) else node
         if span is not None and written is not None and span.source is not written.source:
-            inner = message if code == "E0604" else f"in the library, {message}"
+            inner = message if code in ("E0525", "E0604") else f"in the library, {message}"
             message = f"`{span.one_line}` does not work out: {inner}"
             if any(d.code == code and d.span == span for d in self.diagnostics):
                 return  # the same cause, met again

@@ -81,8 +81,6 @@ def instantiate(
         around = _around(template.scope, definition.name.text, structure)
         body = Scope(around, structure, labels=scope.labels)
         structure.scope = body
-        read_attributes(it, structure, definition.attributes, body)
-        read_attributes(it, structure, node.attributes, scope)  # in the scope outside the template
         own_names(body, structure)
         for parameter, (key, kind, _) in zip(
             definition.parameters or (), template.signature.parameters, strict=True
@@ -92,6 +90,8 @@ def instantiate(
                 value = default_of(it, parameter, kind, Env(body, structure, Reach.OWN))
             where = _argument_node(template.node, key) or parameter
             body.values[key] = passed(it, key, value, structure, here, where)
+        read_attributes(it, structure, definition.attributes, body)
+        read_attributes(it, structure, node.attributes, scope)  # in the scope outside the template
         if definition.placement is not None:
             _place(it, structure, definition.placement, body)
         if framed is not None:

@@ -135,6 +135,8 @@ class Resolver:
         for parameter in node.parameters or ():
             self._parameter(parameter, node, inner)
         if isinstance(node, ast.Structure):
+            if node.parameters is not None:
+                self._attributes(node.attributes, inner)  # a template's may be its parameters
             inner.own_name = Symbol(
                 node.name.text, SymbolKind.STRUCTURE, node, scope.owner, [node.name], [node]
             )
@@ -205,7 +207,8 @@ class Resolver:
         if isinstance(node, ast.Structure):
             self._indices(node.indices, scope)
             self._placement(node.placement, scope)
-            self._attributes(node.attributes, scope)
+            if node.parameters is None:
+                self._attributes(node.attributes, scope)
         self.definition(node, scope)
 
     def _for(self, node: ast.For, scope: SymbolScope) -> None:

@@ -16,10 +16,10 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.colors import rgb
 from aidl_lang.export import Exported, Job
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.dxf_layers import Layers
-from aidl_lang.geometry.colors import rgb
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import TAU, ends, point, round_range

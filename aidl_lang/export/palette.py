@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from aidl_lang.geometry.colors import rgb
+from aidl_lang.common.colors import rgb
 
 FILLS = (
     "#a7bcd6",  # slate blue

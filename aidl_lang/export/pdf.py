@@ -14,11 +14,11 @@ from functools import singledispatchmethod
 from typing import Any
 
 from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.colors import rgb
 from aidl_lang.common.numbers import size_text
 from aidl_lang.export import ExportError
 from aidl_lang.export.font import FAMILY, font_file
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text
-from aidl_lang.geometry.colors import rgb
 from aidl_lang.geometry.curves import Bezier, Circle, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import TAU, Bounds, derivative, ends, point, round_range
 from aidl_lang.geometry.region import Loop

@@ -36,11 +36,11 @@ from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from OCP.XSControl import XSControl_WorkSession
 
+from aidl_lang.common.colors import rgb
 from aidl_lang.common.records import record
 from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.shapes import Shapes, together
 from aidl_lang.export.solids import placed_bodies, placed_strokes
-from aidl_lang.geometry.colors import rgb
 from aidl_lang.geometry.drawing import Style
 from aidl_lang.geometry.joints import jointed
 from aidl_lang.geometry.placement import placement_notes

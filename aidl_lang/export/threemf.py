@@ -9,10 +9,10 @@ import lib3mf
 import numpy as np
 
 from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.colors import rgb
 from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.mesh import Mesh, meshes, printable
 from aidl_lang.export.palette import body_fill
-from aidl_lang.geometry.colors import rgb
 
 _NAMES = uuid.UUID("6f0a1d5e-6f6b-5c1a-9c53-3d9a4f7b2c10")
 """Namespace for ids, which are derived from names, so that the same drawing gives the same file."""

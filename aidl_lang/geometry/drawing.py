@@ -9,10 +9,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property, partial
 
+from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, ordered
 from aidl_lang.common.records import record
 from aidl_lang.geometry.bodies import Bodies, IdleHole, LooseCurves, Mass
-from aidl_lang.geometry.colors import css_color
 from aidl_lang.geometry.contacts import Contact, Contacts, Solid, contacts
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Piece
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, Bounds, bounds, is_finite
@@ -28,7 +28,7 @@ from aidl_lang.geometry.legibility import (
 )
 from aidl_lang.geometry.measures import Measures, measure, region_bounds
 from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
-from aidl_lang.geometry.notes import color_note, detached_notes, finding_note, gap_note, unusable_note
+from aidl_lang.geometry.notes import detached_notes, finding_note, gap_note, unusable_note
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.seams import visible_seams
@@ -133,7 +133,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     network, walk, masses, traced, gaps = _closed(model.root, Network(curves, boxes), shapes)
     notes += [gap_note(gap) for gap in gaps]
     regions = {path: outline.region for path, outline in traced.items()}
-    styles = _styles(model.root, notes)
+    styles = _styles(model.root)
     bodies = tuple(
         Body(path, regions[path], styles[path], region_bounds(regions[path]))
         for path in (m.structure.path for m in masses)
@@ -271,18 +271,13 @@ def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:
     return list(cut.islands)
 
 
-def _styles(root: SolvedStructure, notes: list[Diagnostic]) -> dict[str, Style]:
+def _styles(root: SolvedStructure) -> dict[str, Style]:
     styles: dict[str, Style] = {}
 
     def visit(structure: SolvedStructure, around: Style) -> None:
         attributes = structure.attributes
-        color = around.color
-        if values := attributes.get("color"):
-            color = css_color(values) or around.color
-            if css_color(values) is None:
-                notes.append(color_note(structure, values))
         style = Style(
-            color,
+            css_color(attributes.get("color", ())) or around.color,
             _text(attributes.get("layer")) or around.layer,
             _text(attributes.get("material")) or around.material,
             _number(attributes.get("thickness"), around.thickness),
@@ -361,7 +356,7 @@ def _inked(
     lost: dict[str, list[str]] = {}
     covered: dict[str, list[str]] = {}
     for shape in shapes:
-        look = _styled(style, shape.geometry, notes)
+        look = _styled(style, shape.geometry)
         is_asked = is_own or look is not style
         numbers = shape.numbers
         hidden = ground.hides(look.color, numbers, place)
@@ -380,15 +375,10 @@ def _inked(
     notes += [covered_note(drawing, names, by) for by, names in covered.items()]
 
 
-def _styled(style: Style, geometry: SolvedGeometry, notes: list[Diagnostic]) -> Style:
+def _styled(style: Style, geometry: SolvedGeometry) -> Style:
     """Returns the style of a geometry: that of its structure, but for a colour of its own."""
-    values = geometry.attributes.get("color")
-    if not values:
-        return style
-    if (color := css_color(values)) is None:
-        notes.append(color_note(geometry, values))
-        return style
-    return replace(style, color=color)
+    color = css_color(geometry.attributes.get("color", ()))
+    return style if color is None else replace(style, color=color)
 
 
 def _colored_drawings(root: SolvedStructure) -> set[str]:

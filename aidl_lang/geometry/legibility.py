@@ -8,10 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
+from aidl_lang.common.colors import look_alike
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
-from aidl_lang.geometry.colors import look_alike
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.measures import length
 from aidl_lang.geometry.network import Network, union_bounds

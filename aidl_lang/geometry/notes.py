@@ -10,16 +10,15 @@ from functools import lru_cache
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.numbers import rough
-from aidl_lang.common.prose import did_you_mean, named
+from aidl_lang.common.prose import named
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import CoveredHoles, FilledHole, Finding, IdleHole, InnerLoop, LooseCurves
-from aidl_lang.geometry.colors import similar_colors
 from aidl_lang.geometry.contacts import Contacts
 from aidl_lang.geometry.curves import Bezier, Piece, Vec
 from aidl_lang.geometry.evaluate import LARGEST, NO_LENGTH, bounds, ends, is_finite
 from aidl_lang.geometry.gaps import Gap
 from aidl_lang.geometry.network import Network
-from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 
 GUIDE = "to guide other geometry only, write `construction` before it"
 
@@ -376,26 +375,3 @@ def unusable_note(structure: SolvedStructure, leaf: SolvedGeometry, whole: Solve
 
 _MEASURES = ("radius", "rx", "width", "length", "size", "diameter", "module")
 """Measures by which a geometry may be held open."""
-
-
-def color_note(of: SolvedStructure | SolvedGeometry, values: tuple[Scalar, ...]) -> Diagnostic:
-    written = ", ".join(map(str, values))
-    similar = similar_colors(str(values[0])) if len(values) == 1 else []
-    hints = [*did_you_mean(similar), "a colour is a CSS name, `#rrggbb`, or three numbers from 0 to 255"]
-    fix, span = None, of.span
-    if (
-        similar
-        and span
-        and (found := re.match(rf'@color\(\s*["\']?({re.escape(written)})["\']?\s*\)', span.text))
-    ):
-        place = Span(span.source, span.start + found.start(1), span.start + found.end(1))
-        fix = Fix(f"write `{similar[0]}`", (Edit(place, similar[0]),))
-    return Diagnostic(
-        "W0707",
-        f"`{written}` is no colour; `{of.path}` is drawn in its usual one",
-        span,
-        "",
-        (),
-        tuple(hints),
-        fix,
-    )

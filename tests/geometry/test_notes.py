@@ -176,16 +176,6 @@ def test_what_has_no_extent_is_not_drawn(shape):
     assert not drawing.bodies
 
 
-def test_an_unknown_color():
-    source = SourceFile("x.aidl", '@color("gren") solid s { c = circle(radius: 1) }')
-    note = only(
-        structure("solid", "s", circle("c", 0, 0, 1), color=("gren",), span=Span(source, 0, len(source.text)))
-    )
-    assert note.code == "W0707"
-    assert "did you mean `green`" in note.hints[0]
-    assert apply_fixes(source, [note])[0].startswith('@color("green") solid')
-
-
 def test_nothing_at_all():
     drawing, found = draw(model(structure("assembly", "a")))
     assert (drawing.bodies, drawing.box, found) == ((), (0, 0, 0, 0), [])

@@ -120,7 +120,7 @@ def _characters(picture: Picture, name: str, extent: Extent) -> bytes:
 
 def _label(mark: Text, picture: Picture, extent: Extent) -> Label:
     """Returns a text of the picture in cells. A turned one is written level, about its middle."""
-    from aidl_lang.geometry.colors import rgb
+    from aidl_lang.common.colors import rgb
     from aidl_lang.tools.terminal.letters import Label
 
     left, bottom, right, top = mark.box

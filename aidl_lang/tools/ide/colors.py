@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from aidl_lang.checking.builtins import ATTRIBUTES
 from aidl_lang.checking.resolving.symbols import word_meant
+from aidl_lang.common.colors import COLOR_NAMES, css_color, rgb
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.colors import COLOR_NAMES, css_color, rgb
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.view import View
 

@@ -121,7 +121,7 @@ TOPICS = (
     *("language", "geometry", "rectangles", "corners", "quadrilaterals", "triangles", "polygons", "rounds"),
     *("arcs", "figures", "profiles", "path", "spline", "text", "outlines", "operations"),
     *("constraints", "tangency", "symmetry", "measures", "relations", "placement", "arrangements", "sizes"),
-    *("clearance", "joints", "hardware", "mounts", "gear", "numbers", "exactness"),
+    *("clearance", "joints", "hardware", "mounts", "gear", "numbers", "colors", "exactness"),
 )
 """Topics that come first, in this order; the others follow by name."""
 

@@ -105,15 +105,15 @@
     "mirror" "copy" "move" "rotate" "scale" "linear_array" "grid" "polar_array" "fixed" "guess" "written"
     "nearest" "area" "perimeter" "overlaps" "sin" "cos" "tan" "asin" "acos" "atan" "atan2" "sqrt" "abs"
     "hypot" "min" "max" "sum" "floor" "ceil" "round" "len" "range" "enumerate" "zip" "reversed" "str"
-    "record" "choice" "line_to" "line_by" "right" "left" "up" "down" "forward" "horizontal_to"
+    "record" "choice" "rgb" "line_to" "line_by" "right" "left" "up" "down" "forward" "horizontal_to"
     "vertical_to" "polyline_to" "arc_to" "arc_by" "tangent_arc_to" "bezier_to" "quadratic_to" "close"
     "mirrored" "move_to" "distance" "horizontal_distance" "vertical_distance" "gap" "angle" "length"
     "radius" "diameter" "between" "anchor" "vertical_through" "horizontal_through" "clearance" "screw"
-    "clearance_diameter" "nema" "bearing" "mesh_angle" "polar" "norm" "dot" "cross" "unit" "lerp"
-    "turned" "vector" "direction" "radians" "circumcenter" "anchor_point" "anchored" "angle_between"
-    "arccos" "arcsin" "arctan" "arctan2" "close_mirrored" "dist" "distance_x" "distance_y" "fix" "ground"
-    "grounded" "horizontal_axis" "lock" "outline_distance" "point_between" "translate" "vec" "vec2"
-    "vec2d" "vector2" "vector2d" "vertical_axis" "x_distance" "y_distance"))
+    "clearance_diameter" "nema" "bearing" "mesh_angle" "mix" "lighter" "darker" "hsl" "polar" "norm"
+    "dot" "cross" "unit" "lerp" "turned" "vector" "direction" "radians" "circumcenter" "anchor_point"
+    "anchored" "angle_between" "arccos" "arcsin" "arctan" "arctan2" "close_mirrored" "dist" "distance_x"
+    "distance_y" "fix" "ground" "grounded" "horizontal_axis" "lock" "outline_distance" "point_between"
+    "translate" "vec" "vec2" "vec2d" "vector2" "vector2d" "vertical_axis" "x_distance" "y_distance"))
 
 ((call_expression function: [(identifier) @function.builtin (member_expression property: (identifier) @function.builtin)])
   (#any-of? @function.builtin

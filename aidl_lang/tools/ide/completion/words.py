@@ -13,9 +13,9 @@ from aidl_lang.checking import library
 from aidl_lang.checking.builtins import WORDED
 from aidl_lang.checking.types import PARAMETER_TYPES, AnyType, NumberType, Signature, TextType
 from aidl_lang.checking.units import UNITS, Dimension
+from aidl_lang.common.colors import COLOR_NAMES
 from aidl_lang.common.materials import densities
 from aidl_lang.common.names import fold
-from aidl_lang.geometry.colors import COLOR_NAMES
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion.context import Context
 from aidl_lang.tools.ide.completion.draft import Draft, written_out

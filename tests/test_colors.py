@@ -1,0 +1,52 @@
+"""The functions of colours, beside the same worked out another way."""
+
+from __future__ import annotations
+
+import colorsys
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from aidl_lang.common.colors import COLOR_NAMES, rgb
+from tests.amount import tries
+from tests.compiled import compiled as compiled_program
+
+NAMES = sorted(COLOR_NAMES)
+SHARES = st.integers(0, 20).map(lambda k: k / 20)
+
+
+def drawn(color: str) -> tuple[int, int, int]:
+    """Returns the colour that an expression gives a part."""
+    found = compiled_program(f"@color({color}) solid s {{ rim = circle(radius: 5) }}")
+    assert found.drawing is not None, [d.message for d in found.diagnostics]
+    style = found.drawing.styles["s"]
+    assert style.color is not None
+    return rgb(style.color)
+
+
+def near(one: tuple[int, ...], other: tuple[float, ...]) -> bool:
+    return all(abs(a - b) <= 1 for a, b in zip(one, other, strict=True))
+
+
+@given(st.integers(-360, 720), SHARES, SHARES)
+@tries(40)
+def test_hsl_is_what_python_makes_of_it(hue: int, saturation: float, lightness: float) -> None:
+    red, green, blue = colorsys.hls_to_rgb(hue % 360 / 360, lightness, saturation)
+    made = drawn(f"hsl({hue}deg, {saturation}, {lightness})")
+    assert near(made, (255 * red, 255 * green, 255 * blue))
+
+
+@given(st.sampled_from(NAMES), st.sampled_from(NAMES), SHARES)
+@tries(40)
+def test_mix_lies_on_the_way_from_one_to_the_other(one: str, other: str, share: float) -> None:
+    made = drawn(f'mix("{one}", "{other}", {share})')
+    wanted = tuple((1 - share) * a + share * b for a, b in zip(rgb(one), rgb(other), strict=True))
+    assert near(made, wanted)
+
+
+@given(st.sampled_from(NAMES), SHARES)
+@tries(20)
+def test_darker_and_lighter_leave_the_rest_of_the_way_to_black_and_white(name: str, by: float) -> None:
+    assert near(drawn(f'darker("{name}", {by})'), tuple((1 - by) * c for c in rgb(name)))
+    rest = tuple(255 - c for c in drawn(f'lighter("{name}", {by})'))
+    assert near(rest, tuple((1 - by) * (255 - c) for c in rgb(name)))
