@@ -2,7 +2,8 @@
 
 /// A trapezoid: two level sides, symmetric about its vertical axis.
 ///
-/// By its two widths and its height, or with the angle of its legs to the bottom side.
+/// By its two widths and its height, or with the angle of its legs to the bottom side; by its centre or the middle of
+/// its bottom or top side.
 ///
 /// ```aidl
 /// solid foot { body = trapezoid(bottom_width: 60, top_width: 40, height: 25) }
@@ -50,6 +51,50 @@ shape trapezoid(
     let corners = corner
     let edges = edge
     assert top_width >= 0, "the legs of this trapezoid meet below its top"
+}
+
+/// By the middle of its bottom or top side, about which it turns.
+fn trapezoid(
+    bottom_center: point,
+    bottom_width: length,
+    top_width: length,
+    height: length,
+    angle = 0deg,
+    rotatable = false
+) = trapezoid(bottom_center, -1, bottom_width, top_width, height, angle, rotatable)
+fn trapezoid(
+    top_center: point,
+    bottom_width: length,
+    top_width: length,
+    height: length,
+    angle = 0deg,
+    rotatable = false
+) = trapezoid(top_center, 1, bottom_width, top_width, height, angle, rotatable)
+
+// By the middle of a level side: `up` is -1 for the bottom, 1 for the top.
+shape trapezoid(
+    anchor: point,
+    up: integer,
+    bottom_width: length,
+    top_width: length,
+    height: length,
+    angle: turn = 0deg,
+    rotatable: bool = false
+) {
+    fn place(x: length, y: integer) = anchor + turned((x, (y - up) * height / 2), angle)
+    center = place(0, 0)
+    bottom_left = place(-bottom_width / 2, -1)
+    bottom_right = place(bottom_width / 2, -1)
+    top_right = place(top_width / 2, 1)
+    top_left = place(-top_width / 2, 1)
+    bottom = line(bottom_left, bottom_right)
+    right = line(bottom_right, top_right)
+    top = line(top_right, top_left)
+    left = line(top_left, bottom_left)
+    let corner = [bottom_left, bottom_right, top_right, top_left]
+    let edge = [bottom, right, top, left]
+    let corners = corner
+    let edges = edge
 }
 
 /// A trapezoid whose left side is upright, by its lower left corner.

@@ -46,6 +46,27 @@ shape triangle(
     let incenter = incenter_of(a, b, c)
 }
 
+/// Upright by the middle of its base, about which it turns.
+shape triangle(
+    bottom_center: point, base: length, height: length, angle: turn = 0deg, rotatable: bool = false
+) {
+    center = bottom_center + turned((0, height / 2), angle)
+    bottom_left = bottom_center + turned((-base / 2, 0), angle)
+    bottom_right = bottom_center + turned((base / 2, 0), angle)
+    apex = bottom_center + turned((0, height), angle)
+    bottom = line(bottom_left, bottom_right)
+    right = line(bottom_right, apex)
+    left = line(apex, bottom_left)
+    let a = bottom_left
+    let b = bottom_right
+    let c = apex
+    let ab = bottom
+    let bc = right
+    let ca = left
+    let centroid = (a + b + c) / 3
+    let incenter = incenter_of(a, b, c)
+}
+
 /// By its sides; `angle` is the direction of the first. Of two sides and the angle between them, or one side and
 /// the angles at its ends, too.
 fn triangle(a: point = (0, 0), ab: length, bc: length, ca: length, angle = 0deg) =

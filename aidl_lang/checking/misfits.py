@@ -261,21 +261,22 @@ def _unknown_parameter(
 ) -> bool:
     """Reports argument names that no overload knows. Returns whether there is one."""
     names = list(dict.fromkeys(name for m in misses for name, _, _ in m.signature.parameters))
-    synonyms = {w: m for w, meanings in PARAMETERS.items() for m in meanings if m in names}
+    taken = {fold(a.name.text) for a in node.arguments if a.name is not None}
+    free = [name for name in names if fold(name) not in taken]
+    synonyms = {w: m for w, meanings in PARAMETERS.items() for m in meanings if m in free}
     closest = max(misses, key=lambda m: _closeness(m, given)).signature
     wrong = [
         a.name
         for a in node.arguments
         if a.name is not None and not any(_knows(m.signature, a.name.text) for m in misses)
     ]
-    taken = {fold(a.name.text) for a in node.arguments if a.name is not None}
     for identifier in wrong:
-        like = nearest(identifier.text, [n for n in names if fold(n) not in taken], 2)
+        like = nearest(identifier.text, free, 2)
         fix = respell(identifier, like)
         is_word = len(identifier.text) <= 4 or fold(identifier.text) in WORDS
         if not like and not is_word and (near := nearest(identifier.text, synonyms)):
             like = [synonyms[near[0]]]
-            is_sure = is_slip(fold(identifier.text), near[0]) and _meanings(near[0], names) == like
+            is_sure = is_slip(fold(identifier.text), near[0]) and _meanings(near[0], free) == like
             fix = Fix(f"write `{like[0]}`", (Edit(identifier.span, like[0]),), is_sure)
         hints = _called_as([closest]) if closest.parameters else ["it takes no arguments"]
         if fold(identifier.text) == "length" and {"width", "height"} <= set(names):

@@ -26,8 +26,8 @@ from aidl_lang.geometry.sections import (
 )
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 
-COVERED = 0.01
-"""Part of the letters below which a cover is not noticed."""
+COVERED = 0.1
+"""Part of the letters that may be covered: they can be read though the hand of a clock lies over them."""
 _WHOLE = 0.995
 
 

@@ -196,10 +196,15 @@ def triangle_of_corners(n: Draw) -> tuple[str, float, float]:
     return f"triangle(a: {a}, b: {b}, c: {c})", *polygon_measures([a, b, c])
 
 
-@form
-def triangle_on_a_base(n: Draw) -> tuple[str, float, float]:
-    b, h = n(1, 50), n(1, 50)
-    return f"triangle(base: {b}, height: {h})", b * h / 2, b + 2 * hypot(b / 2, h)
+def triangle_on_a_base(place: str) -> Form:
+    def made(n: Draw) -> tuple[str, float, float]:
+        b, h = n(1, 50), n(1, 50)
+        return f"triangle({place}base: {b}, height: {h})", b * h / 2, b + 2 * hypot(b / 2, h)
+
+    return made
+
+
+FORMS += [triangle_on_a_base(place) for place in ("", "bottom_center: (3, 4), ")]
 
 
 @form
@@ -302,11 +307,16 @@ def pentagram(n: Draw) -> tuple[str, float, float]:
 # --- Four corners ----------------------------------------------------------------------------------
 
 
-@form
-def trapezoid(n: Draw) -> tuple[str, float, float]:
-    a, b, h = n(1, 50), n(1, 50), n(1, 50)
-    call = f"trapezoid(bottom_width: {a}, top_width: {b}, height: {h})"
-    return call, (a + b) / 2 * h, a + b + 2 * hypot((a - b) / 2, h)
+def trapezoid(place: str) -> Form:
+    def made(n: Draw) -> tuple[str, float, float]:
+        a, b, h = n(1, 50), n(1, 50), n(1, 50)
+        call = f"trapezoid({place}bottom_width: {a}, top_width: {b}, height: {h})"
+        return call, (a + b) / 2 * h, a + b + 2 * hypot((a - b) / 2, h)
+
+    return made
+
+
+FORMS += [trapezoid(place) for place in ("", "bottom_center: (3, 4), ", "top_center: (3, 4), ")]
 
 
 @form
