@@ -292,9 +292,14 @@ def nearest(curve: Piece, p: Vec) -> float:
         return _nearest_on_line(curve, p)
     if isinstance(curve, Arc | Circle):
         return _nearest_on_round(curve, p)
-    away = points(curve, _SAMPLED) - p
-    t = float(_SAMPLED[int((away * away).sum(axis=1).argmin())])
-    return _polish_nearest(curve, p, t)
+    samples = points(curve, _SAMPLED)
+    away = np.hypot(samples[:, 0] - p[0], samples[:, 1] - p[1])
+    # Another stretch of the curve may come nearer between two samples than one that has the nearest sample.
+    reach = np.abs(np.diff(samples, axis=0)).sum(axis=1).max()
+    beside = np.concatenate(([np.inf], away, [np.inf]))
+    low = np.flatnonzero((away <= beside[:-2]) & (away <= beside[2:]) & (away <= away.min() + reach))
+    found = [_polish_nearest(curve, p, float(_SAMPLED[k])) for k in low]
+    return found[0] if len(found) == 1 else min(found, key=lambda t: math.dist(point(curve, t), p))
 
 
 def _nearest_on_line(curve: Line, p: Vec) -> float:
@@ -328,7 +333,11 @@ def _polish_nearest(curve: Piece, p: Vec, t: float) -> float:
         (x, y), (dx, dy), (ax, ay) = point(curve, t), derivative(curve, t), second_derivative(curve, t)
         slope = (x - p[0]) * dx + (y - p[1]) * dy
         bend = dx * dx + dy * dy + (x - p[0]) * ax + (y - p[1]) * ay
-        low, high = (t, high) if slope < 0 else (low, t)
+        if abs(slope) <= 1e-15 * bend:
+            break
+        # Where a curve starts without speed, its distance is level, and may fall behind.
+        falls = slope < 0 or (slope == 0 >= bend and t == low)
+        low, high = (t, high) if falls else (low, t)
         before, t = t, t - slope / bend if bend > 0 else math.nan
         if not low < t < high:
             t = (low + high) / 2

@@ -1,5 +1,5 @@
-"""The points where two curves meet: closed forms for lines and circles, Newton from a sampling for the
-others.
+"""The points where two curves meet: closed forms for lines and circles, `carriers` for one of those and
+another curve, Newton from a sampling for two others.
 
 A near miss within the tolerance counts as a touch. Curves that lie on each other have no crossing here; what
 they share begins and ends at end points, which `network` places on both.
@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.geometry.carriers import on_carrier
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.evaluate import (
     derivative,
@@ -35,7 +36,14 @@ def intersections(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
     if isinstance(a, Line | Arc | Circle) and isinstance(b, Line | Arc | Circle):
         candidates = _round_candidates(a, b, tolerance)
         return _on_both(a, b, candidates, tolerance)
-    return _sampled(a, b, tolerance)
+    if isinstance(b, Line | Arc | Circle):
+        return [(t, s, p) for s, t, p in intersections(b, a, tolerance)]
+    if not isinstance(a, Line | Arc | Circle):
+        return _sampled(a, b, tolerance)
+    crossings = [(locate(a, point(b, s), tolerance), s, point(b, s)) for s in on_carrier(a, b, tolerance)]
+    found = _apart([(t, s, p) for t, s, p in crossings if t is not None], tolerance)
+    may_lie = len(found) + sum(_on(a, p, tolerance) for p in ends(b)) > 1
+    return [] if may_lie and _lie_on_each_other(a, b, tolerance) else found
 
 
 def meet(a: Piece, b: Piece, tolerance: float) -> bool:
@@ -130,6 +138,11 @@ def _sampled(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
         touch = _touch(a, b, i / na, j / nb, tolerance)
         if touch:
             found.append(touch)
+    return _apart(found, tolerance)
+
+
+def _apart(found: list[Crossing], tolerance: float) -> list[Crossing]:
+    """Returns crossings in order, one of those at one point."""
     kept: list[Crossing] = []
     for crossing in sorted(found):
         if all(math.dist(crossing[2], other[2]) > tolerance for other in kept):
