@@ -350,11 +350,12 @@ def _inked(
     is_own: bool,
     notes: list[Diagnostic],
 ) -> Iterator[Stroke]:
-    """Yields the strokes of a drawing; reports those in the colour of what they lie on and those under a
-    body.
+    """Yields the strokes of a drawing; reports those in the colour of what they lie on, and those under a
+    body unless others of the same array are seen.
     """
     lost: dict[str, list[str]] = {}
     covered: dict[str, list[str]] = {}
+    seen: set[str] = set()
     for shape in shapes:
         look = _styled(style, shape.geometry)
         is_asked = is_own or look is not style
@@ -362,7 +363,9 @@ def _inked(
         hidden = ground.hides(look.color, numbers, place)
         if (by := ground.covering(numbers, place)) is not None:
             covered.setdefault(by, []).append(shape.geometry.name)
-        elif shape.geometry.type == LETTERING:
+        else:
+            seen.add(_array(shape.geometry.name))
+        if by is None and shape.geometry.type == LETTERING:
             share, over_it = ground.covered_part(numbers, place)
             if share >= COVERED:
                 notes.append(lettering_note(drawing, shape.geometry, share, over_it))
@@ -372,7 +375,14 @@ def _inked(
         pieces = tuple(ground.network.curves[number] for number in numbers)
         yield Stroke(drawing.path, shape.geometry.path, pieces, look, over=over)
     notes += [unseen_note(drawing, names, color) for color, names in lost.items()]
-    notes += [covered_note(drawing, names, by) for by, names in covered.items()]
+    for by, names in covered.items():
+        if whole := [name for name in names if _array(name) not in seen]:
+            notes.append(covered_note(drawing, whole, by))
+
+
+def _array(name: str) -> str:
+    """Returns the name of an array without the index of one of its members."""
+    return name.partition("[")[0]
 
 
 def _styled(style: Style, geometry: SolvedGeometry) -> Style:
