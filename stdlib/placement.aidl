@@ -28,11 +28,7 @@ constraint on_circle(things: peers, center: point, diameter: length, evenly: boo
     on_circle(things, center: center, radius: diameter / 2, evenly: evenly)
 }
 constraint on_circle(
-    things: peers,
-    center: point,
-    radius: length,
-    start: angle,
-    evenly: bool = true
+    things: peers, center: point, radius: length, start: angle, evenly: bool = true
 ) {
     let turn = turn_around(things, center)
     for i in 0..<len(things) {
@@ -44,11 +40,7 @@ constraint on_circle(
     }
 }
 constraint on_circle(
-    things: peers,
-    center: point,
-    diameter: length,
-    start: angle,
-    evenly: bool = true
+    things: peers, center: point, diameter: length, start: angle, evenly: bool = true
 ) {
     on_circle(things, center: center, radius: diameter / 2, start: start, evenly: evenly)
 }
@@ -56,9 +48,7 @@ constraint on_circle(things: peers, around: circle, evenly: bool = true) {
     on_circle(things, center: around.center, radius: around.radius, evenly: evenly)
 }
 constraint on_circle(things: peers, around: circle, start: angle, evenly: bool = true) {
-    on_circle(
-        things, center: around.center, radius: around.radius, start: start, evenly: evenly
-    )
+    on_circle(things, center: around.center, radius: around.radius, start: start, evenly: evenly)
 }
 
 // The angle from one thing to the next: the sense in which most of the first guesses run.
@@ -201,6 +191,36 @@ fn anchor_word(place: text) = choice(
 fn words_of(side: text) =
     [side, side + "_center", side + "_left", side + "_right", "top_" + side, "bottom_" + side]
 
+/// The point at a share of the width and height of a box: (0, 0) is its lower left corner, (1, 1) its upper right one.
+///
+/// So what stands in a thing moves with its size, without a product for every point.
+///
+/// ```aidl
+/// solid face {
+///     param width = 40 in 30..60
+///     head = ellipse(center: origin, rx: width / 2, ry: 25)
+///     hole left_eye { v = circle(radius: 3) }
+///     hole right_eye { v = circle(radius: 3) }
+///     constrain {
+///         left_eye.center == head.spot(0.3, 0.65)
+///         right_eye.center == head.spot(0.7, 0.65)
+///     }
+/// }
+/// ```
+fn spot(of: box, x: number, y: number) = of.bottom_left + (of.width * x, of.height * y)
+
+/// The points at shares of the width and height of a box, each written as `(x, y)` from (0, 0) to (1, 1).
+///
+/// A figure of free points then fills whatever box it is given.
+///
+/// ```aidl
+/// solid bolt_of_lightning {
+///     construction room = rectangle(width: 30, height: 60)
+///     body = polygon(spots(room, [(0.3, 1), (0.8, 1), (0.6, 0.6), (1, 0.6), (0.2, 0), (0.4, 0.45), (0, 0.45)]))
+/// }
+/// ```
+fn spots(of: box, points: list) = [spot(of, p.x / 1mm, p.y / 1mm) for p in points]
+
 /// The endless upright line through a point, to be symmetric about or to lie on.
 ///
 /// ```aidl
@@ -249,3 +269,7 @@ alias spread_out = spread
 alias spread_inside = spread
 alias point_between = between
 alias anchor_point = anchor
+alias place_in = spot
+alias point_in = spot
+alias at_share = spot
+alias places_in = spots

@@ -248,5 +248,28 @@ shape kite(
     let corners = corner
 }
 
+/// A straight bar with square ends from `start` to `end`; with two widths it tapers. With round ends it is a `slot`.
+///
+/// Its corners are `outline.corner[i]`, counter-clockwise from the right of the start.
+///
+/// ```aidl
+/// solid trestle {
+///     left = strip(start: (-25, 0), end: (-4, 60), width: 5)
+///     right = strip(start: (25, 0), end: (4, 60), width: 5)
+///     rung = strip(start: (-22, 20), end: (22, 20), start_width: 6, end_width: 3)
+///     top = strip(start: (-12, 60), end: (12, 60), width: 5)
+/// }
+/// ```
+shape strip(start: point, end: point, width: length) {
+    outline = polygon(strip_corners(start, end, width / 2, width / 2))
+}
+shape strip(start: point, end: point, start_width: length, end_width: length) {
+    outline = polygon(strip_corners(start, end, start_width / 2, end_width / 2))
+}
+fn strip_corners(start: point, end: point, near: length, far: length) =
+    strip_around(start, end, near, far, turned(unit(end - start), 90deg) / 1mm)
+fn strip_around(start: point, end: point, near: length, far: length, left: point) =
+    [start - left * near, end - left * far, end + left * far, start + left * near]
+
 alias trapezium = trapezoid
 alias diamond = rhombus

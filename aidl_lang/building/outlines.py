@@ -5,10 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_written, may_read, owners_of
 from aidl_lang.building.construct import size
-from aidl_lang.building.model import SIZES, Finish, Geometry, Recipe, Structure, convert_point, reach_of
+from aidl_lang.building.model import (
+    SIZES,
+    Finish,
+    Frame,
+    Geometry,
+    Recipe,
+    Structure,
+    convert_point,
+    reach_of,
+)
 from aidl_lang.building.scopes import Candidate
 from aidl_lang.building.state import Env, Interpreter
 from aidl_lang.building.values import (
@@ -37,8 +47,9 @@ CORNER_WORDS: Mapping[str, tuple[str, ...]] = {
     "corners": ("sharp", "round"),
     "joins": ("round", "sharp"),
     "caps": ("round", "butt", "square"),
+    "start": ("here", "center", "corner"),
 }
-"""The words that choose the corners of an outline; the first is the default."""
+"""The words that choose how an outline is made; the first is the default."""
 _SYNONYMS = {"miter": "sharp", "mitre": "sharp", "mitred": "sharp", "rounded": "round", "flat": "butt"}
 
 
@@ -54,15 +65,19 @@ def _outline(kind: str, *words: str) -> Function:
             if group is None:
                 return NOTHING
             operands.append(tuple(group))
+        if kind == "tiled":
+            operands.append(_lattice(it, a, node, env))
         said = {name: _word(it, name, a.get(name), node) for name in words}
         if None in said.values() or (len(operands) < 2 and kind in ("union", "intersect", "difference")):
             return _too_few(it, kind, node) if None not in said.values() else NOTHING
         if _negative(it, a, node):
             return NOTHING
         it.count_entity(node)
-        numbers = {n: size(it, v, geometry, n) for n, v in a.items() if isinstance(v, Num)}
+        sizes = {n: v for n, v in a.items() if isinstance(v, Num) and n != "angle"}
+        numbers = {n: size(it, v, geometry, n) for n, v in sizes.items()}
         geometry.fields = dict(numbers)
-        geometry.recipe = Recipe(kind, tuple(operands), numbers, {n: w for n, w in said.items() if w})
+        chosen = {n: w for n, w in said.items() if w} | {n: "yes" for n, v in a.items() if v is True}
+        geometry.recipe = Recipe(kind, tuple(operands), numbers, chosen)
         owners = [s.bound_to for s in geometry.recipe.sources]
         owners += [owner for number in numbers.values() for owner in owners_of(number, env.here)]
         geometry.reach = reach_of(owners, env.here)
@@ -88,7 +103,28 @@ def _negative(it: Interpreter, a: Arguments, node: ast.Call) -> bool:
 def _operands(kind: str, a: Arguments) -> list[Value]:
     if kind in ("union", "intersect") or (kind == "difference" and "by" not in a):
         return list(members(a["of"]) or ())
-    return [a["of"], a["by"]] if "by" in a else [a["of"]]
+    second = a.get("within" if kind == "tiled" else "by")
+    return [a["of"]] if second is None else [a["of"], second]
+
+
+def _lattice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> tuple[Geometry, ...]:
+    """Returns points that tell how a lattice lies: the origin, a place beside and one above it, the first of
+    these turned by the angle, and where the steps lead from the origin. They go along with copies.
+    """
+    angle = a.get("angle")
+    frame = Frame(rotation=angle.expression if isinstance(angle, Num) else ex.ZERO)
+    ways = [(ex.ZERO, ex.ZERO), (ex.ONE, ex.ZERO), (ex.ZERO, ex.ONE), frame.turn(ex.ONE, ex.ZERO)]
+    for name in ("by", "row"):
+        if isinstance(p := a.get(name), PointVal):
+            ways.append(frame.turn(p.x.expression, p.y.expression))
+    points = [PointVal(length(x), length(y)) for x, y in ways]
+    return tuple(_as_point(it, p, node, env) for p in points)
+
+
+def _as_point(it: Interpreter, p: PointVal, node: ast.Call, env: Env) -> Geometry:
+    """Returns a point as geometry, which an outline may be made of."""
+    reach = reach_of(owners_of(p, env.here), env.here)
+    return Geometry("point", env.here, it.place(node), {"at": p}, reach=reach)
 
 
 def _too_few(it: Interpreter, kind: str, node: ast.Call) -> Value:
@@ -114,8 +150,7 @@ def _sources(it: Interpreter, kind: str, value: Value, node: ast.Call, env: Env)
     found: list[Geometry] = []
     for item in _flat(value):
         if isinstance(item, PointVal) and kind == "hull":
-            reach = reach_of(owners_of(item, env.here), env.here)
-            item = Geometry("point", env.here, it.place(node), {"at": item}, reach=reach)
+            item = _as_point(it, item, node, env)
         if not isinstance(item, Geometry) or (item.type == "point" and kind != "hull"):
             hint = (
                 "name the outline in it, as in `plate.outline`"
@@ -141,13 +176,18 @@ def _flat(value: Value) -> Iterator[Value]:
             yield from _flat(item)
 
 
+_KEPT = {"offset": 0, "tiled": 1}
+"""The operands that stay drawn: the source of an offset, and the region that is filled."""
+
+
 def _take_over(geometry: Geometry, env: Env) -> None:
-    """Turns the sources into guides, which are not drawn themselves; except that of an offset."""
+    """Turns the sources into guides, which are not drawn themselves."""
     assert geometry.recipe is not None
     keep_unnamed(geometry)
     here = env.scope.declaring().container or env.here
+    kept = geometry.recipe.operands[_KEPT[geometry.recipe.kind]] if geometry.recipe.kind in _KEPT else ()
     for source in geometry.recipe.sources:
-        if source.container is here and geometry.recipe.kind != "offset":
+        if source.container is here and source not in kept:
             source.construction = True
 
 
@@ -326,6 +366,7 @@ OPERATIONS: Mapping[str, Function] = {
     "difference": _outline("difference"),
     "cut": _outline("difference"),
     "clip": _outline("clip"),
+    "tiled": _outline("tiled", "start"),
     "fillet": _finish("fillet"),
     "chamfer": _finish("chamfer"),
 }

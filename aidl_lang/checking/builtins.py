@@ -65,6 +65,7 @@ difference(of: list)
 cut(of: list)
 cut(of, by)
 clip(of, by)
+tiled(of, within, by: point, row: point?, angle: angle?, start: text?, whole: bool?, width: length?)
 fillet(of, radius: length)
 chamfer(of, size: length, second: length?)
 chamfer(of, distance: length, second: length?)
@@ -113,7 +114,9 @@ def _table() -> dict[str, tuple[Signature, ...]]:
 
 SIGNATURES: Mapping[str, tuple[Signature, ...]] = _table()
 
-OUTLINES = frozenset(("offset", "shell", "thick", "hull", "union", "intersect", "difference", "cut", "clip"))
+OUTLINES = frozenset(
+    ("offset", "shell", "thick", "hull", "union", "intersect", "difference", "cut", "clip", "tiled")
+)
 """Operations that make an outline of others by exact geometry, after solving."""
 
 EDITS = frozenset({"move", "translate", "rotate", "scale"})
@@ -130,10 +133,18 @@ CUTS = frozenset(
 )
 """Ready-made cuts of the library: holes in a solid or an assembly, outlines elsewhere."""
 
+FILLINGS = frozenset(
+    (
+        *("hatching", "crosshatch", "bricks", "tiles", "shingles", "planks", "ribs", "knurling", "dots"),
+        *("scales", "threads", "mesh", "honeycomb", "wood_grain", "slats", "checkers"),
+    )
+)
+"""Patterns of the library that fill an outline: each is made by `tiled`."""
+
 COPYING = frozenset({"mirror", "copy"}) | EDITS
 """Operations whose results are their operands, elsewhere."""
 
-DERIVING = COPYING | OUTLINES
+DERIVING = COPYING | OUTLINES | FILLINGS
 """Operations that make new geometry, or a new structure, of one that is there, an ancestor's included."""
 
 FINISHES = frozenset({"fillet", "chamfer"})
@@ -142,7 +153,7 @@ FINISHES = frozenset({"fillet", "chamfer"})
 WORDS = frozenset(
     (
         *("x", "y", "left", "right", "center", "top", "bottom", "middle", "horizontal", "vertical", "both"),
-        *("sharp", "miter", "round", "butt", "square"),
+        *("sharp", "miter", "round", "butt", "square", "here", "corner"),
     )
 )
 """Words that may stand bare as an argument, as in `axis: x` and `align: left`."""

@@ -35,6 +35,11 @@ def common(a: Region, b: Region) -> Region:
     return _combined((a, b), intersection)
 
 
+def within(cover: Region, regions: Sequence[Region]) -> Region:
+    """Returns what of some regions lies in a cover."""
+    return _combined((cover, *regions), lambda base, *sections: intersection(base, union(sections)))
+
+
 def overlap_area(a: Region, b: Region) -> float:
     """Returns the area of the intersection of two regions, mm²."""
     return area(common(a, b))

@@ -1,21 +1,127 @@
-"""Open curves cut to the inside of a region."""
+"""Curves cut to the inside of a region, each by itself: they are not cut where they cross each other."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from itertools import pairwise
 
-from aidl_lang.geometry.boolean import section_of
-from aidl_lang.geometry.curves import Piece
-from aidl_lang.geometry.network import Network
+import numpy as np
+
+from aidl_lang.common.cancelling import checkpoint
+from aidl_lang.common.records import record
+from aidl_lang.geometry.curves import Piece, Vec
+from aidl_lang.geometry.evaluate import bounds, ends, is_closed, locate, part, point
+from aidl_lang.geometry.intersect import intersections
+from aidl_lang.geometry.nearness import inside, near_rows
+from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.sections import inside_mask
+from aidl_lang.geometry.separation import meeting
+from aidl_lang.geometry.tessellate import region_polygons
+
+
+@record(slots=True)
+class Clipped:
+    """The parts of a curve that lie inside; `is_whole` if no part of it lies outside."""
+
+    inner: tuple[Piece, ...]
+    is_whole: bool
+
+
+@record(slots=True)
+class _Stretch:
+    """The part of a curve from one cut to the next; its parameters may run past 1 on a closed curve."""
+
+    t0: float
+    t1: float
+    start: Vec
+    end: Vec
+    on_border: bool
 
 
 def clipped(curves: Sequence[Piece], region: Region) -> list[Piece]:
-    """Returns the parts of curves that lie inside."""
-    pieces = [p for loop in region.loops for p in loop.pieces]
-    network = Network([*pieces, *curves])
-    section = section_of(network, region, 0)
-    uses = [use for of_curve in network.uses[len(pieces) :] for use in of_curve]
-    within = inside_mask(section, network.midpoints([edge for edge, _ in uses]))
-    return [network.piece(use) for use, is_inside in zip(uses, within, strict=True) if is_inside]
+    """Returns the parts of curves that lie inside, without what runs along the border."""
+    return [piece for one in clipped_each(curves, region) for piece in one.inner]
+
+
+def clipped_each(curves: Sequence[Piece], region: Region) -> list[Clipped]:
+    """Returns for each curve what of it lies inside."""
+    if not curves or not region:
+        return [Clipped((), is_whole=False) for _ in curves]
+    boxes = np.concatenate((np.array([bounds(c) for c in curves]), region.boxes))
+    size = float((boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).max()) or 1.0
+    tolerance = RELATIVE_TOLERANCE * size
+    borders = _borders(curves, region, tolerance)
+    stretches = [_stretches(c, own, tolerance) for c, own in zip(curves, borders, strict=True)]
+    spots = [point(c, _middle(s)) for c, of in zip(curves, stretches, strict=True) for s in of]
+    polygons = region_polygons(region, CHORD * size)
+    within = iter(inside(polygons, np.array(spots).reshape(-1, 2)).tolist())
+    return [_clipped(c, of, [next(within) for _ in of]) for c, of in zip(curves, stretches, strict=True)]
+
+
+def _borders(curves: Sequence[Piece], region: Region, tolerance: float) -> list[list[Piece]]:
+    """Returns for each curve the pieces of the border that it may meet."""
+    every, count = [*curves, *region.pieces], len(curves)
+    near = near_rows([bounds(c) for c in every], tolerance)
+    near = near[(near[:, 0] < count) & (near[:, 1] >= count)]
+    own_ends = np.arange(2 * len(every)).reshape(-1, 2)  # they share none
+    found: list[list[Piece]] = [[] for _ in curves]
+    for i, j in meeting(every, near, tolerance, own_ends, np.zeros((0, 2))).tolist():
+        found[i].append(every[j])
+    return found
+
+
+def _stretches(curve: Piece, borders: Sequence[Piece], tolerance: float) -> list[_Stretch]:
+    """Returns a curve in parts between the places where it meets the border."""
+    checkpoint()
+    cuts: list[tuple[float, Vec]] = []
+    for border in borders:
+        cuts += [(t, p) for t, _, p in intersections(curve, border, tolerance)]
+        for p in ends(border):
+            if (t := locate(curve, p, tolerance)) is not None:
+                cuts.append((t, p))
+    start, end = ends(curve)
+    cuts.sort(key=lambda cut: cut[0])
+    if not is_closed(curve):
+        cuts = [(0.0, start), *cuts, (1.0, end)]
+    elif cuts:
+        cuts.append((cuts[0][0] + 1, cuts[0][1]))
+    else:
+        cuts = [(0.0, start), (1.0, end)]
+    apart = cuts[:1]
+    for t, p in cuts[1:]:
+        t0, before = apart[-1]
+        if max(math.dist(before, point(curve, (t0 + t) / 2)), math.dist(before, p)) > tolerance:
+            apart.append((t, p))
+        elif t == cuts[-1][0] and len(apart) > 1:
+            apart[-1] = (t, p)
+    return [_stretch(curve, *before, *after, borders, tolerance) for before, after in pairwise(apart)]
+
+
+def _stretch(
+    curve: Piece, t0: float, start: Vec, t1: float, end: Vec, borders: Sequence[Piece], tolerance: float
+) -> _Stretch:
+    middle = point(curve, (t0 + t1) / 2)
+    on_border = any(locate(border, middle, 2 * tolerance) is not None for border in borders)
+    return _Stretch(t0, t1, start, end, on_border)
+
+
+def _middle(stretch: _Stretch) -> float:
+    return (stretch.t0 + stretch.t1) / 2
+
+
+def _clipped(curve: Piece, stretches: Sequence[_Stretch], within: Sequence[bool]) -> Clipped:
+    inner: list[_Stretch] = []
+    for stretch, is_within in zip(stretches, within, strict=True):
+        if not is_within or stretch.on_border:
+            continue
+        if inner and inner[-1].t1 == stretch.t0:
+            before = inner.pop()
+            stretch = _Stretch(before.t0, stretch.t1, before.start, stretch.end, on_border=False)
+        inner.append(stretch)
+    if len(inner) > 1 and inner[-1].t1 == inner[0].t0 + 1:
+        last, first = inner.pop(), inner[0]
+        inner[0] = _Stretch(last.t0, first.t1 + 1, last.start, first.end, on_border=False)
+    is_whole = all(s.on_border or is_in for s, is_in in zip(stretches, within, strict=True))
+    pieces = (curve if s.t1 - s.t0 == 1 else part(curve, s.t0, s.t1, s.start, s.end) for s in inner)
+    return Clipped(tuple(pieces), is_whole)

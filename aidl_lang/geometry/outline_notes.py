@@ -14,7 +14,8 @@ from aidl_lang.geometry.notes import at
 from aidl_lang.geometry.solved import Finish, Recipe, SolvedGeometry, SolvedStructure
 
 Leaves = Sequence[tuple[SolvedGeometry, Piece]]
-
+_ONE_WAY = 5
+"""Points of a lattice that has no second step."""
 _OPERATION = {"difference": "cut"}
 
 
@@ -45,6 +46,10 @@ def nothing_left(g: SolvedGeometry, recipe: Recipe, depth: float | None = None) 
         case "difference":
             message = f"nothing is left of `{sources[0]}` in `{g.path}`: it is cut away whole"
             hint = "look at the order: `cut(a, b)` is a without b"
+        case "tiled":
+            region, whole = recipe.operands[1][0].name, " whole" if "whole" in recipe.words else ""
+            message = f"no{whole} copy of the cell of `{g.path}` lies in `{region}`"
+            hint = "make the cell smaller or the steps shorter, or the region larger"
         case _:
             message = f"{named(sources)} have nothing in common, so `{g.path}` is empty"
             hint = "place them so that they overlap, as they shall in the drawing"
@@ -64,6 +69,29 @@ def not_closed(g: SolvedGeometry, recipe: Recipe, operand: Iterable[SolvedGeomet
             "close the outline, sharing the end points",
             f"for a stroke along open curves: `thick({names[0]}, 4)`",
         ),
+    )
+
+
+def no_lattice(g: SolvedGeometry, recipe: Recipe) -> Diagnostic:
+    """Returns the diagnostic on steps that lead to no second copy, or along one line."""
+    one = len(recipe.operands[2]) == _ONE_WAY
+    return Diagnostic(
+        "E0356",
+        f"the steps of `{g.path}` {'have no length' if one else 'lead along one line'}",
+        g.span,
+        "the copies would lie on each other" if one else "copies in rows need two ways",
+        hints=("a pitch, a width and a height are above 0; `by: (10, 0), row: (0, 8)` leads two ways",),
+    )
+
+
+def too_many(g: SolvedGeometry, recipe: Recipe, count: int, most: int) -> Diagnostic:
+    region = recipe.operands[1][0].name
+    return Diagnostic(
+        "E0357",
+        f"`{g.path}` takes {count:,} copies to fill `{region}`, and {most:,} is the most",
+        g.span,
+        "too fine for this region",
+        hints=("choose longer steps (a larger pitch), or fill a smaller region",),
     )
 
 

@@ -23,6 +23,7 @@ from aidl_lang.geometry.network import Network, union_bounds, with_finer_chords
 from aidl_lang.geometry.offsets import NEAR, offset, thick
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import Box, Finish, Recipe, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.tiling import MOST, Lattice, TooMany, tiled_areas, tiled_bars, tiled_strokes
 from aidl_lang.geometry.trace import trace
 
 Leaves = Sequence[tuple[SolvedGeometry, Piece]]
@@ -62,6 +63,7 @@ class _Outliner:
     """
     finishes     of all structures; index: all geometry by path, as it was read out
     made         by path, what was worked out already: outlines as they are drawn, before finishing
+    derived      the paths of those that had no curves before
     carried_out  the finishes of the structure at hand, with their corners
     """
 
@@ -69,6 +71,7 @@ class _Outliner:
     index: Mapping[str, SolvedGeometry]
     notes: list[Diagnostic] = field(default_factory=list)
     made: dict[str, SolvedGeometry] = field(default_factory=dict)
+    derived: set[str] = field(default_factory=set)
     carried_out: dict[Finish, list[Vec]] = field(default_factory=dict)
     misfits: list[Misfit] = field(default_factory=list)
 
@@ -106,13 +109,14 @@ class _Outliner:
         if g.recipe is None or g.curve is not None or any(True for _ in _leaves(_shown(g))):
             return replace(g, parts=tuple(map(self._completed, g.parts)))
         exact = self._exact(g, g.recipe)
+        self.derived.add(g.path)
         return replace(exact, parts=(*map(self._completed, g.parts), *exact.parts))
 
     def _drawn(self, g: SolvedGeometry) -> SolvedGeometry:
         """Returns a geometry as it is drawn: a shape that the library made by an operation, by exact geometry
         if that differs (the source has fillets, or less is left than the formula says).
         """
-        if g.recipe is None or not any(True for _ in _leaves(_shown(g))):
+        if g.recipe is None or g.path in self.derived or not any(True for _ in _leaves(_shown(g))):
             return replace(g, parts=tuple(map(self._drawn, g.parts)))
         exact = self._exact(g, g.recipe)
         regions = [_region([_shown(one)]) for one in (g, exact)]
@@ -161,6 +165,8 @@ class _Outliner:
         groups: Sequence[Sequence[SolvedGeometry]],
         curves: Sequence[Sequence[Piece]],
     ) -> list[Piece]:
+        if recipe.kind == "tiled":
+            return self._tiled(g, recipe, groups, curves)
         regions = [_region(group) for group in groups]
         if recipe.kind == "clip" and not regions[0] and regions[1]:
             lines = clipped(curves[0], regions[1])
@@ -171,6 +177,38 @@ class _Outliner:
             self.notes.append(notes.not_closed(g, recipe, empty[0]))
             return []
         return self._combined(g, recipe, regions)
+
+    def _tiled(
+        self,
+        g: SolvedGeometry,
+        recipe: Recipe,
+        groups: Sequence[Sequence[SolvedGeometry]],
+        curves: Sequence[Sequence[Piece]],
+    ) -> list[Piece]:
+        region = _region(groups[1])
+        if not region:
+            self.notes.append(notes.not_closed(g, recipe, recipe.operands[1]))
+            return []
+        points = [p for one in groups[2] if isinstance(p := one.values.get("at"), tuple)]
+        lattice = Lattice.through(points, region, recipe.words["start"])  # type: ignore[arg-type]
+        if not lattice.is_possible:
+            self.notes.append(notes.no_lattice(g, recipe))
+            return []
+        cell, area = [lattice.turned(c) for c in curves[0]], lattice.turned_region(_region(groups[0]))
+        whole, width = "whole" in recipe.words, recipe.numbers.get("width", 0.0)
+        try:
+            if area:
+                found = _pieces(tiled_areas(area, region, lattice, whole=whole))
+            elif width > 0:
+                found = _pieces(tiled_bars(cell, region, lattice, width))
+            else:
+                found = tiled_strokes(cell, region, lattice, whole=whole)
+        except TooMany as many:
+            self.notes.append(notes.too_many(g, recipe, many.count, MOST))
+            return []
+        if not found:
+            self.notes.append(notes.nothing_left(g, recipe))
+        return found
 
     def _combined(self, g: SolvedGeometry, recipe: Recipe, regions: Sequence[Region]) -> list[Piece]:
         sharp = recipe.words.get("corners") != "round"

@@ -248,6 +248,16 @@ def _anchor(ev: Evaluator, of: Any, place: str = "center") -> Point:
     return point_at((x, y))
 
 
+def _spot(ev: Evaluator, of: Any, x: Any, y: Any) -> Point:
+    box, (across, up) = ev.box(of), (ev.number(share).value for share in (x, y))
+    return point_at((box.left * (1 - across) + box.right * across, box.bottom * (1 - up) + box.top * up))
+
+
+def _spots(ev: Evaluator, of: Any, points: Any) -> list[Point]:
+    places = [ev.point(p).xy for p in ev.items(points)]
+    return [_spot(ev, of, Num(x), Num(y)) for x, y in places]
+
+
 def _circumcenter(ev: Evaluator, a: Any, b: Any, c: Any) -> Point:
     """Where the bisectors of two sides meet."""
     p, q, r = (ev.point(x).xy for x in (a, b, c))
@@ -378,6 +388,8 @@ FUNCTIONS: dict[str, Function] = {
     "linethrough": _line_through,
     "between": _between,
     "anchor": _anchor,
+    "spot": _spot,
+    "spots": _spots,
     "circumcenter": _circumcenter,
     "mirror": _mirror,
     "range": _numbers,

@@ -141,6 +141,7 @@ symmetric([flat.start, dot, flat.end], about: line((5, 0), (5, 1))); symmetric(f
 clearance(round, ball.c) == hypot(25, 1) - 9; clearance(dot, up) == 5; clearance(dot, round) == 0
 clearance(up, flat) <= 0
 between(dot, up.start) == (7.5, 0); between(dot, up.start, 0.2).x == 6; anchor(low, "top_left") == (0, 10)
+low.spot(0.25, 0.5) == (5, 5); spots(low, [(0, 1), (1, 0)])[1] == (20, 0)
 coincident(ball.origin, vertical_through(origin)); coincident(up.end, line_through(dot, 45deg))
 len(range(2, 9, 3)) == 3; sum([i * x for i, x in enumerate([5, 7])]) == 7
 sum([a + b for a, b in zip([1], [2])]) == 3
@@ -194,6 +195,7 @@ symmetric([flat.start, up.end, flat.end], about: line((5, 0), (5, 1)))
 symmetric(flat.start, flat.end, about: 4)
 clearance(round, ball.c) == 16; clearance(dot, up) == 4; clearance(dot, round) >= 1; clearance(up, flat) >= 1
 between(dot, up.start) == (7, 0); between(dot, up.start, 0.2).x == 7; anchor(low, "top_left") == (0, 0)
+low.spot(0.5, 0.25) == (5, 5); spots(low, [(0, 1), (1, 0)])[0] == (0, 0)
 coincident(dot, vertical_through(origin)); coincident(up.end, line_through(dot, 40deg))
 len(range(2, 9, 3)) == 2; sum([i * x for i, x in enumerate([5, 7])]) == 12
 sum([a + b for a, b in zip([1], [2])]) == 2

@@ -316,3 +316,47 @@ def test_six_panels_make_a_box() -> None:
         count += within & shapely.contains_xy(outline, points[:, u], points[:, v])
     assert np.all(count[inside] == 0)
     assert np.all(count[~inside] == 1)
+
+
+# --- Free curves -----------------------------------------------------------------------------------
+
+
+def sampled(parts: list[dict[str, Any]], fine: int = 400) -> list[complex]:
+    return [curve(part, k / fine) for part in parts for k in range(fine)] + [curve(parts[-1], 1.0)]
+
+
+def test_a_wave_is_a_sine() -> None:
+    program = "drawing d { w = wave(start: fixed((2, 1)), end: fixed((38, 28)), amplitude: 4, waves: 2.5) }"
+    parts = geometry(program)["w"]["parts"]
+    way = 36 + 27j
+    for p in sampled(indexed(parts, "segment")):
+        share = (p - (2 + 1j)) / way
+        height = share.imag * abs(way)
+        assert height == pytest.approx(4 * math.sin(math.tau * 2.5 * share.real), abs=4e-3)
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_a_spiral_grows_evenly(sense: int) -> None:
+    told = "true" if sense < 0 else "false"
+    program = f"""drawing d {{
+        s = spiral(center: fixed((3, 4)), start_radius: 2, end_radius: 20, turns: 3.25, clockwise: {told})
+    }}"""
+    points = sampled(indexed(geometry(program)["s"]["parts"], "segment"), fine=40)
+    turned = np.unwrap([cmath.phase(p - (3 + 4j)) for p in points]) * sense
+    assert turned[-1] == pytest.approx(3.25 * math.tau)
+    for p, angle in zip(points, turned, strict=True):
+        assert abs(p - (3 + 4j)) == pytest.approx(2 + 18 * angle / turned[-1], abs=5e-3)
+
+
+@pytest.mark.parametrize(("dx", "dy"), [(40, 15), (-40, 15), (40, -15), (-10, -30)])
+@pytest.mark.parametrize("upright", [False, True])
+def test_an_s_is_smooth(dx: int, dy: int, upright: bool) -> None:
+    told = "true" if upright else "false"
+    program = f"drawing d {{ s = s_curve(start: fixed((0, 0)), end: fixed(({dx}, {dy})), upright: {told}) }}"
+    parts = geometry(program)["s"]["parts"]
+    points = sampled([parts["first"], parts["second"]], fine=2000)
+    ways = [b - a for a, b in pairwise(points)]
+    level = [(way.real if upright else way.imag) / abs(way) for way in (ways[0], ways[-1])]
+    assert level == pytest.approx([0, 0], abs=2e-3)
+    assert all(abs(cmath.phase(b / a)) < 5e-3 for a, b in pairwise(ways))
+    assert points[-1] == pytest.approx(complex(dx, dy))

@@ -25,6 +25,7 @@ from aidl_lang.syntax import ast
 from tests.amount import tries
 
 FILES = (
+    "arches",
     "arcs",
     "corners",
     "figures",
@@ -34,8 +35,9 @@ FILES = (
     "rectangles",
     "rounds",
     "triangles",
+    "wheels",
 )
-"""The library's files of shapes; paths, gears, letters and hardware have tests of their own."""
+"""The library's files of shapes; paths, curves, gears, letters and hardware have tests of their own."""
 
 INTERNAL = frozenset({"anchor", "width_to", "length_ab", "points"})
 """Parameters of overloads that others stand on, and of `polygon` and `polyline`, which have a test below."""
@@ -367,6 +369,21 @@ def kite(n: Draw) -> tuple[str, float, float]:
     return call, w * h / 2, 2 * hypot(w / 2, s) + 2 * hypot(w / 2, h - s)
 
 
+@form
+def strip(n: Draw) -> tuple[str, float, float]:
+    x, y, w = n(10, 50), n(-50, 50), n(1, 20)
+    length = hypot(x, y)
+    return f"strip(start: (0, 0), end: ({x}, {y}), width: {w})", length * w, 2 * (length + w)
+
+
+@form
+def tapered_strip(n: Draw) -> tuple[str, float, float]:
+    x, y, a, b = n(10, 50), n(-50, 50), n(1, 20), n(1, 20)
+    length = hypot(x, y)
+    call = f"strip(start: (0, 0), end: ({x}, {y}), start_width: {a}, end_width: {b})"
+    return call, length * (a + b) / 2, a + b + 2 * hypot(length, (a - b) / 2)
+
+
 # --- Profiles: bars with right angles ----------------------------------------------------------------
 
 
@@ -670,6 +687,169 @@ def reuleaux_of_five(n: Draw) -> tuple[str, float, float]:
     r = w / (2 * cos(math.pi / 10))
     inside = 5 / 2 * r**2 * sin(tau / 5)
     return f"reuleaux(width: {w}, sides: 5)", inside + 5 * segment_measures(w, math.pi / 5)[0], math.pi * w
+
+
+# --- Arches ------------------------------------------------------------------------------------------
+
+
+def standing(anchor: str, make: Form) -> Form:
+    """The same outline, held by the middle of its foot or by its center."""
+
+    def held(n: Draw) -> tuple[str, float, float]:
+        call, area, edges = make(n)
+        return call.replace("(", f"({anchor}: (3, 4), ", 1), area, edges
+
+    held.__qualname__ = f"{make.__qualname__} by {anchor}"
+    return held
+
+
+def round_arch(n: Draw) -> tuple[str, float, float]:
+    w, straight = n(2, 40), n(1, 40)
+    r = w / 2
+    call = f"arch(width: {w}, height: {straight + r})"
+    return call, w * straight + math.pi * r**2 / 2, w + 2 * straight + math.pi * r
+
+
+def flat_arch(n: Draw) -> tuple[str, float, float]:
+    r, sweep, straight = n(5, 50), radians(n(20, 179)), n(1, 40)
+    w, rise = 2 * r * sin(sweep / 2), r * (1 - cos(sweep / 2))
+    area, edges = segment_measures(r, sweep)
+    call = f"arch(width: {w}, height: {straight + rise}, rise: {rise})"
+    return call, area + w * straight, edges + 2 * straight
+
+
+def gothic_top(w: float, rise: float) -> tuple[float, float]:
+    """Of what lies over the springing of a pointed arch: a triangle and a segment on each of its sides; the
+    length of its two arcs.
+    """
+    side = hypot(w / 2, rise)
+    lean = math.pi / 2 - math.atan2(rise, w / 2)  # of the side, to the upright in which its arc begins
+    r = side / (2 * sin(lean))
+    area, _ = segment_measures(r, 2 * lean)
+    return w * rise / 2 + 2 * area, 4 * r * lean
+
+
+def equilateral_arch(n: Draw) -> tuple[str, float, float]:
+    w, straight = n(2, 40), n(1, 40)
+    area, arcs = gothic_top(w, w * sqrt(3) / 2)
+    call = f"pointed_arch(width: {w}, height: {straight + w * sqrt(3) / 2})"
+    return call, area + w * straight, w + 2 * straight + arcs
+
+
+def pointed_arch(n: Draw) -> tuple[str, float, float]:
+    w, straight = n(2, 40), n(1, 40)
+    rise = n(0.51, 2) * w
+    area, arcs = gothic_top(w, rise)
+    call = f"pointed_arch(width: {w}, height: {straight + rise}, rise: {rise})"
+    return call, area + w * straight, w + 2 * straight + arcs
+
+
+def ogive(n: Draw) -> tuple[str, float, float]:
+    w = n(2, 40)
+    h = n(0.51, 3) * w
+    area, arcs = gothic_top(w, h)
+    return f"ogive(width: {w}, height: {h})", area, w + arcs
+
+
+def ogee_arch(n: Draw) -> tuple[str, float, float]:
+    w, straight = n(2, 40), n(1, 40)
+    rise = n(0.51, 2) * w
+    # An S bulges as much over its chord as it lacks; each of its arcs leans from upright to the chord.
+    lean = math.atan2(w / 2, rise)
+    r = hypot(w / 2, rise) / 2 / (2 * sin(lean))
+    call = f"ogee_arch(width: {w}, height: {straight + rise}, rise: {rise})"
+    return call, w * straight + w * rise / 2, w + 2 * straight + 8 * r * lean
+
+
+def measured_cubics(curves: list[list[tuple[float, float]]]) -> tuple[float, float]:
+    """Twice the area that cubic Béziers sweep about the origin, and their length, by Simpson's rule."""
+    steps = 2000
+    area = length = 0.0
+    for a, b, c, d in curves:
+        for k in range(steps + 1):
+            t = k / steps
+            weights = (1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3
+            slopes = -3 * (1 - t) ** 2, 3 * (1 - t) * (1 - 3 * t), 3 * t * (2 - 3 * t), 3 * t**2
+            x, y = (sum(w * p[i] for w, p in zip(weights, (a, b, c, d), strict=True)) for i in (0, 1))
+            u, v = (sum(w * p[i] for w, p in zip(slopes, (a, b, c, d), strict=True)) for i in (0, 1))
+            weight = (1 if k in (0, steps) else 4 if k % 2 else 2) / (3 * steps)
+            area += weight * (x * v - y * u)
+            length += weight * hypot(u, v)
+    return area, length
+
+
+def dome(n: Draw) -> tuple[str, float, float]:
+    w, h = n(2, 40), n(2, 40)
+    k = 4 / 3 * tan(math.pi / 8)
+    quarter = [(w / 2, 0.0), (w / 2, k * h), (k * w / 2, h), (0.0, h)]
+    area, length = measured_cubics([quarter])
+    assert area == pytest.approx(math.pi * w * h / 4, rel=1e-3)
+    return f"dome(width: {w}, height: {h})", area, w + 2 * length
+
+
+for _make in (round_arch, flat_arch, equilateral_arch, pointed_arch, ogive, ogee_arch, dome):
+    FORMS += [standing(anchor, _make) for anchor in ("center", "bottom_center")]
+
+
+@form
+def equilateral_shield(n: Draw) -> tuple[str, float, float]:
+    call, area, edges = equilateral_arch(n)
+    return call.replace("pointed_arch", "shield"), area, edges
+
+
+@form
+def shield(n: Draw) -> tuple[str, float, float]:
+    call, area, edges = pointed_arch(n)
+    return call.replace("pointed_arch", "shield"), area, edges
+
+
+# --- Wheels ------------------------------------------------------------------------------------------
+
+
+def wheel_form(bore: bool) -> Form:
+    def wheel(n: Draw) -> tuple[str, float, float]:
+        r, hub, spokes = n(20, 40), n(4, 10), 3 + int(n(0, 7))
+        rim = n(1, 6)
+        half = n(0.2, 0.9) * hub * sin(math.pi / spokes)
+        outer = r - rim
+        # An opening is the sector between two spokes, less what the halves of both take of it.
+        wide, narrow = asin(half / outer), asin(half / hub)
+
+        def taken(radius: float, lean: float) -> float:
+            return radius**2 * lean / 2 + half * radius * cos(lean) / 2
+
+        opening = math.pi / spokes * (outer**2 - hub**2) - 2 * (taken(outer, wide) - taken(hub, narrow))
+        edges = outer * (tau / spokes - 2 * wide) + hub * (tau / spokes - 2 * narrow)
+        edges += 2 * (outer * cos(wide) - hub * cos(narrow))
+        b = hub / 2 if bore else 0
+        call = f"wheel(radius: {r}, rim: {rim}, hub_radius: {hub}, spokes: {spokes}, spoke_width: {2 * half}"
+        area = math.pi * (r**2 - b**2) - spokes * opening
+        return call + (f", bore_radius: {b})" if bore else ")"), area, tau * (r + b) + spokes * edges
+
+    return wheel
+
+
+FORMS += [wheel_form(False), wheel_form(True)]
+
+
+@form
+def rosette(n: Draw) -> tuple[str, float, float]:
+    r, lobes, sweep = n(10, 40), 4 + int(n(0, 12)), radians(n(10, 170))
+    corner = 2 * r * sin(math.pi / lobes)
+    lobe = corner / 2 / sin(sweep / 2)
+    outer = r * cos(math.pi / lobes) + lobe * (1 - cos(sweep / 2))
+    area, _ = segment_measures(lobe, sweep)
+    call = f"rosette(outer_radius: {outer}, inner_radius: {r}, lobes: {lobes})"
+    return call, lobes * (r**2 * sin(tau / lobes) / 2 + area), lobes * lobe * sweep
+
+
+@form
+def cog(n: Draw) -> tuple[str, float, float]:
+    outer, teeth, share = n(20, 40), 2 + int(n(0, 20)), n(0.1, 0.9)
+    inner = n(0.5, 0.95) * outer
+    call = f"cog(outer_radius: {outer}, inner_radius: {inner}, teeth: {teeth}, share: {share})"
+    area = math.pi * (share * outer**2 + (1 - share) * inner**2)
+    return call, area, tau * (share * outer + (1 - share) * inner) + 2 * teeth * (outer - inner)
 
 
 # --- Figures -----------------------------------------------------------------------------------------

@@ -119,7 +119,8 @@ class Reference:
 
 TOPICS = (
     *("language", "geometry", "rectangles", "corners", "quadrilaterals", "triangles", "polygons", "rounds"),
-    *("arcs", "figures", "profiles", "path", "spline", "text", "outlines", "operations"),
+    *("arcs", "arches", "wheels", "figures", "profiles", "curves", "path", "spline", "text"),
+    *("outlines", "patterns", "operations"),
     *("constraints", "tangency", "symmetry", "measures", "relations", "placement", "arrangements", "sizes"),
     *("clearance", "joints", "hardware", "mounts", "gear", "numbers", "colors", "exactness"),
 )

@@ -49,10 +49,13 @@ assembly places {
         chin = circle(center: (333, 30), radius: 2)
         brow = circle(center: (333, 99), radius: 2)
         ray  = circle(center: (380, 40), radius: 2)
+        stamp = circle(center: (340, 70), radius: 2)
+        sign = polygon(spots(card, [(0.1, 0.1), (0.3, 0.1), (0.2, 0.3)]))
         constrain {
             coincident(tack.center, anchor(card, "top_left") + (5, -5))
             symmetric(left_ear, right_ear, about: vertical_through(card.center))
             symmetric(chin, brow, about: horizontal_through(card.center))
+            coincident(stamp.center, card.spot(0.8, 0.75))
             coincident(ray.center, line_through(b.center, 45deg))
         }
     }
