@@ -2,6 +2,8 @@
 
 /// A disc with one flat, as of a D-shaft: `height` is from the flat to the round side; the flat is on top.
 ///
+/// Lies flat side up; `center` is that of the disc.
+///
 /// ```aidl
 /// solid knob {
 ///     body = circle(center: origin, radius: 15)
@@ -29,6 +31,8 @@ fn d_shape(center: point = (0, 0), diameter: length, height: length, angle: angl
     d_shape(center: center, radius: diameter / 2, height: height, angle: angle)
 
 /// A disc with two parallel flats, `top` and `bottom`.
+///
+/// Lies with its flats level.
 ///
 /// ```aidl
 /// solid key { body = double_d(diameter: 20, across_flats: 14) }
@@ -60,6 +64,8 @@ fn double_d(center: point = (0, 0), diameter: length, across_flats: length, angl
 /// A keyhole: a round head and a slit below it, `length` from the centre of the head to that of its round end.
 ///
 /// Its edges are the arcs `head` and `foot` and the lines `left` and `right`.
+///
+/// Lies slit down; `center` is that of the head.
 ///
 /// ```aidl
 /// solid hanger_plate {
@@ -119,6 +125,8 @@ shape lens(
 
 /// A crescent: a disc from which another is taken whose centre is `offset` to the right.
 ///
+/// Lies open to the right; `center` is that of the disc.
+///
 /// ```aidl
 /// solid moon { body = crescent(outer_radius: 25, inner_radius: 21, offset: 10) }
 /// ```
@@ -151,6 +159,8 @@ shape crescent(
 }
 
 /// A Reuleaux polygon: round sides, and the same `width` in every direction; `sides` is odd.
+///
+/// Lies tip up; `center` is that of its corners.
 ///
 /// ```aidl
 /// solid drill_guide { body = reuleaux(width: 40) }

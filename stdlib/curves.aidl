@@ -4,6 +4,8 @@
 ///
 /// `segment[i]` are its quarters, `knot[i]` where it crosses the straight way. `waves` may end in a half.
 ///
+/// Lies with its first half on the left of its way.
+///
 /// ```aidl
 /// drawing sea {
 ///     for i in 0..2 { swell[i] = wave(start: (0, -8 * i), end: (100, -8 * i), amplitude: 3, waves: 5) }

@@ -4,6 +4,8 @@
 ///
 /// `width` is that of the shaft. The corners are `outline.corner[i]`, counter-clockwise from the start of the shaft.
 ///
+/// Lies pointing to the right, held at its `start`.
+///
 /// ```aidl
 /// solid pointer { body = arrow(start: (0, 0), end: (60, 30), width: 8, head_length: 20, head_width: 22) }
 /// ```
@@ -107,6 +109,8 @@ shape house(
 
 /// A drop: a circle with two straight sides that meet in a tip above it; `height` is overall.
 ///
+/// Lies tip up; `center` is that of its round side.
+///
 /// ```aidl
 /// solid pendant {
 ///     body = drop(radius: 15, height: 50)
@@ -136,6 +140,8 @@ shape drop(
 
 /// A heart; `tip` is its lowest point and `dip` the one between the lobes.
 ///
+/// Lies tip down.
+///
 /// ```aidl
 /// solid ornament { body = heart(width: 50, height: 46) }
 /// ```
@@ -159,6 +165,8 @@ shape heart(
 }
 
 /// An egg, widest a little below its middle.
+///
+/// Lies blunt end down.
 ///
 /// ```aidl
 /// solid egg_cup_rim { body = egg(width: 40, height: 54) }

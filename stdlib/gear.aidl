@@ -8,6 +8,8 @@
 /// a `tip`, `right_flank` and `left_flank`) and `root[i]`, the arc after `tooth[i]`. Below the base circle the flanks
 /// go on as radial lines; a cutter would undercut a gear of fewer than `min_teeth` teeth.
 ///
+/// Lies with tooth 0 to the right.
+///
 /// ```aidl
 /// solid wheel {
 ///     body = gear(teeth: 20, module: 2, center: origin)
@@ -207,6 +209,8 @@ shape internal_gear(
 /// A toothed bar: `center` is the middle of its pitch line, along which the teeth stand `pi * module` apart.
 ///
 /// `height` is the material below the teeth; `tooth[i]` has a `tip` and two flanks, from left to right.
+///
+/// Lies teeth up; `center` is on the pitch line.
 ///
 /// ```aidl
 /// solid bar { body = rack(teeth: 8, module: 2, height: 5) }

@@ -44,6 +44,8 @@ shape polyline(points: points) {
 /// The first corner is at `angle`, `corner[i]` and `edge[i]` go on counter-clockwise. `across_flats`, from side to
 /// side, is for an even number of sides.
 ///
+/// Lies with a corner on the right; `center` is that of its corners.
+///
 /// ```aidl
 /// solid nut {
 ///     body = regular_polygon(sides: 6, across_flats: 13)
@@ -100,6 +102,8 @@ fn regular_polygon(
 ) = regular_polygon(center, across_flats / (2 * cos(180deg / sides)), sides, angle, rotatable)
 
 /// A regular polygon of five sides; with the default angle its first corner is at the top.
+///
+/// Lies tip up; `center` is that of its corners.
 ///
 /// ```aidl
 /// solid badge { body = pentagon(side: 20) }
@@ -173,6 +177,8 @@ fn octagon(
 /// A star with `points` tips on one circle and its notches on another; the first tip is at `angle`.
 ///
 /// With one `radius` its edges run straight from tip to tip, as in a pentagram.
+///
+/// Lies tip up; `center` is that of its tips.
 ///
 /// ```aidl
 /// solid ornament { body = star(points: 5, outer_radius: 30, inner_radius: 14) }

@@ -99,6 +99,8 @@ shape trapezoid(
 
 /// A trapezoid whose left side is upright, by its lower left corner.
 ///
+/// Lies with its upright side on the left; held at `bottom_left`.
+///
 /// ```aidl
 /// solid ramp { body = right_trapezoid(bottom_width: 60, top_width: 35, height: 20) }
 /// ```
@@ -222,6 +224,8 @@ shape rhombus(
 }
 
 /// A kite, pointing down: `shoulder` is how far above the lower tip it is widest.
+///
+/// Lies with its long tip down.
 ///
 /// ```aidl
 /// solid sail { body = kite(width: 40, height: 60, shoulder: 42) }

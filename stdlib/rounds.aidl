@@ -39,6 +39,8 @@ fn ring(center: point = (0, 0), inner_diameter: length, thickness: length) =
 ///
 /// Its edges are the arc `rim` and the lines `first` and `last`.
 ///
+/// Lies from the right upwards; `center` is its tip.
+///
 /// ```aidl
 /// solid slice { body = sector(radius: 30, start_angle: 30deg, end_angle: 100deg) }
 /// ```
@@ -62,6 +64,8 @@ fn sector(center: point = (0, 0), radius: length, angle: angle, start_angle: ang
 ///
 /// By the angles between which the rim runs counter-clockwise, by the width and height of the piece (flat side
 /// down, `middle` is that of the chord), or by the ends of the chord and the radius (the smaller piece).
+///
+/// Lies flat side down by `width`; `center` is that of the disc.
 ///
 /// ```aidl
 /// solid arch { body = segment(width: 60, height: 20) }
@@ -96,6 +100,8 @@ shape segment(start: point, end: point, radius: length) {
 
 /// Half a disc, flat side down.
 ///
+/// Lies flat side down; `center` is the middle of that side.
+///
 /// ```aidl
 /// solid protractor { body = semicircle(radius: 40) }
 /// ```
@@ -109,6 +115,8 @@ fn semicircle(center: point = (0, 0), diameter: length, angle = 0deg, rotatable 
     semicircle(center: center, radius: diameter / 2, angle: angle, rotatable: rotatable)
 
 /// A quarter of a disc, to the right and above its corner (`center`).
+///
+/// Lies with its corner, `center`, at the lower left.
 ///
 /// ```aidl
 /// solid corner_shelf { body = quarter_circle(center: (0, 0), radius: 40) }
@@ -128,6 +136,8 @@ fn half_turn(center: point, radius: length, from: angle) =
 /// A piece of a ring, counter-clockwise from `start_angle` to `end_angle`.
 ///
 /// Its edges are the arcs `outer` and `inner` and the lines `first` and `last`.
+///
+/// Lies around `center`, that of the ring.
 ///
 /// ```aidl
 /// solid fan_blade {
@@ -190,6 +200,8 @@ fn ring_sector(
 /// By the centres of its ends (`start`, `end`), or by its centre and its overall `length`, or the distance of those
 /// centres (`center_distance`). Its edges are `left`, `right`, `start_cap` and `end_cap`.
 ///
+/// Lies level.
+///
 /// ```aidl
 /// solid strap {
 ///     body = slot(start: (0, 0), end: (60, 0), width: 20)
@@ -240,6 +252,8 @@ shape slot(
 }
 
 /// A slot along an arc of `radius`, from the centre of one round end at `start_angle` to the other at `end_angle`.
+///
+/// Lies around `center`, that of the arc.
 ///
 /// ```aidl
 /// solid turntable {

@@ -6,6 +6,8 @@
 /// `incenter`. One with a `base` lies level and has `bottom_left`, `bottom_right`, `apex`, `bottom`, `right` and
 /// `left` as well. A side and an angle have the names of the corners: `triangle(ab: 40, angle_a: 60deg, ca: 30)`.
 ///
+/// Lies on its base; by sides `ab` runs to the right from `a`, by one `side` `center` is the centroid.
+///
 /// ```aidl
 /// solid gusset {
 ///     body = triangle(ab: 40, bc: 50, ca: 30)
@@ -149,6 +151,8 @@ fn incenter_of(a: point, b: point, c: point) = (a * norm(c - b) + b * norm(a - c
 ///
 /// `angle` turns it about that corner. Its edges are `bottom`, `left` and `hypotenuse`.
 ///
+/// Lies with its right angle at the lower left, where it is held.
+///
 /// ```aidl
 /// solid shelf_support { body = right_triangle(corner: (0, 0), width: 40, height: 60) }
 /// ```
@@ -175,6 +179,8 @@ fn right_triangle(base: length, height: length, corner: point = (0, 0), angle = 
     right_triangle(corner: corner, width: base, height: height, angle: angle)
 
 /// A triangle of three equal sides about its centre; with `angle` 0 it lies on a level side.
+///
+/// Lies on a side; `center` is the centroid.
 ///
 /// ```aidl
 /// solid sign { plate = equilateral_triangle(side: 50) }

@@ -5,6 +5,8 @@
 /// Its outlines are the circle `outer`, `opening[i]` after spoke `i`, and the circle `bore` where a `bore_radius` is said. An
 /// opening has the arcs `outer` and `inner` and the lines `first` and `last`.
 ///
+/// Lies with spoke 0 to the right.
+///
 /// ```aidl
 /// solid cart_wheel { body = wheel(radius: 40, rim: 5, hub_radius: 9, spokes: 10, spoke_width: 3, bore_radius: 4) }
 /// ```
@@ -64,6 +66,8 @@ shape between_spokes(
 ///
 /// The arcs, `edge[i]`, reach out to `outer_radius` and meet at `inner_radius`; the first begins at `angle`.
 ///
+/// Lies with the start of an arc on the right.
+///
 /// ```aidl
 /// solid cookie { body = rosette(outer_radius: 30, inner_radius: 27, lobes: 16) }
 /// ```
@@ -100,6 +104,8 @@ shape rosette(
 ///
 /// A tooth takes a `share` of its pitch, 0.5 without it, and its sides point to the center; tooth 0 stands at `angle`. Its
 /// edges are the arcs `tip[i]` and `root[i]` (after the tooth) and the lines `rise[i]` and `fall[i]`.
+///
+/// Lies with tooth 0 to the right.
 ///
 /// ```aidl
 /// solid knob {

@@ -7,7 +7,7 @@ meets the box of one of its descendants there leaves that descendant out (paper,
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 
 from aidl_lang.building import curves
@@ -212,22 +212,58 @@ def _extremes(
             for primitive in source.primitives(even_construction=True):
                 yield from _curve(primitive, here, side)
     elif source not in ignored:
-        yield from _structure(source, here, side, ignored)
+        yield from _structure(source, source, here, side, ignored)
 
 
 def _structure(
-    source: Structure, here: Structure, side: str, ignored: frozenset[Structure]
+    source: Structure, whole: Structure, here: Structure, side: str, ignored: frozenset[Structure]
 ) -> Iterator[Expression]:
+    """Yields candidates for the extreme of a structure within the `whole` that has the box."""
     if source.plan:
         left, bottom, width, height = source.plan
         right, top = ex.add(left, width), ex.add(bottom, height)
         for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
             yield convert(*corner, source, here)[side in ("top", "bottom")]
     for primitive in source.drawn():
-        yield from _curve(primitive, here, side)
+        if not _lies_inside(primitive, whole, ignored):
+            yield from _curve(primitive, here, side)
     for child in source.children:
         if child.kind != "hole" and child not in ignored:
-            yield from _structure(child, here, side, ignored)
+            yield from _structure(child, whole, here, side, ignored)
+
+
+_INSIDE: Mapping[str, tuple[int, ...]] = {"tiled": (1,), "clip": (0, 1), "difference": (0,)}
+"""The operands that an outline is a part of each."""
+
+
+def _lies_inside(outline: Geometry, whole: Structure, ignored: frozenset[Structure]) -> bool:
+    """Tells whether an outline made of others is a part of one in the same box, as a pattern is of the wall
+    that it fills: it takes no room of its own then.
+    """
+    recipe = outline.recipe
+    if recipe is None:
+        return False
+    groups = [recipe.operands[n] for n in _INSIDE.get(recipe.kind, ())]
+    if recipe.kind == "intersect":
+        groups = list(recipe.operands)
+    elif recipe.kind == "offset" and recipe.numbers["distance"].value <= 0:
+        groups = [recipe.operands[0]]
+    return any(
+        all(_is_in(g, whole, ignored) or _lies_inside(g, whole, ignored) for g in group) for group in groups
+    )
+
+
+def _is_in(g: Geometry, whole: Structure, ignored: frozenset[Structure]) -> bool:
+    """Tells whether a geometry is drawn in the box of a structure."""
+    at: object = g
+    while isinstance(at, Geometry):
+        if at.construction:
+            return False
+        at = at.container
+    here: Structure | None = g.owner
+    while here is not None and here is not whole and here.kind != "hole" and here not in ignored:
+        here = here.parent
+    return here is whole
 
 
 def _curve(primitive: Geometry, here: Structure, side: str) -> Iterable[Expression]:
@@ -243,10 +279,13 @@ _AS_WIDE = frozenset({"hull", "union", "shell"})
 
 def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iterator[Expression]:
     """Yields, for an outline made of others, their extremes, or these moved out by the radius of a disc
-    around them; any other has a box only once it is drawn.
+    around them; any other has a box only once it is drawn. A pattern has that of what it fills.
     """
     grown: Expression | None = None
+    sources = recipe.sources
     match recipe.kind:
+        case "tiled":
+            grown, sources = ex.ZERO, recipe.operands[1]
         case kind if kind in _AS_WIDE:
             grown = ex.ZERO
         case "thick" if recipe.words["caps"] == recipe.words["joins"] == "round":
@@ -258,7 +297,7 @@ def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iter
     if grown is None:
         yield ex.measure(Measurement(side, (outline,), here))
         return
-    for source in recipe.sources:
+    for source in sources:
         for extreme in _extremes(source, here, side, frozenset()):
             yield ex.apply("add" if side in ("right", "top") else "sub", extreme, grown)
 

@@ -154,6 +154,7 @@ WORDS = frozenset(
     (
         *("x", "y", "left", "right", "center", "top", "bottom", "middle", "horizontal", "vertical", "both"),
         *("sharp", "miter", "round", "butt", "square", "here", "corner"),
+        *("close", "medium", "loose", "tabs", "notches"),
     )
 )
 """Words that may stand bare as an argument, as in `axis: x` and `align: left`."""

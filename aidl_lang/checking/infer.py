@@ -198,6 +198,8 @@ class Inference:
     def _conditional(self, node: ast.Conditional) -> Fact:
         self.test(node.test)
         then, otherwise = self.fact(node.then), self.fact(node.otherwise)
+        if isinstance(node.otherwise, ast.Call) and node.otherwise.callee.text == "refuse":
+            return then
         if isinstance(then.type, NumberType) and isinstance(otherwise.type, NumberType):
             return Fact(_loose_number(then.type, otherwise.type), then.reads | otherwise.reads)
         return joined(then, otherwise)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import functools
 import json
 import math
+import re
 from collections.abc import Callable, Iterable
 from typing import Any, TypeAlias
 
@@ -22,6 +23,7 @@ from aidl_lang import parser
 from aidl_lang.checking import library
 from aidl_lang.common.source import SourceFile
 from aidl_lang.syntax import ast
+from aidl_lang.tools.reference.collect import reference
 from tests.amount import tries
 
 FILES = (
@@ -952,6 +954,22 @@ def test_area_and_perimeter(make: Form, data: st.DataObject) -> None:
     region = compiled(call)["regions"]["s"]
     assert region["area"] == pytest.approx(area, rel=1e-7), call
     assert region["perimeter"] == pytest.approx(perimeter, rel=1e-7), call
+
+
+@pytest.mark.parametrize("make", FORMS, ids=label)
+def test_a_shape_is_held_at_the_middle_of_its_box_or_says_where(make: Form) -> None:
+    call, _, _ = make(lambda low, high: round(low + 0.4 * (high - low), 2))
+    name, arguments = call_of(call)
+    model = compiled(call)["root"]
+    body = model["geometry"]["body"].get("params", {})
+    if "center" not in body or any(re.search(r"_(left|right|center)$", each) for each in arguments):
+        return
+    box = model["bb"]
+    middle = ((box["left"] + box["right"]) / 2, (box["bottom"] + box["top"]) / 2)
+    entry = reference().find(name)
+    assert entry is not None
+    if body["center"] != pytest.approx(middle, abs=1e-6):
+        assert "`center`" in entry.doc.lies, call
 
 
 @pytest.mark.parametrize("name", BEZIER_FIGURES)

@@ -25,6 +25,7 @@ from aidl_lang.tools.reference.signatures import is_refusal, made_shape, relates
 _EXAMPLE = re.compile(r"^```aidl\n(.*?)^```$\n?", re.MULTILINE | re.DOTALL)
 _SENTENCE = re.compile(r"(.+?[.!?])(?=\s+[A-Z`(]|\s*$)", re.DOTALL)
 _NAME = re.compile(r"@?\w+")
+_LIES = re.compile(r"^Lies (.+?)\.(?=\n\n|\Z)", re.MULTILINE | re.DOTALL)
 _ALL_BUT = 0.85
 """Least likeness of a misspelling and a name: one letter in six or so differs."""
 
@@ -36,6 +37,14 @@ class Doc:
     line: str
     text: str
     example: str
+
+    @property
+    def lies(self) -> str:
+        """Returns how a shape lies at angle 0 and where it is held: what follows `Lies` in its paragraph;
+        "" for one that its name tells and that is held at the middle of its box.
+        """
+        said = _LIES.search(self.text)
+        return " ".join(said[1].split()) if said else ""
 
 
 @record()

@@ -14,7 +14,7 @@ What stands between `{{in VARIANT …}}` and `{{end}}`, in a line or on lines of
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import groupby
@@ -23,14 +23,13 @@ from pathlib import Path
 from aidl_lang.checking.builtins import CUTS
 from aidl_lang.checking.registry import PRIMITIVES, PUBLIC
 from aidl_lang.checking.variants import Variant
-from aidl_lang.common.prose import ticked
 from aidl_lang.common.resources import resource
 from aidl_lang.syntax import ast
 from aidl_lang.tools.reference.collect import Entry, reference
 from aidl_lang.tools.reference.pages import entry_blocks, short_calls
 from aidl_lang.tools.reference.signatures import parts
 
-_PLACED = re.compile(r"\(center\?, (.*), angle\?, rotatable\?\)$")
+_PLACED = re.compile(r"\(center\?, (.*), angle\?\)$")
 _ALTERNATIVES = re.compile(r"\b(\w+)/\w+(/\w+){2,}")
 _PLACEHOLDER = re.compile(r"\{\{(\w+) ?([^}]*)\}\}")
 _BLOCKS = (
@@ -44,8 +43,8 @@ _WITHOUT: Mapping[Variant, type[ast.Callable]] = {
 }
 """Definitions of the library that a variant cannot use."""
 
-_UNSAID: Mapping[Variant, tuple[str, ...]] = {Variant.NO_CONSTRAINTS: ("smooth", "rotatable")}
-"""Parameters with a meaning for the solver only."""
+_UNSAID: Mapping[Variant, tuple[str, ...]] = {Variant.NO_CONSTRAINTS: ("smooth",)}
+"""Parameters with a meaning for the solver only; `rotatable`, which most shapes have, is told of once."""
 
 
 @cache
@@ -103,17 +102,42 @@ def _entries(variant: Variant, topics: tuple[str, ...]) -> list[Entry]:
 
 
 def _calls(variant: Variant, *topics: str) -> str:
-    """Returns a line for each name, with its parts; those shared with an earlier shape by that one's name."""
+    """Returns a line for each name, with its parts (those shared with an earlier shape by that one's name)
+    and how it lies.
+    """
     lines, told = [], dict[str, set[str]]()
     for entry in _entries(variant, topics):
-        named = list(dict.fromkeys(part.name for node in entry.nodes for part in parts(node)))
+        named = _gathered(dict.fromkeys(part.name for node in entry.nodes for part in parts(node)))
         like = next((n for n, known in told.items() if len(known) > 3 and known <= set(named)), None)
         more = [part for part in named if like is None or part not in told[like]]
         if named:
             told[entry.name] = set(named)
         shown = " ".join(([f"as {like}"] if like else []) + more)
-        lines.append((entry.name, _arguments(variant, entry) + (f" → {shown}" if shown else "")))
+        lies = entry.doc.lies.replace("`", "")
+        about = (f" → {shown}" if shown else "") + (f"  // {lies}" if lies else "")
+        lines.append((entry.name, _arguments(variant, entry) + about))
     return _joined(lines)
+
+
+_GATHERED: Mapping[str, tuple[str, ...]] = {
+    "corner": ("bottom_left", "bottom_right", "top_right", "top_left"),
+    "edge": ("bottom", "right", "top", "left"),
+}
+"""Lists of parts, with the names that their members may have besides."""
+
+
+def _gathered(names: Iterable[str]) -> list[str]:
+    """Returns the names of parts: a list that has several by one of them, `corners[i]`, and as `corners` one
+    whose members have the usual names besides.
+    """
+    found = list(names)
+    for word, members in _GATHERED.items():
+        lists = [name for name in found if name.removesuffix("[i]").removesuffix("s") == word]
+        if lists:
+            is_usual = set(members) <= set(found)
+            gone = {*lists, *(members if is_usual else ())}
+            found = [f"{word}s" if is_usual else f"{word}s[i]", *(n for n in found if n not in gone)]
+    return found
 
 
 def _forms(variant: Variant, *topics: str) -> str:
@@ -127,20 +151,38 @@ def _joined(lines: Sequence[tuple[str, str]]) -> str:
 
 
 def _arguments(variant: Variant, entry: Entry) -> str:
-    """Returns the forms of a name without the name, as short as possible: `…` for the three arguments that
-    most shapes have, `a/…` for one of several names, and a measure to compare without the option to set it.
+    """Returns the forms of a name without the name, as short as possible: `…` for the arguments that most
+    shapes have, `a/…` for one of several names, a measure to compare without the option to set it, and what
+    all forms share once.
     """
     calls = [call for call in short_calls(entry) if call.startswith(f"{entry.name}(")]
     forms = [call.removeprefix(entry.name) for call in calls]
     forms = [f for f in forms if not any(other.startswith(f[:-1] + ", value") for other in forms)]
-    forms = [_PLACED.sub(r"(…, \1)", _ALTERNATIVES.sub(r"\1/…", form)) for form in forms]
-    for name in _UNSAID.get(variant, ()):
+    for name in ("rotatable", *_UNSAID.get(variant, ())):
         forms = [re.sub(rf"(, )?\b{name}\?(?(1)|(, )?)", "", form) for form in forms]
-    return " | ".join(forms) if entry.sort != "constant" else ""
+    forms = [_PLACED.sub(r"(…, \1)", _ALTERNATIVES.sub(r"\1/…", form)) for form in forms]
+    return _factored(forms) if entry.sort != "constant" else ""
+
+
+def _factored(forms: Sequence[str]) -> str:
+    """Returns forms with the arguments that all begin or end with written once: `(a, {b | c, d}, e)`."""
+    lists = [form[1:-1].split(", ") for form in dict.fromkeys(forms)]
+    shortest = min(map(len, lists), default=0)
+    first = next((n for n in range(shortest) if len({each[n] for each in lists}) > 1), shortest)
+    last = next((n for n in range(shortest - first) if len({each[-1 - n] for each in lists}) > 1), None)
+    last = shortest - first if last is None else last
+    between = sorted((each[first : len(each) - last] for each in lists), key=len)
+    if len(between) > 1 and not between[0] and all(len(each) == 1 for each in between[1:]):
+        middle = f"{'/'.join(each[0].removesuffix('?') for each in between[1:])}?"
+    elif len(lists) > 1 and 0 < first + last < shortest:
+        middle = f"{{{' | '.join(', '.join(each[first : len(each) - last]) for each in lists)}}}"
+    else:
+        return " | ".join(f"({', '.join(each)})" for each in lists)
+    return f"({', '.join([*lists[0][:first], middle, *lists[0][len(lists[0]) - last :]])})"
 
 
 def _names(variant: Variant, *topics: str) -> str:
-    return ", ".join(ticked(entry.name for entry in _entries(variant, topics)))
+    return f"`{' '.join(entry.name for entry in _entries(variant, topics))}`"
 
 
 def _fields(variant: Variant) -> str:
