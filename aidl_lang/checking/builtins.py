@@ -170,6 +170,7 @@ MATH = ("math", "np", "numpy")
 
 ATTRIBUTES = (
     *("orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note"),
+    *("stroke", "dash", "opacity"),
 )
 """Names that may stand behind `@` before a definition; `colour` is another spelling of `color`."""
 
