@@ -9,6 +9,7 @@ from aidl_lang.building.colors import color_of
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.scopes import Scope
+from aidl_lang.building.stacking import StatedOrder, state_order
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.values import (
     Nothing,
@@ -19,7 +20,7 @@ from aidl_lang.building.values import (
     members,
 )
 from aidl_lang.checking import units
-from aidl_lang.checking.builtins import ATTRIBUTES, WORDED
+from aidl_lang.checking.builtins import ATTRIBUTES, STACKING, WORDED
 from aidl_lang.common.names import find
 from aidl_lang.syntax import ast
 
@@ -30,7 +31,9 @@ STROKED = ("color", "stroke", "dash", "opacity")
 def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attribute], scope: Scope) -> None:
     """Reads the attributes that the checker has accepted."""
     for name, values, attribute in _read(it, attributes, Env(scope, s.parent or s, Reach.OWN)):
-        if _fits(it, name, values, attribute):
+        if name in STACKING:
+            state_order(it, s, StatedOrder(name, attribute, scope))
+        elif _fits(it, name, values, attribute):
             s.attributes[name] = tuple(values)
 
 
@@ -91,13 +94,13 @@ def _misplaced(
 def _read(
     it: Interpreter, attributes: Iterable[ast.Attribute], env: Env
 ) -> Iterator[tuple[str, list[Value], ast.Attribute]]:
-    """Yields attributes with the values of their arguments."""
+    """Yields attributes with the values of their arguments; those of order are read later."""
     for attribute in attributes:
         name = find(attribute.name.text, dict.fromkeys(ATTRIBUTES))
         if name is None:
             continue
         values: list[Value] = []
-        for argument in attribute.arguments:
+        for argument in attribute.arguments if name not in STACKING else ():
             value = argument.value
             is_bare = isinstance(value, ast.Name) and value not in it.program.resolution.uses
             if name in WORDED and is_bare:

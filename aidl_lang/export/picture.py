@@ -1,7 +1,7 @@
 """Turns a drawing into a picture: what is filled, outlined and written, in which ink.
 
-One group for each structure in order of writing, so that later siblings lie over earlier ones; what explains
-the picture lies above them all.
+One group for each structure from back to front: later siblings lie over earlier ones, unless they say
+otherwise; what explains the picture lies above them all.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
+from aidl_lang.geometry.stacking import stacked
 from aidl_lang.geometry.styles import DASH, GAP, Style
 
 MARGIN = 0.03
@@ -114,7 +115,7 @@ def _groups(model: SolvedModel, drawing: Drawing, marks: Iterable[tuple[str, Mar
     of = defaultdict(list)
     for path, mark in marks:
         of[path].append(mark)
-    for structure in model.root.walk():
+    for structure in stacked(model.root):
         yield Group(structure.path, tuple(of[structure.path]), _identity(structure, drawing))
 
 

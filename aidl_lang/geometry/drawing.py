@@ -32,6 +32,7 @@ from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.seams import visible_seams
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.stacking import idle_orders, stacked
 from aidl_lang.geometry.styles import Style, idle_looks, styled, styles_of
 from aidl_lang.geometry.trace import Traced, trace_all
 
@@ -83,7 +84,8 @@ class PlanBox:
 
 @record()
 class Drawing:
-    """All that is to be seen, in order of writing. Coordinates in mm in the root frame.
+    """All that is to be seen: bodies in order of writing, strokes from back to front. Coordinates in mm in
+    the root frame.
 
     `regions` has every solid and every hole, each as it stands before the structures around it change it, and
     the bodies as they are in the end. `box` bounds bodies and strokes, not the plans.
@@ -136,7 +138,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
         for m in masses
         for path, pieces in visible_seams(network, m, traced)
     )
-    order = {structure.path: place for place, structure in enumerate(model.root.walk())}
+    order = {structure.path: place for place, structure in enumerate(stacked(model.root))}
     lying = [
         StackedBody(b.path, order[b.path], b.style.color, m.section, b.box, is_clear=b.style.is_clear)
         for b, m in zip(bodies, masses, strict=True)
@@ -148,6 +150,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     notes += _covered_letters(model.root, walk, masses, ground, order)
     notes += fallen_piece_notes(model.root, walk, masses, solids, touching.near)
     notes += idle_looks(model.root, [b.path for b in bodies], styles)
+    notes += idle_orders(model.root, [b.path for b in bodies])
     plans = tuple(_plans(model.root))
     boxes = [b.box for b in bodies]
     boxes += [bounds(piece) for s in strokes for piece in s.pieces]
@@ -290,7 +293,7 @@ def _strokes(
     curves = walk.network.curves
     loose = {f.structure.path: f.curves for f in walk.findings if isinstance(f, LooseCurves)}
     own = _colored_drawings(root)
-    for place, structure in enumerate(root.walk()):
+    for place, structure in enumerate(stacked(root)):
         path, style = structure.path, styles[structure.path]
         if structure.kind == "drawing":
             yield from _inked(structure, shapes[path], style, ground, place, is_own=path in own, notes=notes)

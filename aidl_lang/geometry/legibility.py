@@ -139,13 +139,16 @@ def _lies_within(inner: Bounds, outer: Bounds) -> bool:
 
 def covered_note(drawing: SolvedStructure, names: Sequence[str], by: str) -> Diagnostic:
     """Returns the diagnostic on curves of a drawing that a later body covers."""
-    name = by.rpartition(".")[2]
+    around, _, name = by.rpartition(".")
+    hint = f"write the drawing below `{name}`, or inside it"
+    if around == drawing.path.rpartition(".")[0]:
+        hint += f", or say `@in_front({name})` before it"
     return Diagnostic(
         "W0709",
         f"{named(names)} of drawing `{drawing.path}` cannot be seen: `{by}` is drawn over it",
         drawing.span,
         "what stands further down is drawn over it",
-        hints=(f"write the drawing below `{name}`, or inside it",),
+        hints=(hint,),
     )
 
 

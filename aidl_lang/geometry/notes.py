@@ -328,9 +328,12 @@ def united_notes(
     root: SolvedStructure,
     bodies: Collection[str],
     other: Callable[[SolvedStructure, SolvedStructure], list[str]],
+    *,
+    hint: str = "write it before `{0}`, or make `{0}` an `assembly` of several bodies",
 ) -> list[Diagnostic]:
     """Returns a warning for each statement of structures in a body, or cutting it, with attributes that count
-    for nothing there: those that `other` gives for a structure and its body.
+    for nothing there: those that `other` gives for a structure and its body. `hint` has a place for the name
+    of the body.
     """
     found: dict[object, tuple[SolvedStructure, SolvedStructure, list[str], list[str]]] = {}
 
@@ -343,10 +346,12 @@ def united_notes(
             visit(child, body)
 
     visit(root, None)
-    return [_united(*case) for case in found.values()]
+    return [_united(*case, hint) for case in found.values()]
 
 
-def _united(s: SolvedStructure, body: SolvedStructure, words: list[str], paths: list[str]) -> Diagnostic:
+def _united(
+    s: SolvedStructure, body: SolvedStructure, words: list[str], paths: list[str], hint: str
+) -> Diagnostic:
     counts = "counts" if len(words) == 1 else "count"
     are = "it is" if len(paths) == 1 else "they are"
     return Diagnostic(
@@ -355,7 +360,7 @@ def _united(s: SolvedStructure, body: SolvedStructure, words: list[str], paths: 
         f"{are} one body with `{body.path}`",
         s.span,
         "cuts it" if s.kind == "hole" else "united with it",
-        hints=(f"write it before `{body.name}`, or make `{body.name}` an `assembly` of several bodies",),
+        hints=(hint.format(body.name),),
     )
 
 
