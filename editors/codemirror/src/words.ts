@@ -2,7 +2,7 @@
 
 export const words: Record<string, readonly string[]> = {
   "kinds": ["assembly", "solid", "hole", "drawing"],
-  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note", "stroke", "dash", "opacity"],
+  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note", "stroke", "dash", "opacity", "behind", "in_front"],
   "units": ["mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°"],
   "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "peer", "peers", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "ellipse", "bezier"],
   "everywhere": ["self", "origin", "x_axis", "y_axis"],
@@ -1002,6 +1002,8 @@ export const snippets: readonly { prefix: string; title: string; body: string; p
   {"prefix": "@stroke", "title": "the width of lines", "body": "@stroke(${1:0.3mm})$0", "place": "attribute"},
   {"prefix": "@dash", "title": "dashed lines", "body": "@dash(${1:3}, ${2:1.5})$0", "place": "attribute"},
   {"prefix": "@opacity", "title": "what shows through", "body": "@opacity(${1:0.5})$0", "place": "attribute"},
+  {"prefix": "@behind", "title": "drawn behind another", "body": "@behind(${1:other})$0", "place": "attribute"},
+  {"prefix": "@in_front", "title": "drawn in front of another", "body": "@in_front(${1:other})$0", "place": "attribute"},
   {"prefix": "@layer", "title": "the layer", "body": "@layer(\"${1:cut}\")$0", "place": "attribute"},
   {"prefix": "@material", "title": "the material", "body": "@material(\"${1:birch plywood}\")$0", "place": "attribute"},
   {"prefix": "@thickness", "title": "the thickness", "body": "@thickness(${1:3mm})$0", "place": "attribute"},
