@@ -44,10 +44,10 @@ def settle_order(it: Interpreter, parent: Structure) -> None:
     """
     stated: dict[Structure, dict[Structure, ast.Attribute]] = {}
     for s in parent.children:
+        if s.source is not None:
+            _take_over(it, s, s.source, parent, stated)
         if s in it.orders:
-            _read(it, s, parent, it.orders.pop(s), stated)
-        elif s.source is not None:
-            _take_over(s, s.source, parent)
+            _read(it, s, parent, it.orders[s], stated)
     if cycle := _cycle(stated):
         _report_cycle(it, cycle, stated)
 
@@ -113,15 +113,38 @@ def _misplaced(
     it.report("E0521", why, order.attribute, hints=hints)
 
 
-def _take_over(s: Structure, source: Structure, parent: Structure) -> None:
-    """Leaves to a copy what is said of its source and holds beside the copy, too."""
-    beside = {child.name for child in parent.children if child is not s}
+def _take_over(
+    it: Interpreter,
+    s: Structure,
+    source: Structure,
+    parent: Structure,
+    stated: dict[Structure, dict[Structure, ast.Attribute]],
+) -> None:
+    """Leaves to a copy what is said of its source, not of itself, and holds beside the copy, too."""
+    beside = {child.name: child for child in parent.children if child is not s}
+    own = {order.name for order in it.orders.get(s, ())}
     for name in STACKING:
-        values = source.attributes.get(name, ())
+        values = source.attributes.get(name, ()) if name not in own else ()
         kept = tuple(v for v in values if isinstance(v, TextVal) and v.value in beside)
         s.attributes.pop(name, None)
-        if kept:
-            s.attributes[name] = kept
+        if not kept:
+            continue
+        s.attributes[name] = kept
+        attribute = _stated(it, source, name)
+        for value in kept:
+            back, front = (s, beside[value.value]) if name == BEHIND else (beside[value.value], s)
+            stated.setdefault(back, {})[front] = attribute
+
+
+def _stated(it: Interpreter, s: Structure, name: str) -> ast.Attribute:
+    """Returns the attribute of a name by which the order of a structure is stated, or that of its source."""
+    here: Structure | None = s
+    while here is not None:
+        for order in it.orders.get(here, ()):
+            if order.name == name:
+                return order.attribute
+        here = here.source
+    raise KeyError(name)
 
 
 def _cycle(stated: Mapping[Structure, Mapping[Structure, ast.Attribute]]) -> list[Structure]:

@@ -110,7 +110,7 @@ class Interpreter:
     literals: list[Literal] = field(default_factory=list)
     pending: dict[Structure, list[tuple[ast.Statement, Scope]]] = field(default_factory=dict)
     orders: dict[Structure, list[StatedOrder]] = field(default_factory=dict)
-    """what is said of the order of structures that are not complete yet"""
+    """what is said of the order of structures beside others"""
     written: dict[ast.Node, tuple[float, float] | float] = field(default_factory=dict)
     watched: frozenset[ast.Node] = frozenset()
     used_overrides: set[str] = field(default_factory=set)
