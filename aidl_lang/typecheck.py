@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from aidl_lang.checking import rules
+from aidl_lang.checking.builtins import STACKING
 from aidl_lang.checking.conditions import check_condition, check_empty, check_item, check_operation
 from aidl_lang.checking.cycles import find_cycles
 from aidl_lang.checking.facts import Fact
@@ -18,6 +19,7 @@ from aidl_lang.checking.library import Library
 from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.operators import compare
 from aidl_lang.checking.resolving.resolution import Resolution
+from aidl_lang.checking.resolving.symbols import word_meant
 from aidl_lang.checking.subset import check_subset
 from aidl_lang.checking.types import (
     ANY,
@@ -295,5 +297,6 @@ class Checker:
 
     def _attributes(self, attributes: tuple[ast.Attribute, ...]) -> None:
         for attribute in attributes:
-            for argument in attribute.arguments:
+            is_order = word_meant(attribute.name.text, STACKING) is not None
+            for argument in () if is_order else attribute.arguments:
                 self.infer.known(argument.value, f"the argument of `@{attribute.name.text}`")

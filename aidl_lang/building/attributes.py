@@ -9,6 +9,7 @@ from aidl_lang.building.colors import color_of
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.scopes import Scope
+from aidl_lang.building.stacking import StatedOrder, state_order
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.values import (
     Nothing,
@@ -19,15 +20,20 @@ from aidl_lang.building.values import (
     members,
 )
 from aidl_lang.checking import units
-from aidl_lang.checking.builtins import ATTRIBUTES, WORDED
+from aidl_lang.checking.builtins import ATTRIBUTES, STACKING, WORDED
 from aidl_lang.common.names import find
 from aidl_lang.syntax import ast
+
+STROKED = ("color", "stroke", "dash", "opacity")
+"""Attributes that a geometry of a drawing may have for itself."""
 
 
 def read_attributes(it: Interpreter, s: Structure, attributes: Iterable[ast.Attribute], scope: Scope) -> None:
     """Reads the attributes that the checker has accepted."""
     for name, values, attribute in _read(it, attributes, Env(scope, s.parent or s, Reach.OWN)):
-        if _fits(it, name, values, attribute):
+        if name in STACKING:
+            state_order(it, s, StatedOrder(name, attribute, scope))
+        elif _fits(it, name, values, attribute):
             s.attributes[name] = tuple(values)
 
 
@@ -38,7 +44,7 @@ def read_own_attributes(
     things = list(_geometry_in(value))
     here = container if isinstance(container, Structure) else container.owner
     for name, values, attribute in _read(it, node.attributes, Env(scope, here, Reach.OWN)):
-        is_stroke = name == "color" and here is container and here.kind == "drawing"
+        is_stroke = name in STROKED and here is container and here.kind == "drawing"
         if not things or not (name == "note" or is_stroke):
             _misplaced(it, node, name, attribute, value, container)
         elif _fits(it, name, values, attribute):
@@ -88,13 +94,13 @@ def _misplaced(
 def _read(
     it: Interpreter, attributes: Iterable[ast.Attribute], env: Env
 ) -> Iterator[tuple[str, list[Value], ast.Attribute]]:
-    """Yields attributes with the values of their arguments."""
+    """Yields attributes with the values of their arguments; those of order are read later."""
     for attribute in attributes:
         name = find(attribute.name.text, dict.fromkeys(ATTRIBUTES))
         if name is None:
             continue
         values: list[Value] = []
-        for argument in attribute.arguments:
+        for argument in attribute.arguments if name not in STACKING else ():
             value = argument.value
             is_bare = isinstance(value, ast.Name) and value not in it.program.resolution.uses
             if name in WORDED and is_bare:
@@ -105,6 +111,8 @@ def _read(
 
 
 ORIENTATIONS = ("top", "front", "side")
+THINNEST, WIDEST = 0.01, 1000.0
+"""mm, of lines, dashes and gaps that can be seen."""
 
 
 def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attribute) -> bool:
@@ -142,6 +150,28 @@ def _elevation(values: list[Value]) -> str:
     return "" if is_one else "a length, as in `@elevation(18mm)` or `@elevation(-3)`"
 
 
+def _stroke(values: list[Value]) -> str:
+    lengths = _numbers(values, units.LENGTH)
+    is_one = lengths is not None and len(lengths) == 1 and THINNEST <= lengths[0] <= WIDEST
+    return "" if is_one else f"a width of {THINNEST:g} to {WIDEST:g} mm, as in `@stroke(0.3mm)`"
+
+
+def _dash(values: list[Value]) -> str:
+    lengths = _numbers(values, units.LENGTH)
+    if not values or [type(v) for v in values] == [bool]:
+        return ""
+    if lengths is None or not all(THINNEST <= length <= WIDEST for length in lengths):
+        return f"lengths of {THINNEST:g} to {WIDEST:g} mm, of a dash and of a gap, as in `@dash(3, 1.5)`"
+    is_paired = len(lengths) == 1 or len(lengths) % 2 == 0
+    return "" if is_paired else "a gap for each dash, as in `@dash(6, 1.5, 1, 1.5)`"
+
+
+def _opacity(values: list[Value]) -> str:
+    shares = _numbers(values, units.PLAIN)
+    is_one = shares is not None and len(shares) == 1 and 0 < shares[0] <= 1
+    return "" if is_one else "a share above 0, and up to 1, as in `@opacity(0.5)`"
+
+
 def _text(name: str) -> Callable[[list[Value]], str]:
     def rule(values: list[Value]) -> str:
         is_text = len(values) == 1 and isinstance(values[0], TextVal)
@@ -168,5 +198,8 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
     "material": _text("material"),
     "note": _text("note"),
     "detached": _detached,
+    "stroke": _stroke,
+    "dash": _dash,
+    "opacity": _opacity,
 }
 """What is said of an attribute whose arguments do not fit; "" if they do."""

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from aidl_lang.building.derive import Copier
     from aidl_lang.building.overloads import CallSite
     from aidl_lang.building.scopes import Candidate
+    from aidl_lang.building.stacking import StatedOrder
 
 
 _LARGEST_GUESS = 1e12
@@ -108,6 +109,8 @@ class Interpreter:
     """conditions over constants become constraints of the model like others, and those of asserts too"""
     literals: list[Literal] = field(default_factory=list)
     pending: dict[Structure, list[tuple[ast.Statement, Scope]]] = field(default_factory=dict)
+    orders: dict[Structure, list[StatedOrder]] = field(default_factory=dict)
+    """what is said of the order of structures beside others"""
     written: dict[ast.Node, tuple[float, float] | float] = field(default_factory=dict)
     watched: frozenset[ast.Node] = frozenset()
     used_overrides: set[str] = field(default_factory=set)

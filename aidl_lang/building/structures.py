@@ -15,6 +15,7 @@ from aidl_lang.building.edits import EditCall, edits_on, frame_edited
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.model import Frame, Geometry, Structure
 from aidl_lang.building.scopes import Scope, indexed
+from aidl_lang.building.stacking import settle_order
 from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.templates import passed
 from aidl_lang.building.values import (
@@ -200,6 +201,7 @@ def finish(it: Interpreter, structure: Structure) -> None:
     if structure.is_empty and structure.parent is not None:
         _plan(it, structure)
     structure.is_complete = True
+    settle_order(it, structure)
     pending = it.pending.pop(structure, [])
     # Finished corners first, as constraints may mention their sizes, wherever they are written.
     for node, scope in sorted(pending, key=lambda item: not _finishes(it, item[0])):

@@ -131,12 +131,13 @@ def export(job: Job, suffix: str) -> Exported:
             "write it to a file of its own, without `--cut`, `--sheet` and `--kerf`",
         )
     jobs, notes = [job], [] if suffix == ".json" else _emptiness(job)
+    unsaid = _unsaid(job, suffix, cuts=wanted.cuts)
     if options.sheet is not None or options.kerf:
         from aidl_lang.export.sheets import prepared
 
         jobs, notes = prepared(job)
     made = _files(list(map(wanted.write, jobs))) if wanted.write_all is None else wanted.write_all(jobs)
-    return replace(made, notes=(*notes, *made.notes))
+    return replace(made, notes=(*notes, *unsaid, *made.notes))
 
 
 def _emptiness(job: Job) -> list[Diagnostic]:
@@ -147,6 +148,12 @@ def _emptiness(job: Job) -> list[Diagnostic]:
         return []
     hints = (f"draw the parts of {', '.join(plans)}", "`--show plan` shows their boxes") if plans else ()
     return [Diagnostic("W0721", "nothing is drawn, so what is written is empty", hints=hints)]
+
+
+def _unsaid(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
+    from aidl_lang.export.unsaid import unsaid_notes
+
+    return unsaid_notes(job, suffix, cuts=cuts)
 
 
 def _refuse(suffix: str, option: str, is_refused: bool) -> None:

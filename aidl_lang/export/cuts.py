@@ -22,17 +22,18 @@ from aidl_lang.geometry.measures import loop_area
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Loop
 from aidl_lang.geometry.solved import SolvedModel
+from aidl_lang.geometry.styles import Style
 
 HOLE, OPEN = "hole", "open"
 
 
 @record()
 class Outline:
-    """Pieces joined end to end, with their layer, colour and owner.
+    """Pieces joined end to end, with their layer, style and owner.
 
     path   of the body, or of the structure that draws the lines
     layer  what `@layer` says, else the kind of the structure, `open` for curves that were to bound something
-    color  as CSS has it
+    style  of its lines; what it says of a fill is said of none
     hole   path of the hole that an inner outline comes from; a ring has its inner one without any
     """
 
@@ -40,7 +41,7 @@ class Outline:
     closed: bool
     path: str
     layer: str
-    color: str | None
+    style: Style
     hole: str | None = None
 
 
@@ -51,17 +52,16 @@ def outlines(model: SolvedModel, drawing: Drawing) -> list[Outline]:
 
 def _lines(drawing: Drawing) -> Iterator[Outline]:
     tolerance = RELATIVE_TOLERANCE * drawing.size
-    for (path, role), strokes in groupby(drawing.strokes, key=lambda s: (s.path, s.role)):
-        style = drawing.styles[path]
+    for (path, role, style), strokes in groupby(drawing.strokes, key=lambda s: (s.path, s.role, s.style)):
         layer = role if role == OPEN else style.layer or role
         if role == HOLE:
             for loop in drawing.regions[path].loops:
-                yield Outline(loop.pieces, True, path, layer, style.color)
+                yield Outline(loop.pieces, True, path, layer, style)
             continue
         for pieces in chains([piece for s in strokes for piece in s.pieces], tolerance):
             start, end = ends(pieces[0])[0], ends(pieces[-1])[1]
             closed = len(pieces) > 1 and math.dist(start, end) <= tolerance
-            yield Outline(pieces, closed, path, layer, style.color)
+            yield Outline(pieces, closed, path, layer, style)
 
 
 def _cuts(model: SolvedModel, drawing: Drawing) -> Iterator[Outline]:
@@ -72,10 +72,10 @@ def _cuts(model: SolvedModel, drawing: Drawing) -> Iterator[Outline]:
     for face, body in faces:
         for loop in face.holes:
             hole = edges.owner(loop)
-            style = drawing.styles[hole or body.path]
-            yield Outline(loop.pieces, True, body.path, style.layer or HOLE, style.color, hole)
+            style = drawing.styles[hole or body.path].with_lines_of(body.style)
+            yield Outline(loop.pieces, True, body.path, style.layer or HOLE, style, hole)
         layer = body.style.layer or kinds[body.path]
-        yield Outline(face.outer.pieces, True, body.path, layer, body.style.color)
+        yield Outline(face.outer.pieces, True, body.path, layer, body.style)
 
 
 class _HoleEdges:

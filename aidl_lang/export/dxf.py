@@ -1,7 +1,7 @@
 """DXF R2010 for laser cutters, routers and other CAD systems: exact entities, 1:1 in mm, y upwards.
 
 An outline of lines and arcs is one LWPOLYLINE; with other curves in it, each piece is an entity of its own.
-The order is that of `cuts`, the layers those of `dxf_layers`.
+The order is that of `cuts`, the layers those of `dxf_layers`, the lines those of `dxf_lines`.
 
 Each entity carries the path of its body as XDATA of the application AIDL, and that of the hole it comes from
 as XDATA of AIDL_HOLE. A GROUP would need the path changed to what DXF takes as a name, and is lost when an
@@ -20,6 +20,7 @@ from aidl_lang.common.colors import rgb
 from aidl_lang.export import Exported, Job
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.dxf_layers import Layers
+from aidl_lang.export.dxf_lines import Lines
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.evaluate import TAU, ends, point, round_range
@@ -33,6 +34,8 @@ THINNEST = 1e-6
 DIGITS = 13
 """Coordinates have this many digits of the size of the drawing, past which rounding errors begin."""
 TEXT_BYTES = 255
+PATTERN_GOES_ON = 128
+"""Flag of a polyline whose dashes do not begin anew at each corner."""
 
 
 def to_dxf(job: Job) -> Exported:
@@ -55,11 +58,14 @@ def _written(document: Any, job: Job) -> Exported:
         document.appids.new(application)
     document.header["$MEASUREMENT"] = METRIC
     entities, layers = _Entities(document.modelspace(), job.drawing), Layers(document, job.model)
+    lines = Lines(document, job.drawing.size)
     for outline in found:
         checkpoint()
         attributes: dict[str, Any] = {"layer": layers.name(outline.layer)}
-        if outline.color is not None:
-            red, green, blue = rgb(outline.color)
+        if not job.options.for_cutter:
+            attributes |= lines.attributes(outline.style)
+        if outline.style.color is not None:
+            red, green, blue = rgb(outline.style.color)
             attributes["true_color"] = red << 16 | green << 8 | blue
         names = [(BODY, outline.path)] + ([(HOLE, outline.hole)] if outline.hole else [])
         for entity in entities.add(outline, attributes):
@@ -122,7 +128,10 @@ class _Entities:
         corners = [corner for piece in pieces for corner in self._corners(piece)]
         if not closed:
             corners.append((*self._at(ends(pieces[-1])[1]), 0.0))
-        return self._space.add_lwpolyline(corners, "xyb", close=closed, dxfattribs=attributes)
+        made = self._space.add_lwpolyline(corners, "xyb", close=closed, dxfattribs=attributes)
+        if "linetype" in attributes:
+            made.dxf.flags |= PATTERN_GOES_ON
+        return made
 
     def _corners(self, piece: Piece) -> Iterator[tuple[float, float, float]]:
         """Yields x, y and bulge at the start of a piece and where it is split. The bulge is tan(sweep /

@@ -17,23 +17,26 @@ CHARACTER = 0.6
 
 @record()
 class Ink:
-    """The look of a line: a CSS colour, width in mm, dash and gap in mm, opacity, round ends."""
+    """The look of a line: a CSS colour, width in mm, dashes and gaps by turns in mm, opacity, round ends."""
 
     color: str
     width: float
-    dash: tuple[float, float] | None = None
+    dash: tuple[float, ...] | None = None
     opacity: float = 1.0
     is_round: bool = False
 
 
 @record()
 class Area:
-    """A face with its holes cut out, filled, outlined, or both. Readers of the SVG find `role` in it."""
+    """A face with its holes cut out, filled, outlined, or both; `opacity` is that of the fill. Readers of the
+    SVG find `role` in it.
+    """
 
     face: Face
     fill: str | None
     ink: Ink | None
     role: str = ""
+    opacity: float = 1.0
 
 
 def polygon(*corners: Vec) -> Face:

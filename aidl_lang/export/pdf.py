@@ -96,6 +96,8 @@ class _Pen:
             _add_loop(path, loop)
         if mark.fill is not None:
             self._fill(mark.fill)
+            if mark.opacity != 1:
+                self._canvas.setFillAlpha(mark.opacity)
         if mark.ink is not None:
             self._ink(mark.ink)
         self._canvas.drawPath(path, fill=mark.fill is not None, stroke=mark.ink is not None, fillMode=0)

@@ -1,13 +1,14 @@
 """Turns a drawing into a picture: what is filled, outlined and written, in which ink.
 
-One group for each structure in order of writing, so that later siblings lie over earlier ones; what explains
-the picture lies above them all.
+One group for each structure from back to front: later siblings lie over earlier ones, unless they say
+otherwise; what explains the picture lies above them all.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 from aidl_lang.export import Job, palette
 from aidl_lang.export.marks import CHARACTER, Area, Curves, Group, Ink, Mark, Picture, Text
@@ -17,6 +18,8 @@ from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
 from aidl_lang.geometry.evaluate import Bounds
 from aidl_lang.geometry.network import union_bounds
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
+from aidl_lang.geometry.stacking import stacked
+from aidl_lang.geometry.styles import DASH, GAP, Style
 
 MARGIN = 0.03
 OUTLINE_WIDTH, SEAM_WIDTH, STROKE_WIDTH = 0.0025, 0.001, 0.003
@@ -49,7 +52,16 @@ def _whole(job: Job) -> Picture:
         Group(f"show-{name}", tuple(layer), {"class": "overlay"}) for name, layer in overlay.layers.items()
     ]
     # Pages have margins of their own.
-    return Picture(_grown(overlay.box, 0.0 if options.tile else MARGIN * size), tuple(groups))
+    margin = max(
+        0.0 if options.tile else MARGIN * size, 0.0 if options.for_cutter else _overhang(job.drawing)
+    )
+    return Picture(_grown(overlay.box, margin), tuple(groups))
+
+
+def _overhang(drawing: Drawing) -> float:
+    """Returns how far the widest line of a stated width reaches beyond its middle."""
+    styles = [*(body.style for body in drawing.bodies), *(stroke.style for stroke in drawing.strokes)]
+    return max((style.stroke / 2 for style in styles if style.stroke is not None), default=0.0)
 
 
 def pages(job: Job) -> list[Picture]:
@@ -103,7 +115,7 @@ def _groups(model: SolvedModel, drawing: Drawing, marks: Iterable[tuple[str, Mar
     of = defaultdict(list)
     for path, mark in marks:
         of[path].append(mark)
-    for structure in model.root.walk():
+    for structure in stacked(model.root):
         yield Group(structure.path, tuple(of[structure.path]), _identity(structure, drawing))
 
 
@@ -138,9 +150,9 @@ def _cut_marks(drawing: Drawing) -> Iterator[tuple[str, Mark]]:
 
 def _areas(body: Body, index: int, size: float) -> Iterator[Area]:
     fill = body.style.color or palette.body_fill(index)
-    ink = Ink(palette.OUTLINE, OUTLINE_WIDTH * size, is_round=True)
+    ink = _line(body.style, palette.OUTLINE, OUTLINE_WIDTH, size)
     for face in body.region.faces:
-        yield Area(face, fill, ink)
+        yield Area(face, fill, ink, opacity=_opacity(body.style))
 
 
 def _seam(seam: Seam, size: float) -> Curves:
@@ -148,9 +160,23 @@ def _seam(seam: Seam, size: float) -> Curves:
 
 
 def _stroke(stroke: Stroke, size: float) -> Curves:
-    ink, dash, role = stroke.style.color or palette.OUTLINE, None, ""
-    if stroke.over is not None:
-        ink = palette.contrasting(stroke.over)
+    style = stroke.style
     if stroke.role != "drawing":
-        ink, dash, role = palette.LOOSE, (0.012 * size, 0.008 * size), stroke.role
-    return Curves(stroke.pieces, Ink(ink, STROKE_WIDTH * size, dash, is_round=True), role)
+        ink = Ink(palette.LOOSE, STROKE_WIDTH * size, (DASH * size, GAP * size), is_round=True)
+        return Curves(stroke.pieces, ink, stroke.role)
+    color = style.color or palette.OUTLINE
+    if stroke.over is not None:
+        color = palette.contrasting(stroke.over)
+    ink = replace(_line(style, color, STROKE_WIDTH, size), opacity=_opacity(style))
+    return Curves(stroke.pieces, ink)
+
+
+def _line(style: Style, color: str, width: float, size: float) -> Ink:
+    """Returns the ink of lines of a style; their width relative to a size where the style has none."""
+    stated, dash = style.stroke, style.dashes(size)
+    # Round ends would make dashes longer than stated.
+    return Ink(color, width * size if stated is None else stated, dash, is_round=dash is None)
+
+
+def _opacity(style: Style) -> float:
+    return 1.0 if style.opacity is None else style.opacity

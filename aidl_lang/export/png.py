@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from dataclasses import replace
 
+from aidl_lang.export.coarse import resolved
 from aidl_lang.export.font import FAMILY, font_file
 from aidl_lang.export.marks import Picture
 from aidl_lang.export.scaling import scaled
@@ -30,6 +31,7 @@ def to_png(picture: Picture, pixels: int) -> bytes:
     if whole > LARGEST:  # round lines of such a size take resvg for ever, however few pixels they are
         picture = scaled(picture, LARGEST / whole)
     per_mm = pixels / max(picture.width, picture.height)
+    picture = resolved(picture, 1 / per_mm)
     width, height = round(picture.width * per_mm), round(picture.height * per_mm)
     drawn = resvg_py.svg_to_bytes(
         svg_string=to_svg(picture, (width, height)),

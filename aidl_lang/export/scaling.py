@@ -46,7 +46,7 @@ class _Scale:
                 return replace(mark, box=self.box(box), width=k * width, dash=k * dash)
 
     def ink(self, ink: Ink) -> Ink:
-        dash = None if ink.dash is None else (self.factor * ink.dash[0], self.factor * ink.dash[1])
+        dash = None if ink.dash is None else tuple(self.factor * part for part in ink.dash)
         return replace(ink, width=self.factor * ink.width, dash=dash)
 
     def face(self, face: Face) -> Face:

@@ -41,10 +41,10 @@ from aidl_lang.common.records import record
 from aidl_lang.export import Exported, ExportError, Job
 from aidl_lang.export.shapes import Shapes, together
 from aidl_lang.export.solids import placed_bodies, placed_strokes
-from aidl_lang.geometry.drawing import Style
 from aidl_lang.geometry.joints import jointed
 from aidl_lang.geometry.placement import placement_notes
 from aidl_lang.geometry.region import Face
+from aidl_lang.geometry.styles import Style
 from aidl_lang.version import __version__
 
 _NO_TIME = "1970-01-01T00:00:00"
@@ -241,9 +241,12 @@ class _File:
                 continue
             color = STEPConstruct_Styles.EncodeColor_s(_color(part.style.color))
             colors = (None, color) if part.is_stroke else (color, None)
+            shown = STEPConstruct_RenderingProperties()
+            if part.style.is_clear and not part.is_stroke:
+                shown = STEPConstruct_RenderingProperties(color, 1.0 - (part.style.opacity or 0.0))
             items = HArray1_StepRepr_RepresentationItem(1, len(found))
             for number, item in enumerate(found, 1):
-                look = styles.MakeColorPSA(item, *colors, STEPConstruct_RenderingProperties())
+                look = styles.MakeColorPSA(item, *colors, shown)
                 items.SetValue(number, styles.AddStyle(item, look, None))
             looks = StepVisual_MechanicalDesignGeometricPresentationRepresentation()
             looks.Init(_ascii(""), items, styles.FindContext(part.shapes[0]))

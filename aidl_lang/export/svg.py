@@ -69,6 +69,8 @@ def _element(mark: Mark, svg: Any) -> Any:
 @_element.register
 def _(mark: Area, svg: Any) -> Any:
     looks = {"fill": mark.fill or "none", "fill_rule": "evenodd"}
+    if mark.opacity != 1:
+        looks["fill_opacity"] = fixed(mark.opacity)
     looks |= {"stroke": "none"} if mark.ink is None else _looks(mark.ink, closed=True)
     return svg.path.Path(d=face_path(mark.face), **looks, **_role(mark.role), debug=False)
 

@@ -1,4 +1,4 @@
-"""3MF: a named mesh for each body, with its colour and material, as printers take it."""
+"""3MF: a named mesh for each body, with its colour, opacity and material, as printers take it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,8 @@ def to_3mf(job: Job) -> Exported:
         thing = _mesh_object(model, mesh)
         style = mesh.body.style
         color = style.color or body_fill(order[mesh.body.path])
-        thing.SetObjectLevelProperty(*materials.of(printable(style.material or mesh.body.path), color))
+        name, opacity = printable(style.material or mesh.body.path), style.opacity
+        thing.SetObjectLevelProperty(*materials.of(name, color, 1.0 if opacity is None else opacity))
         item = model.AddBuildItem(thing, wrapper.GetIdentityTransform())
         item.SetUUID(_id("item", mesh.body.path))
     return Exported(bytes(model.QueryWriter("3mf").WriteToBuffer()), notes=notes)
@@ -63,14 +64,15 @@ class _Materials:
 
     def __init__(self, wrapper: Any, model: Any) -> None:
         self.wrapper, self.group = wrapper, model.AddBaseMaterialGroup()
-        self.known: dict[tuple[str, str], int] = {}
+        self.known: dict[tuple[str, str, float], int] = {}
 
-    def of(self, name: str, color: str) -> tuple[int, int]:
+    def of(self, name: str, color: str, opacity: float) -> tuple[int, int]:
         """Returns the ids of the group and of the material in it."""
-        if (name, color) not in self.known:
-            paint = self.wrapper.RGBAToColor(*rgb(color), 255)
-            self.known[name, color] = self.group.AddMaterial(name, paint)
-        return self.group.GetResourceID(), self.known[name, color]
+        key = name, color, opacity
+        if key not in self.known:
+            paint = self.wrapper.RGBAToColor(*rgb(color), round(255 * opacity))
+            self.known[key] = self.group.AddMaterial(name, paint)
+        return self.group.GetResourceID(), self.known[key]
 
 
 def _id(sort: str, path: str) -> str:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import cached_property, partial
 
 from aidl_lang.common.colors import css_color
@@ -32,20 +31,10 @@ from aidl_lang.geometry.notes import detached_notes, finding_note, gap_note, unu
 from aidl_lang.geometry.pieces import LETTERING, fallen_piece_notes, loose_piece_notes
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.seams import visible_seams
-from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.stacking import idle_orders, stacked
+from aidl_lang.geometry.styles import Style, idle_looks, styled, styles_of
 from aidl_lang.geometry.trace import Traced, trace_all
-
-
-@record()
-class Style:
-    """The looks that the attributes of a structure, or of the nearest one around it that has them, ask
-    for.
-    """
-
-    color: str | None = None
-    layer: str | None = None
-    material: str | None = None
-    thickness: float | None = None
 
 
 @record()
@@ -95,7 +84,8 @@ class PlanBox:
 
 @record()
 class Drawing:
-    """All that is to be seen, in order of writing. Coordinates in mm in the root frame.
+    """All that is to be seen: bodies in order of writing, strokes from back to front. Coordinates in mm in
+    the root frame.
 
     `regions` has every solid and every hole, each as it stands before the structures around it change it, and
     the bodies as they are in the end. `box` bounds bodies and strokes, not the plans.
@@ -133,7 +123,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     network, walk, masses, traced, gaps = _closed(model.root, Network(curves, boxes), shapes)
     notes += [gap_note(gap) for gap in gaps]
     regions = {path: outline.region for path, outline in traced.items()}
-    styles = _styles(model.root)
+    styles = styles_of(model.root)
     bodies = tuple(
         Body(path, regions[path], styles[path], region_bounds(regions[path]))
         for path in (m.structure.path for m in masses)
@@ -148,9 +138,9 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
         for m in masses
         for path, pieces in visible_seams(network, m, traced)
     )
-    order = {structure.path: place for place, structure in enumerate(model.root.walk())}
+    order = {structure.path: place for place, structure in enumerate(stacked(model.root))}
     lying = [
-        StackedBody(b.path, order[b.path], b.style.color, m.section, b.box)
+        StackedBody(b.path, order[b.path], b.style.color, m.section, b.box, is_clear=b.style.is_clear)
         for b, m in zip(bodies, masses, strict=True)
     ]
     drawings = [s.path for s in model.root.walk() if s.kind == "drawing"]
@@ -159,6 +149,8 @@ def draw(model: SolvedModel) -> tuple[Drawing, list[Diagnostic]]:
     strokes = tuple(_strokes(model.root, shapes, walk, styles, regions, ground, notes))
     notes += _covered_letters(model.root, walk, masses, ground, order)
     notes += fallen_piece_notes(model.root, walk, masses, solids, touching.near)
+    notes += idle_looks(model.root, [b.path for b in bodies], styles)
+    notes += idle_orders(model.root, [b.path for b in bodies])
     plans = tuple(_plans(model.root))
     boxes = [b.box for b in bodies]
     boxes += [bounds(piece) for s in strokes for piece in s.pieces]
@@ -271,34 +263,6 @@ def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:
     return list(cut.islands)
 
 
-def _styles(root: SolvedStructure) -> dict[str, Style]:
-    styles: dict[str, Style] = {}
-
-    def visit(structure: SolvedStructure, around: Style) -> None:
-        attributes = structure.attributes
-        style = Style(
-            css_color(attributes.get("color", ())) or around.color,
-            _text(attributes.get("layer")) or around.layer,
-            _text(attributes.get("material")) or around.material,
-            _number(attributes.get("thickness"), around.thickness),
-        )
-        styles[structure.path] = style
-        for child in structure.structures:
-            visit(child, style)
-
-    visit(root, Style())
-    return styles
-
-
-def _text(values: tuple[Scalar, ...] | None) -> str | None:
-    return str(values[0]) if values else None
-
-
-def _number(values: tuple[Scalar, ...] | None, default: float | None) -> float | None:
-    first = values[0] if values else None
-    return float(first) if isinstance(first, int | float) and not isinstance(first, bool) else default
-
-
 def _covered_letters(
     root: SolvedStructure, walk: Bodies, masses: list[Mass], ground: Ground, order: dict[str, int]
 ) -> Iterator[Diagnostic]:
@@ -329,7 +293,7 @@ def _strokes(
     curves = walk.network.curves
     loose = {f.structure.path: f.curves for f in walk.findings if isinstance(f, LooseCurves)}
     own = _colored_drawings(root)
-    for place, structure in enumerate(root.walk()):
+    for place, structure in enumerate(stacked(root)):
         path, style = structure.path, styles[structure.path]
         if structure.kind == "drawing":
             yield from _inked(structure, shapes[path], style, ground, place, is_own=path in own, notes=notes)
@@ -357,8 +321,8 @@ def _inked(
     covered: dict[str, list[str]] = {}
     seen: set[str] = set()
     for shape in shapes:
-        look = _styled(style, shape.geometry)
-        is_asked = is_own or look is not style
+        look = styled(style, shape.geometry)
+        is_asked = is_own or "color" in shape.geometry.attributes
         numbers = shape.numbers
         hidden = ground.hides(look.color, numbers, place)
         if (by := ground.covering(numbers, place)) is not None:
@@ -383,12 +347,6 @@ def _inked(
 def _array(name: str) -> str:
     """Returns the name of an array without the index of one of its members."""
     return name.partition("[")[0]
-
-
-def _styled(style: Style, geometry: SolvedGeometry) -> Style:
-    """Returns the style of a geometry: that of its structure, but for a colour of its own."""
-    color = css_color(geometry.attributes.get("color", ()))
-    return style if color is None else replace(style, color=color)
 
 
 def _colored_drawings(root: SolvedStructure) -> set[str]:

@@ -33,13 +33,16 @@ _WHOLE = 0.995
 
 @record()
 class StackedBody:
-    """A body with its path, its place in the order of drawing, and its colour, if it has one."""
+    """A body with its path, its place in the order of drawing, and its colour, if it has one. One that
+    `is_clear` hides nothing.
+    """
 
     path: str
     place: int
     color: str | None
     section: Section
     box: Bounds
+    is_clear: bool = False
 
 
 @record()
@@ -70,7 +73,7 @@ class Ground:
         if not curves or first == len(self.bodies):
             return None
         box = union_bounds([self.network.boxes[curve] for curve in curves])
-        over = set(range(first, len(self.bodies)))
+        over = {k for k in range(first, len(self.bodies)) if not self.bodies[k].is_clear}
         for edge in self._edges(curves):
             over.intersection_update(self._within[edge])
         return next(
@@ -82,7 +85,9 @@ class Ground:
         bodies.
         """
         first, edges = bisect_right(self._places, place), self._edges(curves)
-        above = [[k for k in self._within[edge] if k >= first] for edge in edges]
+        above = [
+            [k for k in self._within[edge] if k >= first and not self.bodies[k].is_clear] for edge in edges
+        ]
         if not any(above):
             return 0.0, []
         lengths = [length(self.network.piece((edge, True))) for edge in edges]
@@ -94,7 +99,8 @@ class Ground:
         """Returns the share of the area of faces that later bodies cover, and these bodies. A body within the
         faces is an inlay and shows them.
         """
-        above = [b for b in self.bodies if b.place > place and boxes_meet(b.section, faces)]
+        above = [b for b in self.bodies if b.place > place and not b.is_clear]
+        above = [b for b in above if boxes_meet(b.section, faces)]
         above = [b for b in above if not covers(faces, b.section)]
         by = [b.path for b in above if not is_nothing(intersection(b.section, faces))]
         hidden = intersection(union([b.section for b in above]), faces) if by else None
@@ -133,13 +139,16 @@ def _lies_within(inner: Bounds, outer: Bounds) -> bool:
 
 def covered_note(drawing: SolvedStructure, names: Sequence[str], by: str) -> Diagnostic:
     """Returns the diagnostic on curves of a drawing that a later body covers."""
-    name = by.rpartition(".")[2]
+    around, _, name = by.rpartition(".")
+    hint = f"write the drawing below `{name}`, or inside it"
+    if around == drawing.path.rpartition(".")[0]:
+        hint += f", or say `@in_front({name})` before it"
     return Diagnostic(
         "W0709",
         f"{named(names)} of drawing `{drawing.path}` cannot be seen: `{by}` is drawn over it",
         drawing.span,
         "what stands further down is drawn over it",
-        hints=(f"write the drawing below `{name}`, or inside it",),
+        hints=(hint,),
     )
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import lru_cache
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.numbers import rough
-from aidl_lang.common.prose import named
+from aidl_lang.common.prose import named, ticked
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import CoveredHoles, FilledHole, Finding, IdleHole, InnerLoop, LooseCurves
 from aidl_lang.geometry.contacts import Contacts
@@ -322,6 +322,46 @@ def detached_notes(root: SolvedStructure, paths: Sequence[str], contacts: Contac
         if path not in held and path not in free:
             lonely.setdefault(structures[path].span or path, []).append(structures[path])
     return [_detached(alike, contacts.nearest(alike[0].path)) for alike in lonely.values()]
+
+
+def united_notes(
+    root: SolvedStructure,
+    bodies: Collection[str],
+    other: Callable[[SolvedStructure, SolvedStructure], list[str]],
+    *,
+    hint: str = "write it before `{0}`, or make `{0}` an `assembly` of several bodies",
+) -> list[Diagnostic]:
+    """Returns a warning for each statement of structures in a body, or cutting it, with attributes that count
+    for nothing there: those that `other` gives for a structure and its body. `hint` has a place for the name
+    of the body.
+    """
+    found: dict[object, tuple[SolvedStructure, SolvedStructure, list[str], list[str]]] = {}
+
+    def visit(s: SolvedStructure, body: SolvedStructure | None) -> None:
+        if s.path in bodies or s.kind == "drawing":
+            body = s
+        elif body is not None and body.kind == "solid" and (words := other(s, body)):
+            found.setdefault(s.span or s.path, (s, body, words, []))[3].append(s.path)
+        for child in s.structures:
+            visit(child, body)
+
+    visit(root, None)
+    return [_united(*case, hint) for case in found.values()]
+
+
+def _united(
+    s: SolvedStructure, body: SolvedStructure, words: list[str], paths: list[str], hint: str
+) -> Diagnostic:
+    counts = "counts" if len(words) == 1 else "count"
+    are = "it is" if len(paths) == 1 else "they are"
+    return Diagnostic(
+        "W0727",
+        f"{' and '.join(ticked(words, '@'))} of {named(paths, 3)} {counts} for nothing: "
+        f"{are} one body with `{body.path}`",
+        s.span,
+        "cuts it" if s.kind == "hole" else "united with it",
+        hints=(hint.format(body.name),),
+    )
 
 
 def marked_detached(root: SolvedStructure) -> set[str]:

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from aidl_lang.building.expression import exact_turn
 from aidl_lang.common.diagnostics import Diagnostic, ordered
-from aidl_lang.common.prose import ticked
 from aidl_lang.common.records import record
 from aidl_lang.geometry.drawing import Body, Drawing
+from aidl_lang.geometry.notes import united_notes
 from aidl_lang.geometry.solved import Frame, SolvedStructure
 
 Matrix = NDArray[np.float64]
@@ -125,31 +125,13 @@ def _in_turned(s: SolvedStructure, turn: Matrix) -> Iterator[Diagnostic]:
         yield from _in_turned(child, turn @ _turn(child.frame))
 
 
-def _united(root: SolvedStructure, drawing: Drawing) -> Iterator[Diagnostic]:
-    """Yields notes on structures inside a body, or cutting it, whose attributes differ from those of the
-    body.
-    """
-    bodies = {body.path for body in drawing.bodies}
+def _united(root: SolvedStructure, drawing: Drawing) -> list[Diagnostic]:
+    """Returns warnings about what parts of a body cannot have by themselves in space."""
 
-    def visit(s: SolvedStructure, body: SolvedStructure | None) -> Iterator[Diagnostic]:
-        if s.path in bodies or s.kind == "drawing":
-            body = s
-        elif body is not None and body.kind == "solid" and (words := _other(s, body, drawing)):
-            said = " and ".join(ticked(words, "@"))
-            counts = "counts" if len(words) == 1 else "count"
-            yield Diagnostic(
-                "W0727",
-                f"{said} of `{s.path}` {counts} for nothing: it is one body with `{body.path}`",
-                s.span,
-                "cuts it" if s.kind == "hole" else "united with it",
-                hints=(
-                    f"write it before `{body.name}`, or make `{body.name}` an `assembly` of several bodies",
-                ),
-            )
-        for child in s.structures:
-            yield from visit(child, body)
+    def other(s: SolvedStructure, body: SolvedStructure) -> list[str]:
+        return _other(s, body, drawing)
 
-    yield from visit(root, None)
+    return united_notes(root, {body.path for body in drawing.bodies}, other)
 
 
 def _other(s: SolvedStructure, body: SolvedStructure, drawing: Drawing) -> list[str]:

@@ -121,6 +121,11 @@ SNIPPETS = (
         "importfrom", "some definitions of a file", 'import ${1:washer} from "${2:parts.aidl}"$0', "file"
     ),
     Snippet("@color", "the colour", '@color("${1:crimson}")$0', "attribute"),
+    Snippet("@stroke", "the width of lines", "@stroke(${1:0.3mm})$0", "attribute"),
+    Snippet("@dash", "dashed lines", "@dash(${1:3}, ${2:1.5})$0", "attribute"),
+    Snippet("@opacity", "what shows through", "@opacity(${1:0.5})$0", "attribute"),
+    Snippet("@behind", "drawn behind another", "@behind(${1:other})$0", "attribute"),
+    Snippet("@in_front", "drawn in front of another", "@in_front(${1:other})$0", "attribute"),
     Snippet("@layer", "the layer", '@layer("${1:cut}")$0', "attribute"),
     Snippet("@material", "the material", '@material("${1:birch plywood}")$0', "attribute"),
     Snippet("@thickness", "the thickness", "@thickness(${1:3mm})$0", "attribute"),

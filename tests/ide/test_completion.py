@@ -370,7 +370,12 @@ def test_what_other_files_define_comes_with_its_import() -> None:
 
 # --- Everywhere ------------------------------------------------------------------------------------
 
-_OPERANDS_FOLLOW = frozenset({"and", "or", "if", "not", "then", "as", "from"})
+_OPERANDS_FOLLOW = frozenset(
+    (
+        *("and", "or", "if", "not", "then", "as", "from"),
+        *("fn", "shape", "constraint", "alias", "template", "for", "prefer", "assert"),
+    )
+)
 _AFTER = ("", " == 0", "()")
 
 

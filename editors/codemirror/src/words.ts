@@ -2,7 +2,7 @@
 
 export const words: Record<string, readonly string[]> = {
   "kinds": ["assembly", "solid", "hole", "drawing"],
-  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note"],
+  "attributes": ["orientation", "elevation", "color", "colour", "layer", "thickness", "material", "detached", "note", "stroke", "dash", "opacity", "behind", "in_front"],
   "units": ["mm", "cm", "m", "in", "ft", "deg", "rad", "turn", "°"],
   "types": ["any", "length", "angle", "turn", "area", "number", "integer", "text", "string", "bool", "boolean", "point", "list", "peer", "peers", "points", "record", "geometry", "structure", "box", "line", "arc", "circle", "ellipse", "bezier"],
   "everywhere": ["self", "origin", "x_axis", "y_axis"],
@@ -999,6 +999,11 @@ export const snippets: readonly { prefix: string; title: string; body: string; p
   {"prefix": "importas", "title": "another file under a name", "body": "import \"${1:parts.aidl}\" as ${2:parts}$0", "place": "file"},
   {"prefix": "importfrom", "title": "some definitions of a file", "body": "import ${1:washer} from \"${2:parts.aidl}\"$0", "place": "file"},
   {"prefix": "@color", "title": "the colour", "body": "@color(\"${1:crimson}\")$0", "place": "attribute"},
+  {"prefix": "@stroke", "title": "the width of lines", "body": "@stroke(${1:0.3mm})$0", "place": "attribute"},
+  {"prefix": "@dash", "title": "dashed lines", "body": "@dash(${1:3}, ${2:1.5})$0", "place": "attribute"},
+  {"prefix": "@opacity", "title": "what shows through", "body": "@opacity(${1:0.5})$0", "place": "attribute"},
+  {"prefix": "@behind", "title": "drawn behind another", "body": "@behind(${1:other})$0", "place": "attribute"},
+  {"prefix": "@in_front", "title": "drawn in front of another", "body": "@in_front(${1:other})$0", "place": "attribute"},
   {"prefix": "@layer", "title": "the layer", "body": "@layer(\"${1:cut}\")$0", "place": "attribute"},
   {"prefix": "@material", "title": "the material", "body": "@material(\"${1:birch plywood}\")$0", "place": "attribute"},
   {"prefix": "@thickness", "title": "the thickness", "body": "@thickness(${1:3mm})$0", "place": "attribute"},

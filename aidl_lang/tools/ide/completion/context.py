@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from enum import Enum
 from functools import cached_property
 
-from aidl_lang.checking.builtins import COPYING, DERIVING, MATH, PATTERNS
+from aidl_lang.checking.builtins import COPYING, DERIVING, MATH, PATTERNS, STACKING
 from aidl_lang.checking.facts import Fact, ReadPlace
 from aidl_lang.checking.named import of_symbol
 from aidl_lang.checking.resolving.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope
-from aidl_lang.checking.types import ANY, ListType, NumberType, TextType, Type
-from aidl_lang.checking.units import LENGTH
+from aidl_lang.checking.types import ANY, ListType, NumberType, StructureType, TextType, Type
+from aidl_lang.checking.units import LENGTH, PLAIN
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion.wanted import Around, Wanted
@@ -20,7 +20,11 @@ from aidl_lang.tools.ide.site import PLACEHOLDER, EditSite
 from aidl_lang.tools.ide.view import View
 from aidl_lang.tools.vocabulary import vocabulary
 
-_ATTRIBUTES: dict[str, Type] = {"thickness": NumberType(LENGTH), "elevation": NumberType(LENGTH)}
+_ATTRIBUTES: dict[str, Type] = {
+    **dict.fromkeys(("thickness", "elevation", "stroke", "dash"), NumberType(LENGTH)),
+    "opacity": NumberType(PLAIN),
+    **dict.fromkeys(STACKING, StructureType()),
+}
 
 
 class Use(Enum):

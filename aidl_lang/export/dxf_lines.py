@@ -1,0 +1,40 @@
+"""The lines of a DXF: weights that it knows, and a linetype for each pattern of dashes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from aidl_lang.common.numbers import fixed
+from aidl_lang.geometry.styles import Style
+
+WEIGHTS = (
+    *(5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200, 211),
+)
+"""Hundredths of a millimetre: DXF takes no others."""
+DASHED = "DASHED"
+
+
+class Lines:
+    """The linetypes in use, each made on first use. `size` is that of the drawing, mm."""
+
+    def __init__(self, document: Any, size: float) -> None:
+        self._document = document
+        self._size = size
+
+    def attributes(self, style: Style) -> dict[str, Any]:
+        """Returns the attributes of entities with lines of a style; none where it asks for nothing."""
+        found: dict[str, Any] = {}
+        if style.stroke is not None:
+            wanted = 100 * style.stroke
+            found["lineweight"] = min(WEIGHTS, key=lambda weight: abs(weight - wanted))
+        if (dashes := style.dashes(self._size)) is not None:
+            found["linetype"] = self._linetype(dashes, is_named=bool(style.dash))
+        return found
+
+    def _linetype(self, dashes: tuple[float, ...], *, is_named: bool) -> str:
+        """Returns the name of a pattern; the one that goes by the size of the drawing is just dashed."""
+        name = "_".join((DASHED, *map(fixed, dashes))) if is_named else DASHED
+        if name not in self._document.linetypes:
+            pattern = [-part if k % 2 else part for k, part in enumerate(dashes)]
+            self._document.linetypes.add(name, [sum(dashes), *pattern], description="dashes and gaps in mm")
+        return name

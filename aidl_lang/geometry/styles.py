@@ -1,0 +1,112 @@
+"""The looks that attributes ask for: colours, lines, how much shows through. They hold for all inside."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
+from typing import TypeAlias
+
+from aidl_lang.common.colors import css_color
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.records import record
+from aidl_lang.geometry.notes import united_notes
+from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedStructure
+
+Attributes: TypeAlias = Mapping[str, tuple[Scalar, ...]]
+
+DASH, GAP = 0.012, 0.008
+"""Dashes without lengths of their own and the gaps between them, relative to the larger side of a drawing."""
+_OF_BODIES = ("stroke", "dash", "opacity")
+"""Looks that a body has as a whole."""
+
+
+@record()
+class Style:
+    """The looks that the attributes of a structure, or of the nearest one around it that has them, ask
+    for.
+
+    stroke   width of its lines, mm
+    dash     lengths of dashes and gaps by turns, mm; none if they go by the size of the drawing
+    opacity  how much of what lies behind is covered, from 0 to 1
+    """
+
+    color: str | None = None
+    layer: str | None = None
+    material: str | None = None
+    thickness: float | None = None
+    stroke: float | None = None
+    dash: tuple[float, ...] | None = None
+    opacity: float | None = None
+
+    @property
+    def is_clear(self) -> bool:
+        """True if what lies behind shows through."""
+        return self.opacity is not None and self.opacity < 1
+
+    def dashes(self, size: float) -> tuple[float, ...] | None:
+        """Returns dashes and gaps by turns, mm, in a drawing of a size; None for whole lines."""
+        return (DASH * size, GAP * size) if self.dash == () else self.dash
+
+    def with_lines_of(self, other: Style) -> Style:
+        """Returns this style with its lines drawn as those of another one."""
+        return replace(self, stroke=other.stroke, dash=other.dash)
+
+
+def styles_of(root: SolvedStructure) -> dict[str, Style]:
+    """Returns the style of each structure by its path."""
+    styles: dict[str, Style] = {}
+
+    def visit(structure: SolvedStructure, around: Style) -> None:
+        styles[structure.path] = style = _within(around, structure.attributes)
+        for child in structure.structures:
+            visit(child, style)
+
+    visit(root, Style())
+    return styles
+
+
+def styled(style: Style, geometry: SolvedGeometry) -> Style:
+    """Returns the style of a geometry in a structure of a style: that one, but for attributes of its own."""
+    return _within(style, geometry.attributes)
+
+
+def _within(around: Style, stated: Attributes) -> Style:
+    return Style(
+        css_color(stated.get("color", ())) or around.color,
+        _text(stated.get("layer")) or around.layer,
+        _text(stated.get("material")) or around.material,
+        _number(stated.get("thickness"), around.thickness),
+        _number(stated.get("stroke"), around.stroke),
+        _dash(stated["dash"]) if "dash" in stated else around.dash,
+        _number(stated.get("opacity"), around.opacity),
+    )
+
+
+def _text(values: tuple[Scalar, ...] | None) -> str | None:
+    return str(values[0]) if values else None
+
+
+def _number(values: tuple[Scalar, ...] | None, default: float | None) -> float | None:
+    first = values[0] if values else None
+    return float(first) if isinstance(first, int | float) and not isinstance(first, bool) else default
+
+
+def _dash(values: Iterable[Scalar]) -> tuple[float, ...] | None:
+    """Returns the lengths by turns; a single one is that of the gaps, too."""
+    stated = tuple(values)
+    if stated in ((True,), (False,)) and isinstance(stated[0], bool):
+        return () if stated[0] else None
+    lengths = tuple(float(v) for v in stated if isinstance(v, int | float))
+    return lengths * 2 if len(lengths) == 1 else lengths
+
+
+def idle_looks(
+    root: SolvedStructure, bodies: Collection[str], styles: Mapping[str, Style]
+) -> list[Diagnostic]:
+    """Returns warnings about looks that a part of a body cannot have by itself."""
+
+    def other(s: SolvedStructure, body: SolvedStructure) -> list[str]:
+        own, whole = styles[s.path], styles[body.path]
+        return [w for w in _OF_BODIES if w in s.attributes and getattr(own, w) != getattr(whole, w)]
+
+    return united_notes(root, bodies, other)

@@ -1,0 +1,198 @@
+"""Widths, dashes and opacity in files: what each holds of them, and what it says where it cannot."""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+
+import ezdxf
+import pytest
+from ezdxf.document import Drawing as Document
+from PIL import Image
+from pypdfium2 import PdfDocument
+
+from aidl_lang.export import Exported, Job, Options, export
+from tests.compiled import compiled
+from tests.export.colours import near
+
+PROGRAM = """
+param thin = 0.23mm
+@thickness(3mm)
+assembly a {
+    @color("blue") solid plate { body = rectangle(center: fixed((0, 0)), width: 100, height: 60) }
+    @color("yellow") @opacity(0.5) @stroke(2 * thin) @dash(4, 2)
+    solid pane {
+        body = rectangle(center: fixed((20, 0)), width: 20, height: 20)
+        hole bore { rim = circle(center: fixed((20, 0)), radius: 2) }
+    }
+    @color("red") drawing marks {
+        @stroke(4) @opacity(0.25) wide = line(fixed((-45, -20)), fixed((0, -20)))
+        @dash rim = line(fixed((-45, 20)), fixed((0, 20)))
+        fine = line(fixed((0, 20)), fixed((5, 25)))
+    }
+}
+"""
+
+
+def written(suffix: str, program: str = PROGRAM, **options: object) -> Exported:
+    made = compiled(program)
+    assert made.model is not None
+    assert made.drawing is not None
+    return export(Job(made.model, made.drawing, options=Options(**options)), suffix)  # type: ignore[arg-type]
+
+
+def group(svg: str, name: str) -> str:
+    found = re.search(rf'<g [^>]*id="{name}".*?</g>', svg, re.DOTALL)
+    assert found is not None
+    return found[0]
+
+
+def test_svg() -> None:
+    svg = written(".svg").data.decode()
+    pane, marks = group(svg, "a.pane"), group(svg, "a.marks")
+    assert 'fill-opacity="0.5"' in pane
+    assert 'stroke-width="0.46"' in pane
+    assert 'stroke-dasharray="4 2"' in pane
+    assert "stroke-linecap" not in pane
+    wide, rim, fine = re.findall("<path .*?/>", marks)
+    assert 'stroke-width="4"' in wide
+    assert 'stroke-opacity="0.25"' in wide
+    assert 'stroke-dasharray="1.2 0.8"' in rim
+    assert "dash" not in fine
+    assert "opacity" not in group(svg, "a.plate")
+
+
+def test_pixels() -> None:
+    picture = Image.open(io.BytesIO(written(".png", pixels=1060).data)).convert("RGB")
+    assert near(picture.getpixel((530 + 250, 330)), (128, 128, 128))
+    assert near(picture.getpixel((530 - 300, 330 + 200)), (64, 0, 191))
+
+
+def test_pdf() -> None:
+    page = PdfDocument(written(".pdf").data)[0].render(scale=10 / 72 * 25.4).to_pil().convert("RGB")
+    assert near(page.getpixel((530 + 250, 330)), (128, 128, 128))
+    assert near(page.getpixel((530 - 300, 330 + 200)), (64, 0, 191))
+
+
+@pytest.mark.parametrize("length", [0.01, 100])
+def test_dashes_that_no_pixel_shows_are_a_paler_line(length: float) -> None:
+    program = f"@dash({length}, {3 * length}) @stroke(1000) drawing d {{ one = line((0, 0), (500m, 0)) }}"
+    picture = Image.open(io.BytesIO(written(".png", program, pixels=400).data)).convert("L")
+    middle = picture.getpixel((200, picture.height // 2))
+    assert isinstance(middle, int)
+    assert 190 < middle < 220
+
+
+def test_the_widest_line_is_in_sight() -> None:
+    program = "@stroke(10) drawing d { one = rectangle(width: 40, height: 20) }"
+    assert 'viewBox="-25 -15 50 30"' in written(".svg", program).data.decode()
+    assert 'width="42.4mm"' in written(".svg", program, cut=True).data.decode()
+
+
+# --- DXF -------------------------------------------------------------------------------------------
+
+
+def document(**options: object) -> Document:
+    return ezdxf.read(io.StringIO(written(".dxf", **options).data.decode()))
+
+
+def test_dxf_has_the_nearest_weight_and_a_linetype_for_each_pattern() -> None:
+    made = document()
+    assert not made.audit().errors
+    entities = list(made.modelspace())
+    looks = {(e.dxf.lineweight, e.dxf.linetype) for e in entities}
+    # the outline of the pane and of its bore, the wide line, the dashed one, and all else
+    assert looks == {(50, "DASHED_4_2"), (211, "BYLAYER"), (-1, "DASHED"), (-1, "BYLAYER")}
+    assert sum(e.dxf.linetype == "DASHED_4_2" for e in entities) == 2
+    patterns = {t.dxf.name: t.simplified_line_pattern() for t in made.linetypes if "DASHED" in t.dxf.name}
+    assert {name: list(map(float, p)) for name, p in patterns.items()} == {
+        "DASHED_4_2": [4, 2],
+        "DASHED": pytest.approx([1.2, 0.8]),
+    }
+    (outline,) = [e for e in made.modelspace().query("LWPOLYLINE") if e.dxf.linetype == "DASHED_4_2"]
+    assert outline.dxf.flags & 128
+
+
+def test_a_cutter_follows_whole_hairlines() -> None:
+    looks = {(e.dxf.lineweight, e.dxf.linetype) for e in document(kerf=0.1).modelspace()}
+    assert looks == {(-1, "BYLAYER")}
+    for options in ({"cut": True}, {"theme": "cutter"}):
+        svg = written(".svg", **options).data.decode()
+        assert set(re.findall(r'stroke-width="([^"]*)"', svg)) == {"0.1"}
+        assert "dash" not in svg
+        assert "opacity" not in svg
+
+
+def test_a_geometry_has_its_own_colour_in_a_dxf() -> None:
+    program = """
+    @color("red") drawing d {
+        a = line((0, 0), (5, 0))
+        @color("blue") b = line((5, 0), (9, 0))
+    }
+    """
+    made = ezdxf.read(io.StringIO(written(".dxf", program).data.decode()))
+    assert [e.rgb for e in made.modelspace()] == [(255, 0, 0), (0, 0, 255)]
+
+
+# --- Space -----------------------------------------------------------------------------------------
+
+
+def test_solids_that_show_through() -> None:
+    step = written(".step").data
+    assert step.count(b"SURFACE_STYLE_TRANSPARENT(0.5)") == 1
+    made = zipfile.ZipFile(io.BytesIO(written(".3mf").data)).read("3D/3dmodel.model").decode()
+    assert re.findall('displaycolor="(.*?)"', made) == ["#0000FFFF", "#FFFF0080"]
+
+
+@pytest.mark.parametrize("name", ["blueprint", "ink"])
+def test_reduced_pictures_keep_lines_and_opacity(name: str) -> None:
+    assert _looks(written(".svg", theme=name).data.decode()) == _looks(written(".svg").data.decode())
+
+
+def _looks(svg: str) -> list[str]:
+    return re.findall(r'(?:stroke-width|stroke-dasharray|opacity)="[^"]*"', svg)
+
+
+# --- What has no place -----------------------------------------------------------------------------
+
+
+CUTS = "a cutter follows whole lines of one width, and fills nothing"
+TOLD: list[tuple[str, dict[str, object], str]] = [
+    (".dxf", {}, "`@opacity` counts for nothing in this file: DXF holds outlines, and nothing is filled"),
+    (".dxf", {"kerf": 0.1}, f"`@stroke`, `@dash` and `@opacity` count for nothing in this file: {CUTS}"),
+    (".svg", {"cut": True}, f"`@stroke`, `@dash` and `@opacity` count for nothing in this file: {CUTS}"),
+    (".stl", {}, "`@stroke`, `@dash` and `@opacity` count for nothing in this file: STL holds bare shapes"),
+    (
+        ".step",
+        {},
+        "`@stroke` and `@dash` count for nothing in this file: "
+        "STEP holds shapes with their colours, and its lines have no width",
+    ),
+    (
+        ".3mf",
+        {},
+        "`@stroke` and `@dash` count for nothing in this file: "
+        "3MF holds solids with their colours, and draws no lines",
+    ),
+]
+
+
+@pytest.mark.parametrize(("suffix", "options", "said"), TOLD)
+def test_what_a_file_cannot_hold_is_told_once(suffix: str, options: dict[str, object], said: str) -> None:
+    (note,) = [note for note in written(suffix, **options).notes if note.code == "N0741"]
+    assert note.message == said
+    assert note.span is not None
+    assert note.span.text.startswith("@color")
+    assert note.hints == ("pictures (.svg, .png, .pdf) are drawn so",)
+
+
+@pytest.mark.parametrize("suffix", [".svg", ".png", ".pdf", ".json"])
+def test_pictures_hold_it_all(suffix: str) -> None:
+    assert written(suffix).notes == ()
+
+
+def test_who_asks_for_nothing_is_told_nothing() -> None:
+    program = '@color("red") @thickness(2) solid s { rim = circle(radius: 5) }'
+    for suffix in (".dxf", ".step", ".stl", ".3mf"):
+        assert written(suffix, program).notes == ()
