@@ -68,8 +68,8 @@ class Trouble:
 
     @cached_property
     def open(self) -> list[Token]:
-        """The open brackets of the statement, outermost first; blocks are not among them."""
-        return [t for t in self.automaton.open_brackets() if t.kind != "{" and t.start >= self.first.start]
+        """The open brackets of the statement, outermost first; of blocks those among arguments."""
+        return [t for t in self.automaton.open_brackets() if t.start >= self.first.start]
 
     @property
     def between(self) -> bool:
@@ -78,7 +78,7 @@ class Trouble:
     @cached_property
     def complete(self) -> bool:
         """True if the statement could end here."""
-        return self.accepts(";")
+        return not self.open and self.accepts(";")
 
     @property
     def on_new_line(self) -> bool:

@@ -278,6 +278,8 @@ NODES: dict[type[ast.Node], str] = {
     ast.Assert: "assert_statement",
     ast.Equation: "equation",
     ast.If: "if_statement",
+    ast.IfArguments: "if_arguments",
+    ast.ArgumentBlock: "argument_block",
     ast.Parameter: "parameter",
     ast.Attribute: "attribute",
     ast.Placement: "placement",

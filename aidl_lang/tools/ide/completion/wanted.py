@@ -78,6 +78,12 @@ class Around:
                 return self._compared(node, (left, right))
             case ast.Conditional(test=test):
                 return CONDITION if node is test else self.wanted(path[:-1])
+            case ast.ArgumentBlock():
+                return self.wanted(path[:-1])
+            case ast.ForArguments(body=ast.ArgumentBlock()) | ast.IfArguments() if isinstance(
+                node, ast.ArgumentBlock
+            ):
+                return self.wanted(path[:-1])
             case ast.List():
                 return _member_of(self.wanted(path[:-1]))
             case _:
@@ -101,11 +107,13 @@ def _of_place(node: ast.Node, above: ast.Node, path: Sequence[ast.Node]) -> Want
             return Wanted((RangeType(), ListType(ANY)))
         case ast.Range() | ast.Membership():
             return Wanted((_NUMBER, _WHOLE))
-        case ast.For() | ast.Comprehension(iterable=_) if node is above.iterable:
+        case ast.For() | ast.ForArguments() | ast.Comprehension(iterable=_) if node is above.iterable:
             return Wanted((ListType(ANY), RangeType()))
         case ast.Index() | ast.Structure() | ast.Assign() if _is_index(node, above):
             return Wanted((_WHOLE,))
-        case ast.If(test=test) | ast.Assert(test=test) | ast.Prefer(value=test) if node is test:
+        case ast.If(test=test) | ast.IfArguments(test=test) if node is test:
+            return CONDITION
+        case ast.Assert(test=test) | ast.Prefer(value=test) if node is test:
             return CONDITION
         case ast.Assert():
             return Wanted((TextType(),))
