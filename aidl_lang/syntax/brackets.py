@@ -249,6 +249,15 @@ def unclosed_arguments(t: Trouble) -> SyntaxProblem | None:
     )
 
 
+def choice_in_block(t: Trouble) -> SyntaxProblem | None:
+    """Recognises `a if c else b` in a block among arguments."""
+    if t.token.kind != "else" or not t.open or t.open[-1].kind != "{" or not t.accepts("{"):
+        return None
+    message = "in a block of arguments, `if` behind an argument begins a block of its own"
+    hint = "write `if c then a else b`, or put `a if c else b` in parentheses"
+    return SyntaxProblem(Diagnostic("E0119", message, t.span(), hints=(hint,)))
+
+
 def name_in_block(t: Trouble) -> SyntaxProblem | None:
     """Recognises `p = (i, 0)` and `from: (i, 0)` in a block among arguments."""
     if t.token.kind not in ("=", ":") or not t.open or t.open[-1].kind != "{" or t.before is None:

@@ -39,6 +39,7 @@ _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
     brackets.unclosed_arguments,
     brackets.comma_before_block,
     brackets.name_in_block,
+    brackets.choice_in_block,
     brackets.wrong_closer,
     brackets.unclosed_block,
     missing.equation_for_definition,

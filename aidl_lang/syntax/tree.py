@@ -21,9 +21,7 @@ from aidl_lang.syntax.words import FOREIGN_WORDS
 
 
 class ThenIf:
-    """The expression at the end of a statement and the `if` statement that follows it; or two such arguments in a
-    block.
-    """
+    """The expression at the end of a statement and the `if` that follows it."""
 
     __slots__ = ("following", "value")
 
@@ -326,10 +324,6 @@ class Builder(ExpressionBuilder):
     ) -> ThenIf:
         """Builds an expression, and the `if` statement that begins with `word`."""
         return ThenIf(value, self.if_(word.start, end, test, then, otherwise))
-
-    def argument_then_if(self, start: int, end: int, value: ThenIf) -> list[ast.Expression]:
-        assert isinstance(value.following, ast.IfArguments)
-        return [value.value, value.following]
 
     def interrupted_argument(
         self,

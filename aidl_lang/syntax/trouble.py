@@ -122,7 +122,8 @@ class Trouble:
             return True
         if not self.on_new_line:
             return self.token.kind in STATEMENT_WORDS - {"if", "for"}
-        if self.token.kind in STATEMENT_WORDS | {"@"}:
+        in_call = self.token.kind in ("for", "if") and self.open and self.open[-1].kind in ("CALL", "{")
+        if self.token.kind in STATEMENT_WORDS | {"@"} and not in_call:
             return True
         return self.indentation(self.token.start) <= self.indentation(self.first.start)
 

@@ -475,7 +475,19 @@ export default grammar({
         "}",
       ),
     _block_arguments: ($) =>
-      seq(choice($.expression, $.let_declaration), repeat(choice($._first_sum, $.let_declaration))),
+      seq(choice($._argument_in_block, $.let_declaration), repeat(choice($._first_sum, $.let_declaration))),
+    // `if` behind an argument begins a block: `a if c else b` stands in parentheses.
+    _argument_in_block: ($) =>
+      choice($._disjunction, alias($._conditional_in_block, $.conditional_expression)),
+    _conditional_in_block: ($) =>
+      seq(
+        "if",
+        field("condition", $._disjunction),
+        "then",
+        field("consequence", $.expression),
+        "else",
+        field("alternative", $._argument_in_block),
+      ),
     named_argument: ($) => seq(field("name", $.identifier), choice(":", "="), field("value", $.expression)),
 
     parenthesized_expression: ($) => seq("(", $.expression, ")"),
