@@ -250,7 +250,7 @@ class _Reader:
         The statements of its block are read on as if they stood in the block around it, unless `with_block`.
         """
         tokens, automaton = self.tokens, self.automaton
-        # How many brackets are open in the statement, and in each block among arguments that stands in the other.
+        # How many brackets are open in the statement, and in each of the nested blocks among arguments.
         depths = [0]
         for kind in self._open_since(self._statement_begin(position)):
             _follow(depths, kind)

@@ -135,8 +135,8 @@ class ForArguments(Node):
 
 @record(eq=False, repr=False)
 class IfArguments(Node):
-    """`if test { arguments } else { arguments }` among the arguments of a call; `else if` is a block that holds
-    one more.
+    """`if test { arguments } else { arguments }` among the arguments of a call; `else if` is a block that
+    holds one more.
     """
 
     test: Expression

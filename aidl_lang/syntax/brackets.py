@@ -24,7 +24,12 @@ def lists_as_statements(source: SourceFile, tokens: list[Token]) -> list[Diagnos
     asserting = False  # the comma before the message of an `assert` ends nothing
     for n, token in enumerate(tokens):
         asserting = token.kind == "assert" or (asserting and token.kind not in ("{", "}", ";"))
-        if token.kind == "[" and opened[-1:] in ([], ["{"]) and "CALL" not in opened and len(found) < _MOST_LISTS:
+        if (
+            token.kind == "["
+            and opened[-1:] in ([], ["{"])
+            and "CALL" not in opened
+            and len(found) < _MOST_LISTS
+        ):
             before = tokens[n - 1].kind if n else ";"
             joined = before in _VALUE_ENDS and begins_line(source.text, token.start)
             ends = before in _STATEMENT_ENDS and not (asserting and before == ",")

@@ -30,9 +30,9 @@ _BINARY = {
 
 @record()
 class BracketGroup:
-    """`opening item, item closing`: on one line, all items on one line of their own, or each on its own. A block
-    has spaces inside its braces; it is broken with what it belongs to, and stands on a line of its own in what is
-    broken around it.
+    """`opening item, item closing`: on one line, all items on one line of their own, or each on its own. A
+    block has spaces inside its braces; it is broken with what it belongs to, and stands on a line of its own
+    in what is broken around it.
     """
 
     opening: str
@@ -196,8 +196,8 @@ class ExpressionPrinter:
                 return CHOICE, doc(head, self._argument_block(" ", node.body))
             case ast.IfArguments():
                 head = doc("if ", self.expression(node.test, OR))
-                then = self._argument_block(" ", node.then)
-                return CHOICE, doc(head, then, self._else_arguments(node.otherwise))
+                block = self._argument_block(" ", node.then)
+                return CHOICE, doc(head, block, self._else_arguments(node.otherwise))
             case ast.Unary(operator="not"):
                 return NOT, doc("not ", self.expression(node.operand, NOT))
             case ast.Unary():

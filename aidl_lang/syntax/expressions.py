@@ -92,9 +92,7 @@ class ExpressionBuilder:
 
     # --- Blocks of arguments ---
 
-    def argument_block(
-        self, start: int, end: int, *items: ast.Let | ast.Expression
-    ) -> ast.ArgumentBlock:
+    def argument_block(self, start: int, end: int, *items: ast.Let | ast.Expression) -> ast.ArgumentBlock:
         return ast.ArgumentBlock(items, span=self.span(start, end))
 
     def for_arguments(

@@ -279,7 +279,6 @@ NODES: dict[type[ast.Node], str] = {
     ast.Equation: "equation",
     ast.If: "if_statement",
     ast.IfArguments: "if_arguments",
-    ast.ArgumentBlock: "argument_block",
     ast.Parameter: "parameter",
     ast.Attribute: "attribute",
     ast.Placement: "placement",

@@ -1,5 +1,4 @@
 /// Blocks among arguments: steps of a path, corners of a polygon, things of a relation.
-// changes: crown
 assembly stage {
     param teeth = 6 in 3..9
 
