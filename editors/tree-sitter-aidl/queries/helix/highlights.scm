@@ -108,9 +108,9 @@
 ((call_expression function: [(identifier) @function.builtin (member_expression property: (identifier) @function.builtin)])
   (#any-of? @function.builtin
     "fillet" "chamfer" "offset" "shell" "thick" "hull" "union" "intersect" "cut" "difference" "clip"
-    "tiled" "mirror" "copy" "move" "rotate" "scale" "linear_array" "grid" "polar_array" "fixed" "guess"
-    "written" "nearest" "area" "perimeter" "overlaps" "sin" "cos" "tan" "asin" "acos" "atan" "atan2"
-    "sqrt" "abs" "hypot" "min" "max" "sum" "floor" "ceil" "round" "len" "range" "enumerate" "zip"
+    "tiled" "mirror" "copy" "move" "rotate" "scale" "linear_array" "grid" "along" "polar_array" "fixed"
+    "guess" "written" "nearest" "area" "perimeter" "overlaps" "sin" "cos" "tan" "asin" "acos" "atan"
+    "atan2" "sqrt" "abs" "hypot" "min" "max" "sum" "floor" "ceil" "round" "len" "range" "enumerate" "zip"
     "reversed" "str" "record" "choice" "rgb" "line_to" "line_by" "right" "left" "up" "down" "forward"
     "horizontal_to" "vertical_to" "polyline_to" "arc_to" "arc_by" "tangent_arc_to" "bezier_to"
     "quadratic_to" "close" "mirrored" "move_to" "hatching" "crosshatch" "mesh" "knurling" "threads"
