@@ -645,6 +645,7 @@ export const calls: Record<string, "call.shape" | "call.constraint" | "call.func
   "stacked": "call.constraint",
   "stadium": "call.shape",
   "stands_on": "call.constraint",
+  "stroke": "call.function",
   "superellipse": "call.shape",
   "surrounds": "call.constraint",
   "symmetric_about": "call.constraint",

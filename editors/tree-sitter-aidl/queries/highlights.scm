@@ -121,8 +121,8 @@
     "norm" "dot" "cross" "unit" "lerp" "turned" "vector" "direction" "radians" "circumcenter"
     "anchor_point" "anchored" "angle_between" "arccos" "arcsin" "arctan" "arctan2" "at_share"
     "close_mirrored" "dist" "distance_x" "distance_y" "fix" "ground" "grounded" "horizontal_axis" "lock"
-    "outline_distance" "place_in" "places_in" "point_between" "point_in" "translate" "vec" "vec2" "vec2d"
-    "vector2" "vector2d" "vertical_axis" "x_distance" "y_distance"))
+    "outline_distance" "place_in" "places_in" "point_between" "point_in" "stroke" "translate" "vec"
+    "vec2" "vec2d" "vector2" "vector2d" "vertical_axis" "x_distance" "y_distance"))
 
 ((call_expression function: [(identifier) @function.builtin (member_expression property: (identifier) @function.builtin)])
   (#any-of? @function.builtin
